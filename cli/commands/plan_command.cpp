@@ -19,8 +19,8 @@
 #include <talus/cli/draw/reach_scene.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>

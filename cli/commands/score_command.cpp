@@ -7,8 +7,8 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/common/input_error.hpp>

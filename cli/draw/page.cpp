@@ -58,7 +58,7 @@ ordered_json places(const std::vector<maps::Point>& points) {
 }
 
 // Track points as rows of plain numbers, because a drive has thousands of points.
-ordered_json storyOf(const DriveStory& story) {
+ordered_json storyOf(const TraverseRecord& story) {
   ordered_json out{{"track", ordered_json::array()},
                    {"events", ordered_json::array()},
                    {"changes", ordered_json::array()},
@@ -67,7 +67,7 @@ ordered_json storyOf(const DriveStory& story) {
   for (const planner::TrackPoint& t : story.drive.track)
     out["track"].push_back({number(t.time_s), number(t.place.x_m), number(t.place.y_m), number(t.slip),
                             number(t.energy_J / 1000.0), number(t.sinkage_m)});
-  for (const planner::DriveEvent& e : story.drive.events)
+  for (const planner::TraverseEvent& e : story.drive.events)
     out["events"].push_back({{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}});
   for (const CellChange& c : story.changes) {
     const maps::Point centre = story.grid.centre(c.cell);

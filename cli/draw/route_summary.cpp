@@ -132,7 +132,7 @@ std::string riskText(double probability) {
 
 std::string driveText(const Route& route) {
   if (!route.summary.drive) return "";
-  const planner::DriveShape& d = *route.summary.drive;
+  const planner::RouteShape& d = *route.summary.drive;
   const std::string radius = d.max_curvature_1_m > 0.0
                                  ? fmt::format("min turning radius {:.3g} m", 1.0 / d.max_curvature_1_m)
                                  : "no arcs";

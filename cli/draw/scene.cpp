@@ -74,7 +74,7 @@ BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& bloc
 HeadingCosts headingCosts(const costmap::TraversabilityMap& map, const Blocks& blocks) {
   const auto version = map.published();
   HeadingCosts out{Raster<costmap::CellCode>(blocks.coarse()), Raster<std::uint8_t>(blocks.coarse()),
-                   std::shared_ptr<const costmap::DriveCost>(version, &version->cost())};
+                   std::shared_ptr<const costmap::TravelCost>(version, &version->cost())};
   for (int row = 0; row < blocks.coarse().height; ++row)
     for (int column = 0; column < blocks.coarse().width; ++column) {
       const Cell cell = blocks.middle({column, row});

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <talus/cli/draw/colour.hpp>
-#include <talus/cli/draw/drive_story.hpp>
 #include <talus/cli/draw/ticks.hpp>
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/cli/draw/traverse_record.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/route/route.hpp>
 
@@ -51,7 +51,7 @@ struct ValueLayer {
 struct HeadingCosts {
   maps::Raster<costmap::CellCode> codes;
   maps::Raster<std::uint8_t> categories;  ///< terramech::Category by its number, as `talus explain` states it
-  std::shared_ptr<const costmap::DriveCost> cost;
+  std::shared_ptr<const costmap::TravelCost> cost;
 };
 
 /// A small area, marked with a ring around it.
@@ -96,7 +96,7 @@ struct Scene {
   std::optional<maps::Georeference> georeference{};  ///< of the map, if known
   int cells_per_pixel = 1;                           ///< cells of the map per cell of the scene and side
   std::optional<HeadingCosts> costs{};               ///< of traversability maps
-  std::optional<DriveStory> story;                   ///< a simulated drive for replay
+  std::optional<TraverseRecord> story;               ///< a simulated drive for replay
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }
 };

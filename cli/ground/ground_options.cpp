@@ -58,7 +58,7 @@ bool isBeliefMap(const std::string& path) {
   return costmap::octomapType(path) == "TraversabilityTree";
 }
 
-void addPolicy(CLI::App& command, costmap::DrivePolicy& policy) {
+void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
   command.add_flag("--no-marginal{false}", policy.allow_marginal, "exclude marginal cells");
   command.add_flag("--allow-dangerous", policy.allow_dangerous,
                    "allow dangerous cells where the drawbar pull is sufficient");
@@ -169,7 +169,7 @@ bool isBuiltAlone(const GroundOptions& options, const std::string& path) {
   return options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path);
 }
 
-auto fieldsOf(const costmap::DrivePolicy& p) {
+auto fieldsOf(const costmap::TravelPolicy& p) {
   return std::tie(p.allow_marginal, p.allow_dangerous, p.allow_unknown, p.slope_margin_rad,
                   p.sinkage_threshold, p.sinkage_critical, p.max_immobilisation, p.pose_error_m,
                   p.time_weight_W, p.entrapment, p.unmonitored_entrapment, p.unmonitored, p.risk_weight_J,
@@ -185,7 +185,7 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
   if (!options.layers.costs.empty())
     throw InputError({path, "is a built map, on which --layer has no effect",
                       "give --layer to talus costmap, or plan on the elevation map"});
-  if (fieldsOf(options.policy) != fieldsOf(costmap::DrivePolicy{}))
+  if (fieldsOf(options.policy) != fieldsOf(costmap::TravelPolicy{}))
     throw InputError({path, "is a built map, on which options of thresholds, weights and risk have no effect",
                       "give them to talus costmap, or plan on the elevation map"});
   const bool alone = isBuiltAlone(options, path);
@@ -278,7 +278,7 @@ void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, con
     context.warn(std::string("no --rover: using default rover ") + assumed.rover + "");
 }
 
-void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::DrivePolicy& policy,
+void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::TravelPolicy& policy,
                   const Context& context) {
   for (const costmap::CostLayer& layer : layers) {
     const auto& values = layer.added_J_per_m.values();

@@ -24,7 +24,7 @@ struct GroundOptions {
   std::string model;         ///< refined model from `talus trace` for ground without a class, instead of soil
   std::string rover;         ///< library name or YAML; empty: default of the body
   double footprint_m = 0.0;  ///< radius of slope fits; 0: that of the rover
-  costmap::DrivePolicy policy;
+  costmap::TravelPolicy policy;
 };
 
 /// Declares the options of addMapOptions() and addGroundChoices(), and --map.

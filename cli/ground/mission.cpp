@@ -76,26 +76,26 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
 }
 
 // A policy value that differs from its default was set on the command line and is kept.
-void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
+void readThresholds(const YamlFields& fields, costmap::TravelPolicy& policy) {
   fields.only(namesOf(thresholdKeys()));
-  const costmap::DrivePolicy defaults;
-  const auto number = [&](double costmap::DrivePolicy::*field, const char* name) {
+  const costmap::TravelPolicy defaults;
+  const auto number = [&](double costmap::TravelPolicy::*field, const char* name) {
     const double said = fields.number(name, policy.*field);
     if (policy.*field == defaults.*field) policy.*field = said;
   };
-  const auto flag = [&](bool costmap::DrivePolicy::*field, const char* name) {
+  const auto flag = [&](bool costmap::TravelPolicy::*field, const char* name) {
     const bool said = fields.flag(name, policy.*field);
     if (policy.*field == defaults.*field) policy.*field = said;
   };
-  number(&costmap::DrivePolicy::slope_margin_rad, "slope_margin_rad");
-  number(&costmap::DrivePolicy::sinkage_threshold, "sinkage_threshold");
-  number(&costmap::DrivePolicy::sinkage_critical, "sinkage_critical");
-  number(&costmap::DrivePolicy::max_immobilisation, "max_immobilisation");
-  flag(&costmap::DrivePolicy::allow_marginal, "allow_marginal");
-  flag(&costmap::DrivePolicy::allow_dangerous, "allow_dangerous");
-  flag(&costmap::DrivePolicy::allow_unknown, "allow_unknown");
-  number(&costmap::DrivePolicy::time_weight_W, "time_weight_W");
-  number(&costmap::DrivePolicy::risk_weight_J, "risk_weight_J");
+  number(&costmap::TravelPolicy::slope_margin_rad, "slope_margin_rad");
+  number(&costmap::TravelPolicy::sinkage_threshold, "sinkage_threshold");
+  number(&costmap::TravelPolicy::sinkage_critical, "sinkage_critical");
+  number(&costmap::TravelPolicy::max_immobilisation, "max_immobilisation");
+  flag(&costmap::TravelPolicy::allow_marginal, "allow_marginal");
+  flag(&costmap::TravelPolicy::allow_dangerous, "allow_dangerous");
+  flag(&costmap::TravelPolicy::allow_unknown, "allow_unknown");
+  number(&costmap::TravelPolicy::time_weight_W, "time_weight_W");
+  number(&costmap::TravelPolicy::risk_weight_J, "risk_weight_J");
 }
 
 }  // namespace

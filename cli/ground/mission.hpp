@@ -11,7 +11,7 @@
 namespace talus::cli {
 
 /// Constraints on the motion of the rover, for planners of drives.
-struct DriveOptions {
+struct MotionOptions {
   std::optional<double> start_heading_rad;  ///< none: any heading
   std::optional<double> goal_heading_rad;   ///< none: any heading at the goal
   std::optional<double> turning_radius_m;   ///< none: that of the rover
@@ -31,7 +31,7 @@ struct PlanOptions {
   double tolerance_m = 0.0;
   std::string planner = "field";
   std::string plugin;  ///< shared library of an external planner; empty: built-in planners
-  DriveOptions drive;
+  MotionOptions drive;
   double max_risk = 0.0;               ///< upper bound of the immobilisation probability; 0: none
   std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read window by window
   bool whole_field = false;            ///< also on large maps

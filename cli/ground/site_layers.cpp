@@ -41,7 +41,7 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
 // Category of a cell in its best heading, which depends only on the cost curve and the steepness; cached.
 class BestHeading {
  public:
-  explicit BestHeading(const costmap::DriveCost& cost) : cost_(cost), known_(cost.curves().size()) {}
+  explicit BestHeading(const costmap::TravelCost& cost) : cost_(cost), known_(cost.curves().size()) {}
 
   float category(CellCode cell) {
     const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
@@ -61,13 +61,13 @@ class BestHeading {
     auto found = terramech::Category::Dangerous;
     for (int k = 0; k <= kHeadings / 2; ++k) {
       const double heading = 2.0 * std::numbers::pi * k / kHeadings;
-      const costmap::DriveState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
+      const costmap::TravelState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
       if (state.refusal == costmap::Refusal::None) found = std::min(found, state.category);
     }
     return static_cast<float>(found);
   }
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   std::vector<std::vector<float>> known_;  // by curve and step
 };
 

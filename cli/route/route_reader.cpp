@@ -179,7 +179,7 @@ void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].reverse = reverse[i] == json(true);
 }
 
-planner::DriveShape shapeFrom(const Fields& drive) {
+planner::RouteShape shapeFrom(const Fields& drive) {
   return {.cusps = drive.count("cusps"),
           .turns_in_place = drive.count("turns_in_place"),
           .turned_rad = drive.number("turned_rad"),

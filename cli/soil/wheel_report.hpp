@@ -9,7 +9,7 @@
 namespace talus::cli {
 
 /// One wheel and its operating point.
-struct WheelAtWork {
+struct WheelOperatingPoint {
   terramech::Soil soil;
   terramech::Rover rover;
   double load_N = 0.0;
@@ -20,6 +20,6 @@ struct WheelAtWork {
 
 /// A self-contained HTML page: forces of the wheel, stresses along the rim (thesis Fig. C.4), and drawbar
 /// pull, torque and sinkage over slip (Figs. 3.8, D.3). Throws as terramech::equilibrium().
-std::string wheelReport(const WheelAtWork& work);
+std::string wheelReport(const WheelOperatingPoint& work);
 
 }  // namespace talus::cli

@@ -120,7 +120,7 @@ HeadingSets& FieldPlanner::headingsOf(const Problem& problem) {
 // connected to that end.
 Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
                              const StopCheck& stop) {
-  PlaceHelp help{.hazards = problem.hazards};
+  PlaceDiagnostics help{.hazards = problem.hazards};
   std::optional<Reach> other;
   if (from_there != to_there && problem.map->grid().size() <= kTriedCells) {
     HeadingSets& headings = headingsOf(problem);

@@ -6,7 +6,7 @@
 
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
-#include <talus/planner/pose/drive_planner.hpp>
+#include <talus/planner/pose/pose_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 
@@ -23,7 +23,7 @@ class NamedPlanner {
 
   /// Returns true if the planner honours headings and a turning radius.
   bool drives() const noexcept {
-    return settings_.planner == DrivePlanner::kName || settings_.planner == DrivePlanner::kSampling;
+    return settings_.planner == PosePlanner::kName || settings_.planner == PosePlanner::kSampling;
   }
 
   /// The canonical name.
@@ -47,7 +47,7 @@ class NamedPlanner {
 
   SamplingSettings settings_;
   FieldPlanner field_;
-  DrivePlanner drive_;
+  PosePlanner drive_;
   TubePlanner tube_;
 };
 

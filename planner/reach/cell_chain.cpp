@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <talus/planner/reach/cell_chain.hpp>
-#include <talus/planner/reach/cell_drive.hpp>
+#include <talus/planner/reach/cell_crossing.hpp>
 
 namespace talus::planner {
 namespace {
@@ -49,8 +49,8 @@ class Layer {
   }
 
  private:
-  DriveCone cone(std::size_t k) const {
-    return DriveCone(chain_[k].headings, chain_[k].everywhere ? 0.0 : cut_);
+  HeadingCone cone(std::size_t k) const {
+    return HeadingCone(chain_[k].headings, chain_[k].everywhere ? 0.0 : cut_);
   }
   int exit(std::size_t k) const noexcept { return otherSide(chain_[k + 1].side); }
 
@@ -199,7 +199,7 @@ class Layer {
 
 }  // namespace
 
-std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const DriveCone& cone,
+std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const HeadingCone& cone,
                                      const Ends& from, const Segment& places, double tolerance_m,
                                      double slack) {
   const InCell goal = inCell(grid, cell, places.to);

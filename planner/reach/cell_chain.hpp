@@ -45,7 +45,7 @@ LaidChain laidChain(const MotionCost& cost, const std::vector<ChainLink>& chain,
 
 /// Place in the cell, reachable from the segment between two places of the cell, that is nearest to
 /// `places.to`, if within the tolerance; `places.to` itself if the tolerance is 0.
-std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const DriveCone& cone,
+std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const HeadingCone& cone,
                                      const std::pair<InCell, InCell>& from, const Segment& places,
                                      double tolerance_m, double slack);
 

@@ -133,11 +133,13 @@ class Search {
     const auto known = use_.find(map_.grid().index(cell));
     return proof_ || known == use_.end() ? Use::Whole : known->second;
   }
-  bool everywhere(Cell cell, const DriveCone& cone) const {
+  bool everywhere(Cell cell, const HeadingCone& cone) const {
     if (proof_) return cone.everywhere();
     return cone.everywhere() && cone.spare_rad() > kLeastSpare_rad && useOf(cell) == Use::Whole;
   }
-  bool byArcs(Cell cell, const DriveCone& cone) const { return cone.everywhere() && !everywhere(cell, cone); }
+  bool byArcs(Cell cell, const HeadingCone& cone) const {
+    return cone.everywhere() && !everywhere(cell, cone);
+  }
 
   // Ranges of a node that no earlier path reached, as nodes. Cells in which every direction is drivable are
   // expanded once.
@@ -146,7 +148,7 @@ class Search {
     const std::size_t cell = map_.grid().index(node.cell);
     const HeadingSet& own = headings_.of(map_.at(node.cell));
     if (own.empty() || useOf(node.cell) == Use::Never) return {};
-    if (everywhere(node.cell, DriveCone(own))) {
+    if (everywhere(node.cell, HeadingCone(own))) {
       if (passed_[cell]) return {};
       pass(cell);
       return {popped};
@@ -182,27 +184,27 @@ class Search {
     const double reach = 0.5 + tolerance_m_ / map_.grid().resolution_m + 1e-5;
     if (std::max(std::abs(goal.x - 0.5), std::abs(goal.y - 0.5)) > reach) return false;
     const HeadingSet& own = headings_.of(map_.at(node.cell));
-    const DriveCone cone(own);
-    const auto reached = [&](const DriveCone& by) {
+    const HeadingCone cone(own);
+    const auto reached = [&](const HeadingCone& by) {
       return nearestReached(map_.grid(), node.cell, by, ends(node), places_, tolerance_m_, extent_.ends)
           .has_value();
     };
     if (!byArcs(node.cell, cone)) return reached(cone);
     for (const HeadingArc& arc : own.arcs())
-      if (reached(DriveCone(HeadingSet({arc})))) return true;
+      if (reached(HeadingCone(HeadingSet({arc})))) return true;
     return false;
   }
 
   void expand(int k, double spent) {
     const Cell cell = nodes_[static_cast<std::size_t>(k)].cell;
     const HeadingSet& own = headings_.of(map_.at(cell));
-    const DriveCone cone(own);
+    const HeadingCone cone(own);
     if (!byArcs(cell, cone)) return expandBy(k, spent, cone, -1);
     for (std::size_t arc = 0; arc < own.arcs().size(); ++arc)
-      expandBy(k, spent, DriveCone(HeadingSet({own.arcs()[arc]})), static_cast<int>(arc));
+      expandBy(k, spent, HeadingCone(HeadingSet({own.arcs()[arc]})), static_cast<int>(arc));
   }
 
-  void expandBy(int k, double spent, const DriveCone& cone, int arc) {
+  void expandBy(int k, double spent, const HeadingCone& cone, int arc) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const HeadingSet& own = headings_.of(map_.at(node.cell));
     const auto [a, b] = ends(node);
@@ -235,7 +237,7 @@ class Search {
   // Handles a side of which only the end corner is reached. A drive passes the corner if it arrives on the
   // first or last heading of the cone and all cells around the corner permit the heading. The drive then
   // enters each cell into which such a heading leads.
-  void overCorner(int k, double spent, const DriveCone& cone, int side, bool at_end) {
+  void overCorner(int k, double spent, const HeadingCone& cone, int side, bool at_end) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const bool meridian = side == Side::West || side == Side::East;
     const int beside = meridian ? (at_end ? Side::North : Side::South) : (at_end ? Side::East : Side::West);
@@ -256,7 +258,7 @@ class Search {
            spent);
   }
 
-  bool comesOver(const Node& node, const DriveCone& cone, const HeadingSet& all, InCell corner, int side,
+  bool comesOver(const Node& node, const HeadingCone& cone, const HeadingSet& all, InCell corner, int side,
                  int beside) const {
     const auto [a, b] = ends(node);
     for (const double heading : cone.ends_rad()) {
@@ -290,7 +292,7 @@ class Search {
       const HeadingSet& own = headings_.of(map_.at(node.cell));
       chain.push_back({node.cell, node.side,
                        arc < 0 ? own : HeadingSet({own.arcs()[static_cast<std::size_t>(arc)]}),
-                       arc < 0 && everywhere(node.cell, DriveCone(own))});
+                       arc < 0 && everywhere(node.cell, HeadingCone(own))});
       arc = node.arc;
     }
     std::ranges::reverse(chain);
@@ -302,7 +304,7 @@ class Search {
     const Cell cell = chain[laid.failed].cell;
     Use& use = use_[map_.grid().index(cell)];
     if (use == Use::Never) return End::Exhausted;
-    const bool whole = use == Use::Whole && DriveCone(headings_.of(map_.at(cell))).everywhere();
+    const bool whole = use == Use::Whole && HeadingCone(headings_.of(map_.at(cell))).everywhere();
     use = whole ? Use::OneArc : Use::Never;
     return End::Blocked;
   }

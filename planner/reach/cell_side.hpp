@@ -93,10 +93,10 @@ inline bool leadsEverywhere(const HeadingSet& headings) noexcept {
 
 /// Directions in which a drive that alternates between headings of a set can move on ground of one kind: all
 /// directions, or a cone of at most half a turn. The set must not be empty.
-class DriveCone {
+class HeadingCone {
  public:
   /// `cut`, 0 to 0.5, is the share of the cone's width removed at each end.
-  explicit DriveCone(const HeadingSet& headings, double cut = 0.0) noexcept {
+  explicit HeadingCone(const HeadingSet& headings, double cut = 0.0) noexcept {
     const auto [last, gap] = headings.widestGap();
     spare_rad_ = 0.5 * HeadingSet::kTurn - gap;
     everywhere_ = spare_rad_ > 0.0;

@@ -12,9 +12,9 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCost;
-using costmap::DriveCurve;
 using costmap::Hazard;
+using costmap::TravelCost;
+using costmap::TravelCurve;
 using maps::Cell;
 
 constexpr double kNone = std::numeric_limits<double>::max();
@@ -33,13 +33,13 @@ void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
 
 // A row that ends where the limit along the heading ends it goes on as it ends, uphill and downhill; one that the soil ends does not.
 void levelBeyond(float* row, double limit, double most) {
-  constexpr int kMiddle = DriveCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
-  const int at_limit = static_cast<int>(limit * DriveCurve::kBinsPerUnit);
+  constexpr int kMiddle = TravelCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
+  const int at_limit = static_cast<int>(limit * TravelCurve::kBinsPerUnit);
   for (const int way : {-1, 1}) {
     int last = 0;
     const auto inside = [&](int k) {
-      return kMiddle + way * k >= 0 && kMiddle + way * k < DriveCurve::kBins &&
-             k <= most * DriveCurve::kBinsPerUnit;
+      return kMiddle + way * k >= 0 && kMiddle + way * k < TravelCurve::kBins &&
+             k <= most * TravelCurve::kBinsPerUnit;
     };
     while (inside(last + 1) && row[kMiddle + way * (last + 1)] < kBlocked) ++last;
     if (last < at_limit || last > at_limit + kCut || !(row[kMiddle] < kBlocked)) continue;
@@ -47,59 +47,59 @@ void levelBeyond(float* row, double limit, double most) {
   }
 }
 
-DriveCurve withoutPitch(DriveCurve curve, double limit, double most) {
+TravelCurve withoutPitch(TravelCurve curve, double limit, double most) {
   levelBeyond(curve.cost_J_per_m.data(), limit, most);
   if (!curve.crossing) return curve;
   auto rows = std::make_shared<std::vector<float>>(*curve.crossing);
-  for (std::size_t row = 0; row < rows->size(); row += DriveCurve::kBins)
+  for (std::size_t row = 0; row < rows->size(); row += TravelCurve::kBins)
     levelBeyond(rows->data() + row, limit, most);
   curve.crossing = std::move(rows);
   return curve;
 }
 
-DriveCurve withoutRoll(DriveCurve curve, double limit) {
+TravelCurve withoutRoll(TravelCurve curve, double limit) {
   if (!curve.crossing) return curve;
   const auto kept = static_cast<std::size_t>(
-      std::min(limit * DriveCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
+      std::min(limit * TravelCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
   curve.crossing = std::make_shared<std::vector<float>>(
       curve.crossing->begin(),
-      curve.crossing->begin() + static_cast<std::ptrdiff_t>((kept + 1) * DriveCurve::kBins));
+      curve.crossing->begin() + static_cast<std::ptrdiff_t>((kept + 1) * TravelCurve::kBins));
   return curve;
 }
 
 // Ground of any strength: every node costs as much, but those at which the rover tips.
-DriveCurve withoutSoil(const DriveCost::Limits& limits) {
+TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   const int rows =
-      limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * DriveCurve::kRowsPerUnit) + 2 : 1;
+      limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 2 : 1;
   auto costs = std::make_shared<std::vector<float>>();
   for (int row = 0; row < rows; ++row)
-    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      const terramech::Gradient gradient{DriveCurve::gradient(bin),
-                                         static_cast<double>(row) / DriveCurve::kRowsPerUnit};
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      const terramech::Gradient gradient{TravelCurve::gradient(bin),
+                                         static_cast<double>(row) / TravelCurve::kRowsPerUnit};
       const bool tips = limits.stance && limits.stance->stabilityMargin_rad(demandOf(gradient)) < 0.0;
       costs->push_back(tips ? kBlocked : 1.0F);
     }
-  DriveCurve curve;
-  std::copy_n(costs->begin(), DriveCurve::kBins, curve.cost_J_per_m.begin());
+  TravelCurve curve;
+  std::copy_n(costs->begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
   if (rows > 1) curve.crossing = std::move(costs);
   return curve;
 }
 
 // The gradient at which the slope asks for all that the soil gives at the limit; any where states are not kept.
-double soilHoldsTo(const DriveCost& cost, std::size_t curve) {
+double soilHoldsTo(const TravelCost& cost, std::size_t curve) {
   if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
-  const auto at = static_cast<std::size_t>(
-      std::clamp(DriveCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * DriveCurve::kBinsPerUnit),
-                 0, DriveCurve::kBins - 1));
+  const auto at = static_cast<std::size_t>(std::clamp(
+      TravelCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * TravelCurve::kBinsPerUnit), 0,
+      TravelCurve::kBins - 1));
   const auto margin = static_cast<double>((*cost.states()[curve])[at].pull_margin);
   return std::isfinite(margin) ? cost.limits().max_along + std::max(margin, 0.0) : kNone;
 }
 
-std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveCost& cost) {
-  DriveCost::Limits limits = cost.limits();
-  std::vector<DriveCurve> curves = cost.curves();
+std::shared_ptr<const TravelCost> costWithout(Constraint constraint, const TravelCost& cost) {
+  TravelCost::Limits limits = cost.limits();
+  std::vector<TravelCurve> curves = cost.curves();
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    DriveCurve& curve = curves[k];
+    TravelCurve& curve = curves[k];
     if (constraint == Constraint::Pitch)
       curve = withoutPitch(std::move(curve), limits.max_along, soilHoldsTo(cost, k));
     if (constraint == Constraint::Roll) curve = withoutRoll(std::move(curve), limits.max_across);
@@ -108,7 +108,7 @@ std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveC
   }
   if (constraint == Constraint::Pitch || constraint == Constraint::Slope) limits.max_along = kNone;
   if (constraint == Constraint::Roll || constraint == Constraint::Slope) limits.max_across = kNone;
-  return std::make_shared<const DriveCost>(limits, std::move(curves));
+  return std::make_shared<const TravelCost>(limits, std::move(curves));
 }
 
 }  // namespace
@@ -153,16 +153,16 @@ Hazard LiftedGround::solidOf(Cell cell, const HazardsOf& hazards) const {
 }
 
 bool LiftedGround::isSteep(CellCode code) const noexcept {
-  const DriveCost::Limits& limits = map_.cost().limits();
+  const TravelCost::Limits& limits = map_.cost().limits();
   return std::hypot(code.dzDx(), code.dzDy()) > std::hypot(limits.max_along, limits.max_across);
 }
 
 bool LiftedGround::refuses(Cell cell, double gradient) const noexcept {
-  const DriveCost::Limits& limits = map_.cost().limits();
+  const TravelCost::Limits& limits = map_.cost().limits();
   if (gradient > std::min(limits.max_along, limits.max_across)) return true;
   const std::uint8_t ground = ground_[map_.grid().index(cell)];
   if (ground >= map_.cost().curves().size()) return false;
-  const DriveCurve& curve = map_.cost().curves()[ground];
+  const TravelCurve& curve = map_.cost().curves()[ground];
   return !(curve.price(gradient, 0.0) < kBlocked) || !(curve.price(-gradient, 0.0) < kBlocked);
 }
 

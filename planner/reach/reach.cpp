@@ -68,7 +68,7 @@ void Reach::begin(Cell cell, const InCell* place) {
   enqueue(index);
 }
 
-SideRange Reach::exits(const Entries& entries, const DriveCone& cone, int side) const noexcept {
+SideRange Reach::exits(const Entries& entries, const HeadingCone& cone, int side) const noexcept {
   if (entries.anywhere) return {0.0, 1.0};
   SideRange all;
   for (int from = 0; from < 4; ++from) {
@@ -97,7 +97,8 @@ void Reach::spread(Cell cell) {
       found == cones_.end() ? nullptr : &found->second;  // the reference stays valid when entries are added
   for (int side = 0; side < 4; ++side) {
     if (!map_.grid().contains(beyond(cell, side)) || !mayCross(cell, own, side)) continue;
-    const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, DriveCone(own), side);
+    const SideRange range =
+        entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, HeadingCone(own), side);
     if (!range.empty()) enter(beyond(cell, side), otherSide(side), range);
   }
 }
@@ -118,7 +119,7 @@ bool Reach::reaches(maps::Point place, double tolerance_m) {
     if (!holds(cell)) continue;
     const auto found = cones_.find(map_.grid().index(cell));
     if (tolerance_m > 0.0 || found == cones_.end() || found->second.anywhere) return true;
-    const DriveCone cone(headingsOf(cell));
+    const HeadingCone cone(headingsOf(cell));
     const InCell to = inCell(map_.grid(), cell, place);
     const Entries& entries = found->second;
     if (entries.has_place && cone.joins(entries.place, entries.place, to, kEnds)) return true;

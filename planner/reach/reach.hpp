@@ -17,7 +17,7 @@ namespace talus::planner {
 /// headings and turns. The set is never too small: a cell outside the set is proven to be unreachable.
 ///
 /// Method (ours). Inside a cell a drive can move from a place in all directions that are combinations of the
-/// permitted headings (DriveCone). The drive crosses a side only with a heading permitted in both cells, in
+/// permitted headings (HeadingCone). The drive crosses a side only with a heading permitted in both cells, in
 /// the range that the cone reaches from the entry ranges. The ranges of a side are stored as one hull, which
 /// is replaced by the complete side after kGrowths growths; growth below 1e-9 of a side is rounding. A drive
 /// over a corner also passes the corner of an adjacent cell with the same heading, and a drive along a side
@@ -60,7 +60,7 @@ class Reach {
 
   void begin(maps::Cell cell, const InCell* place);
   void spread(maps::Cell cell);
-  SideRange exits(const Entries& entries, const DriveCone& cone, int side) const noexcept;
+  SideRange exits(const Entries& entries, const HeadingCone& cone, int side) const noexcept;
   void enter(maps::Cell cell, int side, const SideRange& range);
   void enqueue(std::size_t index);
   const HeadingSet& headingsOf(maps::Cell cell);

@@ -15,39 +15,39 @@ double wrapped(double angle_rad) noexcept {
   return turned < 0.0 ? turned + HeadingSet::kTurn : turned;
 }
 
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 
 // Gradients along the heading at which the cost becomes finite or infinite in some row: adjacent nodes, and
 // the limits.
-std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve& curve) {
-  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, DriveCurve::gradient(0),
-                             DriveCurve::gradient(DriveCurve::kBins - 1)};
+std::vector<double> limitsAlong(const costmap::TravelCost& cost, const TravelCurve& curve) {
+  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, TravelCurve::gradient(0),
+                             TravelCurve::gradient(TravelCurve::kBins - 1)};
   const auto finite = [&](int row, int bin) {
-    return std::isfinite(curve.rows()[static_cast<std::size_t>(row * DriveCurve::kBins + bin)]);
+    return std::isfinite(curve.rows()[static_cast<std::size_t>(row * TravelCurve::kBins + bin)]);
   };
-  for (int bin = 1; bin < DriveCurve::kBins; ++bin) {
+  for (int bin = 1; bin < TravelCurve::kBins; ++bin) {
     bool changes = false;
     for (int row = 0; row <= curve.lastRow(); ++row)
       changes = changes || finite(row, bin) != finite(row, bin - 1);
     if (!changes) continue;
-    limits.push_back(DriveCurve::gradient(bin - 1));
-    limits.push_back(DriveCurve::gradient(bin));
+    limits.push_back(TravelCurve::gradient(bin - 1));
+    limits.push_back(TravelCurve::gradient(bin));
   }
   return limits;
 }
 
 // Magnitudes of gradients across the heading at which the permitted gradients along the heading change, and
 // the limit.
-std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurve& curve) {
+std::vector<double> limitsAcross(const costmap::TravelCost& cost, const TravelCurve& curve) {
   std::vector<double> limits{cost.limits().max_across};
   const auto finite = [](float value) { return std::isfinite(value); };
   for (int row = 0; row < curve.lastRow(); ++row) {
-    const float* here = curve.rows() + row * DriveCurve::kBins;
-    if (std::equal(here, here + DriveCurve::kBins, here + DriveCurve::kBins,
+    const float* here = curve.rows() + row * TravelCurve::kBins;
+    if (std::equal(here, here + TravelCurve::kBins, here + TravelCurve::kBins,
                    [&](float a, float b) { return finite(a) == finite(b); }))
       continue;
-    limits.push_back(static_cast<double>(row) / DriveCurve::kRowsPerUnit);
-    limits.push_back((row + 1.0) / DriveCurve::kRowsPerUnit);
+    limits.push_back(static_cast<double>(row) / TravelCurve::kRowsPerUnit);
+    limits.push_back((row + 1.0) / TravelCurve::kRowsPerUnit);
   }
   return limits;
 }
@@ -55,14 +55,14 @@ std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurv
 // Least gradient at which some combination of gradients along and across is refused. A refused node refuses
 // all combinations within the distance of one node; the limits and the end of the table refuse all
 // combinations beyond them.
-double gentlest(const costmap::DriveCost& cost, const DriveCurve& curve) {
-  constexpr double kBin = 1.0 / DriveCurve::kBinsPerUnit, kRow = 1.0 / DriveCurve::kRowsPerUnit;
+double gentlest(const costmap::TravelCost& cost, const TravelCurve& curve) {
+  constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
   double least = std::min({cost.limits().max_along, cost.limits().max_across,
-                           DriveCurve::gradient(DriveCurve::kBins - 1) - kBin});
+                           TravelCurve::gradient(TravelCurve::kBins - 1) - kBin});
   for (int row = 0; row <= curve.lastRow(); ++row)
-    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      if (std::isfinite(curve.rows()[row * DriveCurve::kBins + bin])) continue;
-      least = std::min(least, std::hypot(std::max(0.0, std::abs(DriveCurve::gradient(bin)) - kBin),
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      if (std::isfinite(curve.rows()[row * TravelCurve::kBins + bin])) continue;
+      least = std::min(least, std::hypot(std::max(0.0, std::abs(TravelCurve::gradient(bin)) - kBin),
                                          std::max(0.0, (row - 1) * kRow)));
     }
   return least;
@@ -158,15 +158,15 @@ HeadingSet HeadingSet::reversed() const {
   return HeadingSet(std::move(opposite));
 }
 
-HeadingSets::Limits::Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve)
+HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve)
     : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentlest(cost, curve)) {}
 
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell) {
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};
   return allowedHeadings(cost, cell, {cost, cost.curves()[cell.curve()]});
 }
 
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell,
                            const HeadingSets::Limits& limits) {
   const auto finite = [&](double heading) {
     return std::isfinite(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));

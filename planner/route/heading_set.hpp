@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
@@ -57,10 +57,10 @@ class HeadingSet {
 
 /// Cache of allowedHeadings() by cell code. Cells of curve number `free`, if given, permit every heading.
 /// Large maps have millions of codes; their sets are allocated in an arena, which is freed at once. Not
-/// thread-safe; the DriveCost must outlive the object.
+/// thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
  public:
-  explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {})
+  explicit HeadingSets(const costmap::TravelCost& cost, std::optional<std::uint8_t> free = {})
       : cost_(cost),
         free_(free),
         sets_(*new (arena_.allocate(sizeof(Sets), alignof(Sets))) Sets(&arena_)),
@@ -83,7 +83,7 @@ class HeadingSets {
   /// Gradients along, and magnitudes of gradients across, at which the cost of a curve may become finite or
   /// infinite.
   struct Limits {
-    Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve);
+    Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve);
     std::vector<double> along, across;
     /// All headings are permitted on cells below this gradient; 0: on no cell.
     double gentle;
@@ -102,7 +102,7 @@ class HeadingSets {
 
   using Sets = std::pmr::unordered_map<std::uint32_t, HeadingSet>;
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   std::optional<std::uint8_t> free_;
   std::pmr::monotonic_buffer_resource arena_;
   Sets& sets_;  // allocated in the arena and never destroyed: destruction delayed a stopped plan by 0.5 s
@@ -116,8 +116,8 @@ class HeadingSets {
 /// along or across passes a node of the cost table, the cost is either finite or infinite; one evaluation
 /// between each pair and one at each heading are sufficient. Arcs are widened by 1e-7 rad, so that rounding
 /// excludes no permitted heading.
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell);
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell);
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell,
                            const HeadingSets::Limits& limits);
 
 }  // namespace talus::planner

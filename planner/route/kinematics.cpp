@@ -101,7 +101,7 @@ std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics
   return ShortestCurves(kinematics)(from, to);
 }
 
-Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost) {
+Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost) {
   const terramech::Rover& rover = model.rover();
   if (rover.steering == terramech::Steering::Ackermann && rover.turning_radius_m <= 0.0)
     throw std::invalid_argument(

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/planner/route/arc.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
@@ -15,20 +15,20 @@ class GroundModel;
 /// Motion constraints of a rover in the plane, and costs of turning.
 namespace talus::planner {
 
-using costmap::TurnPrice;
-using costmap::TurnPrices;
+using costmap::TurnCost;
+using costmap::TurnCosts;
 
 /// Constraints on the curvature of a route. By default all motions are permitted and turning is free.
 struct Kinematics {
-  double turning_radius_m = 0.0;             ///< smallest radius of an arc, 0.001 to 1000; 0: turns in place
-  bool may_reverse = true;                   ///< Reeds-Shepp when true, Dubins when false
-  TurnPrices turns{};                        ///< per radian, on ground not in `turns_by_curve`
-  std::vector<TurnPrices> turns_by_curve{};  ///< by the number of the drive curve
-  TurnPrice cusp{};                          ///< change between forward and reverse
-  TurnPrice stop{};                          ///< per turn in place: stop, steer the wheels, restart
+  double turning_radius_m = 0.0;            ///< smallest radius of an arc, 0.001 to 1000; 0: turns in place
+  bool may_reverse = true;                  ///< Reeds-Shepp when true, Dubins when false
+  TurnCosts turns{};                        ///< per radian, on ground not in `turns_by_curve`
+  std::vector<TurnCosts> turns_by_curve{};  ///< by the number of the drive curve
+  TurnCost cusp{};                          ///< change between forward and reverse
+  TurnCost stop{};                          ///< per turn in place: stop, steer the wheels, restart
 
   /// Cost of turning on ground of a drive curve.
-  const TurnPrices& turnsOn(std::uint8_t curve) const noexcept {
+  const TurnCosts& turnsOn(std::uint8_t curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };
@@ -37,7 +37,7 @@ struct Kinematics {
 /// forward and reverse takes the time to drive one wheel radius, a stop for a turn in place 20 s (ours),
 /// which prevents drives with a turn at every cell. Throws std::invalid_argument for an Ackermann rover
 /// without a turning radius.
-Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost);
+Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost);
 
 /// Shortest paths between poses for a turning radius > 0: Reeds-Shepp with reversing (reeds_shepp_1990,
 /// OMPL's implementation), otherwise Dubins (dubins.hpp). Immutable, safe to share between threads.

@@ -170,7 +170,7 @@ costmap::Direction directionOf(const Segment& motion) noexcept {
 double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept {
   const auto cell = map_->grid().cellAt(place);
   if (!cell) return 0.0;
-  const costmap::DriveCost& cost = map_->cost();
+  const costmap::TravelCost& cost = map_->cost();
   const costmap::CellCode code = map_->at(*cell);
   const double radian_J = cost.turn(code).cost_J;
   if (radian_J == 0.0 && !cost.mayTip(code)) return 0.0;

@@ -17,7 +17,7 @@ struct Segment {
 /// Direction of a motion; east for zero length.
 costmap::Direction directionOf(const Segment& motion) noexcept;
 
-/// Exact cost of straight motions: integral of DriveCost along the segment, constant within each cell.
+/// Exact cost of straight motions: integral of TravelCost along the segment, constant within each cell.
 ///
 /// A motion that leaves the map, or enters a cell that does not permit the heading, is not allowed (infinite
 /// cost). Cells are closed: a segment through a corner needs both adjacent cells, and a segment along an edge
@@ -39,7 +39,7 @@ class MotionCost {
   /// Sum of the costs of a polyline's legs [J], without turns.
   double ofLegs(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Cost [J] of turning at a place from one heading to another by the smaller angle, DriveCost::turn() per
+  /// Cost [J] of turning at a place from one heading to another by the smaller angle, TravelCost::turn() per
   /// radian; infinite if the rover tips in a heading in between. Free outside the map.
   double turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept;
 

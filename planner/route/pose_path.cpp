@@ -64,7 +64,7 @@ std::vector<PosePath::Leg> PoseCost::direct(const Pose& from, const Pose& to, bo
   return legs;
 }
 
-const TurnPrices& PoseCost::turnsAt(maps::Point place) const noexcept {
+const TurnCosts& PoseCost::turnsAt(maps::Point place) const noexcept {
   const auto cell = cost_.map().grid().cellAt(place);
   return cell ? kinematics_.turnsOn(cost_.map().at(*cell).curve()) : kinematics_.turns;
 }
@@ -135,8 +135,8 @@ std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map) {
   return poses;
 }
 
-DriveShape shape(const PosePath& path) noexcept {
-  DriveShape shape;
+RouteShape shape(const PosePath& path) noexcept {
+  RouteShape shape;
   int last = 0;
   for (const auto& leg : path.legs) {
     const int now = direction(leg);

@@ -49,7 +49,7 @@ class PoseCost {
  private:
   double arc(const Pose& from, const Arc& arc) const noexcept;
   double turnInPlace(const Pose& from, double turn_rad) const noexcept;
-  const TurnPrices& turnsAt(maps::Point place) const noexcept;
+  const TurnCosts& turnsAt(maps::Point place) const noexcept;
 
   const MotionCost& cost_;
   Kinematics kinematics_;
@@ -67,7 +67,7 @@ std::vector<Pose> sampled(const PosePath& path, double step_m);
 std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map);
 
 /// Number of cusps and turns, and curvature, of a drive.
-DriveShape shape(const PosePath& path) noexcept;
+RouteShape shape(const PosePath& path) noexcept;
 
 /// Length in the map plane [m].
 double length_m(const PosePath& path) noexcept;

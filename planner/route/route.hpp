@@ -98,7 +98,7 @@ struct RouteVertex {
 };
 
 /// What a controller would notice of a drive.
-struct DriveShape {
+struct RouteShape {
   int cusps = 0;  ///< changes between forward and reverse
   int turns_in_place = 0;
   double turned_rad = 0.0;         ///< all changes of heading
@@ -120,7 +120,7 @@ struct RouteSummary {
   double proof_s =
       0.0;  ///< that PlanRequest::prove took of the planning [s]: the bound and the search of other corridors
   std::string planner;                ///< name of the planner that found it
-  std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
+  std::optional<RouteShape> drive{};  ///< of routes that keep a turning radius
 };
 
 /// A route with everything that a report or a controller needs.

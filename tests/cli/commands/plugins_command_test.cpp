@@ -7,7 +7,7 @@ namespace plugins_command_test {
 
 using testing::HasSubstr;
 
-TEST(PluginsCommand, SaysWhatIsBuiltInAndWhatAPluginOffers) {
+TEST(PluginsCommand, BuiltInAndPluginCapabilitiesAreListed) {
   const Ran built_in = runTalus({"plugins"});
   EXPECT_EQ(built_in.code, 0) << built_in.err;
   EXPECT_THAT(built_in.out, HasSubstr("planners: field, hybrid, RRTstarSE2, RRTstar"));
@@ -20,7 +20,7 @@ TEST(PluginsCommand, SaysWhatIsBuiltInAndWhatAPluginOffers) {
   EXPECT_THAT(json["features"], ::testing::Contains("lower bound"));
 }
 
-TEST(PluginsCommand, WhatIsNoPluginIsOneLineAndTwo) {
+TEST(PluginsCommand, FilesThatAreNoPluginAreRejectedWithOneLine) {
   const Folder folder;
   for (const std::string& file : {folder / "none.so", folder.write("text.so", "not a library\n")}) {
     const Ran ran = runTalus({"plugins", file});

@@ -43,7 +43,7 @@ std::set<std::string> names(const std::vector<Candidate>& candidates) {
   return all;
 }
 
-TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
+TEST(EffectCandidates, CandidatesRequireTheirMeasuredColumns) {
   const auto plain = names(offered(trialWith({}, nothing)));
   EXPECT_TRUE(plain.contains("slip_sinkage_ding"));
   EXPECT_TRUE(plain.contains("torque_offset"));
@@ -61,7 +61,7 @@ TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
 }
 
 // Property: a drift in proportion is open to every column of one's own, whatever it is called.
-TEST(EffectCandidates, ADriftIsOpenToEveryColumnOfOnesOwn) {
+TEST(EffectCandidates, DriftIsOfferedForEveryUserColumnRegardlessOfItsName) {
   const auto drifts = [](const std::string& column) {
     std::set<std::string> all;
     for (const Candidate& c : offered(trialWith({column}, [](int k) { return std::vector{k % 7 + 0.5}; })))
@@ -74,7 +74,7 @@ TEST(EffectCandidates, ADriftIsOpenToEveryColumnOfOnesOwn) {
 }
 
 // Property: every offer is a form of the library with all its parameters, within their bounds.
-TEST(EffectCandidates, OffersAreWholeForms) {
+TEST(EffectCandidates, CandidatesAreCompleteFormsWithinParameterBounds) {
   const auto all = offered(trialWith(
       {"time_s"}, [](int k) { return std::vector{10.0 * k}; }, -0.3));
   EXPECT_TRUE(names(all).contains("skid_sinkage"));
@@ -95,7 +95,7 @@ TEST(EffectCandidates, OffersAreWholeForms) {
   }
 }
 
-TEST(EffectCandidates, FaultsOfASensorMayBeOfOneGroup) {
+TEST(EffectCandidates, SensorFaultsAreOfferedPerGroupValue) {
   const auto all = offered(trialWith({}, nothing, 0.1, "side"));
   const auto of = [&](const std::string& name) {
     std::multiset<std::string> values;
@@ -107,7 +107,7 @@ TEST(EffectCandidates, FaultsOfASensorMayBeOfOneGroup) {
   EXPECT_EQ(of("slip_sinkage_ding"), std::multiset<std::string>{""});
 }
 
-TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
+TEST(EffectCandidates, EmpiricalCurvesStartFlatOnMeasuredChannels) {
   const Trial trial = trialWith({}, nothing);
   const auto all = empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02));
   ASSERT_FALSE(all.empty());
@@ -125,7 +125,7 @@ TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
   }
 }
 
-TEST(EffectCandidates, ProductsAreOfAColumnOfOnesOwn) {
+TEST(EffectCandidates, ProductsContainAUserColumn) {
   const Trial trial = trialWith({"dust", "humid"}, [](int k) {
     return std::vector{0.1 * (k % 7), 1.0 + k % 5};
   });
@@ -136,7 +136,7 @@ TEST(EffectCandidates, ProductsAreOfAColumnOfOnesOwn) {
             (std::set<std::string>{"dust*humid", "dust*load_N", "dust*slip", "humid*load_N", "humid*slip"}));
 }
 
-TEST(EffectCandidates, ACurveHasThreeRunsAKnot) {
+TEST(EffectCandidates, KnotCountIsLimitedByIndependentRuns) {
   // Property: of ten runs a column that is fixed in them has three knots' worth, the slip of forty rows seven.
   Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 4)}; });
   for (int row = 0; row < trial.rows(); ++row) trial.run[static_cast<std::size_t>(row)] = row / 4;

@@ -11,7 +11,7 @@ bool always(double) {
   return true;
 }
 
-TEST(TrialFit, WhatRunsShareIsNoNoiseOfTheirRows) {
+TEST(TrialFit, SharedRunErrorIsSeparatedFromRowNoise) {
   const TrialFit together(sand(), noisyTrial(sand(), 0.02, 0.1), false, always);
   const Whitening& whitening = together.rows().whitening();
   ASSERT_EQ(whitening.common.unit.size(), 160U);
@@ -24,7 +24,7 @@ TEST(TrialFit, WhatRunsShareIsNoNoiseOfTheirRows) {
   EXPECT_LT(std::sqrt(alone.rows().whitening().common.run(0, 0)), 0.01);
 }
 
-TEST(TrialFit, ASoilThatIsNotGivenIsFitted) {
+TEST(TrialFit, GivenSoilIsKeptAndUnknownSoilIsFitted) {
   RefinedModel start = sand();
   start.soil.friction_angle_rad = 0.4;
   const TrialFit given(start, noisyTrial(sand(), 0.02), false, always);
@@ -35,14 +35,14 @@ TEST(TrialFit, ASoilThatIsNotGivenIsFitted) {
 }
 
 // Property: the model that made the rows scores above one of another soil, under the noise of either.
-TEST(TrialFit, TheModelThatMadeTheRowsScoresHighest) {
+TEST(TrialFit, GeneratingModelScoresHigherThanAnotherSoil) {
   const TrialFit fit(sand(), noisyTrial(sand(), 0.02), false, always);
   RefinedModel softer = fit.model();
   softer.soil.frictional_modulus *= 0.5;
   EXPECT_GT(fit.scoreOf(fit.model()), fit.scoreOf(softer) + 10.0);
 }
 
-TEST(TrialFit, TheStrongestChannelIsThatOfTheSensorAtFault) {
+TEST(TrialFit, StrongestChannelIsThatOfTheFaultySensor) {
   RefinedModel model = sand();
   model.effects.push_back(
       {.name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.5}});
