@@ -55,7 +55,7 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
                                        [&](maps::Cell cell) { return beliefs.at(cell); });
   tree->write(stream);
   stream.close();
-  if (!stream) file.fail("the stream failed");
+  if (!stream) file.failToGrow("the stream failed");
   file.commit();
 }
 

@@ -80,10 +80,12 @@ Paths pathsOf(const std::string& output) {
 
 void write(const maps::Site& site, maps::SiteKind kind, const Paths& paths) {
   const maps::Georeference* georeference = &*site.map.georeference;
-  maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
-  maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);
-  maps::writeGeoTiff({paths.rocks, georeference}, {{"rock abundance", "", site.rock_abundance}});
-  writeFile(paths.soils, kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  OutputFile map(paths.map), classes(paths.classes), rocks(paths.rocks), soils(paths.soils);
+  maps::writeGeoTiff({paths.map, georeference, &map}, {{"elevation", "m", site.map.elevation_m}});
+  maps::writeGeoTiff({paths.classes, georeference, &classes}, "terrain class", site.classes, std::nullopt);
+  maps::writeGeoTiff({paths.rocks, georeference, &rocks}, {{"rock abundance", "", site.rock_abundance}});
+  soils.write(kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  for (OutputFile* file : {&map, &classes, &rocks, &soils}) file->commit();
 }
 
 bool isDescription(const std::string& site) {

@@ -1,6 +1,8 @@
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -243,10 +245,14 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     code = interrupt.requested() ? interrupt.code() : failure();
   }
   if (code != Exit::kDone && interrupt.requested()) return fail(interrupt.code(), "cancelled");
+  errno = 0;
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !!std::cout.flush();
-  if (!written && readerIsGone()) return Exit::kReaderGone;
-  if (!written) return fail(Exit::kInput, "standard output: cannot be written; check where it leads");
-  return code;
+  if (written) return code;
+  // Of a write that failed before, the next one has the reason.
+  const bool stated = errno != 0 || ::write(STDOUT_FILENO, "\n", 1) < 0;
+  const std::string reason = stated ? std::string(": ") + std::strerror(errno) : "";
+  if (readerIsGone()) return Exit::kReaderGone;
+  return fail(Exit::kInput, "standard output: cannot be written" + reason + "; check where it leads");
 }
 
 }  // namespace talus::cli

@@ -17,7 +17,7 @@ class HtmlReport {
 
   void heading(const std::string& text);
   void paragraph(const std::string& text);
-  /// Cells that read as a number are set right.
+  /// Cells that read as a number are set right; on a phone each row of a wide table is a list of its columns.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
   /// Beside each other as far as the screen is wide.
   void charts(const std::vector<Plot>& plots);
@@ -28,6 +28,7 @@ class HtmlReport {
  private:
   std::string title_;
   std::string body_;
+  int wide_tables_ = 0;
 };
 
 }  // namespace talus::cli

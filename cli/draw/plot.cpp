@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -105,16 +106,43 @@ class Panel {
       runs(s, c);
       return;
     }
+    bars(s, c);
     std::vector<Spot> spots;
-    for (std::size_t i = 0; i < s.x.size(); ++i) {
-      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
-      if (!s.y_std.empty() && std::isfinite(s.y_std[i]))
-        canvas_.line(std::array{spot(s.x[i], s.y[i] - s.y_std[i]), spot(s.x[i], s.y[i] + s.y_std[i])},
-                     {.colour = faded(c, 0.5)});
-      spots.push_back(spot(s.x[i], s.y[i]));
-    }
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) spots.push_back(spot(s.x[i], s.y[i]));
     const bool many = spots.size() > 400;
+    if (many) leaveOutCovered(spots);
     canvas_.discs(spots, many ? 1.6 : 2.8, faded(c, many ? 0.5 : 0.85));
+  }
+
+  /// All discs of a series are one shape: of those in a square of two pixels one is drawn.
+  static void leaveOutCovered(std::vector<Spot>& spots) {
+    const auto square = [](const Spot& spot) {
+      return std::pair{std::floor(spot.x / 2.0), std::floor(spot.y / 2.0)};
+    };
+    std::ranges::sort(spots, {}, square);
+    const auto rest = std::ranges::unique(spots, {}, square);
+    spots.erase(rest.begin(), rest.end());
+  }
+
+  /// One standard deviation about each reading; those of one column of pixels that overlap are one bar.
+  void bars(const Series& s, Colour c) {
+    struct Bar {
+      double column = 0.0, low = 0.0, high = 0.0;  // pixels from the left, values
+    };
+    std::vector<Bar> bars;
+    for (std::size_t i = 0; i < s.y_std.size(); ++i)
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]) && std::isfinite(s.y_std[i]))
+        bars.push_back({std::floor(spot(s.x[i], 0.0).x), s.y[i] - s.y_std[i], s.y[i] + s.y_std[i]});
+    std::ranges::sort(bars, {}, [](const Bar& bar) { return std::pair{bar.column, bar.low}; });
+    for (std::size_t i = 0; i < bars.size();) {
+      Bar bar = bars[i];
+      for (++i; i < bars.size() && bars[i].column == bar.column && bars[i].low <= bar.high; ++i)
+        bar.high = std::max(bar.high, bars[i].high);
+      const double x = bar.column + 0.5;
+      canvas_.line(std::array{Spot{x, spot(0.0, bar.low).y}, Spot{x, spot(0.0, bar.high).y}},
+                   {.colour = faded(c, 0.5)});
+    }
   }
 
   /// A line between each pair of breaks.

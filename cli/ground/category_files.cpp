@@ -64,9 +64,12 @@ void writeCategories(const costmap::TraversabilityMap& map, const std::string& p
                        .colour = {byteOf(colour.red), byteOf(colour.green), byteOf(colour.blue)}});
   }
   const auto& georeference = map.elevation().georeference;
-  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr}, "category",
-                     categoriesOf(map), std::nullopt, classes);
-  writeFile(categoryStyle(path), qgisStyle());
+  OutputFile raster(path), style(categoryStyle(path));
+  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr, .into = &raster},
+                     "category", categoriesOf(map), std::nullopt, classes);
+  style.write(qgisStyle());
+  raster.commit();
+  style.commit();
 }
 
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
@@ -81,11 +84,15 @@ void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml
   for (int row = grid.height - 1; row >= 0; --row)
     for (int column = 0; column < grid.width; ++column)
       picture += greyOf(static_cast<Category>(categories[{column, row}]), allow_marginal);
-  writeFile(nav2Picture(yaml), picture);
-  writeFile(yaml, fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
-                              "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
-                              nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
-                              grid.south_west.x_m, grid.south_west.y_m));
+  OutputFile beside(nav2Picture(yaml)), file(yaml);
+  beside.write(picture);
+  file.write(
+      fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
+                  "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
+                  nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
+                  grid.south_west.x_m, grid.south_west.y_m));
+  beside.commit();
+  file.commit();
 }
 
 }  // namespace talus::cli

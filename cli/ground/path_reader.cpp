@@ -149,6 +149,7 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
   const bool table = extension == ".csv" || extension == ".txt";
   std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
+  maps::requireFewPositions(points.size(), path);
   requireNear(points, map.grid(), path);
   return points;
 }

@@ -50,6 +50,22 @@ TEST(Plot, OfManyPointsIsSmall) {
   EXPECT_LT(draw({many}, Canvas::Kind::Svg).size() - few, 2000U * 40U);
 }
 
+// Property: what a chart shows of 100 000 readings with their standard deviations is bounded by its pixels: readings that do not add to
+// it add nothing to the file, and its axes hold all of them.
+TEST(Plot, OfReadingsThatCoverEachOtherIsSmall) {
+  const auto cloud = [](int count) {
+    Series readings{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};
+    for (int i = 0; i < count; ++i) {
+      readings.x.push_back(std::fmod(0.618 * i, 1.0));
+      readings.y.push_back(std::sin(i));
+      readings.y_std.push_back(0.1);
+    }
+    return draw({{.title = "", .x = {}, .y = {}, .series = {readings}}}, Canvas::Kind::Svg);
+  };
+  EXPECT_LT(cloud(100'000).size(), 1'000'000U);
+  EXPECT_LT(cloud(100'000).size(), 3 * cloud(5'000).size());
+}
+
 TEST(Plot, StandsEmptySeriesAndNothingFinite) {
   Plot plot{.title = "", .x = {}, .y = {}, .series = {{.x = {}, .y = {}}, {.x = {1.0}, .y = {std::nan("")}}}};
   EXPECT_THAT(draw({plot}, Canvas::Kind::Png), StartsWith("\x89PNG"));
