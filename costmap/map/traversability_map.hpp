@@ -102,7 +102,7 @@ class TraversabilityMap {
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
-  /// or whose wheels reach changed ground, and shares unchanged tiles. Readers never wait; a running planner
+  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running planner
   /// keeps its version. If the numbers of cost curves are exhausted, all cells get new numbers with coarser
   /// steps (GroundKind).
   ///

@@ -20,8 +20,8 @@ namespace {
 std::vector<Target> targets() {
   limitMemory();
   std::vector<Target> all;
-  for (const auto& room : {terramechTargets, mapsTargets, costmapTargets, plannerTargets, cliTargets})
-    for (Target& target : room()) all.push_back(std::move(target));
+  for (const auto& module : {terramechTargets, mapsTargets, costmapTargets, plannerTargets, cliTargets})
+    for (Target& target : module()) all.push_back(std::move(target));
   return all;
 }
 

@@ -27,7 +27,7 @@ enum class Belief {
 inline constexpr std::array kBeliefs{Belief::Geometry, Belief::AlongOnly, Belief::Prior, Belief::OnLine,
                                      Belief::PerfectKnowledge};
 
-/// Names in calls and JSON: "geometry", "along-only", "prior", "online", "clairvoyant".
+/// Names in calls and JSON: "geometry", "along-only", "prior", "online", `"clairvoyant"`.
 std::string_view name(Belief belief) noexcept;
 
 /// Result of one world.

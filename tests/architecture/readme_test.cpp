@@ -1,58 +1,50 @@
-// A room's README is one page that has a line for each part; commands named in documents exist.
+// A module's README is one page with a line for each folder; documents name only commands, headers and
+// files that exist.
 #include <algorithm>
 #include <regex>
 #include <set>
 
 #include "source_files.hpp"
 
-namespace talus::house {
+namespace talus::architecture {
 namespace readme_test {
 
 namespace fs = std::filesystem;
 
-const char* const kRooms[] = {"terramech", "maps", "costmap", "planner", "cli"};
+const char* const kModules[] = {"terramech", "maps", "costmap", "planner", "cli"};
 
-TEST(Readme, HasALineForEachPartOfTheRoom) {
-  int parts = 0;
-  for (const std::string room : kRooms) {
-    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / room / "README.md");
-    for (const auto& entry : fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / room)) {
+TEST(Readme, HasALineForEachFolderOfTheModule) {
+  int folders = 0;
+  for (const std::string module : kModules) {
+    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / module / "README.md");
+    for (const auto& entry : fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / module)) {
       if (!entry.is_directory()) continue;
-      ++parts;
-      const std::string part = "`" + entry.path().filename().string() + "/`";
-      EXPECT_NE(page.find(part), std::string::npos) << room << "/README.md has no line for " << part;
+      ++folders;
+      const std::string folder = "`" + entry.path().filename().string() + "/`";
+      EXPECT_NE(page.find(folder), std::string::npos) << module << "/README.md has no line for " << folder;
     }
   }
-  EXPECT_GT(parts, 20);
+  EXPECT_GT(folders, 20);
 }
 
 TEST(Readme, NamesOnlyHeadersThatExist) {
   const std::regex header(R"(([a-z_][a-z_/]*\.hpp))");
   int named = 0;
-  for (const std::string room : {"common", "maps", "costmap"}) {
-    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / room / "README.md");
+  for (const std::string module : {"common", "maps", "costmap"}) {
+    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / module / "README.md");
     for (std::sregex_iterator i(page.begin(), page.end(), header), end; i != end; ++i, ++named)
-      EXPECT_TRUE(fs::exists(fs::path(TALUS_SOURCE_DIR) / room / (*i)[1].str()) ||
+      EXPECT_TRUE(fs::exists(fs::path(TALUS_SOURCE_DIR) / module / (*i)[1].str()) ||
                   fs::exists(fs::path(TALUS_SOURCE_DIR) / (*i)[1].str()))
-          << room << "/README.md: " << (*i)[1];
+          << module << "/README.md: " << (*i)[1];
   }
   EXPECT_GT(named, 30);
 }
 
 TEST(Readme, IsOnePage) {
-  for (const std::string room : kRooms) {
-    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / room / "README.md");
-    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), 100) << room << "/README.md";
+  for (const std::string module : kModules) {
+    const std::string page = text(fs::path(TALUS_SOURCE_DIR) / module / "README.md");
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), 100) << module << "/README.md";
   }
-}
-
-std::vector<fs::path> documents() {
-  std::vector<fs::path> found;
-  for (const std::string folder : {"docs", "terramech", "maps", "costmap", "planner", "cli"})
-    for (const auto& file : files(folder, {".md"})) found.push_back(file);
-  for (const auto& entry : fs::directory_iterator(TALUS_SOURCE_DIR))
-    if (entry.path().extension() == ".md") found.push_back(entry.path());
-  return found;
 }
 
 /// What the pattern's first group matches in the documents.
@@ -89,4 +81,4 @@ TEST(Documents, LinkOnlyToFilesThatExist) {
 }
 
 }  // namespace readme_test
-}  // namespace talus::house
+}  // namespace talus::architecture

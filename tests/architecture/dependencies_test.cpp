@@ -1,5 +1,5 @@
-// The rooms stand on each other in one direction only; an include that points the other way fails here by
-// name.
+// Modules, their folders and their units include each other in one direction only; sizes of folders and
+// files are bounded.
 #include <algorithm>
 #include <map>
 #include <regex>
@@ -7,13 +7,13 @@
 
 #include "source_files.hpp"
 
-namespace talus::house {
-namespace arrows_test {
+namespace talus::architecture {
+namespace dependencies_test {
 
-using Rooms = std::map<std::string, std::set<std::string>>;
+using Graph = std::map<std::string, std::set<std::string>>;
 
-const Rooms& roomsBelow() {
-  static const Rooms below{{"common", {}},
+const Graph& modulesBelow() {
+  static const Graph below{{"common", {}},
                            {"terramech", {"common"}},
                            {"maps", {"common"}},
                            {"costmap", {"common", "terramech", "maps"}},
@@ -22,59 +22,60 @@ const Rooms& roomsBelow() {
   return below;
 }
 
-TEST(House, NoRoomIncludesOneAboveIt) {
+TEST(Architecture, ModulesIncludeOnlyModulesBelow) {
   const std::regex include(R"(#include <talus/(common|terramech|maps|costmap|planner|cli)/)");
-  for (const auto& [room, below] : roomsBelow())
-    for (const auto& file : files(room, {".hpp", ".cpp"})) {
+  for (const auto& [module, below] : modulesBelow())
+    for (const auto& file : files(module, {".hpp", ".cpp"})) {
       const std::string source = text(file);
       for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i) {
         const std::string other = (*i)[1];
-        EXPECT_TRUE(other == room || below.contains(other)) << file << " includes <" << other << "/...>";
+        EXPECT_TRUE(other == module || below.contains(other)) << file << " includes <" << other << "/...>";
       }
     }
 }
 
-// The folder of a path below the source folder or of an include: "room" or "room/part", or deeper.
-std::string partOf(const std::string& path) {
+// The folder of a path below the source folder or of an include: "module", "module/folder" or deeper.
+std::string folderOf(const std::string& path) {
   return path.substr(0, path.rfind('/'));
 }
 
-Rooms partsIncluded() {
+Graph foldersIncluded() {
   const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
-  Rooms arrows;
-  for (const auto& [room, below] : roomsBelow())
-    for (const auto& file : files(room, {".hpp", ".cpp"})) {
+  Graph edges;
+  for (const auto& [module, below] : modulesBelow())
+    for (const auto& file : files(module, {".hpp", ".cpp"})) {
       const std::string source = text(file);
-      const std::string from = partOf(file.lexically_relative(TALUS_SOURCE_DIR).generic_string());
-      arrows[from];
+      const std::string from = folderOf(file.lexically_relative(TALUS_SOURCE_DIR).generic_string());
+      edges[from];
       for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
-        if (const std::string to = partOf((*i)[1]); to != from) arrows[from].insert(to);
+        if (const std::string to = folderOf((*i)[1]); to != from) edges[from].insert(to);
     }
-  return arrows;
+  return edges;
 }
 
-TEST(House, NoPartOfARoomIncludesOneAboveIt) {
-  // Property: the parts can be put in an order in which each includes only those before it.
-  Rooms left = partsIncluded();
+TEST(Architecture, FoldersIncludeWithoutCycles) {
+  // Property: the folders have an order in which each includes only folders before it.
+  Graph left = foldersIncluded();
   ASSERT_GT(left.size(), 20U);
   std::set<std::string> placed;
   for (bool found = true; found;) {
     found = false;
-    for (auto part = left.begin(); part != left.end();) {
+    for (auto folder = left.begin(); folder != left.end();) {
       const bool ready =
-          std::includes(placed.begin(), placed.end(), part->second.begin(), part->second.end());
-      if (ready) placed.insert(part->first);
-      part = ready ? left.erase(part) : std::next(part);
+          std::includes(placed.begin(), placed.end(), folder->second.begin(), folder->second.end());
+      if (ready) placed.insert(folder->first);
+      folder = ready ? left.erase(folder) : std::next(folder);
       found = found || ready;
     }
   }
-  for (const auto& [part, below] : left)
+  for (const auto& [folder, below] : left)
     for (const auto& other : below)
-      if (left.contains(other)) ADD_FAILURE() << part << " and " << other << " stand in a circle of includes";
+      if (left.contains(other))
+        ADD_FAILURE() << folder << " and " << other << " include each other in a cycle";
 }
 
-TEST(House, TheCheckerOfRoutesSharesNothing) {
-  // Property: tests/safety includes no header of ours and links no target of ours.
+TEST(Architecture, RouteCheckerSharesNoCode) {
+  // Property: tests/safety includes no header of Talus and links no target of Talus.
   for (const auto& file : files("tests/safety", {".hpp", ".cpp", ".txt"})) {
     const std::string source = text(file);
     EXPECT_EQ(source.find("<talus/"), std::string::npos) << file;
@@ -84,55 +85,56 @@ TEST(House, TheCheckerOfRoutesSharesNothing) {
   EXPECT_GT(files("tests/safety", {".cpp"}).size(), 8U);
 }
 
-// What each unit (a header and its source) includes of the rooms.
-Rooms unitsIncluded() {
+// The headers of Talus that each unit (a header and its source) includes.
+Graph unitsIncluded() {
   const std::regex include(R"(#include <talus/([a-z_0-9/]+)\.hpp>)");
-  Rooms arrows;
-  for (const auto& [room, below] : roomsBelow())
-    for (const auto& file : files(room, {".hpp", ".cpp"})) {
+  Graph edges;
+  for (const auto& [module, below] : modulesBelow())
+    for (const auto& file : files(module, {".hpp", ".cpp"})) {
       const std::string source = text(file);
       const std::string unit = file.lexically_relative(TALUS_SOURCE_DIR).replace_extension().generic_string();
       for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
-        if ((*i)[1] != unit) arrows[unit].insert((*i)[1]);
+        if ((*i)[1] != unit) edges[unit].insert((*i)[1]);
     }
-  return arrows;
+  return edges;
 }
 
-TEST(House, NoTwoUnitsIncludeEachOther) {
-  const Rooms arrows = unitsIncluded();
-  ASSERT_GT(arrows.size(), 200U);
-  for (const auto& [unit, others] : arrows)
+TEST(Architecture, UnitsDoNotIncludeEachOther) {
+  const Graph edges = unitsIncluded();
+  ASSERT_GT(edges.size(), 200U);
+  for (const auto& [unit, others] : edges)
     for (const auto& other : others)
-      if (unit < other && arrows.contains(other)) {
-        EXPECT_FALSE(arrows.at(other).contains(unit)) << unit << " and " << other << " include each other";
+      if (unit < other && edges.contains(other)) {
+        EXPECT_FALSE(edges.at(other).contains(unit)) << unit << " and " << other << " include each other";
       }
 }
 
-TEST(House, FoldersHaveAtMostFortyFiles) {
-  // Property: a place is found by reading one folder's list.
+TEST(Architecture, FoldersHaveAtMostFortyFiles) {
+  // Property: the list of a folder fits one screen.
   std::map<std::string, int> count;
-  for (const std::string room : {"common", "terramech", "maps", "costmap", "planner", "cli", "tests"})
-    for (const auto& file : files(room, {".hpp", ".cpp"}))
+  for (const std::string module : {"common", "terramech", "maps", "costmap", "planner", "cli", "tests"})
+    for (const auto& file : files(module, {".hpp", ".cpp"}))
       ++count[file.parent_path().lexically_relative(TALUS_SOURCE_DIR).generic_string()];
   for (const auto& [folder, files_in_it] : count) EXPECT_LE(files_in_it, 40) << folder;
 }
 
-TEST(House, FilesHaveOneIdea) {
-  for (const auto& [room, below] : roomsBelow())
-    for (const auto& file : files(room, {".hpp", ".cpp"})) {
+TEST(Architecture, FilesHaveAtMost400Lines) {
+  for (const auto& [module, below] : modulesBelow())
+    for (const auto& file : files(module, {".hpp", ".cpp"})) {
       const std::string source = text(file);
       EXPECT_LE(std::count(source.begin(), source.end(), '\n'), 400) << file;
     }
 }
 
-// Types and constants of anonymous namespaces, by source: what TALUS_UNITY compiles together may have each but once.
-TEST(House, SourcesOfAFolderShareNoNames) {
+// TALUS_UNITY compiles the sources of a folder together: types and constants of anonymous namespaces need
+// distinct names.
+TEST(Architecture, SourcesOfAFolderHaveDistinctNames) {
   const std::regex type(R"(^(?:struct|class|enum class|enum) (\w+)[^;]*$)"),
       constant(R"(^constexpr [^(]*?\b(k[A-Z]\w*)\s*[={\[])");
   std::map<std::string, std::string> first;  // folder and name -> source
   std::size_t names = 0;
-  for (const auto& [room, below] : roomsBelow())
-    for (const auto& file : files(room, {".cpp"})) {
+  for (const auto& [module, below] : modulesBelow())
+    for (const auto& file : files(module, {".cpp"})) {
       if (file.parent_path().filename() == "python") continue;  // each compiled alone
       std::istringstream lines(text(file));
       bool inside = false;
@@ -152,5 +154,5 @@ TEST(House, SourcesOfAFolderShareNoNames) {
   EXPECT_GT(names, 500U);
 }
 
-}  // namespace arrows_test
-}  // namespace talus::house
+}  // namespace dependencies_test
+}  // namespace talus::architecture

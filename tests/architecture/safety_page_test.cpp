@@ -4,7 +4,7 @@
 
 #include "source_files.hpp"
 
-namespace talus::house {
+namespace talus::architecture {
 namespace safety_page_test {
 
 std::set<std::string> testNames() {
@@ -32,4 +32,4 @@ TEST(SafetyPage, EveryTestThatItNamesExists) {
 }
 
 }  // namespace safety_page_test
-}  // namespace talus::house
+}  // namespace talus::architecture

@@ -5,7 +5,7 @@
 
 #include "source_files.hpp"
 
-namespace talus::house {
+namespace talus::architecture {
 namespace references_test {
 
 std::set<std::string> matches(const std::string& where, const std::regex& pattern) {
@@ -30,4 +30,4 @@ TEST(References, EveryCitedKeyIsKnown) {
 }
 
 }  // namespace references_test
-}  // namespace talus::house
+}  // namespace talus::architecture

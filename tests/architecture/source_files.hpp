@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace talus::house {
+namespace talus::architecture {
 
 /// Files of one of our folders, by ending; sorted, so that messages are the same everywhere.
 inline std::vector<std::filesystem::path> files(const std::string& folder,
@@ -20,6 +20,18 @@ inline std::vector<std::filesystem::path> files(const std::string& folder,
   return found;
 }
 
+/// The documents that people read: those of the source folder, docs and the READMEs of all folders; sorted.
+inline std::vector<std::filesystem::path> documents() {
+  std::vector<std::filesystem::path> found;
+  for (const std::string folder :
+       {"docs", "common", "terramech", "maps", "costmap", "planner", "cli", "examples", "tests"})
+    for (const auto& file : files(folder, {".md"})) found.push_back(file);
+  for (const auto& entry : std::filesystem::directory_iterator(TALUS_SOURCE_DIR))
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 inline std::string text(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::ostringstream out;
@@ -27,4 +39,4 @@ inline std::string text(const std::filesystem::path& file) {
   return out.str();
 }
 
-}  // namespace talus::house
+}  // namespace talus::architecture

@@ -1,14 +1,14 @@
-// An embedder includes entry headers alone: what examples and installed consumers show is the one way in.
+// Examples and installed consumers include entry headers only, as a program that embeds Talus does.
 #include <map>
 #include <regex>
 #include <set>
 
 #include "source_files.hpp"
 
-namespace talus::house {
-namespace doors_test {
+namespace talus::architecture {
+namespace entry_headers_test {
 
-TEST(House, ExamplesAndConsumersIncludeEntryHeadersOnly) {
+TEST(Architecture, ExamplesAndConsumersIncludeEntryHeadersOnly) {
   const std::set<std::string> entries{"talus.hpp",
                                       "terramech/terramech.hpp",
                                       "terramech/terramech_io.hpp",
@@ -17,7 +17,7 @@ TEST(House, ExamplesAndConsumersIncludeEntryHeadersOnly) {
                                       "maps/maps_io.hpp",
                                       "costmap/costmap.hpp",
                                       "planner/planner.hpp",
-                                      "planner/plugin/plugin_export.hpp",  // of who writes a plugin
+                                      "planner/plugin/plugin_export.hpp",  // for plugins
                                       "planner/simulation/simulation.hpp"};
   const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
   int seen = 0;
@@ -30,12 +30,12 @@ TEST(House, ExamplesAndConsumersIncludeEntryHeadersOnly) {
   EXPECT_GE(seen, 6);
 }
 
-// Headers that include each other, directly or by others, name no order in which they can be read.
-TEST(House, NoHeaderIncludesItselfByOthers) {
+// Headers have an order in which each includes only headers before it.
+TEST(Architecture, HeadersIncludeWithoutCycles) {
   const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
   std::map<std::string, std::set<std::string>> left;
-  for (const std::string room : {"common", "terramech", "maps", "costmap", "planner", "cli"})
-    for (const auto& file : files(room, {".hpp"})) {
+  for (const std::string module : {"common", "terramech", "maps", "costmap", "planner", "cli"})
+    for (const auto& file : files(module, {".hpp"})) {
       const std::string source = text(file);
       auto& below = left[file.lexically_relative(TALUS_SOURCE_DIR).generic_string()];
       for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
@@ -47,8 +47,8 @@ TEST(House, NoHeaderIncludesItselfByOthers) {
     for (auto& [header, below] : left)
       std::erase_if(below, [&](const std::string& other) { return !left.contains(other); });
   }
-  for (const auto& [header, below] : left) ADD_FAILURE() << header << " stands in a circle of includes";
+  for (const auto& [header, below] : left) ADD_FAILURE() << header << " is in a cycle of includes";
 }
 
-}  // namespace doors_test
-}  // namespace talus::house
+}  // namespace entry_headers_test
+}  // namespace talus::architecture
