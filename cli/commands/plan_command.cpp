@@ -44,8 +44,9 @@ using planner::RouteStatus;
 // Prices of time and of risk that are tried for the Pareto set, each.
 constexpr int kParetoSteps = 6;
 
+// Of the plan's seconds those of the proof are part.
 struct Timing {
-  double load_s, costmap_s, plan_s;
+  double load_s, costmap_s, plan_s, proof_s;
 };
 
 planner::RoutePlanner plannerOf(const PlanOptions& options) {
@@ -100,9 +101,10 @@ std::string goalText(const PlanOptions& options, const Route& route) {
 }
 
 std::string planText(const Route& route, const Timing& seconds) {
+  const std::string proof = seconds.proof_s > 0.0 ? fmt::format(" (proof {:.3f} s)", seconds.proof_s) : "";
   return summaryText(route) +
-         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s", seconds.load_s,
-                                             seconds.costmap_s, seconds.plan_s));
+         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s{}",
+                                             seconds.load_s, seconds.costmap_s, seconds.plan_s, proof));
 }
 
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
@@ -235,7 +237,10 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   if (route.status == RouteStatus::NoRoute) drawSevered(options, planned, context);
   if (route.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
-  const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
+  const Timing seconds{.load_s = planned.ground.load_s,
+                       .costmap_s = planned.ground.build_s,
+                       .plan_s = planned.plan_s,
+                       .proof_s = route.summary.proof_s};
   if (context.json) {
     nlohmann::ordered_json risk;
     if (planned.request.risk_limit) {
@@ -245,7 +250,10 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[route.goal];
     if (!risk.is_null()) json["risk"] = std::move(risk);
-    json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
+    json["seconds"] = {{"load", seconds.load_s},
+                       {"costmap", seconds.costmap_s},
+                       {"plan", seconds.plan_s},
+                       {"proof", seconds.proof_s}};
     printJson(json);
   } else {
     print(goalText(options, route) + planText(route, seconds));

@@ -351,6 +351,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.cost = plan.cost_J;
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
+  route.summary.proof_s = plan.proof_s;
   route.vertices = std::move(annotator.vertices);
   tellRisk(route, input.map, input.watch);
   return route;

@@ -48,6 +48,7 @@ class RiskBoundedSearch {
   // Whether the plan keeps the limit, by more worlds than its own number is drawn from, too; nothing where it found
   // no route.
   std::optional<bool> taken(const Plan& plan) {
+    proof_s_ += plan.proof_s;
     if (plan.status != RouteStatus::Found) return std::nullopt;
     AnnotationInput input{.map = *problem_.map};
     input.watch = problem_.watch;
@@ -87,6 +88,7 @@ class RiskBoundedSearch {
     if (best_ || doubtful_) {
       Plan plan = best_ ? *best_ : *doubtful_;
       plan.lower_bound_J = std::min(lower_bound_J, plan.cost_J);
+      plan.proof_s = proof_s_;
       plan.interrupted |= stopped;
       return plan;
     }
@@ -124,7 +126,7 @@ class RiskBoundedSearch {
   double max_risk_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   bool any_ = false;
-  double least_risk_ = 1.0;
+  double least_risk_ = 1.0, proof_s_ = 0.0;
   std::optional<Plan> best_;
   std::optional<Plan> doubtful_;  // within the limit by their own number only
 };

@@ -19,7 +19,7 @@
 namespace talus {
 
 /// Grows with every change below that an older plugin or program would misread.
-inline constexpr int kPlannerInterfaceVersion = 6;
+inline constexpr int kPlannerInterfaceVersion = 7;
 
 /// What a plugin is, and what the planner that it is configured for can do.
 struct PlannerCapabilities {

@@ -14,6 +14,7 @@
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/plan_end.hpp>
 #include <talus/planner/route/polyline.hpp>
@@ -278,8 +279,11 @@ Plan PluginPlanner::plan(const Problem& problem) const {
   plan.cost_J = MotionCost(problem.map).along(plan.points);
   const Segment ends{plan.points.front(), plan.points.back()};
   const bool one_leg = problem.prove && problem.via.empty() && problem.other_goals.empty();
-  const double bound_J = one_leg ? LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch), plan.cost_J)
-                                 : straightBound_J(*problem.map, ends, 0.0);
+  const auto proven_J = [&] {
+    const AddedTime proof(plan.proof_s);
+    return LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch), plan.cost_J);
+  };
+  const double bound_J = one_leg ? proven_J() : straightBound_J(*problem.map, ends, 0.0);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }

@@ -10,6 +10,7 @@
 #include <talus/planner/pose/drive_planner.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
 #include <talus/planner/pose/turning_drive.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/time_left.hpp>
@@ -198,10 +199,12 @@ Plan DrivePlanner::plan(const Problem& problem) {
     PosePlan leg = tolerance_m > 0.0 ? drivenWithin(asked, problem) : drivenTo(asked, problem, stops[i]);
     if (leg.status != RouteStatus::Found) return ended(std::move(leg));
     append(whole.drive, leg.path);
-    const double bound_J = problem.prove
-                               ? bound_(problem.map, {asked.start, stops[i]}, tolerance_m,
-                                        StopCheck(problem.watch, time.left_s()), leg.cost_J)
-                               : straightBound_J(*problem.map, {asked.start, stops[i]}, tolerance_m);
+    const Segment ends{asked.start, stops[i]};
+    const auto proven_J = [&] {
+      const AddedTime proof(whole.proof_s);
+      return bound_(problem.map, ends, tolerance_m, StopCheck(problem.watch, time.left_s()), leg.cost_J);
+    };
+    const double bound_J = problem.prove ? proven_J() : straightBound_J(*problem.map, ends, tolerance_m);
     whole.lower_bound_J += std::min(bound_J, leg.cost_J);
     asked.start = stops[i];
     asked.start_heading_rad = endOf(leg.path).heading_rad;

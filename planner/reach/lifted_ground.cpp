@@ -113,20 +113,20 @@ std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveC
 
 }  // namespace
 
-LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards)
+LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards, bool across)
     : map_(map),
+      across_(across),
       kinds_(map.grid().size()),
       solid_(map.grid().size(), Hazard::None),
       ground_(map.grid().size()) {
+  findGround();
+  edges_.emplace(map, hazards, [this](Cell cell, double gradient) { return refuses(cell, gradient); });
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Cell cell{static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width};
     kinds_[i] = kindOf(cell, hazards);
-    if (kinds_[i] == Kind::Fixed && hazards)
-      solid_[i] =
-          static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
+    if (kinds_[i] == Kind::Fixed && hazards) solid_[i] = solidOf(cell, hazards);
   }
   settleNear();
-  findGround();
 }
 
 LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) const {
@@ -136,9 +136,34 @@ LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) con
   if (!hazards) return Kind::Fixed;
   const Hazard found = hazards(cell);
   if (has(found, Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks)) return Kind::Fixed;
-  if (has(found, Hazard::Slope)) return Kind::Steep;
+  if (edges_->at(cell) == StepEdges::Kind::Sheer) return Kind::Fixed;
+  if (has(found, Hazard::Slope) || edges_->at(cell) == StepEdges::Kind::Slope) return Kind::Steep;
   if (has(found, Hazard::Step | Hazard::Roughness)) return Kind::Fixed;
   return has(found, Hazard::Unknown) ? Kind::Unseen : Kind::Near;
+}
+
+// Of a sheer step the roughness that it makes is part.
+Hazard LiftedGround::solidOf(Cell cell, const HazardsOf& hazards) const {
+  const auto found =
+      static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
+  if (edges_->at(cell) != StepEdges::Kind::Sheer) return found;
+  constexpr Hazard kDeclared = Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks;
+  return static_cast<Hazard>(static_cast<std::uint8_t>(found) & static_cast<std::uint8_t>(kDeclared)) |
+         Hazard::Step;
+}
+
+bool LiftedGround::isSteep(CellCode code) const noexcept {
+  const DriveCost::Limits& limits = map_.cost().limits();
+  return std::hypot(code.dzDx(), code.dzDy()) > std::hypot(limits.max_along, limits.max_across);
+}
+
+bool LiftedGround::refuses(Cell cell, double gradient) const noexcept {
+  const DriveCost::Limits& limits = map_.cost().limits();
+  if (gradient > std::min(limits.max_along, limits.max_across)) return true;
+  const std::uint8_t ground = ground_[map_.grid().index(cell)];
+  if (ground >= map_.cost().curves().size()) return false;
+  const DriveCurve& curve = map_.cost().curves()[ground];
+  return !(curve.price(gradient, 0.0) < kBlocked) || !(curve.price(-gradient, 0.0) < kBlocked);
 }
 
 // A cell that is kept clear counts to what is nearest: what stands there, unseen ground, or the rim of the map.
@@ -168,8 +193,9 @@ void LiftedGround::findGround() {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const std::size_t i = grid.index({column, row});
-      if (kinds_[i] != Kind::Open) continue;
-      ground_[i] = map_.at({column, row}).curve();
+      const std::uint8_t curve = map_.at({column, row}).curve();
+      if (curve >= map_.cost().curves().size()) continue;
+      ground_[i] = curve;
       known[i] = true;
       sources.push_back({column, row});
     }
@@ -185,6 +211,8 @@ void LiftedGround::findGround() {
 bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell) const noexcept {
   const Kind kind = kinds_[cell];
   switch (constraint) {
+    case Constraint::Roll:
+      return across_ && kind == Kind::Steep;
     case Constraint::Pitch:
     case Constraint::Slope:
       return kind == Kind::Steep;
@@ -195,7 +223,6 @@ bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell
       return kind == Kind::Unseen;
     case Constraint::Rim:
       return kind == Kind::Rim;
-    case Constraint::Roll:
     case Constraint::Soil:
       return false;
   }
@@ -209,14 +236,52 @@ std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constr
   bool any = false;
   for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = isFreed(constraint, kinds, i);
   if (of_cells && !any) return nullptr;
+  const auto freed = [&](Cell cell, CellCode code) {
+    const std::size_t i = grid.index(cell);
+    if (!isFreed(constraint, kinds, i)) return code;
+    if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
+    const bool stays = constraint == Constraint::Hazard && has(solid_[i], Hazard::Step) && isSteep(code);
+    return stays ? code : code.withCurve(ground_[i]);
+  };
   return std::make_shared<const costmap::CostGrid>(
-      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}},
-                     .code =
-                         [&](Cell cell, CellCode code) {
-                           const std::size_t i = grid.index(cell);
-                           return isFreed(constraint, kinds, i) ? code.withCurve(ground_[i]) : code;
-                         },
-                     .cost = [&] { return costWithout(constraint, map_.cost()); }}));
+      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
+                       return costWithout(constraint, map_.cost());
+                     }}));
+}
+
+std::shared_ptr<const costmap::CostGrid> LiftedGround::withoutSlopesAndSteps() const {
+  const maps::Grid& grid = map_.grid();
+  const auto isStep = [this](std::size_t i) { return isFreed(Constraint::Hazard, Hazard::Step, i); };
+  bool any = false;
+  for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = has(solid_[i], Hazard::Step) && isStep(i);
+  if (!any) return nullptr;
+  const auto freed = [&](Cell cell, CellCode code) {
+    const std::size_t i = grid.index(cell);
+    if (!isStep(i) && !isFreed(Constraint::Slope, kSolid, i)) return code;
+    if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
+    return code.withCurve(ground_[i]);
+  };
+  return std::make_shared<const costmap::CostGrid>(
+      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
+                       return costWithout(Constraint::Slope, map_.cost());
+                     }}));
+}
+
+bool slopesAcross(const costmap::CostGrid& map, const Segment& line) {
+  const double dx = line.to.x_m - line.from.x_m, dy = line.to.y_m - line.from.y_m,
+               length_m = std::hypot(dx, dy);
+  if (!(length_m > 0.0)) return false;
+  const int pieces = 1 + static_cast<int>(length_m / map.grid().resolution_m);
+  double along = 0.0, across = 0.0;
+  for (int k = 0; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    const auto cell = map.grid().cellAt({line.from.x_m + share * dx, line.from.y_m + share * dy});
+    if (!cell) continue;
+    const CellCode code = map.at(*cell);
+    along += std::abs(code.dzDx() * dx + code.dzDy() * dy);
+    across += std::abs(code.dzDy() * dx - code.dzDx() * dy);
+  }
+  return across > along;
 }
 
 }  // namespace talus::planner

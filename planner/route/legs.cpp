@@ -44,6 +44,7 @@ Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& 
     whole.cost_J += part.cost_J + turnBetween(problem, whole.points, part.points);
     append(whole.points, part.points);
     whole.lower_bound_J += part.lower_bound_J;
+    whole.proof_s += part.proof_s;
     problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
   }
   return whole;

@@ -45,6 +45,7 @@ struct Plan {
   std::vector<maps::Point> points;  ///< start, turns, goal
   double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
   double lower_bound_J = 0.0;                               ///< no route costs less
+  double proof_s = 0.0;  ///< that Problem::prove took: the bound and the search of other corridors
   std::size_t goal = 0;  ///< which goal it ends at: 0 is Problem::goal, then the other goals in order
   bool interrupted =
       false;  ///< a stop was requested before the work was done: the best route and bound so far

@@ -61,7 +61,8 @@ struct Obstruction {
   std::optional<Constraint>
       lifting{};  ///< the first of them without which a way is open; none if no single one is enough
   std::optional<costmap::Hazard>
-      hazard{};  ///< of Constraint::Hazard: the kind that is enough alone, with its clearance; none if it takes several
+      hazard{};  ///< of Constraint::Hazard: the kind that is enough alone, with its clearance; none if it takes several.
+                 ///< Step with Constraint::Slope: slopes and steps together, neither alone
 };
 
 /// A value that is not known: a layer that the map does not have.
@@ -115,8 +116,10 @@ struct RouteSummary {
   double max_slope_across_rad = 0.0;  ///< steepest inclination across the heading, as a magnitude
   double max_slip_angle_rad = 0.0;    ///< largest magnitude along the route
   double lower_bound = 0.0;           ///< no route between these places costs less, same unit as cost
-  double gap = 0.0;     ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
-  std::string planner;  ///< name of the planner that found it
+  double gap = 0.0;  ///< cost / lower_bound - 1 [-]: the route is at most so far from the best
+  double proof_s =
+      0.0;  ///< that PlanRequest::prove took of the planning [s]: the bound and the search of other corridors
+  std::string planner;                ///< name of the planner that found it
   std::optional<DriveShape> drive{};  ///< of routes that keep a turning radius
 };
 

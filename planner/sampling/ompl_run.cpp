@@ -147,6 +147,7 @@ Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& k
   planner->solve(doneWhen(leg, settings, cost));
   Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
   plan.lower_bound_J = std::max(known.lower_bound_J, region->toGoal(leg.start));
+  plan.proof_s = known.proof_s;
   return plan;
 }
 

@@ -49,7 +49,10 @@ TEST(PlanCommand, PlansWritesAndScoresTheSame) {
   EXPECT_EQ(summary["status"], "found");
   EXPECT_GT(summary["length_m"].get<double>(), 21.0);
   EXPECT_LE(summary["lower_bound"].get<double>(), summary["cost"].get<double>());
-  for (const char* key : {"load", "costmap", "plan"}) EXPECT_TRUE(summary["seconds"].contains(key)) << key;
+  for (const char* key : {"load", "costmap", "plan", "proof"})
+    EXPECT_TRUE(summary["seconds"].contains(key)) << key;
+  EXPECT_GT(summary["seconds"]["proof"].get<double>(), 0.0);
+  EXPECT_LT(summary["seconds"]["proof"].get<double>(), summary["seconds"]["plan"].get<double>());
 
   const json route = json::parse(fileContent(folder / "route.geojson"));
   EXPECT_EQ(route["crs"], "local");
