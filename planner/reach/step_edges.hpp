@@ -19,7 +19,6 @@ namespace talus::planner {
 /// every pair that the map does not refuse. An edge is Sheer if d exceeds a and b, in the direction of d, by
 /// more than half of the step; otherwise the edge is of kind Slope if one of the three rises is a refused
 /// gradient. A refused cell has the kind of its nearest edge, counted over refused cells.
-/// edge, counted over refused cells.
 class StepEdges {
  public:
   enum class Kind : std::uint8_t { None, Sheer, Slope };

@@ -17,7 +17,7 @@ namespace talus::planner {
 
 /// Result status of planning.
 enum class RouteStatus {
-  Found,         ///< a route that keeps every constraint along its whole length
+  Found,         ///< a route that satisfies every constraint along its whole length
   NoRoute,       ///< start and goal are valid and not connected: proven for all headings
   NoneFound,     ///< no route was found, without proof
   StartInvalid,  ///< the start is outside the map or on a cell that no heading may enter
@@ -59,11 +59,11 @@ struct Obstruction {
   maps::Point last{};                ///< closest cell of the first set: its centre
   maps::Point first{};               ///< closest cell of the second set
   bool tried = false;                ///< true if constraints were tested separately
-  std::optional<Constraint>
-      lifting{};  ///< the first of them without which a way is open; none if no single one is enough
-  std::optional<costmap::Hazard>
-      hazard{};  ///< of Constraint::Hazard: the kind that is enough alone, with its clearance; none if it takes several.
-                 ///< Step with Constraint::Slope: slopes and steps together, neither alone
+  /// First constraint whose removal opens a route; none if no single constraint suffices.
+  std::optional<Constraint> lifting{};
+  /// If `lifting` is Hazard: the kind whose removal alone, with its clearance, opens a route; none if several
+  /// kinds must be removed. If `lifting` is Slope: Step means that slopes and steps must be removed together.
+  std::optional<costmap::Hazard> hazard{};
 };
 
 /// Value of an unknown quantity, such as a layer that the map lacks.
@@ -93,11 +93,10 @@ struct RouteVertex {
   double hazard_per_m = 0.0;         ///< hazard rate of immobilisation after this vertex, for independent
                                      ///< metres
   int soil_class = 0;                ///< class of the ground in the model
-  double shared_doubt =
-      0.0;               ///< share of the variance of its pull that all ground of the class has in common
-  bool reverse = false;  ///< reverse motion: heading_rad is opposite to the motion
-  double curvature_1_m = 0.0;  ///< of the motion that leaves the vertex, left > 0
-  double turn_rad = 0.0;       ///< turned in place before moving on, left > 0
+  double shared_doubt = 0.0;         ///< share of the pull variance common to all ground of the class
+  bool reverse = false;              ///< reverse motion: heading_rad is opposite to the motion
+  double curvature_1_m = 0.0;        ///< of the motion that leaves the vertex, left > 0
+  double turn_rad = 0.0;             ///< turned in place before moving on, left > 0
 };
 
 /// Number of manoeuvres, and curvature, of a drive.
@@ -120,9 +119,8 @@ struct RouteSummary {
   double max_slip_angle_rad = 0.0;    ///< largest magnitude along the route
   double lower_bound = 0.0;           ///< no route between these places has a lower cost; same unit as cost
   double gap = 0.0;                   ///< proven optimality gap cost / lower_bound - 1 [-]
-  double proof_s =
-      0.0;  ///< that PlanRequest::prove took of the planning [s]: the bound and the search of other corridors
-  std::string planner;                ///< name of the planner
+  double proof_s = 0.0;  ///< time for PlanRequest::prove [s]: lower bound and search of other corridors
+  std::string planner;   ///< name of the planner
   std::optional<DriveShape> drive{};  ///< if the route observes a turning radius
 };
 
@@ -131,8 +129,7 @@ struct Route {
   RouteStatus status = RouteStatus::NoneFound;
   std::string reason;        ///< reason and remedy in one line if there is no route; empty when Found
   bool interrupted = false;  ///< a stop was requested; the route is the best so far
-  std::optional<Obstruction>
-      obstruction{};     ///< of NoRoute, where two required places are cut off from each other
+  std::optional<Obstruction> obstruction{};  ///< if NoRoute, and two required places are disconnected
   std::size_t goal = 0;  ///< index of the reached goal: 0 is PlanRequest::goal, then the other goals in order
   std::vector<RouteVertex> vertices;
   RouteSummary summary;
