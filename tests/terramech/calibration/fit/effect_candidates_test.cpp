@@ -147,5 +147,18 @@ TEST(EffectCandidates, ACurveHasThreeRunsAKnot) {
   EXPECT_EQ(most.at("slip"), 7U);
 }
 
+TEST(EffectCandidates, StepsAreInColumnsOfOnesOwn) {
+  // Property: the sinkage of the model is no such column; its curves begin at its least value, as all curves but steps do.
+  const Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 2)}; });
+  const auto steps = [&](const std::string& column, double least) {
+    int count = 0;
+    for (const Candidate& c : empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02)))
+      count += c.covariate() == column && c.parts[0].knots.front() > least + 1e-9;
+    return count;
+  };
+  EXPECT_GT(steps("dust", 0.0), 0);
+  EXPECT_EQ(steps("sinkage_m", 0.005), 0);
+}
+
 }  // namespace effect_candidates_test
 }  // namespace talus::terramech
