@@ -9,11 +9,12 @@
 
 namespace talus::planner {
 
-/// What a search has in place of the number of a node: none.
+/// Index of a missing node.
 inline constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
-/// The way between two places over the nodes of a search, of which `last` is the last: before(node) is the node that it was
-/// reached from, kNoNode where that is the start, place(node) where it lies. Equal places in a row count once.
+/// Polyline between two places over the nodes of a search, ending at node `last`. before(node) is the
+/// predecessor of a node, kNoNode at the start; place(node) is its position. Consecutive equal places are
+/// merged.
 template <typename Before, typename Place>
 Polyline nodeRoute(const Segment& ends, std::uint32_t last, Before before, Place place) {
   Polyline points{ends.to};

@@ -16,12 +16,10 @@ inline constexpr int kLayerInterfaceVersion = 1;
 /// A cost layer from an external source, such as shadow, radio or hazards: see costmap::CostLayer.
 class CostSource {
  public:
-  /// Destroys the layer.
   virtual ~CostSource() = default;
 
-  /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must
-  /// not be entered; NaN: unknown. A place must have the same value on every grid, because large maps are
-  /// evaluated window by window.
+  /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be entered;
+  /// NaN: unknown. A place has the same value on every grid: a large map is computed window by window.
   virtual std::vector<float> over(const maps::Grid& grid) const = 0;
 };
 

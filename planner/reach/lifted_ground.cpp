@@ -20,7 +20,7 @@ using maps::Cell;
 constexpr double kNone = std::numeric_limits<double>::max();
 constexpr float kBlocked = std::numeric_limits<float>::infinity();
 
-// Floods from all cells of a queue over their eight neighbours; next(from, to) says whether to go on.
+// Flood fill from all cells of a queue over eight neighbours; next(from, to) decides on each step.
 template <typename Next>
 void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
   for (; !open.empty(); open.pop_front()) {
@@ -31,7 +31,8 @@ void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
   }
 }
 
-// A row that ends where the limit along the heading ends it goes on as it ends, uphill and downhill; one that the soil ends does not.
+// Extends a row beyond the limit along the heading with its last values, uphill and downhill, if the limit
+// ends the row; a row that ends earlier because of the soil is not extended.
 void levelBeyond(float* row, double limit, double most) {
   constexpr int kMiddle = TravelCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
   const int at_limit = static_cast<int>(limit * TravelCurve::kBinsPerUnit);
@@ -67,7 +68,7 @@ TravelCurve withoutRoll(TravelCurve curve, double limit) {
   return curve;
 }
 
-// Ground of any strength: every node costs as much, but those at which the rover tips.
+// Curve of ground with unlimited strength: equal cost at all nodes except those at which the rover tips.
 TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   const int rows =
       limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 2 : 1;
@@ -85,7 +86,8 @@ TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   return curve;
 }
 
-// The gradient at which the slope asks for all that the soil gives at the limit; any where states are not kept.
+// Gradient at which the slope requires the complete pull that the soil provides at the limit; unlimited if
+// the cost has no states.
 double soilHoldsTo(const TravelCost& cost, std::size_t curve) {
   if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
   const auto at = static_cast<std::size_t>(std::clamp(
@@ -142,7 +144,7 @@ LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) con
   return has(found, Hazard::Unknown) ? Kind::Unseen : Kind::Near;
 }
 
-// Of a sheer step the roughness that it makes is part.
+// The roughness at a sheer step is attributed to the step.
 Hazard LiftedGround::solidOf(Cell cell, const HazardsOf& hazards) const {
   const auto found =
       static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
@@ -166,7 +168,8 @@ bool LiftedGround::refuses(Cell cell, double gradient) const noexcept {
   return !(curve.price(gradient, 0.0) < kBlocked) || !(curve.price(-gradient, 0.0) < kBlocked);
 }
 
-// A cell that is kept clear counts to what is nearest: what stands there, unseen ground, or the rim of the map.
+// Assigns each cell of a clearance to the nearest cause: an obstacle, unobserved ground, or the rim of the
+// map.
 void LiftedGround::settleNear() {
   const maps::Grid& grid = map_.grid();
   std::deque<Cell> sources;

@@ -12,8 +12,8 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-// The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map; none where a
-// set is empty, or when stopped.
+// The cells of two sets with the fewest king's moves between them, by a flood fill from the first set over
+// the whole map; nothing if a set is empty or after a stop.
 std::optional<std::pair<Cell, Cell>> closest(const maps::Grid& grid, const Reach& from, const Reach& to,
                                              const StopCheck& stop) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -111,7 +111,7 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
     found.last = map.grid().centre(gap->first);
     found.first = map.grid().centre(gap->second);
   }
-  // From the side that fewer cells lead to, until it meets the other.
+  // Searches from the side with fewer cells, until the search meets the other side.
   const auto opens = [&](const costmap::CostGrid& lifted) {
     HeadingSets free(lifted.cost());
     Reach reach = backwards ? Reach(lifted, free, Reach::Sense::To, places.to, tolerance_m, stop, &from_start)

@@ -12,8 +12,8 @@ using costmap::Hazard;
 using maps::Cell;
 
 constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSameStep_m = 1e-3;  // steps are measured in float elsewhere: no difference is smaller
-constexpr int kAround = 2;            // cells on each side whose rises settle a gradient
+constexpr double kSameStep_m = 1e-3;  // heights are floats: smaller differences of steps are rounding
+constexpr int kAround = 2;            // cells on each side whose rises determine a gradient
 
 Cell operator+(Cell a, Cell b) noexcept {
   return {a.column + b.column, a.row + b.row};
@@ -75,7 +75,7 @@ double StepEdges::height_m(Cell cell) const noexcept {
       (cell.row & 63) << 6 | (cell.column & 63))]);
 }
 
-// Where one side has no height the other counts for both.
+// A missing height on one side is replaced by the rise on the other side.
 std::optional<StepEdges::Pair> StepEdges::pair(Cell cell, Cell step) const noexcept {
   const Cell next = cell + step, back{-step.column, -step.row};
   const double here_m = height_m(cell), there_m = height_m(next);

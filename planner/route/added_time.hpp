@@ -4,7 +4,7 @@
 
 namespace talus::planner {
 
-/// Adds the seconds from its construction to its end to a sum, which must outlive it.
+/// Adds its lifetime in seconds to a sum, which must outlive the object.
 class AddedTime {
  public:
   explicit AddedTime(double& sum_s) noexcept : sum_s_(sum_s) {}

@@ -13,7 +13,7 @@ struct Pose {
 /// A path section of constant curvature.
 struct Arc {
   double length_m = 0.0;       ///< > 0 forward, < 0 in reverse
-  double curvature_1_m = 0.0;  ///< left turns > 0 in the rover's frame
+  double curvature_1_m = 0.0;  ///< > 0 to the left of the heading
 };
 
 /// Pose at the end of an arc that starts at `from`.
