@@ -1,5 +1,5 @@
-# Headers are named <talus/ROOM/...> in the tree as they are once installed: the build folder holds include/talus with a link to
-# each room, and a copy of talus.hpp: a link to a file would be installed as a link, into this tree.
+# Headers are named <talus/MODULE/...> in the tree as they are once installed: the build folder holds include/talus with a link to
+# each module, and a copy of talus.hpp: a link to a file would be installed as a link, into this tree.
 set(TALUS_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${TALUS_INCLUDE_DIR}/talus)
 foreach(entry common terramech maps costmap planner cli)

@@ -52,17 +52,17 @@ function(talus_unity target)
 endfunction()
 
 # talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
-# One library target talus::NAME of a room, and the component NAME of the installed package. Its public headers, which are
+# One library target talus::NAME of a module, and the component NAME of the installed package. Its public headers, which are
 # its entry header and what that includes, are a verified file set installed under include/talus; all other headers are
-# inner and are not installed. Paths are relative to the calling room.
+# inner and are not installed. Paths are relative to the calling module.
 function(talus_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS")
   add_library(talus_${name} ${arg_SOURCES})
   add_library(talus::${name} ALIAS talus_${name})
   set_target_properties(talus_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
                         CXX_EXTENSIONS OFF VERIFY_INTERFACE_HEADER_SETS ON)
-  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
-  list(TRANSFORM arg_PUBLIC PREPEND ${TALUS_INCLUDE_DIR}/talus/${room}/)
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE module)
+  list(TRANSFORM arg_PUBLIC PREPEND ${TALUS_INCLUDE_DIR}/talus/${module}/)
   target_sources(talus_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${TALUS_INCLUDE_DIR} FILES ${arg_PUBLIC})
   target_link_libraries(talus_${name} PUBLIC ${arg_DEPENDS} PRIVATE ${arg_PRIVATE_DEPENDS})
   talus_warnings(talus_${name})
@@ -77,7 +77,7 @@ function(talus_quick_build target)
 endfunction()
 
 # talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case. What tests of a
-# room share lies beside its CMakeLists.txt, what several rooms' tests share in tests/support.
+# module share lies beside its CMakeLists.txt, what several modules' tests share in tests/support.
 function(talus_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})

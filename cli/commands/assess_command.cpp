@@ -24,7 +24,7 @@ using namespace terramech;
 using Json = nlohmann::ordered_json;
 
 struct AssessCommand : AssessOptions {
-  std::string html;  // page to write; empty: none
+  std::string html;  // HTML page to write; empty: no page
   TableOptions columns;
 };
 
@@ -134,7 +134,7 @@ std::string textOf(const AssessOptions& options, const std::vector<Assessment>& 
   return text;
 }
 
-// The plane of thesis Figs. 3.10 to 3.12: where each row stands in it.
+// Rows in the plane of thesis Figs. 3.10 to 3.12.
 Plot mapOf(const std::vector<Assessment>& rows) {
   Plot plot{.title = "Traversability diagram",
             .x = {.label = "T/(rW) [-]"},
@@ -156,7 +156,7 @@ Plot mapOf(const std::vector<Assessment>& rows) {
   return plot;
 }
 
-// Each row's drawbar pull with its standard deviation beside what the slope requires.
+// Drawbar pull of each row with its standard deviation, and the pull required by the slope.
 Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) {
   Series pulls{.name = "available, one standard deviation", .x = {}, .y = {}, .mark = Series::Mark::Points};
   for (const Assessment& a : rows) {
@@ -174,7 +174,7 @@ Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) 
       .series = {pulls, {.name = "required by the slope", .x = ends, .y = std::vector(ends.size(), asked)}}};
 }
 
-// Of all rows.
+// Number and share of rows in each category.
 std::vector<std::vector<std::string>> countsOf(const std::vector<Assessment>& rows) {
   std::vector<std::vector<std::string>> out;
   for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {

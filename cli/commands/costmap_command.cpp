@@ -1,4 +1,4 @@
-// talus costmap DEM -o MAP.ot: what is believed of every cell, as files.
+// talus costmap DEM -o MAP.ot: builds a traversability map and writes it to files.
 #include <fstream>
 #include <string>
 

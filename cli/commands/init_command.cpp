@@ -1,4 +1,4 @@
-// talus init DEM: a mission file to start from.
+// talus init DEM: writes a mission file as a starting point.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -33,7 +33,8 @@ void bind(CLI::App& command, InitOptions& options) {
   groupOptions(command, "Output");
 }
 
-// The largest part of a map whose cells are joined by drives from middle to middle, both ways; empty where no cell is allowed.
+// Largest set of cells that are connected by drives between cell centres in both directions; empty if no cell
+// is permitted.
 std::vector<maps::Cell> largestPart(const costmap::TraversabilityMap& map) {
   const planner::MotionCost cost(map.published());
   const maps::Grid& grid = map.grid();
@@ -62,7 +63,7 @@ std::vector<maps::Cell> largestPart(const costmap::TraversabilityMap& map) {
   return largest;
 }
 
-// The cell of them that is nearest to a share of the map's width and height.
+// The cell nearest to a given share of the map's width and height.
 std::string placeAt(const std::vector<maps::Cell>& cells, const maps::Grid& grid, double share) {
   const auto off = [&](maps::Cell cell) {
     return std::hypot(cell.column - std::floor(share * grid.width),

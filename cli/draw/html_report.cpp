@@ -34,7 +34,8 @@ bool isNumber(const std::string& text) {
   return end != text.c_str() && (*end == '\0' || *end == ' ' || *end == '%');
 }
 
-// Whether its columns are broader together than a phone: there each row is a list of its columns.
+// Returns true if the columns together are wider than a phone's screen; each row is then shown as a list of
+// its columns.
 bool isWide(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
   constexpr std::size_t kCharacters = 40;
   std::size_t characters = 0;
@@ -46,7 +47,7 @@ bool isWide(const std::vector<std::string>& header, const std::vector<std::vecto
   return characters > kCharacters;
 }
 
-// A string of CSS that ends neither itself nor its style sheet.
+// A CSS string without characters that could end the string or the style sheet.
 std::string cssString(const std::string& text) {
   std::string out = "\"";
   for (const char c : text)
@@ -57,7 +58,7 @@ std::string cssString(const std::string& text) {
   return out + "\"";
 }
 
-// The beginning of a table whose cells have the name of their column before them where it is a list.
+// Beginning of a table that shows the column name before each cell when rows are shown as lists.
 std::string namedColumns(const std::vector<std::string>& header, int number) {
   std::string text = "<style>@media (max-width: 40rem) {";
   for (std::size_t i = 0; i < header.size(); ++i)

@@ -23,7 +23,7 @@ void check(const Series& s) {
                                           s.name, s.x.size(), s.y.size(), s.y_std.size()));
 }
 
-/// The finite values' range, widened a little; fixed ends win.
+/// Range of the finite values with a margin; fixed ends have precedence.
 class Extent {
  public:
   void add(double value) {
@@ -44,7 +44,7 @@ class Extent {
   Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
-/// One chart on its way onto the canvas.
+/// State of one chart during drawing.
 class Panel {
  public:
   Panel(Canvas& canvas, const Plot& plot, const Box& box) : canvas_(canvas), plot_(plot) {
@@ -115,7 +115,7 @@ class Panel {
     canvas_.discs(spots, many ? 1.6 : 2.8, faded(c, many ? 0.5 : 0.85));
   }
 
-  /// All discs of a series are one shape: of those in a square of two pixels one is drawn.
+  /// Keeps one disc per square of two pixels, because all discs of a series are drawn as one shape.
   static void leaveOutCovered(std::vector<Spot>& spots) {
     const auto square = [](const Spot& spot) {
       return std::pair{std::floor(spot.x / 2.0), std::floor(spot.y / 2.0)};
@@ -126,7 +126,7 @@ class Panel {
                 spots.end());
   }
 
-  /// One standard deviation about each reading; those of one column of pixels that overlap are one bar.
+  /// Draws one standard deviation about each reading; overlapping bars in one pixel column are merged.
   void bars(const Series& s, Colour c) {
     struct Bar {
       double column = 0.0, low = 0.0, high = 0.0;  // pixels from the left, values
@@ -146,7 +146,7 @@ class Panel {
     }
   }
 
-  /// A line between each pair of breaks.
+  /// Draws a line between consecutive interruptions.
   void runs(const Series& s, Colour c) {
     std::vector<Spot> run;
     for (std::size_t i = 0; i <= s.x.size(); ++i) {
@@ -195,7 +195,7 @@ class Panel {
     }
   }
 
-  /// The box in the corner of the frame where it covers the fewest points.
+  /// The corner position of the box that covers the fewest points.
   Box emptiestCorner(Box box) const {
     Box best = box;
     std::size_t fewest = std::numeric_limits<std::size_t>::max();

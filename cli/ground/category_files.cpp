@@ -31,14 +31,15 @@ std::uint8_t byteOf(double part) {
   return static_cast<std::uint8_t>(std::lround(255.0 * part));
 }
 
-// Grey of map_server's trinary mode: free above 0.9, occupied below 0.35.
+// Grey value for map_server's trinary mode: free above 0.9, occupied below 0.35.
 char greyOf(Category category, bool allow_marginal) {
   constexpr char kFree = '\xFE', kOccupied = '\x00', kUnknown = '\x80';
   if (category == Category::Safe || (category == Category::Marginal && allow_marginal)) return kFree;
   return category == Category::Unknown ? kUnknown : kOccupied;
 }
 
-// Of a palette of bytes QGIS lists 256 numbers; by the style beside the file, which it reads by itself, four names.
+// QGIS style with four category names; QGIS reads the file beside the GeoTIFF and would otherwise list all
+// 256 palette entries.
 std::string qgisStyle() {
   std::string entries;
   for (const Category category : kCategories)

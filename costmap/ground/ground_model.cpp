@@ -23,7 +23,7 @@ namespace {
 using terramech::Category;
 using terramech::MobilityState;
 
-// P(value < bound) for a normal estimate; a step where it is certain.
+// P(value < bound) of a normal estimate; a step function for std = 0.
 double probabilityBelow(const Estimate& value, double bound) {
   if (value.std <= 0.0) return value.value < bound ? 1.0 : 0.0;
   return terramech::normalProbability((bound - value.value) / value.std);
@@ -31,7 +31,7 @@ double probabilityBelow(const Estimate& value, double bound) {
 
 constexpr double kLeastThrust = 0.02;  // over load [-]
 
-// A class at the reference slip: what its shear gives over load, against what resists.
+// Pull and gross thrust of a class over load, at the reference slip.
 struct Thrust {
   double pull, thrust;
 
@@ -40,7 +40,7 @@ struct Thrust {
         thrust(std::max({at.torque_over_load_radius, at.drawbar_pull_over_load, kLeastThrust})) {}
 
   double resistance() const noexcept { return thrust - pull; }
-  // What ground of this pull gives of the class's thrust, at most all of it.
+  // Thrust of ground with this pull as a fraction of the class's thrust, at most 1.
   double share(double own_pull) const noexcept {
     return std::clamp((own_pull + resistance()) / thrust, 1e-3, 1.0);
   }
@@ -77,7 +77,7 @@ terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::
   return {modelOf(ground), rover};
 }
 
-// In the rut of an equal wheel: as data have shown, or as rutted() supposes.
+// The class in the rut of an equal wheel: by the effects found in data, else by rutted().
 GroundClass rutOf(const GroundClass& ground) {
   GroundClass rut = ground;
   if (!terramech::knowsPasses(ground.effects)) rut.soil = terramech::rutted(ground.soil);
@@ -89,7 +89,7 @@ terramech::MobilityOptions passOf(const GroundClass& rut) {
                                              : terramech::MobilityOptions{};
 }
 
-// All axles together, where they differ.
+// Options for all axles together, if the axles differ.
 std::optional<terramech::MobilityOptions> axlesOf(const GroundClass& ground, const terramech::Rover& rover) {
   if (!terramech::knowsPasses(ground.effects)) return std::nullopt;
   return terramech::MobilityOptions{.axles = rover.wheel_count / 2};
@@ -110,10 +110,10 @@ terramech::MobilityReference referenceOf(const GroundClass& ground, const terram
 }
 
 struct GroundModel::ClassGround {
-  terramech::MobilityCurve wheel;   // one on fresh ground
-  terramech::MobilityCurve in_rut;  // of an equal wheel
-  terramech::MobilityCurve all;     // axles of the rover together
-  ExpectedDrive drive;              // the same over the demand
+  terramech::MobilityCurve wheel;   // a wheel on fresh ground
+  terramech::MobilityCurve in_rut;  // a wheel in the rut of an equal wheel
+  terramech::MobilityCurve all;     // all axles of the rover
+  ExpectedTravel drive;             // expected cost by `all`
   terramech::SlopeEquilibrium slope;
   std::shared_ptr<const CrossSlope> crossing;
 };
@@ -139,7 +139,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    // Whatever of a class may leave its range leaves it here: what is worked out later has the same ground.
+    // References throw here if a field is out of range; later computations use the same values.
     const GroundClass rut = rutOf(c);
     const terramech::MobilityReference fresh = costmap::referenceOf(c, parts_.rover);
     references_.push_back(
@@ -157,7 +157,7 @@ GroundModel::ClassGround GroundModel::workedOut(const GroundClass& ground) const
   terramech::MobilityCurve wheel = mobilityOf(ground, parts_.rover);
   const auto axles = axlesOf(ground, parts_.rover);
   terramech::MobilityCurve all = axles ? mobilityOf(ground, parts_.rover, *axles) : wheel;
-  const ExpectedDrive drive(all);
+  const ExpectedTravel drive(all);
   terramech::SlopeEquilibrium slope = slopeOf(ground, parts_.rover);
   const CrossSlope::Level level{
       .first = drive.first(),
@@ -190,7 +190,7 @@ int GroundModel::classIndex(int number) const noexcept {
   return -1;
 }
 
-SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const {
+SteadyWheel GroundModel::steady(int class_index, const SlippingWheel& wheel) const {
   const ClassGround& ground = groundOf(class_index);
   const terramech::MobilityCurve& driven = wheel.in_rut ? ground.in_rut : ground.wheel;
   SteadyWheel steady = steadyAt(parts_.rover, driven, slopeAtSlip_rad(driven, wheel.slip));
@@ -218,7 +218,7 @@ SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept 
   return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
-// tan(slope -+ margin) by the addition theorem; beyond a right angle nothing is enough.
+// tan(slope -+ margin) by the addition theorem; infinite beyond a right angle.
 GroundModel::Edges GroundModel::edges(double gradient) const noexcept {
   const double left = 1.0 - gradient * tan_margin_, right = 1.0 + gradient * tan_margin_;
   constexpr double kSteeper = std::numeric_limits<double>::infinity();
@@ -241,14 +241,14 @@ Category GroundModel::categoryAt(double pull, double sinkage, double gradient) c
                                 .z_critical = critical});
 }
 
-Ranked GroundModel::category(const GroundBelief& belief, double gradient) const {
+RankedCategory GroundModel::category(const GroundBelief& belief, double gradient) const {
   const Edges edge = edges(gradient);
   const double below_low = probabilityBelow(belief.pull, edge.low);
   const double below_high = probabilityBelow(belief.pull, edge.high);
   const double critical = criticalSinkage(), threshold = std::min(parts_.policy.sinkage_threshold, critical);
   const double carried = probabilityBelow(belief.sinkage, threshold);
   const double free = probabilityBelow(belief.sinkage, critical);
-  // What each of the three pull ranks becomes at each of the three of sinkage; their chances add up.
+  // Sums the probabilities of the combinations of pull and sinkage ranks that have the category of the mean.
   constexpr double kMost = std::numeric_limits<double>::infinity();
   const std::array<std::pair<double, double>, 3> pulls{
       {{kMost, 1.0 - below_high}, {gradient, below_high - below_low}, {-kMost, below_low}}};
@@ -262,7 +262,7 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
   return {mean, probability};
 }
 
-// Up to the reference slip by the shift of the curve; beyond it the ground has its share of the class's thrust left.
+// Up to the reference slip by the shift of the curve, beyond by the ground's fraction of the class's thrust.
 Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradient) const noexcept {
   const Thrust own(referenceOf(class_index).fresh);
   const double beyond = std::max(gradient - pull.value, 0.0), share = own.share(pull.value);
@@ -270,21 +270,22 @@ Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradi
           pull.std * (1.0 + beyond / (share * own.thrust)) / share};
 }
 
-// At most, the ground pulls what it pulls at its strongest slip, its share of what the class has there. Where even the mean
-// falls short it is taken for certain: doubt is no hope.
+// The greatest pull of the ground is its fraction of the class's pull at the strongest slip. The probability
+// is 1 if the mean falls short: a large standard deviation must not reduce it.
 double GroundModel::weakProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
   const double strongest = ground.all.strongest().drawbar_pull_over_load;
   const double reserve = std::max({strongest, ground.drive.last(), own.pull}) - own.pull;
-  // The pull at the reference slip from which on the gradient is within reach; of ground stronger than its class by the shift.
+  // Least pull at the reference slip for the gradient; by the shift for ground stronger than its class.
   const double least = gradient > own.pull + reserve
                            ? gradient - reserve
                            : (gradient * own.thrust - reserve * own.resistance()) / (own.thrust + reserve);
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
-// The locked wheels of ground that is weaker by d hold d less, or their share of what the class's hold, if that is less.
+// On ground weaker by d, locked wheels brake less by d, or by the ground's fraction of the class's braking if
+// that is less.
 double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                         double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
@@ -295,9 +296,9 @@ double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimat
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
-Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand& demand,
+Refusal GroundModel::refusal(const TravelState& state, double weak, const Demand& demand,
                              const ClassGround& ground) const noexcept {
-  const DrivePolicy& policy = parts_.policy;
+  const TravelPolicy& policy = parts_.policy;
   if (static_cast<double>(std::abs(state.torque_Nm)) > parts_.rover.max_torque_Nm) return Refusal::Torque;
   if (demand.braked < ground.drive.first() || demand.driven > ground.drive.last() ||
       weak > policy.max_immobilisation)
@@ -308,9 +309,9 @@ Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand&
   return refused ? Refusal::Category : Refusal::None;
 }
 
-DriveState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
+TravelState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
   const ClassGround& ground = groundOf(class_index);
-  const DrivePolicy& policy = parts_.policy;
+  const TravelPolicy& policy = parts_.policy;
   const auto& reference = ground.wheel.reference();
   const double weakness = reference.drawbar_pull_over_load - belief.pull.value;
   const Estimate demand = this->demand(class_index, belief.pull, gradient);
@@ -323,9 +324,9 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const double weak = std::max(weakProbability(ground, belief.pull, gradient),
                                unbrakedProbability(ground, belief.pull, gradient));
 
-  DriveState state;
+  TravelState state;
   state.slip = static_cast<float>(s.slip);
-  // Stronger ground on the same slope brakes harder: weaker ground is not let off what refuses that.
+  // Stronger ground brakes harder on the same slope; that braking also counts for weaker ground.
   state.sinkage_m = static_cast<float>(
       std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);
@@ -344,20 +345,20 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   return state;
 }
 
-double GroundModel::cost_J_per_m(const DriveState& state) const noexcept {
+double GroundModel::cost_J_per_m(const TravelState& state) const noexcept {
   if (state.refusal != Refusal::None) return std::numeric_limits<double>::infinity();
   return static_cast<double>(state.energy_J_per_m) +
          parts_.policy.time_weight_W * static_cast<double>(state.time_s_per_m) +
          parts_.policy.risk_weight_J * static_cast<double>(state.risk_per_m);
 }
 
-DriveGround GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
-  DriveGround ground;
-  auto states = std::make_shared<DriveTable>();
-  for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-    DriveState& s = (*states)[static_cast<std::size_t>(bin)];
-    s = state(class_index, belief, DriveCurve::gradient(bin));
-    if (other_class != class_index) s = worse(s, state(other_class, belief, DriveCurve::gradient(bin)));
+GroundCost GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
+  GroundCost ground;
+  auto states = std::make_shared<TravelTable>();
+  for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+    TravelState& s = (*states)[static_cast<std::size_t>(bin)];
+    s = state(class_index, belief, TravelCurve::gradient(bin));
+    if (other_class != class_index) s = worse(s, state(other_class, belief, TravelCurve::gradient(bin)));
   }
   ground.crossing = class_index == other_class ? crossing(class_index)
                                                : std::make_shared<const CrossSlope>(CrossSlope::harder(
@@ -366,14 +367,14 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
       priced(*states, ground.crossing.get(),
              {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J});
   ground.states = std::move(states);
-  const DriveState& flat = (*ground.states)[DriveCurve::kBins / 2];
+  const TravelState& flat = (*ground.states)[TravelCurve::kBins / 2];
   ground.turns = turns(class_index, flat);
   if (other_class != class_index) ground.turns = costmap::dearer(ground.turns, turns(other_class, flat));
   return ground;
 }
 
-// Of ground of a class on which the flat costs so much.
-TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
+// Turns on ground of a class with the given state on level ground.
+TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
   const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
   const terramech::Rover& rover = parts_.rover;
   const double hotel_J_per_m = rover.hotel_power_W * static_cast<double>(flat.time_s_per_m);
@@ -382,14 +383,14 @@ TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
               .bulldozing_N = terramech::bulldozing_N(soil, rover, static_cast<double>(flat.sinkage_m)),
               .rolling_J_per_m = std::max(0.0, static_cast<double>(flat.energy_J_per_m) - hotel_J_per_m)});
   const double time_W = parts_.policy.time_weight_W;
-  const TurnPrice on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
-                  in_place = costmap::priced(efforts.in_place, 1.0, time_W);
+  const TurnCost on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
+                 in_place = costmap::priced(efforts.in_place, 1.0, time_W);
   return {on_arc, in_place, rover.turning_radius_m > 0.0 ? on_arc : in_place};
 }
 
-DriveCost::Limits GroundModel::limits() const {
-  DriveCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
-                           .max_across = std::tan(parts_.rover.max_roll_rad)};
+TravelCost::Limits GroundModel::limits() const {
+  TravelCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
+                            .max_across = std::tan(parts_.rover.max_roll_rad)};
   if (parts_.rover.centre_of_mass_height_m > 0.0)
     limits.stance = std::make_shared<const terramech::RoverStance>(parts_.rover);
   return limits;

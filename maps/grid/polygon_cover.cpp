@@ -9,7 +9,8 @@
 namespace talus::maps {
 namespace {
 
-/// From a to b, in cells from the grid's corner or in metres from the ring's first position.
+/// Edge from a to b, in cells from the grid corner (cover) or in metres from the first vertex
+/// (enclosesGround).
 struct Edge {
   Point a, b;
   bool outer = true;
@@ -17,14 +18,15 @@ struct Edge {
   double least() const { return std::min(a.y_m, b.y_m); }
   double greatest() const { return std::max(a.y_m, b.y_m); }
 
-  /// Its x at a height, which it must reach; of a level edge that of a.
+  /// x of the edge at height y, which must lie within the edge; a.x of a horizontal edge.
   double at(double y) const {
     if (a.y_m == b.y_m) return a.x_m;
     const double x = a.x_m + (y - a.y_m) * ((b.x_m - a.x_m) / (b.y_m - a.y_m));
     return std::clamp(x, std::min(a.x_m, b.x_m), std::max(a.x_m, b.x_m));
   }
 
-  /// +1 upwards through a height, -1 downwards, else 0; of two edges that meet at the height one crosses it.
+  /// +1 if the edge crosses height y upwards, -1 downwards, else 0. Of two edges that meet at height y,
+  /// exactly one crosses if the boundary crosses.
   int through(double y) const {
     if ((a.y_m <= y) == (b.y_m <= y)) return 0;
     return a.y_m <= y ? 1 : -1;
@@ -48,7 +50,7 @@ std::vector<Edge> edgesOf(const Polygon& polygon, const Map& placed) {
   return edges;
 }
 
-/// How often a place lies inside of the outer ring, and whether in a hole.
+/// Winding number of the outer ring at a point, and whether the point lies inside an odd number of holes.
 struct Inside {
   int windings = 0;
   bool hole = false;
@@ -83,7 +85,7 @@ bool hasGroundAt(double y, double thinnest, const Edges& edges) {
   return false;
 }
 
-// Between each two heights of positions, south to north.
+// Whether the rings enclose ground, looked for between each two heights of positions from south to north.
 bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
   std::vector<double> heights;
   heights.reserve(edges.size());
@@ -102,8 +104,8 @@ bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
   return false;
 }
 
-/// One row of cells: what lies at their middles, and which ones an edge touches. Only the cells from the first to the last
-/// of its edges are visited.
+/// One row of cells: the winding at the cell centres and the cells that an edge touches. Only the cells from the first to the
+/// last edge of the row are visited.
 class RowCover {
  public:
   explicit RowCover(int width) : crossings_(static_cast<std::size_t>(width)), touched_(crossings_.size()) {}
@@ -130,8 +132,8 @@ class RowCover {
     }
   }
 
-  /// Sets what the edges enclose and forgets them. A cell that no outer edge touches lies as a whole inside or outside of
-  /// the outer ring.
+  /// Sets the covered cells of the row, clears its edges, and returns whether any cell is covered. A cell that no outer edge
+  /// touches lies entirely inside or outside the outer ring, so its centre decides.
   bool close(std::uint8_t* cells) {
     Inside inside;
     bool any = false;
@@ -158,12 +160,13 @@ class RowCover {
     end_ = std::max(end_, last + 1);
   }
 
-  std::vector<Inside> crossings_;  // what changes from the middle of the cell before
+  std::vector<Inside> crossings_;  // change of the winding from the centre of the previous cell
   std::vector<std::uint8_t> touched_;
   std::size_t first_ = crossings_.size(), end_ = 0;  // cells between are visited
 };
 
-/// The edges of each row of cells in which they begin; those below the grid begin in its first row, or not at all.
+/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in its first row, or in none if
+/// they end below it.
 class EdgesByRow {
  public:
   EdgesByRow(const std::vector<Edge>& edges, int rows) : ends_(static_cast<std::size_t>(rows) + 1, 0) {
@@ -182,7 +185,7 @@ class EdgesByRow {
     return std::span(edges_).subspan(first, ends_[at] - first);
   }
 
-  /// The height of the grid where there is none.
+  /// The first row in which an edge begins; the height of the grid if there is no edge.
   int firstRow() const {
     return static_cast<int>(std::ranges::find_if(ends_, [](std::size_t end) { return end > 0; }) -
                             ends_.begin());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kBeyondAnyHeight = 1e30F;
 
-// Metres per unit.
+// Length of a unit [m].
 double metres(std::string unit, std::vector<std::string>& notes) {
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -45,8 +45,8 @@ double metres(std::string unit, std::vector<std::string>& notes) {
   return 1.0;
 }
 
-// The mark of missing data that a file uses without declaring it, if any: its least value, one of the
-// customary.
+// A customary no-data value (-9999, -32768, -32767 or -99999) that equals the least value, if any. Called if
+// the file declares no no-data value.
 std::optional<float> undeclaredMark(const std::vector<float>& values) {
   float least = std::numeric_limits<float>::infinity();
   for (float v : values)
@@ -80,9 +80,9 @@ void blankMarks(std::vector<float>& values, std::optional<double> nodata, std::v
 
 }  // namespace
 
-HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes) {
+HeightConversion heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes) {
   int stated = FALSE;
-  HeightCode code;
+  HeightConversion code;
   const double nodata = band.GetNoDataValue(&stated);
   if (stated != FALSE) code.nodata = nodata;
   const double unit = metres(band.GetUnitType(), notes);
@@ -95,7 +95,8 @@ HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<st
   return code;
 }
 
-void decodeHeights(std::vector<float>& values, const HeightCode& code, std::vector<std::string>& notes) {
+void decodeHeights(std::vector<float>& values, const HeightConversion& code,
+                   std::vector<std::string>& notes) {
   blankMarks(values, code.nodata, notes);
   if (code.scale == 1.0 && code.offset_m == 0.0) return;
   for (float& v : values) v = static_cast<float>(static_cast<double>(v) * code.scale + code.offset_m);

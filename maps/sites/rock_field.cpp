@@ -8,11 +8,11 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kPatch_m = 8.0;  // abundance is taken as even within one
-constexpr int kSizes = 12;        // steps of diameter, each a constant factor wider than the last
+constexpr double kPatch_m = 8.0;  // side of a square with constant abundance
+constexpr int kSizes = 12;        // number of diameter intervals, in geometric progression
 
-// How many, when `mean` are expected: whole part for sure, the rest by chance.
-int chance(double mean, RandomRow& random) {
+// Random integer with the given mean: floor(mean) or floor(mean) + 1.
+int chance(double mean, RandomSequence& random) {
   return static_cast<int>(mean + random());
 }
 
@@ -30,7 +30,7 @@ double rockDecay_per_m(double total_share) {
 std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>& abundance,
                             const RockOptions& options) {
   std::vector<Rock> rocks;
-  RandomRow random(options.seed);
+  RandomSequence random(options.seed);
   const double width_m = grid.width * grid.resolution_m;
   const double height_m = grid.height * grid.resolution_m;
   const double step = std::pow(options.greatest_diameter_m / options.least_diameter_m, 1.0 / kSizes);
@@ -42,7 +42,7 @@ std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>
       const double q = rockDecay_per_m(k);
       double d = options.least_diameter_m;
       for (int i = 0; i < kSizes; ++i, d *= step) {
-        // Ground under rocks of this step of size, and the area of one of them.
+        // Area fraction of the rocks in this diameter interval, and the radius of a rock.
         const double share = k * (std::exp(-q * d) - std::exp(-q * d * step));
         const double radius_m = 0.5 * d * std::sqrt(step);
         const int count =

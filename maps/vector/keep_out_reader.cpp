@@ -21,10 +21,11 @@ namespace {
 
 using nlohmann::json;
 
-// GDAL's geometry, the ring and its edges, of 16 bytes of a position.
+// Memory of GDAL's geometry, the ring and its edges per byte of a position of 16 bytes.
 constexpr double kMemoryPerWkbByte = 8.0;
 
-/// Draws a file's features one by one and refuses each that would close no ground wherever the map lay.
+/// Rasterises the features of a file one by one. Refuses each feature that would exclude no ground on any
+/// map.
 class KeepOutReader {
  public:
   KeepOutReader(const std::string& path, const ElevationMap& map)

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-// A position of 16 bytes takes some 120 as JSON, and its text for a while.
+// A position of 16 bytes needs about 120 bytes as JSON, and temporarily memory for its text.
 constexpr double kMemoryPerWkbByte = 12.0;
 constexpr std::size_t kWkbBytesPerPosition = 16;
 
@@ -36,12 +36,12 @@ bool beginsAsJson(const std::string& path) {
   return c == '{' || c == '[';
 }
 
-// GDAL's driver of GPX lists the points of routes and tracks once more.
+// Returns true for GDAL's GPX layers that repeat the points of routes and tracks.
 bool isCopy(const std::string& layer) {
   return layer == "route_points" || layer == "track_points";
 }
 
-// Reads layers of one file, each from its own CRS into the map's.
+// Reads layers of one file and transforms each from its CRS to that of the map.
 class FeatureReader {
  public:
   FeatureReader(const ElevationMap& map, const std::string& path, const FeatureVisitor& visit)
@@ -72,11 +72,11 @@ class FeatureReader {
     return field < 0 ? "" : feature.GetFieldAsString(field);
   }
 
-  // None where both are local metres.
+  // Transformation to the map's CRS; null if both are in local metres.
   Transformation transformationOf(const OGRLayer& layer) const {
     const OGRSpatialReference* stated = const_cast<OGRLayer&>(layer).GetSpatialRef();
     const std::string name = stated != nullptr && stated->GetName() != nullptr ? stated->GetName() : "";
-    // GeoPackages without a CRS have an "Undefined geographic SRS".
+    // GeoPackages without a CRS contain an "Undefined geographic SRS".
     const bool usable = stated != nullptr && (stated->IsProjected() != 0 || stated->IsGeographic() != 0) &&
                         !name.starts_with("Undefined ");
     const std::string owner =

@@ -14,17 +14,17 @@ struct Scenario {
   double optimum = 0.0;
 };
 
-std::shared_ptr<const costmap::DriveCost> flatCost() {
-  costmap::DriveCurve curve{};
+std::shared_ptr<const costmap::TravelCost> flatCost() {
+  costmap::TravelCurve curve{};
   curve.cost_J_per_m.fill(1.0F);
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
 }
 
 [[noreturn]] void refuse(const std::string& path, std::size_t line, const std::string& reason) {
   throw InputError({path + ":" + std::to_string(line), reason, "see movingai.com/benchmarks/formats.html"});
 }
 
-// A stream that fails for what is no regular file: a FIFO would wait.
+// Opens a regular file; the stream fails for other files, because opening a FIFO would block.
 std::ifstream opened(const std::string& path) {
   std::error_code error;
   std::ifstream file;

@@ -15,12 +15,12 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCurve;
-using costmap::DriveTable;
+using costmap::TravelCurve;
+using costmap::TravelTable;
 
 constexpr double kSpeed_mps = 0.1;
 constexpr int kTerrains = 10;
-constexpr std::array kShares{0.4, 0.4, 0.1, 0.1};  // of the map, of the terrains that it has
+constexpr std::array kShares{0.4, 0.4, 0.1, 0.1};  // shares of the map's terrains
 
 using Generator = std::mt19937_64;
 
@@ -40,7 +40,7 @@ void validate(const SlipWorldOptions& o) {
   if (!(o.tail > 0.0 && o.tail <= 1.0)) refuse("tail", o.tail, "above 0 and at most 1");
 }
 
-// Steeper curves are the less sure ones, as in the set "ES" of the paper.
+// Steeper curves have a larger standard deviation, as in the set "ES" of the paper.
 std::vector<SlipTerrain> drawnTerrains(Generator& random) {
   std::vector<SlipTerrain> terrains;
   for (int k = 0; k < kTerrains; ++k) {
@@ -63,7 +63,8 @@ maps::Raster<float> noiseOver(const maps::Grid& grid, std::uint64_t seed, double
   return field;
 }
 
-// Rank of every cell in a field, as a share of all cells: blotches of any share are cut from it.
+// Rank of every cell's value as a share of all cells; a threshold on the ranks selects a given share of the
+// map.
 maps::Raster<float> ranks(const maps::Raster<float>& field) {
   std::vector<std::size_t> order(field.values().size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -82,7 +83,7 @@ std::size_t bandOf(double share) {
 }
 
 struct Ground {
-  std::array<std::uint8_t, kShares.size()> terrains;  // that the map has
+  std::array<std::uint8_t, kShares.size()> terrains;  // terrains of the map
   maps::Raster<std::uint8_t> truth, seen;
 };
 
@@ -108,7 +109,7 @@ Ground drawnGround(const maps::Grid& grid, const SlipWorldOptions& options, Gene
   return ground;
 }
 
-// A slip believed as a mixture of Gaussians.
+// Component of a Gaussian mixture of slip.
 struct Part {
   double weight, mean, deviation;
 };
@@ -117,7 +118,7 @@ double upperTail(double z) {
   return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-// Mean of the mixture over its worst share, the largest values.
+// Mean of the mixture over its largest values, whose probability is `tail` (conditional value at risk).
 double tailMean(const std::vector<Part>& parts, double tail) {
   const auto above = [&](double q) {
     double sum = 0.0;
@@ -135,10 +136,10 @@ double tailMean(const std::vector<Part>& parts, double tail) {
   return sum / tail;
 }
 
-// The magnitude of slip that is planned with.
+// Magnitude of slip used for planning.
 double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t seen, double gradient,
                     const SlipWorldOptions& options) {
-  const double way = gradient >= 0.0 ? 1.0 : -1.0;  // braked: the tail is below
+  const double way = gradient >= 0.0 ? 1.0 : -1.0;  // when braking, the tail is at negative slip
   const SlipTerrain& own = world.terrains[seen];
   if (!options.risk_aware) return std::max(0.0, way * own.slip(gradient));
   std::vector<Part> parts;
@@ -151,12 +152,12 @@ double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t s
   return std::max(0.0, tailMean(parts, options.tail));
 }
 
-costmap::DriveGround believed(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
-                              const SlipWorldOptions& options) {
-  costmap::DriveGround made;
-  auto states = std::make_shared<DriveTable>();
-  for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-    const double gradient = DriveCurve::gradient(bin);
+costmap::GroundCost believed(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
+                             const SlipWorldOptions& options) {
+  costmap::GroundCost made;
+  auto states = std::make_shared<TravelTable>();
+  for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+    const double gradient = TravelCurve::gradient(bin);
     const double slip = believedSlip(world, ground, seen, gradient, options);
     const bool stands = slip >= 1.0;
     const double seconds = std::hypot(1.0, gradient) / (kSpeed_mps * (1.0 - slip));
@@ -174,7 +175,7 @@ costmap::DriveGround believed(const SlipWorld& world, const Ground& ground, std:
 std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, const Ground& ground,
                                                      const maps::Raster<float>& heights,
                                                      const SlipWorldOptions& options) {
-  std::vector<costmap::DriveGround> curves;
+  std::vector<costmap::GroundCost> curves;
   for (std::uint8_t k = 0; k < kTerrains; ++k) curves.push_back(believed(world, ground, k, options));
   const maps::Grid& grid = heights.grid();
   maps::Raster<CellCode> cells(grid);
@@ -188,9 +189,9 @@ std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, con
                    north = (height(column, row + 1) - height(column, row - 1)) / (2.0 * grid.resolution_m);
       cells[{column, row}] = CellCode({.dz_dx = east, .dz_dy = north, .curve = world.seen[{column, row}]});
     }
-  const costmap::DriveCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
+  const costmap::TravelCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
   return std::make_shared<costmap::CostGrid>(
-      costmap::flattened(cells, std::make_shared<costmap::DriveCost>(limits, curves)));
+      costmap::flattened(cells, std::make_shared<costmap::TravelCost>(limits, curves)));
 }
 
 }  // namespace
@@ -220,10 +221,10 @@ SlipWorld slipWorld(const SlipWorldOptions& options) {
   return world;
 }
 
-SlipDrive driven(const SlipWorld& world, const std::vector<maps::Point>& route) {
+SlipTraverse driven(const SlipWorld& world, const std::vector<maps::Point>& route) {
   constexpr double kStep_cells = 0.1;
   const maps::Grid& grid = world.map->grid();
-  SlipDrive drive{.reached = true};
+  SlipTraverse drive{.reached = true};
   const auto points = subdivided(route, kStep_cells * grid.resolution_m);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double dx = points[i].x_m - points[i - 1].x_m, dy = points[i].y_m - points[i - 1].y_m;
@@ -237,7 +238,7 @@ SlipDrive driven(const SlipWorld& world, const std::vector<maps::Point>& route) 
     drive.max_slip = std::min(1.0, std::max(drive.max_slip, std::abs(slip)));
     drive.reached = std::abs(slip) < 1.0;
     if (!drive.reached) return drive;
-    // Driven, 1 - v / (r omega) = slip; braked, r omega / v - 1 = slip.
+    // Driving: 1 - v / (r omega) = slip. Braking: r omega / v - 1 = slip.
     const double speed_mps = slip >= 0.0 ? kSpeed_mps * (1.0 - slip) : kSpeed_mps / (1.0 + slip);
     drive.time_s += metres * std::hypot(1.0, gradient) / speed_mps;
   }

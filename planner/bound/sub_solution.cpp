@@ -9,10 +9,11 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::size_t kBand = 16;  // nodes of the search between two looks at what exceeds its limits
-constexpr int kMostRounds = 60;    // of lowering what exceeds behind the front; more are for the check to see
-constexpr float kSlack = 5e-4F;    // that a triangle may exceed its limits by
-constexpr double kWithin = 1.02;   // of the cost known: the nodes that are searched lie within it
+constexpr std::size_t kBand = 16;  // nodes taken by the search between two checks of the limits
+// Rounds of lowering behind the front; remaining violations are left to provenBy().
+constexpr int kMostRounds = 60;
+constexpr float kSlack = 5e-4F;   // relative tolerance of a triangle's limits
+constexpr double kWithin = 1.02;  // nodes within this multiple of the known cost are searched
 
 MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way way) {
   return {.way = way,
@@ -38,36 +39,37 @@ SubSolution::SubSolution(const Parts& parts, const StopCheck& stop)
   complete_ = settle(true);
 }
 
-const TrianglePrices* SubSolution::pricesOf(maps::Cell cell) const noexcept {
+const TriangleCosts* SubSolution::pricesOf(maps::Cell cell) const noexcept {
   const std::uint32_t slot = prices_.knownSlotOf(cell);
-  return slot == MeshPrices::kNone ? nullptr : &prices_.of(slot);
+  return slot == MeshCosts::kNone ? nullptr : &prices_.of(slot);
 }
 
-// No proof rests on these values.
+// The proof does not depend on these values.
 void SubSolution::seedStart() {
   const auto cell = mesh().grid().cellAt(parts_.places.from);
-  if (!cell || prices_.slotOf(*cell) == MeshPrices::kNone) return;
+  if (!cell || prices_.slotOf(*cell) == MeshCosts::kNone) return;
   for (const std::uint32_t node : mesh().nodesOf(*cell)) from_start_.lower(node, 0.0F);
 }
 
 // A route may end anywhere in the disc.
 void SubSolution::seedDisc() {
   for (const maps::Cell cell : cellsWithin(mesh().grid(), parts_.places.to, parts_.goal_tolerance_m))
-    if (prices_.slotOf(cell) != MeshPrices::kNone)
+    if (prices_.slotOf(cell) != MeshCosts::kNone)
       for (const std::uint32_t node : mesh().nodesOf(cell)) to_goal_.lower(node, 0.0F);
 }
 
-// A plane in the goal's cell, 0 at the goal, that falls along the straight line from the start as the limits allow.
+// Seeds the goal's cell with a plane: 0 at the goal, falling along the straight line from the start at the
+// limits.
 void SubSolution::seedPlane() {
   const maps::Point goal = parts_.places.to;
   const auto cell = mesh().grid().cellAt(goal);
-  const std::uint32_t slot = cell ? prices_.slotOf(*cell) : MeshPrices::kNone;
-  if (slot == MeshPrices::kNone) return;
-  constexpr double sector = 2.0 * std::numbers::pi / HeadingLimits::kHeadings;
+  const std::uint32_t slot = cell ? prices_.slotOf(*cell) : MeshCosts::kNone;
+  if (slot == MeshCosts::kNone) return;
+  constexpr double sector = 2.0 * std::numbers::pi / DirectionalCostBounds::kHeadings;
   const double angle = std::atan2(goal.y_m - parts_.places.from.y_m, goal.x_m - parts_.places.from.x_m) +
                        2.0 * std::numbers::pi;
-  const int k = static_cast<int>(angle / sector) % HeadingLimits::kHeadings;
-  const costmap::Direction a = HeadingLimits::heading(k), b = HeadingLimits::heading(k + 1);
+  const int k = static_cast<int>(angle / sector) % DirectionalCostBounds::kHeadings;
+  const costmap::Direction a = DirectionalCostBounds::heading(k), b = DirectionalCostBounds::heading(k + 1);
   const auto& prices = prices_.of(slot).prices;
   const auto at_a = static_cast<double>(prices[static_cast<std::size_t>(k)]),
              at_b = static_cast<double>(prices[static_cast<std::size_t>(k) + 1]);
@@ -81,9 +83,10 @@ void SubSolution::seedPlane() {
   }
 }
 
-// Caps what exceeds behind the front until nothing does; false when stopped.
+// Caps violations behind the front until none is left or kMostRounds is reached. Returns false when stopped.
 bool SubSolution::settle(bool all) {
-  // Triangles that the front has not passed change when it does; those that it never will are for the end.
+  // Triangles that the front has not passed change later; triangles that the front never passes are checked
+  // at the end.
   if (all)
     for (std::size_t slot = 0; slot < prices_.slots(); ++slot)
       to_goal_.change(static_cast<std::uint32_t>(slot));
@@ -93,8 +96,8 @@ bool SubSolution::settle(bool all) {
   return true;
 }
 
-// Whether anything was lowered, where a triangle exceeded a limit. Of triangles that the front has not passed only if all
-// are asked for.
+// Caps and relaxes triangles that exceed a limit. Returns true if any value was lowered. Triangles that the
+// front has not passed completely are included only if `all` is true.
 bool SubSolution::lowerExcess(bool all) {
   std::vector<std::pair<std::uint32_t, std::size_t>> over;
   for (const std::uint32_t slot : to_goal_.takeChanged()) {
@@ -103,7 +106,7 @@ bool SubSolution::lowerExcess(bool all) {
       const std::uint32_t first = nodes[k], second = nodes[CellMesh::next(k)],
                           middle = nodes[CellMesh::kMiddle];
       if (inner(first) + inner(second) + inner(middle) < (all ? 1 : 3)) continue;
-      const auto fall = TrianglePrices::fall(k, {at(first), at(second), at(middle)});
+      const auto fall = TriangleCosts::fall(k, {at(first), at(second), at(middle)});
       if (prices_.of(slot).exceeds(fall, 1.0F + kSlack)) over.emplace_back(slot, k);
     }
   }
@@ -115,12 +118,12 @@ bool SubSolution::lowerExcess(bool all) {
   return lowered;
 }
 
-// Where ways from a side to the node opposite fall by too much.
+// Adds caps for motions from a side to the opposite node whose fall exceeds their cost.
 void SubSolution::cap(std::uint32_t slot, std::size_t triangle) {
   const CellMesh::Nodes all = mesh().nodesOf(prices_.cellOf(slot));
   const std::array<std::uint32_t, 3> nodes{all[triangle], all[CellMesh::next(triangle)],
                                            all[CellMesh::kMiddle]};
-  const TrianglePrices::Values values{at(nodes[0]), at(nodes[1]), at(nodes[2])};
+  const TriangleCosts::Values values{at(nodes[0]), at(nodes[1]), at(nodes[2])};
   for (std::size_t k = 0; k < 3; ++k) {
     const float wanted = std::max(from_start_.at(nodes[k]) - from_start_.at(nodes[k == 0 ? 1 : 0]), 0.0F);
     if (const auto rise = prices_.of(slot).lowered(triangle, k, values, wanted, 0.5F * kSlack))

@@ -14,21 +14,21 @@ namespace {
 using costmap::CellCode;
 
 constexpr std::size_t kMostCurves = 254;
-constexpr double kSurchargeStep = 1.25;  // from level to level
-constexpr double kLeastShare = 1.0 / 3;  // of cells that may be entered
+constexpr double kSurchargeStep = 1.25;  // factor between levels
+constexpr double kLeastShare = 1.0 / 3;  // smallest share of traversable cells
 constexpr std::size_t kHeadings = 8;
 
-// Curves in levels, each dearer than the one before by the same factor.
+// Copies of all curves at several surcharge levels, each costlier than the previous by the same factor.
 class Levels {
  public:
-  explicit Levels(const costmap::DriveCost& cost)
+  explicit Levels(const costmap::TravelCost& cost)
       : curves_(cost.curves().size()),
         levels_(std::clamp<std::size_t>(kMostCurves / std::max<std::size_t>(curves_, 1), 1, 8)) {}
 
-  std::shared_ptr<const costmap::DriveCost> cost(const costmap::DriveCost& base) const {
-    std::vector<costmap::DriveCurve> all;
+  std::shared_ptr<const costmap::TravelCost> cost(const costmap::TravelCost& base) const {
+    std::vector<costmap::TravelCurve> all;
     for (std::size_t level = 0; level < levels_; ++level)
-      for (costmap::DriveCurve curve : base.curves()) {
+      for (costmap::TravelCurve curve : base.curves()) {
         const auto factor = static_cast<float>(std::pow(kSurchargeStep, static_cast<double>(level)));
         for (float& value : curve.cost_J_per_m) value *= factor;
         if (curve.crossing && level > 0) {
@@ -38,7 +38,7 @@ class Levels {
         }
         all.push_back(curve);
       }
-    return std::make_shared<costmap::DriveCost>(base.limits(), std::move(all));
+    return std::make_shared<costmap::TravelCost>(base.limits(), std::move(all));
   }
 
   std::uint8_t number(std::size_t curve, double surcharge) const {
@@ -64,7 +64,7 @@ class Pooling {
   CellCode code(maps::Cell coarse) const;
 
  private:
-  double mean(CellCode cell) const noexcept;  // over headings; infinite where none is allowed
+  double mean(CellCode cell) const noexcept;  // mean over allowed headings; infinite if none is allowed
 
   const costmap::CostGrid& map_;
   int factor_;
@@ -87,7 +87,7 @@ CellCode Pooling::code(maps::Cell coarse) const {
   int cells = 0, entered = 0;
   const int last_row = std::min((coarse.row + 1) * factor_, grid.height),
             last_column = std::min((coarse.column + 1) * factor_, grid.width);
-  // Every other row, and in it every other cell, in turn the odd and the even ones.
+  // Samples every second row, and in each sampled row every second cell, alternately even and odd ones.
   for (int row = coarse.row * factor_; row < last_row; row += 2)
     for (int column = coarse.column * factor_ + (row >> 1 & 1); column < last_column; column += 2) {
       const CellCode cell = map_.at({column, row});

@@ -9,6 +9,7 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/grid/many_headings.hpp>
+#include <talus/planner/grid/node_route.hpp>
 #include <talus/planner/route/cells_within.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 
@@ -18,20 +19,21 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-constexpr int kFar = 3;  // cells that a leg spans along an axis, at most
+constexpr int kFar = 3;  // largest number of cells that a leg spans along an axis
 
-// A leg from centre to centre: the cells that it crosses or touches, and the metres in each, in sides of a cell.
+// Leg between two cell centres, with the cells that it crosses or touches and its length in each cell [cell
+// sides].
 struct Leg {
   struct Crossed {
     Cell offset;
-    float length;  // 0: touched at a corner, which must allow the heading
+    float length;  // 0: touched at a corner; the cell must allow the heading
   };
   Cell offset;
   costmap::Direction heading;
   std::vector<Crossed> cells;
 };
 
-// Places on the leg are counted in cells from the first centre.
+// Positions on the leg are in cells from the first centre.
 Leg legTo(Cell offset) {
   const double dx = offset.column, dy = offset.row, length = std::hypot(dx, dy);
   Leg leg{offset, {dx / length, dy / length}, {}};
@@ -48,7 +50,8 @@ Leg legTo(Cell offset) {
       leg.cells.push_back({cellAt(middle * dx, middle * dy), static_cast<float>(share * length)});
       continue;
     }
-    for (const double side : {-0.25, 0.25})  // two cuts at once: a corner, whose other two cells lie aside
+    // Two cuts coincide at a corner: the other two cells at the corner.
+    for (const double side : {-0.25, 0.25})
       leg.cells.push_back(
           {cellAt(cuts[i] * dx - side * std::copysign(1.0, dx), cuts[i] * dy + side * std::copysign(1.0, dy)),
            0.0F});
@@ -95,9 +98,8 @@ class Search {
  private:
   struct Reached {
     float cost_J = std::numeric_limits<float>::infinity();
-    std::uint32_t from = kStart;
+    std::uint32_t from = kNoNode;
   };
-  static constexpr std::uint32_t kStart = std::numeric_limits<std::uint32_t>::max();
 
   void reach(Cell cell, double cost_J, std::uint32_t from) {
     const std::size_t at = grid_.index(cell);
@@ -109,10 +111,10 @@ class Search {
 
   void begin(Point start) {
     for (const Cell cell : cellsWithin(grid_, start, kFar * grid_.resolution_m))
-      reach(cell, cost_({start, grid_.centre(cell)}), kStart);
+      reach(cell, cost_({start, grid_.centre(cell)}), kNoNode);
   }
 
-  // The last leg, to the goal or to where the way comes within the tolerance.
+  // The last leg, to the goal or to a cell within the tolerance.
   void end(Cell cell, Point goal, double tolerance_m) {
     const Point here = grid_.centre(cell);
     const double away_m = std::hypot(goal.x_m - here.x_m, goal.y_m - here.y_m);
@@ -142,15 +144,13 @@ class Search {
   }
 
   Polyline route(Point start) const {
-    if (last_ == kStart) return {};
-    Polyline points{goal_};
-    for (std::uint32_t at = last_; at != kStart; at = cells_[at].from)
-      points.push_back(
-          grid_.centre({static_cast<int>(at) % grid_.width, static_cast<int>(at) / grid_.width}));
-    points.push_back(start);
-    std::ranges::reverse(points);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    return points;
+    if (last_ == kNoNode) return {};
+    return nodeRoute(
+        {start, goal_}, last_, [this](std::uint32_t node) { return cells_[node].from; },
+        [this](std::uint32_t node) {
+          const int at = static_cast<int>(node);
+          return grid_.centre({at % grid_.width, at / grid_.width});
+        });
   }
 
   const MotionCost& cost_;
@@ -163,7 +163,7 @@ class Search {
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,
                       std::greater<>>
       open_;
-  std::uint32_t last_ = kStart;
+  std::uint32_t last_ = kNoNode;
   Point goal_{};
 };
 

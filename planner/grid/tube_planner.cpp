@@ -9,13 +9,14 @@
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/refine/close_vertices.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
 namespace talus::planner {
 namespace {
 
-// The place itself, or the nearest centre of a cell that may be driven on within a few cells of it.
+// The place itself, or a nearby cell centre, at most kFar cells away, with an allowed heading.
 std::optional<maps::Point> standingPlace(const MotionCost& cost, maps::Point p) {
   constexpr int kFar = 8;
   if (cost.allowed(p)) return p;
@@ -32,7 +33,7 @@ std::optional<maps::Point> standingPlace(const MotionCost& cost, maps::Point p) 
 
 }  // namespace
 
-// The guide need not be good beyond the tube's width.
+// Refinement for the guide, which need not be more accurate than the tube's width.
 RefineOptions TubePlanner::roughly() {
   RefineOptions rough;
   rough.corridor.reach_cells = 0;
@@ -88,13 +89,16 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
             0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.start, leg.goal};
-  plan.lower_bound_J = std::min(
-      plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
-                             : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
+  const auto proven_J = [&] {
+    const AddedTime proof(plan.proof_s);
+    return straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop);
+  };
+  plan.lower_bound_J =
+      std::min(plan.cost_J, leg.prove ? proven_J() : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
   return withoutTipping(std::move(plan));
 }
 
-// Pools the map, or what changed of it since the last time.
+// Pools the map, or only the cells that changed since the previous call.
 bool TubePlanner::pool(const Problem& problem, const StopCheck& stop) {
   if (problem.map == map_) return true;
   const bool newer =

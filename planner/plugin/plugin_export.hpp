@@ -10,24 +10,24 @@
 
 namespace talus {
 
-/// Grows with every change of CostSource that an older plugin or program would misread.
+/// Incremented with every change of CostSource that is incompatible with older plugins or programs.
 inline constexpr int kLayerInterfaceVersion = 1;
 
-/// A layer of a map from any source, such as shadow, radio or hazards of one's own: costmap::CostLayer.
+/// A cost layer from an external source, such as shadow, radio or hazards: see costmap::CostLayer.
 class CostSource {
  public:
   virtual ~CostSource() = default;
 
-  /// Joules that a metre costs more in each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be
-  /// entered; NaN: not known. The same place gives the same value on every grid: a large map is asked for window by window.
+  /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be entered;
+  /// NaN: unknown. A place has the same value on every grid: a large map is computed window by window.
   virtual std::vector<float> over(const maps::Grid& grid) const = 0;
 };
 
 }  // namespace talus
 
-/// Exports a planner from a shared library: write it once, in one source file, at namespace scope.
-/// `Type` is a class derived from talus::GlobalPlanner alone, default constructible without throwing.
-/// Symbols: talus_planner, the prototype object; talus_planner_interface, the version it was built against.
+/// Exports a planner from a shared library. Use once, in one source file, at namespace scope. `Type` is
+/// derived from talus::GlobalPlanner only and is default constructible without throwing. Symbols:
+/// talus_planner, the prototype object; talus_planner_interface, the interface version.
 #define TALUS_EXPORT_PLANNER(Type)                                                        \
   namespace talus::plugin_export {                                                        \
   static_assert(std::is_base_of_v<talus::GlobalPlanner, Type>, "not a GlobalPlanner");    \
@@ -39,7 +39,8 @@ class CostSource {
   BOOST_DLL_ALIAS(talus::plugin_export::prototype, talus_planner)                         \
   BOOST_DLL_ALIAS(talus::plugin_export::interface_version, talus_planner_interface)
 
-/// The same for a layer: `Type` is derived from talus::CostSource alone. Symbols: talus_layer, talus_layer_interface.
+/// Exports a layer: `Type` is derived from talus::CostSource only. Symbols: talus_layer,
+/// talus_layer_interface.
 #define TALUS_EXPORT_LAYER(Type)                                                          \
   namespace talus::layer_export {                                                         \
   static_assert(std::is_base_of_v<talus::CostSource, Type>, "not a CostSource");          \

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "public_headers.hpp"
 #include "run_program.hpp"
 #include "string_literals.hpp"
 
@@ -65,6 +66,7 @@ constexpr Replaced kReplaced[] = {
     {"\\bworth\\b", "cost"},
     {"\\bwrong at\\b|\\bsure of wrong\\b|\\bunsure\\b", "overconfident; uncertain"},
     {"how far from (the )?(best|cheapest)", "optimality gap"},
+    {"\\bhouse\\b", "architecture"},
 };
 
 /// Promised names of JSON fields and of calls, which stay whatever the words around them.
@@ -101,7 +103,7 @@ void expectPlainLines(const fs::path& file) {
   }
 }
 
-TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
+TEST(Words, WordCheckDetectsFigurativePhrases) {
   EXPECT_NE(complaint("found by field, within 10.4 % of the cheapest there can be"), "");
   EXPECT_NE(complaint("k_c and k_phi cannot be told apart"), "");
   EXPECT_EQ(complaint("found by field; proven optimality gap <= 10.4 %"), "");
@@ -109,19 +111,58 @@ TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
               testing::ElementsAre("one two", "four"));
 }
 
-TEST(Words, OfMessagesArePlain) {
-  for (const std::string room : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
-    for (const fs::path& file : filesBelow(room, {".cpp", ".hpp"}))
+TEST(Words, MessagesContainNoFigurativeWords) {
+  for (const std::string module : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
+    for (const fs::path& file : filesBelow(module, {".cpp", ".hpp"}))
       for (const std::string& literal : stringLiterals(fileContent(file)))
         EXPECT_EQ(promised().contains(literal) ? "" : complaint(literal), "") << file;
 }
 
-TEST(Words, OfPagesAndDocumentsArePlain) {
+TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
   for (const fs::path& file : filesBelow("cli/page", {".js", ".html"})) expectPlainLines(file);
-  for (const std::string folder : {"docs", "terramech", "maps", "costmap", "planner", "cli"})
+  for (const std::string folder :
+       {"docs", "common", "terramech", "maps", "costmap", "planner", "cli", "examples", "tests"})
     for (const fs::path& file : filesBelow(folder, {".md"})) expectPlainLines(file);
   for (const auto& entry : fs::directory_iterator(TALUS_SOURCE_DIR))
     if (entry.path().extension() == ".md") expectPlainLines(entry.path());
+}
+
+/// Public headers whose comments still hold replaced words: remove a name when its comments are rewritten.
+const std::set<std::string>& toBeRewritten() {
+  static const std::set<std::string> headers{
+      "costmap/evidence/block_evidence.hpp",           "costmap/evidence/evidence_bricks.hpp",
+      "costmap/evidence/evidence_field.hpp",           "costmap/evidence/wheel_observation.hpp",
+      "costmap/telemetry/drive_evidence.hpp",          "maps/vector/place_reader.hpp",
+      "terramech/calibration/search/trace_result.hpp", "terramech/calibration/table/trial.hpp",
+      "terramech/calibration/tables/assessment.hpp",   "terramech/calibration/tables/soil_estimate.hpp",
+  };
+  return headers;
+}
+
+// What a line of a header has of comments; of the header for C, whose comments span lines, the whole line.
+std::string commentOf(const std::string& line, bool is_c) {
+  const auto at = line.find("//");
+  if (is_c) return line;
+  return at == std::string::npos ? std::string() : line.substr(at);
+}
+
+std::string firstComplaint(const std::string& source, bool is_c) {
+  std::istringstream lines(source);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string comment = std::regex_replace(commentOf(line, is_c), std::regex("`[^`]*`"), "``");
+    if (const std::string why = complaint(comment); !why.empty()) return why;
+  }
+  return "";
+}
+
+TEST(Words, OfPublicHeadersArePlain) {
+  EXPECT_NE(firstComplaint("int a;\n/// What is believed of a cell.\n", false), "");
+  EXPECT_EQ(firstComplaint("bool believed;\n/// The estimate of a cell.\n", false), "");
+  for (const std::string& header : test::publicHeaders(TALUS_SOURCE_DIR)) {
+    if (toBeRewritten().contains(header)) continue;
+    const std::string source = fileContent(fs::path(TALUS_SOURCE_DIR) / header);
+    EXPECT_EQ(firstComplaint(source, header.ends_with(".h")), "") << header;
+  }
 }
 
 /// Names of the calls that `talus --help` lists.
@@ -152,7 +193,7 @@ void expectHelp(const std::string& help, const std::string& call) {
   EXPECT_EQ(complaint(help), "") << call;
 }
 
-TEST(Words, HelpFitsThePageAndShowsTwoExamples) {
+TEST(Words, HelpFitsTheLineWidthWithTwoExamples) {
   const auto names = calls();
   EXPECT_EQ(names.size(), 20U);
   expectHelp(runTalus({"--help"}).out, "");

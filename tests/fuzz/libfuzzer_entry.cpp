@@ -1,4 +1,4 @@
-// libFuzzer's entry to the targets of one room, TALUS_FUZZ_ROOM: without a name in TALUS_FUZZ_TARGET it prints them; the
+// libFuzzer's entry to the targets of one module, TALUS_FUZZ_MODULE: without a name in TALUS_FUZZ_TARGET it prints them; the
 // seeds of the one that is named are written into the folder TALUS_FUZZ_SEEDS first.
 #include <cstddef>
 #include <cstdint>
@@ -13,9 +13,9 @@ namespace {
 const talus::fuzz::Target& target() {
   static const talus::fuzz::Target found = [] {
     const char* name = std::getenv("TALUS_FUZZ_TARGET");
-    for (const talus::fuzz::Target& one : talus::fuzz::TALUS_FUZZ_ROOM())
+    for (const talus::fuzz::Target& one : talus::fuzz::TALUS_FUZZ_MODULE())
       if (name != nullptr && one.name == name) return one;
-    for (const talus::fuzz::Target& one : talus::fuzz::TALUS_FUZZ_ROOM()) std::puts(one.name.c_str());
+    for (const talus::fuzz::Target& one : talus::fuzz::TALUS_FUZZ_MODULE()) std::puts(one.name.c_str());
     std::exit(name == nullptr ? 0 : 2);
   }();
   return found;

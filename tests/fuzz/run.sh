@@ -4,7 +4,7 @@
 #   tests/fuzz/run.sh BUILD TALUS [MINUTES] [TARGET...]
 #
 # BUILD is a build of the preset `fuzz`, TALUS the program or call_server. BUILD/fuzzing keeps what was found interesting
-# (corpus/TARGET), what failed (faults/TARGET-*; give one to BUILD/tests/fuzz/fuzz_ROOM with TALUS_FUZZ_TARGET set), the
+# (corpus/TARGET), what failed (faults/TARGET-*; give one to BUILD/tests/fuzz/fuzz_MODULE with TALUS_FUZZ_TARGET set), the
 # number of the next call (calls), what calls said (calls.txt) and a line a run (runs.txt). Ends with 1 where anything failed.
 set -euo pipefail
 build=$1 talus=$2 minutes=${3:-10}
@@ -18,8 +18,8 @@ failed=0
 is_wanted() { [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $1 "* ]]; }
 note() { printf '%s\n' "$*" | tee -a "$state/runs.txt"; }
 
-for room in terramech maps costmap planner cli; do
-  program=$build/tests/fuzz/fuzz_$room
+for module in terramech maps costmap planner cli; do
+  program=$build/tests/fuzz/fuzz_$module
   for target in $("$program"); do
     is_wanted "$target" || continue
     corpus=$state/corpus/$target

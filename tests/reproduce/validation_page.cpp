@@ -59,19 +59,29 @@ constexpr const char* kErrata =
     "\n";
 
 constexpr const char* kNotes =
-    "Which prior a line has: \"four classes\" and the posterior's DP/W, the four rows of Table 2.1 with "
-    "their "
-    "ranges, each as likely, the same that the soils are drawn from; \"class known\", the one row that the "
-    "soil was drawn from; \"K given\", no prior but the true K; single force and the equations of chapter 3, "
-    "none. The Bayes bound is the rms error that the posteriors expect of their own means: no estimator does "
-    "better on average over the soils, and a single seed scatters about it by some 5 %. "
-    "`SoilPosterior.EqualsBruteForce` tests that the posterior is the true one. Knowing besides that the "
-    "loads "
-    "lie between 60 and 100 N, or the true slips, was tried by brute force and lowers the bound by less than "
-    "2 %. The ellipse is set by the posterior's own spread: within one class the soils fill a box, of which "
-    "chi-squared's 5.99 would hold 99 %.\n\n"
-    "Measured rows were read off printed curves, to some 0.02 in DP/W: a goal of 0.020 is at that error. The "
-    "line in T/(rW) is one of about ten forms that were tried on six rows, so its figure is optimistic.\n\n";
+    "The prior of each line:\n"
+    "\n"
+    "- \"four classes\", and DP/W of the posterior: the four rows of Table 2.1 with their ranges, equally "
+    "likely; the soils are drawn from the same distribution.\n"
+    "- \"class known\": the one row of Table 2.1 that the soil was drawn from.\n"
+    "- \"K given\": no prior except the true K.\n"
+    "- Single force and the equations of chapter 3: no prior.\n"
+    "\n"
+    "The Bayes bound is the rms error that the posteriors expect of their own means.\n"
+    "No estimator has a smaller error on average over the soils; a single seed scatters about the bound by "
+    "some 5 %.\n"
+    "`SoilPosterior.MatchesImportanceSamplingFromThePrior` compares the posterior with brute-force "
+    "integration.\n"
+    "If the range of the loads (60 to 100 N) or the true slips were known as well, the bound would be "
+    "lower by less than 2 % (computed by brute force).\n"
+    "The ellipse is scaled by the posterior's own spread: within one class the soils fill a box, of which "
+    "the chi-squared value 5.99 would contain 99 %.\n"
+    "\n"
+    "Measured rows were read off printed curves, with an error of some 0.02 in DP/W, so that a goal of "
+    "0.020 is at that error.\n"
+    "The line in T/(rW) is one of about ten forms that were tried on six rows, so that its figure is "
+    "optimistic.\n"
+    "\n";
 
 std::string page(const std::vector<ThesisFigure>& figures, const std::vector<GoalLine>& goals,
                  const ReproduceOptions& options, std::uint64_t seed) {
@@ -86,7 +96,8 @@ std::string page(const std::vector<ThesisFigure>& figures, const std::vector<Goa
       "Every number and figure on this page comes from one command, `" +
       call +
       "`, which also writes this page.\n"
-      "The thesis is kang_2003 in REFERENCES.bib. Deviations are marked and explained.\n"
+      "The thesis is kang_2003 in REFERENCES.bib.\n"
+      "Deviations are marked and explained.\n"
       "\n"
       "## Figures\n"
       "\n"

@@ -18,7 +18,7 @@ maps::Raster<std::uint8_t> classIndices(const costmap::TraversabilityMap& map) {
   return index;
 }
 
-// Hazards that the layers declared; those of the surface are measured anew.
+// Hazards declared by layers; hazards of the surface are computed again.
 maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
   constexpr auto kDeclared = static_cast<std::uint8_t>(Hazard::Rocks | Hazard::KeepOut | Hazard::Obstacle);
   maps::Raster<Hazard> hazards = map.surface().hazards();
@@ -26,8 +26,8 @@ maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
   return hazards;
 }
 
-// Every soil of the world as a class of its own with next to no doubt. A cell belongs to a patch as soon as a
-// wheel of a rover anywhere on it may touch the patch.
+// Makes every soil of the world a class of its own with negligible uncertainty. A cell belongs to a patch if
+// a wheel of a rover anywhere on the cell may touch the patch.
 void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& layers,
                costmap::GroundModel::Parts& parts) {
   constexpr double kNoDoubt = 0.01;
@@ -49,7 +49,7 @@ void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& l
 
 }  // namespace
 
-std::string_view name(Belief belief) noexcept {
+std::string_view name(SoilKnowledge belief) noexcept {
   constexpr std::string_view kNames[] = {"geometry", "along-only", "prior", "online", "clairvoyant"};
   return kNames[static_cast<int>(belief)];
 }
@@ -63,35 +63,37 @@ TrueWorld SimulationSite::trueWorld(std::size_t i) const {
           map_.model().rover(), classIndices(map_)};
 }
 
-costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWorld& world) const {
+costmap::TraversabilityMap SimulationSite::believed(SoilKnowledge belief, const TrueWorld& world) const {
   costmap::GroundModel::Parts parts = map_.model().parts();
   costmap::MapLayers layers{map_.elevation(), map_.surface().classes(), {}, {}, declaredHazards(map_)};
   layers.costs = map_.surface().costLayers();
-  if (belief == Belief::Geometry)
+  if (belief == SoilKnowledge::Geometry)
     for (costmap::GroundClass& ground : parts.classes) {
       ground.soil = parts_.firm;
       ground.effects.clear();
     }
-  parts.prices_crossing = belief != Belief::AlongOnly;
-  if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
+  parts.prices_crossing = belief != SoilKnowledge::AlongOnly;
+  if (belief == SoilKnowledge::PerfectKnowledge)
+    tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),
           {.footprint_radius_m = map_.surface().footprintRadius_m(), .threads = 1}};
 }
 
-SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
+SimulationOptions SimulationSite::options(SoilKnowledge belief, std::size_t i) const {
   SensorOptions sensors = parts_.sensors;
   sensors.seed = parts_.seed + i;
-  if (belief == Belief::PerfectKnowledge) sensors.pose_drift = 0.0;  // it knows where it is, too
+  if (belief == SoilKnowledge::PerfectKnowledge)
+    sensors.pose_drift = 0.0;  // the position is known exactly, too
   return {.start = parts_.start,
           .goal = parts_.goal,
           .goal_tolerance_m = map_.grid().resolution_m,
-          .senses = belief == Belief::OnLine,
+          .senses = belief == SoilKnowledge::OnLine,
           .sensors = sensors,
           .planner = parts_.planner};
 }
 
-WorldResult SimulationSite::world(Belief belief, std::size_t i, const ProgressMonitor& watch) const {
+WorldResult SimulationSite::world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch) const {
   const TrueWorld truth = trueWorld(i);
   costmap::TraversabilityMap map = believed(belief, truth);
   const std::vector<std::uint8_t> before = categoriesOf(map);

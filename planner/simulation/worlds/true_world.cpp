@@ -20,61 +20,65 @@ bool sameSoil(const terramech::Soil& a, const terramech::Soil& b) {
          a.c1 == b.c1 && a.c2 == b.c2 && a.slip_sinkage_exponent == b.slip_sinkage_exponent;
 }
 
-// A wheel in a hole of its own shape, d deep, rises by d over sqrt(2 r d): the mean slope out of it (ours).
+// A wheel in a hole of its own shape and depth d rises by d over a length of sqrt(2 r d): the mean slope to
+// climb (ours).
 double slopeOutOf(double dug_m, double radius_m) {
   return std::sqrt(std::max(dug_m, 0.0) / (2.0 * radius_m));
 }
 
 struct LoadedTable {
-  const WheelTable* table;
-  double load;   // over that on the flat
-  double share;  // of the rover's
+  const SimulatedWheelTable* table;
+  double load;   // relative to the load on level ground
+  double share;  // share of the rover's weight
 };
 
-// What the slope asks of the wheels over the force normal to it; across as a size.
-struct Demand {
+// Required force over the normal force; `across` is a magnitude.
+struct RequiredForce {
   double along, across;
 };
 
-Demand demandOf(double along, double across) {
+RequiredForce demandOf(double along, double across) {
   const double run = std::hypot(1.0, along);
   return {along * std::sqrt(1.0 + along * along + across * across) / run, std::abs(across) / run};
 }
 
-// The common slip and slip angle at which the wheels pull and hold what is asked.
+// Common slip and slip angle at which the wheels give the required forces.
 struct Balance {
   double slip = kHighestSlip;
   double angle_rad = 0.0;
   bool stuck = true, slides = false;
 };
 
-// What wheels turned uphill by an angle give along and across the way.
-Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
+// Forces along and across the direction of travel of wheels turned uphill by the slip angle of a sheet.
+RequiredForce given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
   double pull = 0.0, hold = 0.0;
   for (const LoadedTable& w : wheels) {
-    const WheelTable::Row forces = w.table->row(row, w.load, sheet);
+    const SimulatedWheelTable::Row forces = w.table->row(row, w.load, sheet);
     pull += w.share * forces.pull;
     hold += w.share * forces.hold;
   }
-  const double c = std::cos(WheelTable::angle_rad(sheet)), s = std::sin(WheelTable::angle_rad(sheet));
+  const double c = std::cos(SimulatedWheelTable::angle_rad(sheet)),
+               s = std::sin(SimulatedWheelTable::angle_rad(sheet));
   return {pull * c - hold * s, hold * c + pull * s};
 }
 
-// At one slip angle, the least slip that gives the demand along, since on soft ground the pull falls again as the
-// wheel digs in, and what it holds across there.
+// Smallest slip at one slip angle that gives the required force along the direction of travel, and the side
+// force at that slip. On soft ground the pull decreases again at higher slip, because the wheel digs in.
 struct Steady {
   double slip, hold;
-  bool brakes;  // false where even locked wheels pull more than is asked: it slides down
+  bool brakes;  // false: even locked wheels pull more than required, so the rover slides down
 };
 
 std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double along, std::size_t sheet) {
-  Demand before{};
-  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
-    const Demand now = given(wheels, row, sheet);
+  RequiredForce before{};
+  for (std::size_t row = 0;
+       row < SimulatedWheelTable::kRows && SimulatedWheelTable::slip(row) <= kHighestSlip; ++row) {
+    const RequiredForce now = given(wheels, row, sheet);
     if (now.along >= along) {
       if (row == 0) return Steady{-1.0, now.across, now.along <= along};
       const double t = (along - before.along) / (now.along - before.along);
-      return Steady{WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)),
+      return Steady{SimulatedWheelTable::slip(row - 1) +
+                        t * (SimulatedWheelTable::slip(row) - SimulatedWheelTable::slip(row - 1)),
                     before.across + t * (now.across - before.across), true};
     }
     before = now;
@@ -82,18 +86,19 @@ std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double alon
   return std::nullopt;
 }
 
-// The least slip angle at which the wheels hold it, between two sheets where both are steady.
-Balance balanced(const std::vector<LoadedTable>& wheels, const Demand& demand) {
+// Smallest slip angle at which the wheels hold the rover, interpolated between two sheets with an
+// equilibrium.
+Balance balanced(const std::vector<LoadedTable>& wheels, const RequiredForce& demand) {
   std::optional<Steady> before;
-  for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet) {
+  for (std::size_t sheet = 0; sheet < SimulatedWheelTable::kAngles; ++sheet) {
     const auto now = steady(wheels, demand.along, sheet);
     if (sheet == 0 && !now) return {};
     if (now && !now->brakes) break;
     if (now && now->hold >= demand.across) {
       const double t = before ? (demand.across - before->hold) / (now->hold - before->hold) : 1.0;
-      const double from = sheet == 0 ? 0.0 : WheelTable::angle_rad(sheet - 1);
+      const double from = sheet == 0 ? 0.0 : SimulatedWheelTable::angle_rad(sheet - 1);
       return {before ? before->slip + t * (now->slip - before->slip) : now->slip,
-              from + t * (WheelTable::angle_rad(sheet) - from), false, false};
+              from + t * (SimulatedWheelTable::angle_rad(sheet) - from), false, false};
     }
     before = now;
   }
@@ -118,17 +123,18 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
     patch_soil_.push_back(static_cast<std::size_t>(alike - soils_.begin()));
     if (alike == soils_.end()) soils_.push_back(patch.soil);
   }
-  // A class raster may declare hundreds of classes, each a tenth of a second, and hold three.
+  // Only the soils that occur get tables: a class raster may declare hundreds of classes, and a table takes a
+  // tenth of a second.
   std::vector<bool> occurs(soils_.size(), false);
   for (const std::uint8_t index : class_index_.values())
     occurs[std::min<std::size_t>(index, classes_ - 1)] = true;
-  occurs[0] = true;  // beyond the map
+  occurs[0] = true;  // outside the map
   for (const std::size_t soil : patch_soil_) occurs[soil] = true;
   tables_.resize(soils_.size());
   for (std::size_t i = 0; i < soils_.size(); ++i)
     if (occurs[i])
-      tables_[i] = Tables{.fresh = WheelTable(soils_[i], rover_, effects_),
-                          .rut = WheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
+      tables_[i] = Tables{.fresh = SimulatedWheelTable(soils_[i], rover_, effects_),
+                          .rut = SimulatedWheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
@@ -141,9 +147,10 @@ std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const n
   return cell ? std::min<std::size_t>(class_index_[*cell], classes_ - 1) : 0;
 }
 
-// Axles evenly over the wheelbase. Across the slope weight moves to the lower wheels by the moment of its part across it,
-// as along it; none carries less than a tenth of its share.
-std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
+// Axles are evenly spaced over the wheelbase. On a cross slope, load moves to the lower wheels by the moment
+// of the weight's component across the slope, as along the slope; no wheel carries less than a tenth of its
+// share.
+std::vector<TrueWorld::SimulatedWheel> TrueWorld::standing(const Motion& motion) const {
   const int axles = std::max(rover_.wheel_count / 2, 2);
   std::vector<double> along_m;
   for (int wheel = 0; wheel < 2 * axles; ++wheel)
@@ -153,7 +160,7 @@ std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) con
                leaning = std::copysign(demandOf(motion.gradient, motion.across).across, motion.across) * 2.0 *
                          rover_.centre_of_mass_height_m / rover_.track_m,
                moved = std::clamp(leaning, -0.9, 0.9), less = run / std::hypot(run, motion.across);
-  std::vector<WheelState> wheels;
+  std::vector<SimulatedWheel> wheels;
   for (std::size_t w = 0; w < along_m.size(); ++w) {
     const double side = w % 2 == 0 ? 1.0 : -1.0, across_m = side * 0.5 * rover_.track_m;
     const maps::Point place{motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
@@ -170,15 +177,15 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   Step step;
   step.wheels = standing(motion);
   double load_N = 0.0;
-  for (const WheelState& w : step.wheels) load_N += w.load_N;
+  for (const SimulatedWheel& w : step.wheels) load_N += w.load_N;
   std::vector<LoadedTable> wheels;
-  for (const WheelState& w : step.wheels) {
+  for (const SimulatedWheel& w : step.wheels) {
     const Tables& ground = *tables_[soilAt(w.place)];
     wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
                       .load = w.load_N / terramech::wheelLoad_N(rover_),
                       .share = w.load_N / load_N});
   }
-  Demand demand = demandOf(motion.gradient, motion.across);
+  RequiredForce demand = demandOf(motion.gradient, motion.across);
   demand.along += slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
   const Balance balance = balanced(wheels, demand);
   step.stuck = balance.stuck;
@@ -189,8 +196,8 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
     step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad);
     step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
-  // Power of all wheels over the speed of the way: T omega / v with omega = v cos(beta)/(r (1 - i)); a braking wheel
-  // gives nothing back.
+  // Power of all wheels over the speed of travel: T omega / v with omega = v cos(beta) / (r (1 - i)). Braking
+  // recovers no energy.
   const double moving = (1.0 - std::max(step.slip, 0.0)) / std::cos(balance.angle_rad);
   step.speed_mps = rover_.max_speed_mps * moving;
   step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +
@@ -206,7 +213,7 @@ terramech::TurnEffort TrueWorld::turn(const costmap::Direction& from, const Moti
   const terramech::Soil& soil = soils_[soilAt(motion.place)];
   const Step flat = drive({.place = motion.place, .heading = to, .ruts = motion.ruts});
   double sinkage = 0.0;
-  for (const WheelState& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
+  for (const SimulatedWheel& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
   const double rolling = flat.stuck ? 0.0 : flat.energy_J_per_m - rover_.hotel_power_W / flat.speed_mps;
   const terramech::TurnEfforts efforts = terramech::turnEfforts(
       rover_, {.lateral_resistance = std::tan(soil.friction_angle_rad),

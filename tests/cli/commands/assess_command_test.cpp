@@ -26,7 +26,7 @@ json assessed(const std::vector<std::string>& more) {
   return json::parse(ran.out);
 }
 
-TEST(AssessCommand, PrintsTheFieldsThatOthersRelyOn) {
+TEST(AssessCommand, JsonHasTheDocumentedFields) {
   const json rows = assessed({});
   ASSERT_EQ(rows.size(), 3u);
   for (const json& row : rows) {
@@ -69,7 +69,7 @@ TEST(AssessCommand, PlaneFormulaIsEquation321AndBothPrintedPairsAreDangerous) {
   }
 }
 
-TEST(AssessCommand, ASteeperMissionAsksForMore) {
+TEST(AssessCommand, SteeperSlopeLowersTheCategory) {
   EXPECT_EQ(assessed({"--slope", "0.6"})[2]["category"], "dangerous");
 }
 
@@ -77,7 +77,7 @@ constexpr const char* kSoil =
     "soil: {name: x, cohesion_Pa: 1500, friction_angle_deg: 30, sinkage_exponent: 0.9, cohesive_modulus: 0, "
     "frictional_modulus: 1.7e6, shear_modulus_m: 0.015}\nmodel: wong-reece\n";
 
-TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
+TEST(AssessCommand, ModelDeterminesPullAndReadingsDetermineSinkage) {
   // Property: the same soil in `talus wheel` gives the same pull, whatever torque was read.
   const Folder folder;
   const std::string model = folder.write("model.yaml", kSoil);
@@ -100,7 +100,7 @@ TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
   EXPECT_NEAR(rows[1]["sinkage_over_radius"].get<double>(), 0.4, 1e-12);
 }
 
-TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
+TEST(AssessCommand, IgnoredSensorEffectsAreListed) {
   const Folder folder;
   const std::string drive = folder.write("drive.csv", kDrive), plain = folder.write("plain.yaml", kSoil);
   const std::string tilted =
@@ -115,7 +115,7 @@ TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
   EXPECT_TRUE(without.err.empty());
 }
 
-TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
+TEST(AssessCommand, ModelAssessmentNeedsNeitherTorqueNorSinkage) {
   const Folder folder;
   const Ran ran =
       runTalus({"--json", "assess",
@@ -127,7 +127,7 @@ TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
   EXPECT_GT(row["torque_over_load_radius"].get<double>(), 0.1);
 }
 
-TEST(AssessCommand, ExtrapolatesByTheRowsOwnSoilOrByTheModel) {
+TEST(AssessCommand, ExtrapolationUsesTheFittedSoilOrTheModel) {
   // Property: the greatest pull is not below that at the reference slip; rows of the same load foretell the
   // same; a model without doubt has none.
   const Folder folder;
@@ -150,7 +150,7 @@ TEST(AssessCommand, ExtrapolatesByTheRowsOwnSoilOrByTheModel) {
   EXPECT_FALSE(assessed({})[0].contains("greatest"));
 }
 
-TEST(AssessCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(AssessCommand, ErrorsAreOneLineWithTheirExitCode) {
   const Folder folder;
   const std::string bad =
       folder.write("bad.csv", "load_N,torque_Nm,sinkage_m,wheel_radius_m,wheel_width_m\n0,1,0.01,0.1,0.1\n");

@@ -15,7 +15,7 @@ namespace init_command_test {
 
 using testing::HasSubstr;
 
-TEST(InitCommand, ItsMissionIsPlannedAsItStands) {
+TEST(InitCommand, CreatedMissionCanBePlanned) {
   const Folder folder;
   folder.write("flat ground.asc", asciiGrid(20, 20, [](int column, int) { return 0.01 * column; }));
   std::filesystem::create_directory(folder / "m");
@@ -51,7 +51,7 @@ TEST(InitCommand, ItsPlacesAreJoined) {
 }
 
 // Property: every key of the reader stands in the text, once.
-TEST(InitCommand, HasEveryKeyOfAMission) {
+TEST(InitCommand, CreatedMissionHasEveryKey) {
   const std::string text = missionText({});
   for (const auto keys : {missionKeys(), missionMapKeys(), thresholdKeys()})
     for (const terramech::FileKey& key : keys)

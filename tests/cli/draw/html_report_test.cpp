@@ -9,7 +9,7 @@ namespace html_report_test {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(HtmlReport, EscapesAndEmbeds) {
+TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
   HtmlReport report("a < b");
   report.table({"name", "value"}, {{"x & y", "1.5"}});
   report.charts({{.title = "Pull", .x = {}, .y = {}, .series = {{.x = {0.0, 1.0}, .y = {0.0, 1.0}}}}});
@@ -20,7 +20,7 @@ TEST(HtmlReport, EscapesAndEmbeds) {
 }
 
 // Property: nothing that a user named reads as markup, wherever it stands.
-TEST(HtmlReport, TextIsNeverMarkup) {
+TEST(HtmlReport, UserTextIsNeverMarkup) {
   const std::string hostile = "<script>alert(\"1\")</script>";
   HtmlReport report(hostile);
   report.heading(hostile);
@@ -54,7 +54,7 @@ TEST(HtmlReport, FitsAPhone) {
 }
 
 // Closed form: a number may carry a unit or a percent sign; a name that begins with a digit is none.
-TEST(HtmlReport, NumbersAreSetRight) {
+TEST(HtmlReport, NumbersAreRightAligned) {
   const auto number = [](const std::string& cell) {
     HtmlReport report("t");
     report.table({"h"}, {{cell}});

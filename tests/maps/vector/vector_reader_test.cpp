@@ -67,7 +67,7 @@ const std::map<std::string, std::string> kEndings{
     {"GPKG", "gpkg"}, {"ESRI Shapefile", "shp"}, {"FlatGeobuf", "fgb"}, {"GPX", "gpx"},
     {"KML", "kml"},   {"MapInfo File", "tab"},   {"GeoJSON", "geojson"}};
 
-TEST(VectorReader, APlaceComesFromEveryFormat) {
+TEST(VectorReader, EveryVectorFormatYieldsTheSamePlace) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   const GeoPoint place = map.places()->reverse({500300, 4999600});
@@ -86,7 +86,7 @@ TEST(VectorReader, APlaceComesFromEveryFormat) {
 }
 
 // Measured by others: PROJ's cs2cs; Bern's old observatory in LV95 is 600000, 200000 in LV03 by definition.
-TEST(VectorReader, AnyCrsBecomesTheMaps) {
+TEST(VectorReader, CoordinatesAreTransformedToTheMapCrs) {
   const TemporaryFolder folder;
   const std::vector<std::vector<double>> rows(100, std::vector<double>(100, 7.0));
   const ElevationMap map = readElevation(maps::write(
@@ -103,7 +103,7 @@ TEST(VectorReader, AnyCrsBecomesTheMaps) {
   }
 }
 
-TEST(VectorReader, KeepOutAreasComeFromAGeoPackage) {
+TEST(VectorReader, KeepOutPolygonsAreReadFromGeoPackage) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   const std::string path = write(
@@ -118,7 +118,7 @@ TEST(VectorReader, KeepOutAreasComeFromAGeoPackage) {
   EXPECT_THAT(refusal([&] { readKeepOut(line, map); }), HasSubstr("feature 1 'here': "));
 }
 
-TEST(VectorReader, RefusesWhatItCannotPlace) {
+TEST(VectorReader, LayersThatCannotBeGeoreferencedAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder), yard = hill(folder, "");
   const auto line = [&](const std::string& path, const ElevationMap& on) {
@@ -148,7 +148,7 @@ TEST(VectorReader, RefusesWhatItCannotPlace) {
 }
 
 // Property: of a file that is cut anywhere nothing is taken that the whole one does not have.
-TEST(VectorReader, AFileCutShortIsRefusedOrWhole) {
+TEST(VectorReader, TruncatedFileIsRejectedOrComplete) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   for (const std::string& driver : vectorFormats()) {
