@@ -199,15 +199,9 @@ void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, 
   constexpr double kSound = 0.02;  // by which sound drives differ in a block, one standard deviation (ours)
   const auto isOfFirst = [&](const ReadingCount& c) { return c.drive == counts.front().drive; };
   if (counts.empty() || std::ranges::all_of(counts, isOfFirst)) return;
-  std::vector<std::uint16_t> drives;
-  for (const ReadingCount& c : counts) drives.push_back(c.drive);
-  std::ranges::sort(drives);
-  drives.erase(std::unique(drives.begin(), drives.end()), drives.end());
-  std::vector<ReadingCount> own;
   double raising_drives = 0.0, most = std::numeric_limits<double>::infinity(), of_variance = 0.0;
-  for (const std::uint16_t drive : drives) {
-    own.clear();
-    std::ranges::copy_if(counts, std::back_inserter(own), [&](const auto& c) { return c.drive == drive; });
+  for (const std::uint16_t drive : drivesOf(counts)) {
+    const std::vector<ReadingCount> own = ofDrive(counts, drive);
     const Weighed raising = weighPulls(own, prior, block, least).raising;
     if (raising.weight <= 0.0) continue;
     raising_drives += 1.0;
@@ -284,6 +278,20 @@ void summarise(std::span<const ReadingCount> counts, const Estimate& prior, Bloc
     block.sinkage = std::fmax(block.sinkage, static_cast<float>(part.value));
     block.sinkage_raises |= which == kind::kSinkage;
   }
+}
+
+std::vector<std::uint16_t> drivesOf(std::span<const ReadingCount> counts) {
+  std::vector<std::uint16_t> drives;
+  for (const ReadingCount& c : counts) drives.push_back(c.drive);
+  std::ranges::sort(drives);
+  drives.erase(std::unique(drives.begin(), drives.end()), drives.end());
+  return drives;
+}
+
+std::vector<ReadingCount> ofDrive(std::span<const ReadingCount> counts, std::uint16_t drive) {
+  std::vector<ReadingCount> own;
+  std::ranges::copy_if(counts, std::back_inserter(own), [&](const auto& c) { return c.drive == drive; });
+  return own;
 }
 
 double samples(std::span<const ReadingCount> counts) noexcept {

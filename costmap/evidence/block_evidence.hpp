@@ -86,6 +86,10 @@ static_assert(sizeof(BlockEvidence) == 44);
 /// readings, each weighed by its certainty: no number of readings makes it smaller.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 
+/// The drives that have readings among counts, ascending, and the readings of one.
+std::vector<std::uint16_t> drivesOf(std::span<const ReadingCount> counts);
+std::vector<ReadingCount> ofDrive(std::span<const ReadingCount> counts, std::uint16_t drive);
+
 /// Readings behind the pull, each weighed by its certainty: one of standard deviation 0.05 counts one.
 double samples(std::span<const ReadingCount> counts) noexcept;
 

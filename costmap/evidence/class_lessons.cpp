@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 #include <talus/costmap/evidence/class_lessons.hpp>
 #include <talus/costmap/evidence/spreading.hpp>
@@ -58,21 +59,33 @@ double IndependentPlaces::agreed(std::size_t places) const noexcept {
   return most;
 }
 
+void ClassLessons::Told::add(const Told& other) noexcept {
+  weight += other.weight;
+  departure += other.departure;
+}
+
+void ClassLessons::add(std::uint16_t drive, const Told& told, ByDrive& drives) {
+  Told& all = drives[drive];
+  all.add(told);
+  if (all.weight == 0) drives.erase(drive);
+}
+
 void ClassLessons::sum(const BlockLesson& lesson, std::int64_t sign) {
-  weight_ += sign * fixed(lesson.weight);
-  pull_ += sign * fixed(lesson.weight * lesson.pull);
+  const auto told = [&](double departure) {
+    return Told{sign * fixed(lesson.weight), sign * fixed(lesson.weight * departure)};
+  };
   if (lesson.raises) {
-    raising_weight_ += sign * fixed(lesson.weight);
-    raising_pull_ += sign * fixed(lesson.weight * lesson.pull);
+    pull_.add(told(lesson.pull));
+    add(lesson.drive, told(lesson.pull), pull_by_drive_);
     shared_ += sign * fixed(lesson.weight * lesson.shared);
-    Told& told = by_drive_[lesson.drive];
-    told.weight += sign * fixed(lesson.weight);
-    told.pull += sign * fixed(lesson.weight * lesson.pull);
-    if (told.weight == 0) by_drive_.erase(lesson.drive);
+  } else {
+    add(lesson.drive, told(lesson.pull), lower_pull_);
   }
   if (!lesson.sinkage) return;
-  sinkage_weight_ += sign * fixed(lesson.weight);
-  sinkage_ += sign * fixed(lesson.weight * *lesson.sinkage);
+  if (lesson.sinkage_raises)
+    sinkage_.add(told(-*lesson.sinkage));
+  else
+    add(lesson.drive, told(-*lesson.sinkage), lower_sinkage_);
 }
 
 double ClassLessons::mostRise() const noexcept {
@@ -102,17 +115,35 @@ ClassState ClassLessons::stateInSteps() const noexcept {
   return s;
 }
 
+// Conjugate update of a mean of variance q^2 (B12).
 double ClassLessons::meanOf(const Told& told) const noexcept {
   const double prior = ground_.mean_std * ground_.mean_std;
-  return prior * static_cast<double>(told.pull) / kUnit /
+  return prior * static_cast<double>(told.departure) / kUnit /
          (prior * static_cast<double>(told.weight) / kUnit + ground_.pull_std * ground_.pull_std);
+}
+
+// The least mean of those that may raise and any set of drives that may not (B12): a set that has it has all drives weaker
+// than some departure.
+double ClassLessons::leastMean(Told raising, const ByDrive& lowering) const {
+  std::vector<Told> drives;
+  for (const auto& [drive, told] : lowering) drives.push_back(told);
+  std::ranges::sort(drives, [](const Told& a, const Told& b) {
+    return static_cast<double>(a.departure) * static_cast<double>(b.weight) <
+           static_cast<double>(b.departure) * static_cast<double>(a.weight);
+  });
+  double least = meanOf(raising);
+  for (const Told& told : drives) {
+    raising.add(told);
+    least = std::min(least, meanOf(raising));
+  }
+  return least;
 }
 
 // Infinite of fewer than two drives.
 double ClassLessons::mostByDrives() const noexcept {
   double most = std::numeric_limits<double>::infinity();
-  if (by_drive_.size() < 2) return most;
-  for (const auto& [drive, told] : by_drive_) {
+  if (pull_by_drive_.size() < 2) return most;
+  for (const auto& [drive, told] : pull_by_drive_) {
     const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(told.weight) / kUnit /
                            (ground_.pull_std * ground_.pull_std);
     if (drive != 0) most = std::min(most, meanOf(told) + ground_.mean_std / std::sqrt(1.0 + weighed));
@@ -125,15 +156,16 @@ void ClassLessons::refresh() {
   const double prior = ground_.mean_std * ground_.mean_std;
   const double heard = std::clamp(
       (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
-  posterior_.places = static_cast<double>(weight_) / kUnit;
-  double pull = heard * meanOf({weight_, pull_});
-  if (raising_weight_ > 0) pull = std::min(pull, heard * meanOf({raising_weight_, raising_pull_}));
-  posterior_.pull = {std::min({pull, mostByDrives(), mostRise()}), ground_.mean_std};
+  std::int64_t weight = pull_.weight;
+  for (const auto& [drive, told] : lower_pull_) weight += told.weight;
+  posterior_.places = static_cast<double>(weight) / kUnit;
+  posterior_.pull = {std::min({heard * leastMean(pull_, lower_pull_), mostByDrives(), mostRise()}),
+                     ground_.mean_std};
   posterior_.own_std = ground_.mean_std;
   posterior_.shared = 0.0;
-  posterior_.sinkage.value = heard * meanOf({sinkage_weight_, sinkage_});
+  posterior_.sinkage.value = 0.0 - heard * leastMean(sinkage_, lower_sinkage_);
   if (mayRaise()) {
-    const double raising = static_cast<double>(raising_weight_) / kUnit;
+    const double raising = static_cast<double>(pull_.weight) / kUnit;
     const double share = prior * raising / (prior * raising + variance);
     posterior_.own_std = std::sqrt(prior * (1.0 - share));
     if (raising > 0.0) posterior_.shared = share * static_cast<double>(shared_) / kUnit / raising;

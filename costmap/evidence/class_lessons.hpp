@@ -18,7 +18,7 @@ struct ClassPosterior {
   double own_std = 0.0;  ///< of that, if the readings shared no error [-]
   double shared = 0.0;   ///< what one standard deviation of the shared error moves the pull by [-]
   Estimate sinkage;      ///< departure of sinkage over radius [-]
-  double places = 0.0;   ///< independent places that speak for it [-]
+  double places = 0.0;   ///< sum of the weights of all lessons, in independent places [-]
 };
 
 /// What learned ground has of its class.
@@ -63,8 +63,10 @@ struct BlockLesson {
   double pull = 0.0;              ///< departure from the prior [-]
   std::optional<double> sinkage;  ///< likewise; nothing where none was measured
   bool raises = false;            ///< whether it may raise, and make surer
-  double shared = 0.0;      ///< standard deviation by the error that it shares with all other lessons [-]
-  std::uint16_t drive = 0;  ///< whose readings alone may raise it; 0: of none, or of several
+  bool sinkage_raises = false;    ///< whether its sinkage may be less than that of the class
+  double shared = 0.0;  ///< standard deviation by the error that it shares with all other lessons [-]
+  std::uint16_t drive =
+      0;  ///< whose readings alone may raise it, 0: of several; of a lesson that may not raise, its drive
 };
 
 /// What all blocks together tell of a class. Exact sums: a lesson can be taken out again, and the order in which
@@ -83,8 +85,9 @@ class ClassLessons {
   /// place moves it by nothing, two by half, three as told: what one place says it says of itself. It rises, and
   /// is surer, only where kPlaces places say so, and no higher than each of them. The error that all lessons share
   /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
-  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i. Lessons that may
-  /// not raise never lift it above that of the others alone. It is at most, too, what each drive by itself makes of
+  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i.
+  /// Lessons that may not raise count drive by drive: of the means of those that may and of any drives of the others the mean is
+  /// the least (B12), so that a drive that may not raise never lifts it, nor changes its deviation. It is at most, too, what each drive by itself makes of
   /// it and one of its standard deviations, without the shared error: the sensors of one may be faulty, and which is not known.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
   /// What learned ground has of the class, as it is.
@@ -103,17 +106,21 @@ class ClassLessons {
  private:
   void sum(const BlockLesson& lesson, std::int64_t sign);
 
-  GroundClass ground_;
-  std::int64_t weight_ = 0, raising_weight_ = 0, sinkage_weight_ = 0, pull_ = 0, raising_pull_ = 0,
-               sinkage_ = 0, shared_ = 0;
-  // Sums of lessons that may raise.
+  // Sums over lessons: of their weights, and of weight times departure towards strength.
   struct Told {
-    std::int64_t weight = 0, pull = 0;
+    std::int64_t weight = 0, departure = 0;
+    void add(const Told& other) noexcept;
   };
+  using ByDrive = std::map<std::uint16_t, Told>;
+  static void add(std::uint16_t drive, const Told& told, ByDrive& drives);
   double meanOf(const Told& told) const noexcept;
+  double leastMean(Told raising, const ByDrive& lowering) const;
   double mostByDrives() const noexcept;
 
-  std::map<std::uint16_t, Told> by_drive_;
+  GroundClass ground_;
+  std::int64_t shared_ = 0;
+  Told pull_, sinkage_;  // of lessons that may raise
+  ByDrive pull_by_drive_, lower_pull_, lower_sinkage_;
   IndependentPlaces places_;
   ClassPosterior posterior_;
 };

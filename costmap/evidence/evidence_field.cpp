@@ -63,8 +63,7 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
 // length), and for no departure beyond what its class explains: what is more is other ground that no class
 // raster shows.
-std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
-  if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return std::nullopt;
+BlockLesson EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
   const bool raises = !std::isnan(block.pull);
@@ -84,7 +83,38 @@ std::optional<BlockLesson> EvidenceField::lessonOf(const BlockEvidence& block, i
   const double most_sinkage = kOrdinary * ground.sinkage_std;
   const double sinkage = static_cast<double>(block.sinkage) - prior.sinkage.value;
   lesson.sinkage = std::clamp(sinkage, block.sinkage_raises ? -most_sinkage : 0.0, most_sinkage);
+  lesson.sinkage_raises = block.sinkage_raises;
   return lesson;
+}
+
+// One of all readings where some may raise, as weak as each drive shows the block by itself; else one of each drive, so that
+// none makes another's milder.
+std::vector<BlockLesson> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
+                                                  int class_index) const {
+  std::vector<BlockLesson> lessons;
+  if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return lessons;
+  const std::vector<ReadingCount> counts = store_->bricks.counts(where);
+  const std::vector<std::uint16_t> drives = drivesOf(counts);
+  const bool raises = !std::isnan(block.pull);
+  BlockEvidence all = block;
+  if (drives.size() > 1)
+    for (const std::uint16_t drive : drives) {
+      BlockEvidence own = block;
+      summarise(ofDrive(counts, drive), priorOf(class_index), own);
+      if (std::isnan(own.weak_pull)) continue;
+      all.weak_pull = std::min(all.weak_pull, own.weak_pull);
+      if (raises) continue;
+      lessons.push_back(lessonOf(own, class_index));
+      lessons.back().drive = drive;
+    }
+  if (!lessons.empty()) return lessons;
+  lessons.push_back(lessonOf(all, class_index));
+  lessons.back().drive = raises ? driveOf(counts) : drives.front();
+  return lessons;
+}
+
+Estimate EvidenceField::priorOf(int class_index) const {
+  return {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std};
 }
 
 // By how much the weakest block of a square departs from its class, of those that are known or weak beyond their
@@ -117,22 +147,17 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
-    if (auto before = lessonOf(*known, class_index)) {
-      before->drive = driveOf(store_->bricks.counts(where));
-      lessons.remove(*before);
-    }
+    for (const BlockLesson& before : lessonsOf(where, *known, class_index)) lessons.remove(before);
   for (const ReadingCount& reading : heard.heard)
     how == Count::Add ? store_->bricks.count(where, reading) : store_->bricks.uncount(where, reading);
   BlockEvidence& block = store_->bricks.at(where);
   block.updated_s = std::max(block.updated_s, heard.updated_s);
   block.reach = std::max(block.reach, heard.reach);
-  summarise(store_->bricks.counts(where),
-            {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std}, block);
+  summarise(store_->bricks.counts(where), priorOf(class_index), block);
   const maps::CellBox reached = store_->reach.add(where, block.reach_m());
-  auto lesson = lessonOf(block, class_index);
-  if (lesson) lesson->drive = driveOf(store_->bricks.counts(where));
-  if (!lesson && how == Count::Add) return reached;
-  if (lesson) lessons.add(*lesson);
+  const std::vector<BlockLesson> taught = lessonsOf(where, block, class_index);
+  if (taught.empty() && how == Count::Add) return reached;
+  for (const BlockLesson& lesson : taught) lessons.add(lesson);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
                                          where.row / store_->blocks.reach()};
   lessons.places().set(square, squareStrength(square, class_index));

@@ -109,7 +109,10 @@ class EvidenceField {
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
   maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard, Count how = Count::Add);
-  std::optional<BlockLesson> lessonOf(const BlockEvidence& block, int class_index) const;
+  BlockLesson lessonOf(const BlockEvidence& block, int class_index) const;
+  std::vector<BlockLesson> lessonsOf(const BlockLevel& where, const BlockEvidence& block,
+                                     int class_index) const;
+  Estimate priorOf(int class_index) const;
   std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
   ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;
 

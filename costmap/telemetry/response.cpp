@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <talus/costmap/telemetry/response.hpp>
 
@@ -26,13 +27,19 @@ double Response::causeVariance() const noexcept {
   return std::max(causes_ / n - cause_ * cause_ / (n * n), 0.0);
 }
 
-bool Response::follows(const Claim& claim) const noexcept {
-  if (count_ < kEnough) return false;
+terramech::Estimate Response::slope() const noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (count_ < kEnough) return {kNone, kNone};
   const double n = static_cast<double>(count_), cause = causeVariance();
-  if (cause < claim.variation * claim.variation) return false;
   const double slope = (product_ / n - cause_ * effect_ / (n * n)) / cause;
   const double left = std::max(effects_ / n - effect_ * effect_ / (n * n) - slope * slope * cause, 0.0);
-  return slope >= claim.least + claim.certain * std::sqrt(left / ((n - 2.0) * cause)) - 1e-12;
+  return {slope, std::sqrt(left / ((n - 2.0) * cause))};
+}
+
+bool Response::follows(const Claim& claim) const noexcept {
+  if (count_ < kEnough || causeVariance() < claim.variation * claim.variation) return false;
+  const terramech::Estimate of = slope();
+  return of.value >= claim.least + claim.certain * of.std - 1e-12;
 }
 
 double Response::meanDifference() const noexcept {

@@ -4,6 +4,8 @@
 #include <deque>
 #include <utility>
 
+#include <talus/terramech/numerics/estimate.hpp>
+
 namespace talus::costmap {
 
 /// One number against another that it should follow: sums of a linear regression.
@@ -21,6 +23,8 @@ class Response {
   /// Whether the effect follows the cause: at least 12 pairs, a cause that varies enough, and a slope of the
   /// regression that lies so many of its standard errors above the least.
   bool follows(const Claim& claim) const noexcept;
+  /// Slope of the regression and its standard error; of fewer than 12 pairs, or a cause that does not vary, not finite.
+  terramech::Estimate slope() const noexcept;
   /// Effect less cause; NaN without any.
   double meanDifference() const noexcept;
   std::size_t size() const noexcept { return count_; }

@@ -13,7 +13,9 @@ constexpr std::size_t kLevelRows = 6;        // of it, before the bias of slip i
 constexpr double kFelt = 0.6;                // share of the thrust that is most of it
 constexpr double kSlipPerGradient = 0.1;     // of the firmest soil
 constexpr double kPerGradient = 0.5;         // of the slope measured, and of the pull by torque
+constexpr double kSlopeScale = 1.15;         // of the rover's slopes over the map's, at most
 constexpr double kSlopeBias = 0.03;          // of the rover's slope against the map's
+constexpr double kSlopeScaleCertain = 2.0;   // standard errors beyond that
 constexpr double kTorqueBias = 0.08;         // of one wheel's share of the pull
 constexpr double kJump_m = 1.5;              // that three deviations of a good pose explain
 constexpr double kFirstStep_m = 3.0;         // that tells how fast the rover is
@@ -68,6 +70,7 @@ void SensorProof::take(const Row& row) {
   if (wheel.last_counted && distance_m(wheel.last_counted->place, r.place) < kApart_m) return;
   wheel.last_counted = r;
   run.slope.add(row.map_gradient, row.measured_gradient);
+  slopes_.add(row.map_gradient, row.measured_gradient);
   wheel.slip.add(row.measured_gradient, r.slip);
   wheel.torque.add(row.measured_gradient, row.torque_pull);
   wheel.felt_rows += row.share >= kFelt ? 1 : 0;
@@ -99,6 +102,17 @@ std::size_t SensorProof::wheels(const std::string& run) const {
   return r ? r->wheels.size() : 0;
 }
 
+// Ground counts as stronger by as much as its slope is measured too steep.
+bool SensorProof::slopeScaled(const Run& run) const noexcept {
+  // Wheels of a moment have one slope.
+  const double certain = kSlopeScaleCertain * std::sqrt(static_cast<double>(run.wheels.size()));
+  const auto scaled = [&](const Response& slope) {
+    const Estimate scale = slope.slope();
+    return scale.value - certain * scale.std > kSlopeScale;
+  };
+  return scaled(run.slope.whole()) || scaled(slopes_);
+}
+
 SensorProof::Lack SensorProof::lack(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
@@ -109,6 +123,7 @@ SensorProof::Lack SensorProof::lack(const std::string& run, const std::string& w
   if (slope.causeVariance() < kGradientVariation * kGradientVariation) return Lack::Slopes;
   if (!follows(r->slope, kPerGradient)) return Lack::Slope;
   if (std::abs(slope.meanDifference()) > kSlopeBias) return Lack::SlopeBias;
+  if (slopeScaled(*r)) return Lack::SlopeScale;
   if (!follows(w->slip, kSlipPerGradient)) return Lack::Slip;
   if (w->level_rows < kLevelRows) return Lack::LevelRows;
   const auto steps = level_steps_.find(wheel);
@@ -139,6 +154,10 @@ const char* SensorProof::text(Lack lack) noexcept {
       return "measured slopes do not follow those of the map; check pose, heading_rad and slope_rad";
     case Lack::SlopeBias:
       return "measured slopes differ from those of the map by more than 0.03; level the sensor";
+    case Lack::SlopeScale:
+      return "measured slopes are more than 1.15 times those of the map; check the scale of slope_rad, or "
+             "give a "
+             "finer elevation map";
     case Lack::Slip:
       return "slip does not follow the slope; check the slip of each wheel";
     case Lack::LevelRows:

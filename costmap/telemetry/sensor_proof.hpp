@@ -18,7 +18,8 @@ namespace talus::costmap {
 ///
 /// slip        rises with the slope that is climbed; on level ground it may be low, by a bias or by firm ground, and
 ///             counts as if it were by a bias; where it steps on the way, either side may be the wrong one
-/// slope       as the rover measured it follows the map's where the rover says it is, and is not off it
+/// slope       as the rover measured it follows the map's where the rover says it is, is not off it, and is not
+///             steeper: the scale of its regression on the map's lies above 1.15 by no more than two standard errors
 /// torque,     taken together as pull, follow the slope and are not off it
 /// sinkage
 /// pose        moves from row to row by no more than it did before; after a jump nothing is proven until it is
@@ -53,6 +54,7 @@ class SensorProof {
     Slopes,
     Slope,
     SlopeBias,
+    SlopeScale,
     Slip,
     LevelRows,
     SlipStep
@@ -89,12 +91,14 @@ class SensorProof {
     std::map<std::string, Wheel> wheels;
   };
 
+  bool slopeScaled(const Run& run) const noexcept;
   static void follow(Run& run, const Wheel& wheel, const WheelReading& reading);
   void takeLevel(Wheel& wheel, const Row& row);
   const Run* find(const std::string& run) const;
   static const Wheel* find(const Run& run, const std::string& wheel);
 
   std::map<std::string, Run> runs_;
+  Response slopes_;                               // of all runs: the slope sensor is one
   std::map<std::string, StepWatch> level_steps_;  // of each wheel, of all runs: its sensor is one
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -65,6 +66,56 @@ TEST(ClassLessons, WhatMayNotRaiseNeverLifts) {
       EXPECT_LE(lessons.posterior().pull.value, alone);
     }
   }
+}
+
+// Property: a drive that may not raise lifts no mean, changes no deviation and makes no sinkage less, whatever drives were there: with and
+// without lessons that may raise, and with a second drive that may not.
+TEST(ClassLessons, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-0.2, 0.2), deep(0.0, 0.2);
+  for (int world = 0; world < 500; ++world) {
+    ClassLessons lessons(sand());
+    for (int column = 0; column < 8; ++column)
+      lessons.places().set({2 * column, 0}, world % 2 == 0 ? 0.1F : -INFINITY);
+    for (int i = 0; world % 2 == 0 && i < 6; ++i)
+      lessons.add({.weight = 1.0,
+                   .pull = any(random),
+                   .sinkage = any(random),
+                   .raises = true,
+                   .sinkage_raises = true,
+                   .drive = 1});
+    lessons.refresh();
+    for (std::uint16_t drive = 2; drive < 8; ++drive) {
+      const ClassState before = lessons.state();
+      const double of_drive = any(random), deeper = deep(random);
+      for (int i = 0; i < 1 + world % 7; ++i)
+        lessons.add({.weight = 0.5,
+                     .pull = std::min(of_drive + 0.1 * any(random), 0.0),
+                     .sinkage = deeper,
+                     .raises = false,
+                     .drive = drive});
+      lessons.refresh();
+      const ClassState after = lessons.state();
+      EXPECT_LE(after.pull, before.pull + 1e-12);
+      EXPECT_EQ(after.pull_std, before.pull_std);
+      EXPECT_EQ(after.own_std, before.own_std);
+      EXPECT_EQ(after.shared, before.shared);
+      EXPECT_GE(after.sinkage, before.sinkage - 1e-12);
+      EXPECT_EQ(after.may_raise, before.may_raise);
+      EXPECT_LE(after.most_rise, before.most_rise);
+    }
+  }
+}
+
+// Closed form: the mean is the least over sets of drives, q^2 sum(h y)/(q^2 sum(h) + p^2): of -0.10, -0.08 and 0, one place each, that of the first two.
+TEST(ClassLessons, IsWhatTheWeakestDrivesMakeOfIt) {
+  ClassLessons lessons(sand());
+  for (int column = 0; column < 8; ++column) lessons.places().set({2 * column, 0}, -INFINITY);
+  const double of_drive[] = {-0.10, 0.0, -0.08};
+  for (std::uint16_t drive = 1; drive <= 3; ++drive)
+    lessons.add({.weight = 1.0, .pull = of_drive[drive - 1], .sinkage = std::nullopt, .drive = drive});
+  lessons.refresh();
+  EXPECT_NEAR(lessons.posterior().pull.value, -0.18 / 3.0, 1e-5);
 }
 
 // Closed form: of two drives the mean is at most what the weaker makes of it, q^2 W y/(q^2 W + p^2), and its deviation, q/sqrt(1 + q^2 W/p^2), W = 40

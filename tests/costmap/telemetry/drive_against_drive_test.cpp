@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <rover_drive.hpp>
 
@@ -48,7 +49,7 @@ int allowed(const TraversabilityMap& map) {
 
 struct Fault {
   const char* name;
-  std::function<double(double slip, double of_class)> read;
+  std::function<double(double slip, double other)> read;  // other: slip of the class, or gradient
 };
 
 class OneFaultyDrive : public ::testing::TestWithParam<Fault> {};
@@ -84,6 +85,49 @@ INSTANTIATE_TEST_SUITE_P(Each, OneFaultyDrive,
                                            Fault{"much_less", [](double slip, double) { return slip - 0.1; }},
                                            Fault{"share", [](double slip, double) { return 0.8 * slip; }},
                                            Fault{"of_the_class", [](double, double of) { return of; }}),
+                         [](const auto& each) { return each.param.name; });
+
+class GentleDrive : public ::testing::TestWithParam<Fault> {};
+
+// Property: on slopes to 0.05 no drive may raise; a sound one takes ground from its class, and a faulty one on its lines or on others gives none back.
+TEST_P(GentleDrive, IsNotUndoneByADriveThatMayNotRaise) {
+  const auto gentle = [] { return mapOf(testSand(), 4, 0.25); };
+  const auto isAllowed = [](const TraversabilityMap& map) {
+    std::vector<bool> cells;
+    for (int row = 0; row < kRoverSide; ++row)
+      for (int column = 0; column < kRoverSide; ++column)
+        for (double gradient = 0.05; gradient < 0.35; gradient += 0.005)
+          cells.push_back(map.model().state(0, *map.ground({column, row}), gradient).refusal ==
+                          Refusal::None);
+    return cells;
+  };
+  for (const std::vector<double>& lines_m : {std::vector{8.5, 33.5, 58.5}, std::vector{20.5, 46.5, 66.5}}) {
+    TraversabilityMap map = gentle();
+    const auto prior = isAllowed(map);
+    EXPECT_EQ(addDrive(map, tableOf(driveOver(map, weakSand(), 1), false)).raising, 0U);
+    const auto before = isAllowed(map);
+    ASSERT_LT(std::ranges::count(before, true), std::ranges::count(prior, true));
+    Drive second = driveOver(map, weakSand(), 2, lines_m);
+    for (auto& row : second.rows) {
+      row[kTime] += 1e5;
+      row[kSlip] = GetParam().read(row[kSlip], std::tan(row[kSlope]));
+    }
+    EXPECT_EQ(addDrive(map, tableOf(second, false)).raising, 0U);
+    const auto after = isAllowed(map);
+    int freed = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) freed += after[i] && !before[i] ? 1 : 0;
+    EXPECT_EQ(freed, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, GentleDrive,
+                         ::testing::Values(Fault{"stuck", [](double, double) { return 0.02; }},
+                                           Fault{"divided", [](double slip, double) { return slip / 100.0; }},
+                                           Fault{"less_uphill",
+                                                 [](double slip, double gradient) {
+                                                   return gradient > 0.0 ? 0.5 * slip : slip;
+                                                 }},
+                                           Fault{"none", [](double slip, double) { return slip; }}),
                          [](const auto& each) { return each.param.name; });
 
 // Property: a journal's replay tells drives apart as the telemetry did, to the bit.

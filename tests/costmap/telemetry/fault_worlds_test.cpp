@@ -109,17 +109,19 @@ class World {
 
 // Of all wheels of a moment.
 struct Read {
-  double x_m, y_m, slope_rad, slip;
+  double time_s, x_m, y_m, slope_rad, slip;
 };
 
-const char* const kFaults[] = {"none",      "offset",       "scale",       "step",
-                               "stuck",     "of_class",     "delay",       "pose_offset",
-                               "pose_jump", "slope_offset", "slope_scale", "one_wheel"};
+const char* const kFaults[] = {"none",        "offset",    "scale",        "step",
+                               "stuck",       "of_class",  "delay",        "pose_jump",
+                               "pose_offset", "time_step", "slope_offset", "slope_scale",
+                               "all_stuck",   "divided",   "uphill",       "one_wheel"};
 
 // What the sensors make of the moments of a drive.
 void spoil(const std::string& fault, std::vector<Read>& drive, World& world, const Pull& of_class) {
   const std::vector<Read> sound = drive;
-  const double amount = world.uniform(-0.2, 0.2), scale = world.uniform(0.4, 1.3);
+  const double amount = world.uniform(-0.2, 0.2), scale = world.uniform(0.4, 1.3),
+               steeper = world.uniform(0.5, 2.0);
   const auto from = static_cast<std::size_t>(world.uniform(0.1, 0.9) * static_cast<double>(drive.size()));
   const auto late = static_cast<std::size_t>(world.uniform(1.0, 12.0));
   for (std::size_t i = 0; i < drive.size(); ++i) {
@@ -131,34 +133,44 @@ void spoil(const std::string& fault, std::vector<Read>& drive, World& world, con
     if (fault == "delay") read.slip = sound[i - std::min(i, late)].slip;
     if (fault == "pose_offset" || (fault == "pose_jump" && i >= from)) read.y_m += 20.0 * amount;
     if (fault == "slope_offset") read.slope_rad += 0.5 * amount;
-    if (fault == "slope_scale") read.slope_rad *= scale;
+    if (fault == "slope_scale") read.slope_rad *= steeper;
+    if (fault == "time_step" && i >= from) read.time_s += 2500.0 * amount;
+    if (fault == "all_stuck") read.slip = 0.1 + 0.5 * amount;
+    if (fault == "divided") read.slip *= 0.01;
+    if (fault == "uphill" && read.slope_rad > 0.0) read.slip *= 0.5 * scale;
     read.slip = std::clamp(read.slip, -1.0, 1.0);
   }
 }
 
+// Along three lines over the waves; a gentle drive goes along their crests and hollows, on slopes to 0.05.
 terramech::Telemetry driven(World& world, const Pull& of_class, const TraversabilityMap& map,
-                            const std::string& fault, int number) {
+                            const std::string& fault, int number, bool gentle = false) {
   Drive out;
   const double load_N = terramech::wheelLoad_N(map.model().rover());
   const double one_wheel = fault == "one_wheel" ? world.uniform(-0.3, 0.3) : 0.0;
   for (int line = 0; line < 3; ++line) {
-    const double way = line % 2 == 0 ? 1.0 : -1.0, y_m = 8.5 + 14.0 * line + world.uniform(-2.0, 2.0);
+    const double way = line % 2 == 0 ? 1.0 : -1.0;
+    const double beside_m = gentle ? 6.8 + 12.57 * line : 8.5 + 14.0 * line + world.uniform(-2.0, 2.0);
+    const double heading_rad = (gentle ? 0.5 : 0.0) * std::numbers::pi + (way > 0.0 ? 0.0 : std::numbers::pi);
+    const double east = std::cos(heading_rad), north = std::sin(heading_rad);
     std::vector<Read> drive;
     for (int i = 0; i < 90; ++i) {
-      const double x_m = 24.0 + way * (0.47 * i - 20.7);
-      const double gradient = way * map.published()->at(*map.grid().cellAt({x_m, y_m})).dzDx();
-      const double slip = world.slip(gradient, {x_m, y_m});
-      drive.push_back({x_m, y_m, std::atan(gradient) + 0.005 * world.noise(), slip + 0.015 * world.noise()});
+      const double along_m = 24.0 + way * (0.47 * i - 20.7);
+      const maps::Point at = gentle ? maps::Point{beside_m, along_m} : maps::Point{along_m, beside_m};
+      const auto cell = map.published()->at(*map.grid().cellAt(at));
+      const double gradient = east * cell.dzDx() + north * cell.dzDy();
+      const double slip = world.slip(gradient, at);
+      drive.push_back({1e5 * number + 1e4 * line + 2.0 * i, at.x_m, at.y_m,
+                       std::atan(gradient) + 0.005 * world.noise(), slip + 0.015 * world.noise()});
     }
     spoil(fault, drive, world, of_class);
     for (std::size_t i = 0; i < drive.size(); ++i)
       for (int w = 0; w < kWheels; ++w) {
         const double slip = drive[i].slip + 0.005 * world.noise() + (w == 1 ? one_wheel : 0.0);
-        out.rows.push_back({1e5 * number + 1e4 * line + 2.0 * static_cast<double>(i),
-                            drive[i].x_m + way * (w < 2 ? 0.4 : -0.4),
-                            drive[i].y_m + (w % 2 == 0 ? 0.3 : -0.3), way > 0.0 ? 0.0 : std::numbers::pi,
-                            drive[i].slope_rad, std::clamp(slip, -1.0, 1.0), load_N, 0.0, 0.0,
-                            w < 2 ? 1.0 : 2.0});
+        const double ahead_m = w < 2 ? 0.4 : -0.4, left_m = w % 2 == 0 ? 0.3 : -0.3;
+        out.rows.push_back({drive[i].time_s, drive[i].x_m + east * ahead_m - north * left_m,
+                            drive[i].y_m + north * ahead_m + east * left_m, heading_rad, drive[i].slope_rad,
+                            std::clamp(slip, -1.0, 1.0), load_N, 0.0, 0.0, w < 2 ? 1.0 : 2.0});
         out.run.push_back("line" + std::to_string(line));
         out.wheel.push_back("w" + std::to_string(w));
       }
@@ -166,28 +178,33 @@ terramech::Telemetry driven(World& world, const Pull& of_class, const Traversabi
   return tableOf(out, false);
 }
 
-// Cells that are allowed straight up, and of them those that do not hold.
-struct Allowed {
-  std::vector<bool> cell = std::vector<bool>(static_cast<std::size_t>(kSide * kSide));
-  int wrong = 0;
-};
-
-Allowed allowedOn(const TraversabilityMap& map, const World& world) {
-  Allowed out;
+// Cells that are allowed straight up.
+std::vector<bool> allowedOn(const TraversabilityMap& map) {
+  std::vector<bool> cells;
   for (int row = 0; row < kSide; ++row)
     for (int column = 0; column < kSide; ++column) {
       const auto cell = map.published()->at({column, row});
       const double gradient = std::hypot(cell.dzDx(), cell.dzDy());
-      const bool allowed =
-          map.model().state(0, *map.ground({column, row}), gradient).refusal == Refusal::None;
-      out.cell[static_cast<std::size_t>(row * kSide + column)] = allowed;
-      out.wrong += allowed && !world.holds(map.grid().centre({column, row}), gradient) ? 1 : 0;
+      cells.push_back(map.model().state(0, *map.ground({column, row}), gradient).refusal == Refusal::None);
     }
-  return out;
+  return cells;
 }
 
-// Property: faulty drives, one to three of one kind, by themselves or behind a sound one, leave no more cells allowed that do not hold
-// than there were before them, but for three in a thousand cells of one world in a hundred; and sound ones neither.
+// Cells that are allowed, were not before, and do not hold.
+int freedBy(const TraversabilityMap& map, const World& world, const std::vector<bool>& before) {
+  const std::vector<bool> after = allowedOn(map);
+  int freed = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const maps::Cell at{static_cast<int>(i) % kSide, static_cast<int>(i) / kSide};
+    const auto cell = map.published()->at(at);
+    const double gradient = std::hypot(cell.dzDx(), cell.dzDy());
+    freed += after[i] && !before[i] && !world.holds(map.grid().centre(at), gradient) ? 1 : 0;
+  }
+  return freed;
+}
+
+// Property: faulty drives, one to three of one kind, by themselves, behind a sound one or behind a sound one on gentle ground, make no cell
+// allowed that does not hold, but for three in a thousand cells of one world in a hundred; and sound ones neither.
 TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
   const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 200);
   const auto class_model = groundOf(testSand(), kWheels);
@@ -198,20 +215,22 @@ TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
     World world(seed);
     const std::string fault = kFaults[seed % std::size(kFaults)];
     TraversabilityMap map(world.layers(), class_model, {});
-    if (seed / std::size(kFaults) % 2 == 0) addDrive(map, driven(world, of_class, map, "none", 0));
-    const Allowed before = allowedOn(map, world);
+    const std::size_t first = seed / std::size(kFaults) % 3;
+    if (first > 0) addDrive(map, driven(world, of_class, map, "none", 0, first == 2));
+    const std::vector<bool> before = allowedOn(map);
     const int times = 1 + static_cast<int>(seed % 3);
     for (int i = 1; i <= times; ++i) addDrive(map, driven(world, of_class, map, fault, i));
-    const Allowed after = allowedOn(map, world);
-    const int more = after.wrong - before.wrong;
+    const int more = freedBy(map, world, before);
     freed[fault].push_back(more);
     worse += more > 3 * kSide * kSide / 1000 ? 1U : 0U;
+    if (more > 0)
+      std::cout << "world " << seed << ": " << fault << ", first " << first << ", " << times << " times, "
+                << more << " cells\n";
   }
   for (const auto& [fault, cells] : freed) {
     const auto worlds = std::ranges::count_if(cells, [](int more) { return more > 0; });
     std::cout << fault << ": " << cells.size() << " worlds, " << worlds
-              << " with more cells allowed that do not hold, most " << *std::ranges::max_element(cells)
-              << '\n';
+              << " with cells freed that do not hold, most " << *std::ranges::max_element(cells) << '\n';
   }
   EXPECT_LE(worse, std::max(part.count / 100, 1U));
 }
