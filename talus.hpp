@@ -1,7 +1,7 @@
 #pragma once
 
-/// What every part of Talus has in common: the error of unusable input, the monitor of long work, the unit of angle that
-/// people read. Programs that embed Talus include it with the entry header of the module they use.
+/// Common parts of all modules: InputError, ProgressMonitor and angle constants. Programs that embed Talus
+/// include this header with the entry header of the module.
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>

@@ -1,4 +1,4 @@
-// In this unit alone, so that nothing need be linked.
+// Compiles xxHash into this source file alone, so that no xxHash library needs to be linked.
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 

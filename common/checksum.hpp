@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// A 64-bit checksum of bytes given in any pieces: XXH3 of xxHash, seed 0. It detects damage, not malice.
+/// Incremental 64-bit checksum of a byte sequence: XXH3 of xxHash with seed 0. Detects accidental damage, not
+/// deliberate change.
 class Checksum {
  public:
   Checksum();
@@ -15,7 +16,7 @@ class Checksum {
   Checksum& operator=(Checksum&&) noexcept;
 
   void add(const void* data, std::size_t size) noexcept;
-  /// Of all bytes so far; more may be added.
+  /// Checksum of all bytes added so far. More bytes may be added afterwards.
   std::uint64_t value() const noexcept;
 
  private:

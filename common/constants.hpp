@@ -3,7 +3,6 @@
 #include <limits>
 #include <numbers>
 
-/// Numbers that many files use.
 namespace talus {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< one degree [rad]

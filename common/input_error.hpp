@@ -5,14 +5,15 @@
 
 namespace talus {
 
-/// A file or a value handed in by the user cannot be used; what() is one line: what, where, remedy.
+/// Error for a file or value of the user that cannot be used. what() returns one line: "where: reason;
+/// remedy".
 class InputError : public std::runtime_error {
  public:
-  /// The parts of the line. `where` is a path with a line, band or cell; `remedy` is what to do about it.
+  /// The three components of the message.
   struct Parts {
-    std::string where;   ///< "site.tif, band 2" or "drive.csv:17"
-    std::string reason;  ///< "no CRS"
-    std::string remedy;  ///< "pass --resolution METRES"; may be empty
+    std::string where;   ///< file with line, band or cell: "site.tif, band 2" or "drive.csv:17"
+    std::string reason;  ///< the fault: "no CRS"
+    std::string remedy;  ///< what the user should do: "pass --resolution METRES"; may be empty
   };
 
   explicit InputError(Parts parts);

@@ -14,7 +14,7 @@ namespace {
 
 std::atomic<std::uint64_t> budget_bytes = 0;
 
-// Of /proc/meminfo; where there is none nothing is refused.
+// Half of MemAvailable of /proc/meminfo [bytes]. Infinite without that line, so that no request is refused.
 double halfOfTheFree() {
   std::ifstream file("/proc/meminfo");
   std::string name;
@@ -50,7 +50,7 @@ double memoryBudget() {
 
 void requireMemory(double bytes, const std::string& where) {
   const double budget = memoryBudget();
-  // What small files take is not worth the question.
+  // Requests below 1 MB skip the read of /proc/self/statm.
   constexpr double kSmall = 1e6;
   if (bytes < kSmall || bytes + inUse() <= budget) return;
   throw InputError(

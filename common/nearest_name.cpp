@@ -20,7 +20,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
-  if (word.size() > 100) return nearest;  // no name is so long
+  if (word.size() > 100) return nearest;  // longer than any known name
   std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known)
     if (const std::size_t edits = editDistance(word, name); edits < fewest) {

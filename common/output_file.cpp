@@ -41,7 +41,7 @@ bool isGone(std::string_view process) noexcept {
          ::kill(number, 0) != 0 && errno == ESRCH;
 }
 
-// What a killed process left beside a file.
+// Removes temporary files of `path` whose process no longer exists.
 void clearLeftovers(const fs::path& path) {
   const std::string stem = "." + path.stem().string() + ".";
   std::error_code ignored;
@@ -54,14 +54,14 @@ void clearLeftovers(const fs::path& path) {
   }
 }
 
-// A name in a folder that no other run and no other file of this run uses.
+// Path in `folder` that is unique among processes and calls: .STEM.PID-COUNT.EXTENSION.
 fs::path besideName(const fs::path& folder, const fs::path& path) {
   static std::atomic<unsigned> count = 0;
   return folder / ("." + path.stem().string() + "." + std::to_string(::getpid()) + "-" +
                    std::to_string(count++) + path.extension().string());
 }
 
-// Unfinished files of this process, for the end by a signal.
+// Uncommitted temporary files of this process, for removeUnfinishedFiles().
 struct Unfinished {
   std::mutex mutex;
   std::set<fs::path> paths;
@@ -72,7 +72,7 @@ Unfinished& unfinished() {
   return all;
 }
 
-/// A file descriptor that closes itself.
+/// A file descriptor that is closed by its destructor.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC)) {}
@@ -87,9 +87,9 @@ class Descriptor {
   int number_;
 };
 
-// False with errno set.
+// Copies the bytes of `from` to `to`. Returns false with errno set on failure.
 bool copied(const fs::path& from, const fs::path& to) {
-  // A FIFO that nobody reads is refused, not waited for.
+  // O_NONBLOCK makes the open of a FIFO without a reader fail at once instead of blocking.
   const Descriptor out(to, O_WRONLY | O_NONBLOCK);
   if (*out < 0) return false;
   ::fcntl(*out, F_SETFL, 0);
@@ -105,7 +105,8 @@ bool copied(const fs::path& from, const fs::path& to) {
   return true;
 }
 
-// Onto the disk, so that a power cut after the rename finds the whole file.
+// Synchronises the file to the disk before the rename, so that a power failure after the rename leaves a
+// complete file.
 bool synced(const fs::path& path) {
   const Descriptor file(path, O_RDONLY);
   return *file >= 0 && ::fsync(*file) == 0;

@@ -6,38 +6,41 @@
 
 namespace talus {
 
-/// A file that appears whole or not at all: written beside its place, put onto the disk, then renamed onto it. A link
-/// keeps pointing where it did; a device or a FIFO stays one and gets the bytes. What a killed process left beside
-/// the place goes with the next file for it.
+/// A file that is replaced atomically: the content goes to a temporary file in the same folder, is
+/// synchronised to the disk and then renamed to the final path. A symbolic link stays a link, and its target
+/// is replaced. A device or a FIFO receives the bytes by copying. The constructor removes temporary files of
+/// the same name that terminated processes left.
 class OutputFile {
  public:
-  /// Throws InputError when the folder is missing, or the place is a folder or cannot be written: at once, so that a
-  /// long run does not fail at its end.
+  /// Throws InputError if the folder does not exist or is not writable, or if the path is a directory. The
+  /// check precedes the computation, so that a long run does not fail at its end.
   explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Where to write; it has the extension of the final name.
+  /// Path to write the content to; has the extension of the final path.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
-  /// Puts what was written in its place. Throws InputError when that fails, and leaves what was there.
+  /// Moves the temporary file to the final path. Throws InputError on failure and leaves the previous file
+  /// unchanged.
   void commit();
 
-  /// Throws InputError: the file cannot be written, because of `reason`.
+  /// Throws InputError with the message "cannot be written: `reason`".
   [[noreturn]] void fail(const std::string& reason) const;
 
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;
-  bool in_place_ = false;  // a device or a FIFO
+  bool in_place_ = false;  // whether the path is a device or a FIFO
 };
 
-/// Writes a whole file through OutputFile. Throws InputError when it cannot be written, also for a full disk.
+/// Writes `content` to a file through OutputFile. Throws InputError if the file cannot be written, for
+/// example on a full disk.
 void writeFile(const std::filesystem::path& path, std::string_view content);
 
-/// Removes what this process has begun to write beside its files and not put in place: the last act before it ends by
-/// a signal.
+/// Removes the temporary files of this process that were not committed. Called before the process ends by a
+/// signal; returns without action if another thread holds the list of files.
 void removeUnfinishedFiles() noexcept;
 
 }  // namespace talus

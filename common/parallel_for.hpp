@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// Calls each(k) for k = 0 .. count - 1, on `threads` threads, this one among them. Calls for different k
-/// must not depend on each other. The first exception ends the loop, once calls that have begun are done, and
-/// is thrown here.
+/// Calls each(k) for k = 0 .. count - 1 on `threads` threads, the calling thread included. Calls for
+/// different k must be independent. The first exception stops the loop and is rethrown in the calling thread
+/// after the calls in progress have finished.
 template <typename Each>
 void parallelFor(std::size_t count, int threads, Each each) {
   std::atomic<std::size_t> next{0};

@@ -5,13 +5,13 @@
 
 namespace talus {
 
-/// How a caller follows long work and stops it. Copyable; both parts may be empty.
+/// Progress callback and stop token of a long computation. Copyable; both members may be empty.
 struct ProgressMonitor {
   std::function<void(double)>
-      progress;          ///< called now and then with the fraction done, 0 to 1, from one thread
-  std::stop_token stop;  ///< work ends early, at its next check, once a stop is requested
+      progress;          ///< called repeatedly with the fraction done [-], 0 to 1, from one thread
+  std::stop_token stop;  ///< the computation ends early, at its next check, after a stop request
 
-  /// Reports the fraction done [-], 0 to 1.
+  /// Calls `progress` with the fraction done [-], 0 to 1.
   void report(double fraction) const {
     if (progress) progress(fraction);
   }

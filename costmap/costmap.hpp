@@ -1,6 +1,6 @@
 #pragma once
 
-/// Entry header of talus::costmap: the map of what is believed of each cell, how wheels teach it, and its file.
+/// Entry header of talus::costmap: traversability map, learning from wheel measurements, and map files.
 
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/explanation.hpp>

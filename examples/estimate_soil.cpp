@@ -1,6 +1,7 @@
-// Shows   how the strength of the soil comes from what a driving wheel feels, sample by sample, in constant
-// memory. Needs   talus::terramech. Prints  cohesion and friction angle after each ten samples, beside the
-// soil that made them. Next    rover_loop.cpp: putting what was learned into the map.
+// Shows   estimating soil strength from the readings of a driven wheel, sample by sample, in constant memory.
+// Needs   talus::terramech.
+// Prints  cohesion and friction angle after every ten samples, and those of the simulated soil.
+// Next    rover_loop.cpp: updating the map with the estimates.
 
 #include <cmath>
 #include <cstdio>
@@ -11,7 +12,7 @@ namespace {
 
 namespace terramech = talus::terramech;
 
-// What the wheel would feel at a slip: here from the Wong-Reece equilibrium, on a rover from its sensors.
+// Simulated wheel readings at a slip, from the Wong-Reece equilibrium; on a rover the sensors supply them.
 terramech::WheelSample felt(const terramech::Soil& soil, const terramech::Wheel& wheel,
                             terramech::WheelOperation operation) {
   const terramech::WheelForces forces = terramech::equilibrium(soil, wheel, operation);

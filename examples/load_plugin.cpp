@@ -1,7 +1,7 @@
-// Shows   how a rover's program loads a planner it was not built with, gives it a map and asks for a route.
+// Shows   loading a planner from a shared library, giving it a map and requesting a route.
 // Needs   talus::planner; a planner's shared library, as installed in lib/talus/libtalus_planner.so.
-// Prints  what the plugin offers, and the route's turns.
-// Next    rover_loop.cpp: replanning while the ground is learned.
+// Prints  the plugin's planners, and length, energy, time and number of vertices of the route.
+// Next    rover_loop.cpp: replanning while the map changes.
 
 #include <cstdio>
 #include <exception>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// Flat sand, 40 m x 30 m, with a wall of rock that leaves a gap in the south.
+// Flat sand, 40 m x 30 m, with a wall of rock that has a gap in the south.
 std::shared_ptr<const talus::costmap::CostGrid> groundWithWall() {
   const talus::maps::Grid grid{.width = 80, .height = 60, .resolution_m = 0.5, .south_west = {}};
   talus::costmap::MapLayers layers;

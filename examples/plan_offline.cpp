@@ -1,7 +1,7 @@
-// Shows   planning on the ground: an elevation file, a rover and a soil from the library, a route with its
-// numbers. Needs   talus::planner, talus::maps_io (GDAL), talus::terramech_io (YAML); an elevation file such
-// as hill.asc. Prints  the route's turns with slope and slip, and its sums there and back: on a slope they
-// differ. Next    `talus plan --help` does this and more from the command line.
+// Shows   planning with an elevation file, and a rover and a soil from the library.
+// Needs   talus::planner, talus::maps_io (GDAL), talus::terramech_io (YAML); an elevation file such as hill.asc.
+// Prints  length, energy, time, steepest slope and largest slip, there and back: on a slope they differ.
+// Next    `talus plan --help` does the same and more from the command line.
 
 #include <cstdio>
 #include <exception>
@@ -25,7 +25,7 @@ void print(const char* title, const Route& route) {
 int run(const char* file) {
   talus::costmap::MapLayers layers;
   talus::maps::ReadOptions options;
-  options.resolution_m = 1.0;  // the file names no coordinate system
+  options.resolution_m = 1.0;  // the file has no coordinate system
   layers.elevation = talus::maps::readElevation(file, options);
   talus::costmap::GroundModel::Parts ground;
   ground.rover = talus::terramech::loadRover("mer");

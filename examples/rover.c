@@ -1,5 +1,6 @@
-/* Shows   Talus in a rover's program in C: see ground, plan, drive a little, let the wheels teach, plan again.
- * Needs   talus::c, that is talus.h and libtalus.so.  Prints  a line a step.
+/* Shows   Talus in a rover's loop in C: observe the ground, plan, drive a little, process wheel telemetry.
+ * Needs   talus::c, that is talus.h and libtalus.so.
+ * Prints  one line per step: position, remaining length and energy.
  * Next    rover_loop.cpp: the same in C++. */
 #include <math.h>
 #include <stdio.h>
@@ -47,12 +48,12 @@ static talus_session begin(void) {
   soil.frictional_modulus = 820000.0;
   talus_default_options(&options);
   options.allow_unknown = 1;
-  for (i = 0; i < WIDTH * HEIGHT; ++i) heights[i] = NAN; /* nobody has seen it yet */
+  for (i = 0; i < WIDTH * HEIGHT; ++i) heights[i] = NAN; /* not observed */
   must(talus_create(&rover, &soil, 1, &grid, &layers, &options, &session, &error), &error);
   return session;
 }
 
-/* 12 m of ground around the rover: level, with a wall of rock that is open in the north. */
+/* Observes 12 m x 12 m of level ground around the rover, with a wall of rock that has a gap in the north. */
 static void look(talus_session session, double x_m, double y_m) {
   talus_error error;
   const int column = least(greatest((int)(x_m / 0.5) - SEEN / 2, 0), WIDTH - SEEN);

@@ -1,5 +1,6 @@
-// Shows   the planner inside a rover's loop: see ground, drive a little, listen to the wheels, plan again.
-// Needs   talus::planner. Prints  a line a step: where the rover is, what is left to go, what the wheels say.
+// Shows   the planner in a rover's loop: observe the ground, plan, drive a little, process wheel telemetry.
+// Needs   talus::planner.
+// Prints  one line per step: position, remaining cost, and DP/W of the ground with its standard deviation.
 // Next    load_plugin.cpp: the same planner from a shared library.
 
 #include <algorithm>
@@ -20,7 +21,7 @@ using talus::maps::Point;
 
 const talus::maps::Grid kGrid{.width = 120, .height = 80, .resolution_m = 0.5, .south_west = {}};
 
-// The world: a hill, a strip of soft ground, and a wall of rocks across the way, open in the north.
+// Simulated ground: a hill, a strip of soft ground, and a wall of rocks with a gap in the north.
 float height(Point p) {
   return static_cast<float>(1.5 * std::exp(-0.01 * (std::pow(p.x_m - 20, 2) + std::pow(p.y_m - 6, 2))));
 }
@@ -45,7 +46,7 @@ talus::terramech::Rover rover() {
   return rover;
 }
 
-// A map that nobody has seen yet: what is unknown counts as level ground of the one class of soil.
+// Returns a map without observations: unknown ground counts as level ground of its single soil class.
 talus::costmap::TraversabilityMap unseen() {
   talus::terramech::Soil soil;
   soil.name = "regolith";
@@ -60,7 +61,7 @@ talus::costmap::TraversabilityMap unseen() {
   return {std::move(layers), model, {}};
 }
 
-// What the rover sees around it, 12 m far, as a window on the map's cells; NaN: not observed.
+// Simulated perception within 12 m of the rover, as a window of the map's cells; NaN: not observed.
 talus::costmap::SurfacePatch look(Point from) {
   const Cell here = *kGrid.cellAt(from);
   const Cell first{std::max(here.column - 24, 0), std::max(here.row - 24, 0)};
@@ -81,7 +82,8 @@ talus::costmap::SurfacePatch look(Point from) {
   return seen;
 }
 
-// What four wheels read at one moment: on soft ground they slip and sink. Columns as in a telemetry file.
+// Simulated readings of four wheels at one time: higher slip and sinkage on soft ground. Columns as in a
+// telemetry file.
 talus::terramech::Telemetry wheels(Point at, double heading_rad, double time_s) {
   talus::terramech::Telemetry t;
   t.source = "wheels";
@@ -110,7 +112,7 @@ talus::terramech::Telemetry wheels(Point at, double heading_rad, double time_s) 
   return t;
 }
 
-// The place some metres along the route, and the heading there.
+// Place and heading at a distance along the route.
 struct Reached {
   Point place;
   double heading_rad;
@@ -136,13 +138,13 @@ int main() {
   const auto planner = talus::planner::makePlanner("field");
   planner->configure({.planner = "field", .time_limit_s = 5.0});
   planner->set_map(map.published());
-  std::stop_source stop;  // another thread may ask to stop at any time
+  std::stop_source stop;  // another thread may request a stop at any time
   talus::PlanRequest request;
   request.start = {5.0, 10.0};
   request.goal = {55.0, 10.0};
   request.watch.stop = stop.get_token();
   for (int step = 0; step < 100 && !(request.start == request.goal); ++step) {
-    map.patch(look(request.start));  // publishes what the wheels taught since, too
+    map.patch(look(request.start));  // also publishes the effects of the telemetry since the last patch
     planner->update(map.published());
     const talus::planner::Route route = planner->plan(request);
     if (route.status != talus::planner::RouteStatus::Found) {

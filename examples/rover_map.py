@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Shows   a map that grows as the rover sees, learns from its wheels and plans anew, in Python.
-Needs   the package talus. Prints  a line a step: where the rover is, what is left to go.
+"""Shows   a map that grows with observations and wheel telemetry, and replanning, in Python.
+Needs   the package talus.
+Prints  one line per step: position, remaining length and energy.
 Next    rover_loop.cpp: the same in C++."""
 
 import math
@@ -14,7 +15,7 @@ WIDTH, HEIGHT, SEEN, CELL_M = 80, 60, 24, 0.5
 
 
 def look(ground: talus.Map, x_m: float, y_m: float) -> None:
-    """12 m of ground around the rover: level, with a wall of rock that is open in the north."""
+    """Observe 12 m x 12 m of level ground around the rover, with a wall of rock that has a gap in the north."""
     column = min(max(int(x_m / CELL_M) - SEEN // 2, 0), WIDTH - SEEN)
     row = min(max(int(y_m / CELL_M) - SEEN // 2, 0), HEIGHT - SEEN)
     rows, columns = np.mgrid[row : row + SEEN, column : column + SEEN]
@@ -27,7 +28,7 @@ def look(ground: talus.Map, x_m: float, y_m: float) -> None:
 
 
 def drive(ground: talus.Map, x_m: float, y_m: float, heading_rad: float, time_s: float) -> int:
-    """Four wheels that slip little."""
+    """Add telemetry of four wheels with low slip."""
     ahead, left = np.array([0.45, 0.45, -0.45, -0.45]), np.array([0.4, -0.4, 0.4, -0.4])
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     return ground.learn(

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Shows   a map with two soils, a patch, what wheels teach, the routes before and after, and pictures of each.
-Needs   the packages talus and matplotlib.  Prints  a line a step; writes PNGs into the folder that is named, or here.
+"""Shows   a map with two soils, a patch and telemetry, routes before and after, and pictures of each.
+Needs   the packages talus and matplotlib.
+Prints  one line per step; writes PNGs to the given folder, default the current one.
 Next    rover_map.py: a map that grows as the rover drives."""
 
 import math
@@ -25,21 +26,21 @@ START, GOAL = (8.0, 25.0), (72.0, 25.0)
 
 
 def hills() -> Floats:
-    """Rolling ground, up to some 2 m high."""
+    """Return rolling ground, up to some 2 m high."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] * CELL_M + 0.5 * CELL_M
     heights = 0.8 * np.sin(x / 11.0) * np.cos(y / 9.0) + 1.2 * np.exp(-((x - 25.0) ** 2 + (y - 20.0) ** 2) / 60.0)
     return np.asarray(heights, np.float32)
 
 
 def soils() -> npt.NDArray[np.uint8]:
-    """Class 1 nearly everywhere, a band of class 2 across the way."""
+    """Return class 1 everywhere except a band of class 2 across the route."""
     classes = np.ones((HEIGHT, WIDTH), np.uint8)
     classes[:, 84:112] = 2
     return classes
 
 
 def crater(ground: talus.Map, x_m: float, y_m: float) -> None:
-    """A crater with a steep wall that perception sees when the rover is near: a patch of heights."""
+    """Patch the heights with a crater with a steep wall, as observed from close range."""
     reach = 16
     column, row = round(x_m / CELL_M) - reach, round(y_m / CELL_M) - reach
     y, x = np.mgrid[row : row + 2 * reach, column : column + 2 * reach] * CELL_M + 0.5 * CELL_M
@@ -50,7 +51,7 @@ def crater(ground: talus.Map, x_m: float, y_m: float) -> None:
 
 
 def weak_drive(ground: talus.Map) -> int:
-    """Four wheels on a track into the band of class 2: they slip and sink far more than its soil would let them."""
+    """Add telemetry of four wheels in the band of class 2, with far more slip and sinkage than its soil predicts."""
     ahead, left = np.array([0.45, 0.45, -0.45, -0.45]), np.array([0.4, -0.4, 0.4, -0.4])
     x = np.repeat(np.arange(42.5, 46.0, 0.5), 4)
     moments = np.arange(x.size // 4)
@@ -113,7 +114,7 @@ def picture_of_strength(before: Floats, ground: talus.Map, path: pathlib.Path) -
         shown = axes.imshow(values, origin="lower", extent=extent(ground), cmap="viridis", vmin=low, vmax=high)
         ends(axes, title)
         figure.colorbar(shown, ax=axes, label="DP/W [-]", shrink=0.8)
-    # White: cells that hold telemetry.
+    # White: cells with telemetry.
     rows, columns = np.nonzero(after["evidence"])
     right.plot((columns + 0.5) * CELL_M, (rows + 0.5) * CELL_M, ".", color="white", markersize=1)
     figure.savefig(path, dpi=110)

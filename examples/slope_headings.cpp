@@ -1,6 +1,8 @@
-// Shows   at what slip and slip angle a rover holds an inclined plane, for headings all around: what crossing
-// a slope takes, and why some headings fail. Needs   talus::terramech, talus::terramech_io. Prints  one row a
-// heading. Call    slope_headings SOIL ROVER TILT_DEG. Next    plan_offline.cpp: a route over such ground.
+// Shows   slip and slip angle of a rover at equilibrium on an inclined plane, for headings all around.
+// Needs   talus::terramech, talus::terramech_io.
+// Prints  one row per heading, with the reason where there is no equilibrium.
+// Call    slope_headings SOIL ROVER TILT_DEG.
+// Next    plan_offline.cpp: a route over such ground.
 
 #include <cmath>
 #include <cstdio>
@@ -16,7 +18,7 @@ namespace terramech = talus::terramech;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// Headings from straight uphill, over across with the slope rising to the left, to straight downhill.
+// Headings from straight uphill, through across with the slope rising to the left, to straight downhill.
 void print(const terramech::SlopeEquilibrium& equilibrium, double tilt_rad) {
   std::printf("heading  slip    slip angle  body turn  energy   reserve: pull  side   holds\n");
   for (int heading = 0; heading <= 180; heading += 15) {

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Entry header of talus::maps: elevation maps, heights from point clouds, places, georeference, slope and roughness.
+/// Entry header of talus::maps: elevation maps, heights from point clouds, positions, georeference, slope and
+/// roughness.
 
 #include <talus/maps/grid/point_heights.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>

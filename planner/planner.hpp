@@ -1,6 +1,6 @@
 #pragma once
 
-/// Entry header of talus::planner: routes by Talus' own planners or by one from a shared library, and the
+/// Entry header of talus::planner: routes by Talus' planners or by a planner from a shared library, and the
 /// independent check of a route.
 
 #include <talus/costmap/costmap.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Entry header of talus::terramech: forces on a wheel, what a slope costs a rover, categories, and the soil
-/// and the pull from what wheels read.
+/// Main header of talus::terramech: wheel forces, cost of slopes, traversability categories, and estimation
+/// of soil and drawbar pull from wheel readings.
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/rover.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Entry header of talus::terramech_io: soils, rovers and models from YAML, telemetry from CSV.
+/// Main header of talus::terramech_io: soils, rovers and models from YAML, telemetry from CSV.
 
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>

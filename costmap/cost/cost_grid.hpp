@@ -12,7 +12,7 @@
 
 namespace talus::costmap {
 
-/// 64x64 cells, row-major from the south-west corner.
+/// A block of 64x64 cells, row-major from the south-west corner.
 template <typename T>
 struct Tile {
   static constexpr int kSide = 64;
@@ -22,8 +22,8 @@ struct Tile {
 using CostTile = Tile<CellCode>;
 using HeightTile = Tile<float>;
 
-/// The tiles of a map, row-major. Copies share them by pages of 64, so that a copy costs next to nothing
-/// whatever the size of the map; changing one tile of a copy takes over its page alone.
+/// The tiles of a map, row-major, with copy-on-write in pages of 64 tiles. A copy of the table copies
+/// pointers only; a change of one tile copies the page of that tile.
 template <typename T>
 class SharedTiles {
  public:
@@ -42,30 +42,30 @@ class SharedTiles {
   static constexpr std::size_t kPage = 64;
   using Page = std::array<Shared, kPage>;
 
-  std::vector<const Tile<T>*> raw_;                 // what readers follow
-  std::vector<std::shared_ptr<const Page>> pages_;  // what keeps them alive
+  std::vector<const Tile<T>*> raw_;                 // direct access for readers
+  std::vector<std::shared_ptr<const Page>> pages_;  // ownership of the tiles
 };
 
 using TileTable = SharedTiles<CellCode>;
 using HeightTable = SharedTiles<float>;
 
-/// A raster cut into tiles; those over the east and north edge are padded.
+/// Divides a raster into tiles; tiles beyond the eastern and northern edge are padded.
 HeightTable tiled(const maps::Raster<float>& elevation_m);
 
-/// The table with the tiles that a box of cells touches cut anew; the others are shared.
+/// Returns the table with new tiles for the cells of a box; other tiles are shared.
 HeightTable retiled(HeightTable table, const maps::Raster<float>& elevation_m, const maps::CellBox& box);
 
-/// One version of the map as planners read it: immutable, so readers never wait and writers never wait for
-/// readers. Versions share the tiles that did not change.
+/// One version of the cost map for planners. Immutable: readers need no lock and never block the writer.
+/// Versions share unchanged tiles.
 class CostGrid {
  public:
-  /// The content of one version.
+  /// Content of one version.
   struct Content {
     maps::Grid grid;
-    TileTable tiles;  ///< those over the east and north edge are padded
+    TileTable tiles;  ///< tiles beyond the eastern and northern edge are padded
     std::shared_ptr<const DriveCost> cost;
     std::uint64_t version = 0;
-    HeightTable elevation_m{};  ///< NaN where not observed; no tiles: not known
+    HeightTable elevation_m{};  ///< NaN for unobserved cells; without tiles: unknown
   };
 
   explicit CostGrid(Content content);
@@ -76,13 +76,13 @@ class CostGrid {
   std::uint64_t version() const noexcept { return content_.version; }
   int tileColumns() const noexcept { return tile_columns_; }
 
-  /// The cell's code; the cell must lie inside the grid.
+  /// Code of a cell, which must lie inside the grid.
   CellCode at(maps::Cell c) const noexcept {
     const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
     return content_.tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   }
 
-  /// Elevation of the ground [m] as maps::elevationAt() has it; nothing where it is not known.
+  /// Elevation of the ground [m] by maps::elevationAt(); nullopt if unknown.
   std::optional<double> elevation_m(maps::Point point) const;
 
  private:
@@ -90,20 +90,20 @@ class CostGrid {
   int tile_columns_;
 };
 
-/// Cuts a raster of cell codes into a first version.
+/// First version of a cost map, from a raster of cell codes.
 CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost);
 
-/// What a new version changes.
+/// Changes from one version to the next.
 struct Revision {
-  std::vector<maps::CellBox> ranges;  ///< inside the grid; nothing else changes
-  /// The new code of a cell of the ranges, given its old one.
+  std::vector<maps::CellBox> ranges;  ///< the changed cells, inside the grid
+  /// New code of a cell of the ranges, from its position and its old code.
   std::function<CellCode(maps::Cell, CellCode)> code;
-  /// Of the new version, asked once all codes are known.
+  /// Cost function of the new version; called after all codes.
   std::function<std::shared_ptr<const DriveCost>()> cost;
-  std::optional<HeightTable> elevation_m{};  ///< of the new version; none: those of the old one
+  std::optional<HeightTable> elevation_m{};  ///< elevation of the new version; nullopt: unchanged
 };
 
-/// The next version: copies the tiles that the ranges touch and shares the others.
+/// The next version: copies the tiles that overlap the ranges and shares all others.
 CostGrid revised(const CostGrid& grid, const Revision& revision);
 
 }  // namespace talus::costmap

@@ -7,9 +7,9 @@
 
 namespace talus::costmap {
 
-/// The same map under other weights; tiles are shared, what is refused stays refused. Throws
-/// std::domain_error when the map's cost was made without the numbers behind it (DriveGround::states),
-/// std::invalid_argument for a negative weight.
+/// The same map with other cost weights; tiles are shared and refusals are unchanged. Throws
+/// std::domain_error if the map has a curve without DriveGround::states, std::invalid_argument for a negative
+/// weight.
 std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights);
 
 }  // namespace talus::costmap

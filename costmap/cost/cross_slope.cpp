@@ -18,22 +18,22 @@ using terramech::Gradient;
 using terramech::SlopeFailure;
 using terramech::SlopeState;
 
-constexpr double kAlongStep = 1.0 / 32.0;   // between gradients along at which a row is solved
-constexpr double kLevelStep = 1.0 / 128.0;  // the same of the level row under even loads
+constexpr double kAlongStep = 1.0 / 32.0;   // step of the gradients along of a row
+constexpr double kLevelStep = 1.0 / 128.0;  // the same for row 0 under even loads
 constexpr double kRowStep = 1.0 / DriveCurve::kRowsPerUnit;
-constexpr double kSpare = 1.25;  // rows beyond the limit, to know how far off failure is
+constexpr double kSpare = 1.25;  // rows solved beyond the limit, to find the failure
 constexpr int kBins = DriveCurve::kBins;
-constexpr double kBelow = 0.16;        // gradients downhill beyond the limit, to know how far off failure is
+constexpr double kBelow = 0.16;        // descents solved beyond the limit, to find the failure
 constexpr double kNowhere = 4.0;       // steeper than any cell
-constexpr double kUpright_rad = 2e-4;  // of the margin against tipping: by more its pieces are not off
-constexpr float kSamePlace = 0.02F;    // of a bin
+constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
+constexpr float kSamePlace = 0.02F;    // [bins]
 
-// The place of a gradient among the bins, within the table.
+// Position of a gradient in bins, clamped to the table.
 float placeOf(double gradient) {
   return static_cast<float>(std::clamp(gradient * DriveCurve::kBinsPerUnit + kBins / 2, 0.0, kBins - 1.0));
 }
 
-// A place between nodes; near to a node is on it.
+// A position between nodes; positions within kSamePlace of a node are on the node.
 struct Place {
   int whole;
   float share;
@@ -60,7 +60,7 @@ Refusal reasonOf(SlopeFailure failure) noexcept {
   }
 }
 
-// Greatest of any range of values, in tables of powers of two.
+// Maximum over any range of values by a sparse table (ranges of power-of-two length).
 class RangeMaximum {
  public:
   explicit RangeMaximum(std::vector<double> values) : levels_{std::move(values)} {
@@ -72,7 +72,7 @@ class RangeMaximum {
     }
   }
 
-  // Over all places from one to another, linear between values.
+  // Maximum over the positions from `from` to `to`, linear between values.
   double operator()(float from, float to) const noexcept {
     const Place a = placed(from), b = placed(to);
     const int first = a.whole + static_cast<int>(a.share > 0.0F);
@@ -100,7 +100,7 @@ class RangeMaximum {
   std::vector<std::vector<double>> levels_;
 };
 
-// The states over all places from one to another.
+// Calls `each` for the states at both positions and at all nodes between the positions.
 template <typename Each>
 void overPlaces(const DriveTable& states, float from, float to, Each each) {
   const Place a = placed(from), b = placed(to);
@@ -139,8 +139,8 @@ double riskOf(const DriveState& state) noexcept {
 }  // namespace
 
 struct CrossSlope::Strengths {
-  std::vector<SlopeRow> rows;         // the last may hold nothing
-  std::vector<double> losses, gains;  // of the steepest climb and of the steepest descent, by row that holds
+  std::vector<SlopeRow> rows;         // the last row may have no state
+  std::vector<double> losses, gains;  // of the steepest climb and descent, for each row with states
 };
 
 CrossSlope::Strengths CrossSlope::solvedRows(const SlopeRows& lattice, const SlopeRows& even_lattice,
@@ -150,7 +150,7 @@ CrossSlope::Strengths CrossSlope::solvedRows(const SlopeRows& lattice, const Slo
     all.rows.push_back(lattice.solved(row * kRowStep));
     const SlopeRow &here = all.rows.back(), even_here = even_lattice.solved(row * kRowStep);
     if (here.states.empty() || even_here.states.empty()) break;
-    // Where a rover that is about to tip ends it, what strength there is to lose is that under even loads.
+    // If tipping limits a row, the strength limit is that under even loads.
     const double strong_to = here.tips_behind ? even_here.last : here.last,
                  strong_from = here.tips_before ? even_here.first : here.first;
     all.losses.push_back(std::max(all.losses.empty() ? 0.0 : all.losses.back(), even.last - strong_to));
@@ -186,13 +186,13 @@ void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& 
 
 CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
                        const DriveCost::Limits& limits) {
-  // Up to the row beyond the limit, which gradients at the limit read; beyond 45 degrees across nothing is said to hold.
+  // Includes the row beyond the limit, which gradients at the limit read; gradients across are at most 1.
   const int needed = static_cast<int>(std::min(limits.max_across, 1.0) * DriveCurve::kRowsPerUnit) + 1;
   const double low = -std::min(limits.max_along + kBelow, 1.0),
                high = std::clamp(level.last + kAlongStep, 0.0, 1.0);
   const terramech::SlopeEquilibrium even_equilibrium = equilibrium.withEvenLoads();
   const SlopeRow even = SlopeRows(even_equilibrium, low, high, kLevelStep).solved(0.0);
-  if (level.first > level.last || even.states.empty()) {  // the states refuse the level row themselves
+  if (level.first > level.last || even.states.empty()) {  // the states themselves refuse row 0
     addLevelRow();
     climbs_.resize(2 * kBins, Climbs{.refused = Refusal::Pull});
     tabulateSteepest();
@@ -255,7 +255,7 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// What the equilibria about it say, the nearer one first; where they hold, on ground of the class, what such a row lacks first.
+// Failure of the nearer, else of the other adjacent equilibrium; else the usual reason in the row.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
@@ -271,7 +271,7 @@ Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   return other != SlopeFailure::None ? reasonOf(other) : lacks;
 }
 
-// Linear between the two equilibria about it, or as the one that holds.
+// Linear between the two adjacent equilibria, or equal to the only one that did not fail.
 SlopeHold CrossSlope::holdInRow(int row, double along) const noexcept {
   if (row >= static_cast<int>(held_.size())) return {};
   const std::vector<Held>& held = held_[static_cast<std::size_t>(row)];
@@ -294,7 +294,7 @@ SlopeHold CrossSlope::hold(const Gradient& gradient) const noexcept {
 }
 
 void CrossSlope::tabulateSteepest() {
-  constexpr int kHeadings = 24;  // over half a turn: left and right count alike
+  constexpr int kHeadings = 24;  // over 180 degrees: left and right are symmetric
   for (int step = 0; step <= 1024; ++step) {
     const double gradient = step * CellCode::kStep;
     double most = gradient;

@@ -12,76 +12,81 @@ namespace talus::costmap {
 class LevelClimbs;
 class SlopeRows;
 
-/// What the parts of the one cost function count: cost = energy_J * energy + time_s * time_W + hazard *
-/// risk_J.
+/// Weights of the cost function: cost = energy_J * energy + time_s * time_W + hazard * risk_J.
 struct CostWeights {
-  double energy = 1.0;  ///< [-], >= 0
-  double time_W = 1.0;  ///< joules that one second is worth, >= 0
-  double risk_J = 1e7;  ///< joules that the loss of the rover is worth, >= 0
+  double energy = 1.0;  ///< weight of energy [-], >= 0
+  double time_W = 1.0;  ///< weight of time [J/s], >= 0
+  double risk_J = 1e7;  ///< cost of the loss of the rover [J], >= 0
 };
 
-/// What a slope is worth on the ground of one class, as climbs straight up under even loads (ours): for every gradient
-/// along and across at the nodes of DriveCurve, row 0 included,
-/// - the climb that costs as much: on it SlopeEquilibrium finds no less energy and time a metre;
-/// - the climb that leaves as little: the strength that the ground may lose until nothing holds is the same. A
-///   loss d takes d of the pull and the share d / thrust of the side force, thrust the gross thrust over load
-///   at the reference slip;
-/// - the descent that is braked as hard, where it fails no more than 0.16 below the limit of pitch.
-/// None is less steep than the gradient along, and none gets gentler from row to row, so cost, risk and refusal never
-/// fall as the gradient across grows. All three are the class's own: a belief moves them as it moves the climbs. Nodes
-/// at which the rover tips are refused on any ground: how its body lies is that on the class's ground.
+/// Equivalent straight slopes for the ground of one class (ours). Each node of DriveCurve (gradient along,
+/// gradient across; row 0 included) is represented by three gradients without cross slope, under even wheel
+/// loads:
+///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
+///   - leaves: the climb with the same strength reserve, the loss of strength until failure. A loss d reduces
+///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust over load at
+///     the reference slip;
+///   - brakes: the descent with the same braking reserve, if descents fail at most 0.16 beyond the pitch
+///     limit.
+/// A climb is at least as steep as the node's gradient along, and no slope becomes less steep from row to
+/// row: cost, risk and refusal never decrease with the gradient across. The slopes follow from the class's
+/// soil alone; an estimate of the ground changes the states on these slopes. Nodes at which the rover tips
+/// are refused on any ground; the attitude of the body is computed on the class's ground.
 ///
-/// Both equilibria read one table of wheel forces, so that its errors cancel: a rover whose slopes move no load costs on
-/// row 0 what the mobility curve says. Along, equilibria are solved 1/32 apart, linear between. Where the gradients
-/// that hold fall apart into several ranges the longest counts. Immutable.
+/// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
+/// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
+/// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
+/// intervals, the interval nearest to level ground counts, of equally near intervals the longest. Immutable.
 class CrossSlope {
  public:
-  /// What the class's ground gives without crossing.
+  /// Limits and thrust of the class's ground without cross slope.
   struct Level {
-    double first = 0.0, last = -1.0;  ///< gradients along that hold; first > last: none
+    double first = 0.0, last = -1.0;  ///< interval of gradients along without failure; first > last: empty
     double thrust = 1.0;              ///< gross thrust over load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
              const DriveCost::Limits& limits);
 
-  /// Of a planner that knows slopes along the heading only: crossing costs nothing more and never fails. For
-  /// comparison with such planners.
+  /// Ignores cross slopes: no additional cost and no failure. For comparison with planners that consider
+  /// slopes along the heading only.
   static CrossSlope alongOnly();
 
-  /// Of ground that may be of either: the harder of both.
+  /// For ground of either class: at each node the harder of both.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
-  /// Rows that differ, the level one included; the last refuses every heading unless the limits come first.
+  /// Number of tabulated rows, row 0 included; later rows equal the last row, which refuses every heading
+  /// unless the limits are reached first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / DriveCurve::kBins; }
 
-  /// The state at a node: energy and time of the climbs up to that which costs as much, risk and refusal
-  /// of those up to that which leaves as little, with category and margin there. Rows beyond the last are as the last.
+  /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
+  /// the climbs up to `leaves`. Risk and refusal: from `brakes` to `leaves`.
   DriveState state(const DriveTable& states, int row, int bin) const noexcept;
 
-  /// Costs of all nodes, row by row: of state() each.
+  /// Costs [J/m] of all nodes, row by row: those of state().
   std::shared_ptr<const std::vector<float>> costs(const DriveTable& states, const CostWeights& weights) const;
 
-  /// How the rover holds a slope, linear between equilibria; of two grounds on the first.
+  /// Slip angle, side force and stability margin on a slope, interpolated between equilibria; after harder(a,
+  /// b), those of a.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// The climb that leaves as little as a slope; 4 where it holds on no ground.
+  /// Gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
   double climb(const terramech::Gradient& gradient) const noexcept;
-  /// The steepest of these climbs over the headings on a plane of this gradient, never below that.
+  /// Maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
   double steepest(double gradient) const noexcept;
 
  private:
-  // Places between bins; `refused` where nothing holds, whatever the strength.
+  // Positions in bins of DriveCurve; `refused` applies at any strength.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
-    float more_slip = 0.0F;  // than on the climb that costs as much
+    float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
     Refusal refused = Refusal::None;
   };
-  // What the equilibrium says at one of the gradients along of a row.
+  // Equilibrium at one gradient along of a row.
   struct Held {
     SlopeHold hold;
     terramech::SlopeFailure grip = terramech::SlopeFailure::None;
   };
-  // The gradients along between which level ground holds under even loads.
+  // Interval of gradients along without failure on row 0 under even loads.
   struct Ends {
     double first, last;
   };
@@ -101,12 +106,12 @@ class CrossSlope {
   Refusal reasonAt(int row, int bin) const noexcept;
 
   std::vector<Climbs> climbs_;
-  std::vector<std::vector<Held>> held_;  // by row, as far as any gradient holds
-  int first_along_ = 0;                  // of their first, in steps between equilibria
+  std::vector<std::vector<Held>> held_;  // by row, as far as any gradient has an equilibrium
+  int first_along_ = 0;                  // index of the first gradient along, in steps of kAlongStep
   std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };
 
-/// What a metre costs on ground with these states, under these weights, across slopes too.
+/// Cost per metre on ground with these states and weights, with the rows of `crossing` if not null.
 DriveCurve priced(const DriveTable& states, const CrossSlope* crossing, const CostWeights& weights);
 
 }  // namespace talus::costmap

@@ -34,7 +34,7 @@ std::vector<DriveCurve> curvesOf(const std::vector<DriveGround>& grounds) {
   return curves;
 }
 
-// The angle is least towards one of the wheels' four sides.
+// The stability margin on level ground is least towards one of the four sides of the wheel base.
 double steadyGradient(const terramech::RoverStance* stance) {
   const double margin_rad = stance ? stance->stabilityMargin_rad({}) : kInfinity;
   return margin_rad < 0.5 * std::numbers::pi ? std::tan(margin_rad) : kInfinity;

@@ -20,18 +20,18 @@ struct Direction {
   double y = 0.0;
 };
 
-/// One cell as planners read it, in 4 bytes: the gradient of the plane under the rover and the number of a
-/// drive curve. dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, at most half a step off),
-/// clamped to [-2, 2).
+/// Planner data of one cell in 4 bytes: the gradient of the plane under the rover and the index of a drive
+/// curve. dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, error at most half a step), clamped
+/// to [-2, 2).
 class CellCode {
  public:
-  static constexpr std::uint8_t kUnknown = 254;  ///< curve number of an unobserved cell
-  static constexpr std::uint8_t kBlocked = 255;  ///< curve number of a cell no heading may enter
+  static constexpr std::uint8_t kUnknown = 254;  ///< curve index of an unobserved cell
+  static constexpr std::uint8_t kBlocked = 255;  ///< curve index of a cell that no heading may enter
 
-  /// The parts that are packed.
+  /// The unpacked values.
   struct Parts {
-    double dz_dx = 0.0;  ///< rise over run eastwards [-]
-    double dz_dy = 0.0;  ///< rise over run northwards [-]
+    double dz_dx = 0.0;  ///< rise over run eastward [-]
+    double dz_dy = 0.0;  ///< rise over run northward [-]
     std::uint8_t curve = kUnknown;
   };
 
@@ -43,7 +43,7 @@ class CellCode {
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
   int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
   int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
-  /// The same ground under another curve number.
+  /// The same gradient with another curve index.
   CellCode withCurve(std::uint8_t curve) const noexcept {
     CellCode code = *this;
     code.bits_ = (bits_ & 0xffffff00U) | curve;
@@ -62,34 +62,34 @@ class CellCode {
   std::uint32_t bits_;
 };
 
-/// What one horizontal metre costs on one kind of ground, at nodes over the gradient along the heading (rise over run,
-/// climbing > 0), kBins of them at k/256, k = -256..255, and over the size of the gradient across, in rows at every
-/// 1/64; between them linear in both. Infinite where the motion is not allowed. Nothing is allowed that one of the nodes
-/// about it refuses: price() is finite only where every node of positive weight is.
+/// Cost per horizontal metre on one kind of ground, tabulated over the gradient along the heading (rise over
+/// run, climbing > 0; kBins nodes at k/256, k = -256..255) and over |gradient across| (rows at multiples of
+/// 1/64). Bilinear between nodes; infinite for a refused motion. price() is finite only if every node of
+/// positive weight is finite.
 struct DriveCurve {
   static constexpr int kBins = 512;
   static constexpr int kBinsPerUnit = 256;
   static constexpr int kRowsPerUnit = 64;
-  static constexpr double kSame = 1e-9;  ///< of a bin or row: nearer to a node is on it
+  static constexpr double kSame = 1e-9;  ///< tolerance [bins or rows] for positions on a node
   static constexpr double kLastPlace =
-      kBins - 1 - kSame;  ///< along, counted in bins; what is read ends before it
-  /// Row 0, nothing across: energy + weighted time + weighted risk, in joules.
+      kBins - 1 - kSame;  ///< upper bound of positions along [bins], exclusive
+  /// Row 0, without cross slope: energy + weighted time + weighted risk [J/m].
   std::array<float, kBins> cost_J_per_m;
-  /// All rows, row 0 first; the last stands for all beyond. None: crossing costs nothing more. In no bin may
-  /// costs fall from row to row: lower bounds rely on it.
+  /// All rows, row 0 first; gradients beyond use the last row. Null: no additional cost across. Costs must
+  /// not decrease from row to row in any bin, because lower bounds rely on monotone costs.
   std::shared_ptr<const std::vector<float>> crossing{};
 
-  /// The bin whose node is nearest to a gradient; outside 0..kBins-1 when the gradient leaves the table.
+  /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
   static int bin(double gradient) noexcept;
-  /// The gradient at a node, or at a place between nodes.
+  /// Gradient at a node, or at a position between nodes.
   static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
-  /// The first row that is not gentler than a gradient across.
+  /// First row whose gradient is at least |across|.
   static int row(double across) noexcept {
     const Between at = between((across < 0.0 ? -across : across) * kRowsPerUnit);
     return at.whole + static_cast<int>(at.share > 0.0F);
   }
 
-  /// The node at or before a place that is counted in nodes, >= 0, and how far the place is on its way to the next.
+  /// Node at or before a position in nodes (>= 0), and the fraction of the way to the next node.
   struct Between {
     int whole;
     float share;  ///< [0, 1]
@@ -100,11 +100,11 @@ struct DriveCurve {
     return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
   }
 
-  /// Costs of all rows, and the number of the last.
+  /// Costs of all rows, and the index of the last row.
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 
-  /// The cost at gradients along and across, both |g| <= 2; infinite outside the table.
+  /// Cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
   float price(double along, double across) const noexcept {
     constexpr float blocked = std::numeric_limits<float>::infinity();
     const double place = along * kBinsPerUnit + kBins / 2;
@@ -123,88 +123,90 @@ struct DriveCurve {
 
 class CrossSlope;
 
-/// What a radian of heading, or a change of direction, takes beside the path's own length.
+/// Cost of a turn of one radian, or of a change of direction, in addition to the path length.
 struct TurnPrice {
-  double cost_J = 0.0;    ///< under the one cost function, >= 0
+  double cost_J = 0.0;    ///< by the weights of the cost function, >= 0
   double energy_J = 0.0;  ///< >= 0
   double time_s = 0.0;    ///< >= 0
 };
 
-/// A radian of heading on one ground.
+/// Cost of a turn of one radian on one kind of ground.
 struct TurnPrices {
   TurnPrice on_arc;
   TurnPrice in_place;
-  TurnPrice at_vertex;  ///< of a polyline: in place for a rover that turns in place, else on an arc
+  TurnPrice at_vertex;  ///< vertex of a polyline: in place if the rover turns in place, else on an arc
 };
 
-/// One kind of ground: what a metre costs for the hot loop, and the numbers behind it.
+/// One kind of ground: the cost curve for planners and the states behind the costs.
 struct DriveGround {
   DriveCurve curve;
-  std::shared_ptr<const DriveTable> states;  ///< may be null where details are not needed (tests)
+  std::shared_ptr<const DriveTable> states;  ///< may be null if details are not needed (tests)
   std::shared_ptr<const CrossSlope>
-      crossing{};      ///< what the curve's rows are made by; null where it has none
-  TurnPrices turns{};  ///< a radian on the flat; zeros where turning is free (tests)
+      crossing{};      ///< source of the curve's rows; null for a curve without rows
+  TurnPrices turns{};  ///< cost of one radian on level ground; zeros if turning is free (tests)
 };
 
-/// How a rover holds a slope on the soil of its class, by the row and bin of the cost; NaN where nothing holds or is
-/// known.
+/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the class; NaN without
+/// an equilibrium.
 struct SlopeHold {
-  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();  ///< to the way made good, left positive
+  /// relative to the direction of travel, left positive
+  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double side_force_over_load = std::numeric_limits<double>::quiet_NaN();  ///< greatest |F|/N of a wheel
   double stability_margin_rad =
-      std::numeric_limits<double>::quiet_NaN();  ///< further tilt until it tips; NaN, too,
-                                                 ///< of a rover without a height
+      std::numeric_limits<double>::quiet_NaN();  ///< additional tilt until the rover tips; NaN also for a
+                                                 ///< rover without a height of the centre of mass
 };
 
-/// How the doubts about the soil of two places hang together, and what a place does whose soil is too weak.
+/// Correlation of the soil uncertainty between places, and the consequence of insufficient drawbar pull.
 struct SoilDoubt {
-  double correlation_length_m = 0.0;  ///< over which soil stays alike; 0: not known, each metre by itself
-  double entrapment = 1.0;            ///< share of the places with too weak soil that hold the rover [-]
-  std::vector<double> shared{};       ///< by class: share of the pull's variance that all of it has in common
+  double correlation_length_m = 0.0;  ///< correlation length of the soil; 0: unknown, every metre independent
+  double entrapment = 1.0;            ///< probability that a place with insufficient drawbar pull immobilises
+                                      ///< the rover [-]
+  std::vector<double> shared{};  ///< by class: fraction of the variance of the pull that all places share
 };
 
-/// The one cost function: what grid search, sampling planners, the final check and the reports all call.
-/// Immutable; safe to share between threads.
+/// The cost function that planners, route checks and reports share. Immutable and thread-safe.
 class DriveCost {
  public:
-  /// Limits that hold on every ground, as rise over run.
+  /// Limits on every ground, as rise over run.
   struct Limits {
-    double max_along = 0.36;   ///< steepest gradient along the heading, tan(max pitch)
-    double max_across = 0.36;  ///< steepest gradient across the heading, tan(max roll)
+    double max_along = 0.36;   ///< greatest gradient along the heading, tan(max pitch)
+    double max_across = 0.36;  ///< greatest gradient across the heading, tan(max roll)
     std::shared_ptr<const terramech::RoverStance>
-        stance{};  ///< beyond which the rover tips; none: it never does
+        stance{};  ///< geometry for the tipping limit; null: the rover never tips
   };
 
   /// Throws std::invalid_argument for more than 254 curves.
   DriveCost(const Limits& limits, std::vector<DriveCurve> curves);
   DriveCost(const Limits& limits, const std::vector<DriveGround>& grounds, SoilDoubt doubt = {});
 
-  /// Cost of driving one horizontal metre over the cell in a direction, in joules; infinite when not allowed.
+  /// Cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused motion.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
 
-  /// The numbers behind costPerMetre: finite cost exactly where refusal is None. Zeros, with the category
-  /// Unknown, where the curve has no table.
+  /// State behind costPerMetre(): the cost is finite if and only if refusal is None. Zeros with category
+  /// Unknown for a curve without states.
   DriveState detail(CellCode cell, Direction heading) const noexcept;
 
-  /// How the rover holds the slope there.
+  /// Slip angle, side force and stability margin on the cell.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
-  /// What a radian of heading takes at a vertex on this cell, and of each curve; free on cells without a curve.
+  /// Cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns() has the
+  /// costs by curve.
   TurnPrice turn(CellCode cell) const noexcept {
     return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnPrice{};
   }
   const std::vector<TurnPrices>& turns() const noexcept { return turns_; }
 
-  /// Whether a rover whose body points this way tips on the cell, standing or turning in place, on any soil.
+  /// Whether the rover tips on the cell with this heading, standing or turning in place, on any soil.
   bool tips(CellCode cell, Direction heading) const noexcept;
-  /// Whether it does in some heading.
+  /// Whether the cell is steep enough that the rover may tip in some heading.
   bool mayTip(CellCode cell) const noexcept;
 
   const Limits& limits() const noexcept { return limits_; }
-  /// What the risk of a whole route follows from, beside the hazard of each metre.
+  /// Correlation of the soil uncertainty, for the risk of a whole route.
   const SoilDoubt& doubt() const noexcept { return doubt_; }
   const std::vector<DriveCurve>& curves() const noexcept { return curves_; }
-  /// The numbers behind each curve; null where a curve was made without.
+  /// States of each curve; null for a curve made without states.
   const std::vector<std::shared_ptr<const DriveTable>>& states() const noexcept { return states_; }
   const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
 
@@ -216,7 +218,7 @@ class DriveCost {
   std::vector<std::shared_ptr<const DriveTable>> states_;
   std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   std::vector<TurnPrices> turns_;
-  double steady_gradient_;  // the steepest plane on which no heading tips
+  double steady_gradient_;  // gradient up to which no heading tips
   SoilDoubt doubt_;
 };
 

@@ -4,7 +4,8 @@
 #include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/cost/drive_cost.hpp>
 
-// What is behind the cost of a metre: apart from drive_cost.cpp, which does not know how a curve was made.
+// State behind the cost of a metre. Separate from drive_cost.cpp, which is independent of the construction of
+// curves.
 namespace talus::costmap {
 namespace {
 
@@ -34,7 +35,7 @@ DriveState DriveCost::detail(CellCode cell, Direction heading) const noexcept {
   return state;
 }
 
-// Between the nodes that DriveCurve::price() reads.
+// Interpolates between the nodes that DriveCurve::price() reads.
 DriveState DriveCost::detailAt(std::size_t curve, double place, double across) const noexcept {
   const DriveTable& table = *states_[curve];
   const auto& crossing = crossings_[curve];

@@ -8,48 +8,48 @@
 
 namespace talus::costmap {
 
-/// Why a motion over a cell is refused.
+/// Reason for refusing a motion over a cell.
 enum class Refusal : std::uint8_t {
   None,       ///< allowed
   Unknown,    ///< the cell is unobserved
-  Blocked,    ///< a hazard that no heading avoids; the map knows which
-  Pitch,      ///< steeper along the heading than the rover may pitch
-  Roll,       ///< steeper across the heading than the rover may roll
+  Blocked,    ///< a hazard for every heading; the map has the reason
+  Pitch,      ///< gradient along the heading above the pitch limit
+  Roll,       ///< gradient across the heading above the roll limit
   Pull,       ///< required drawbar pull above the available drawbar pull
-  SideForce,  ///< required side force above the available side force, with the pull that is required
-  Torque,     ///< the motors cannot give the torque
-  Sinkage,    ///< the wheels sink to where the belly touches
-  Category,   ///< the category at this slope is refused by the policy
-  Tips,       ///< the centre of mass passes over the wheels
+  SideForce,  ///< required side force above the available side force at the required pull
+  Torque,     ///< required torque above the torque of the motors
+  Sinkage,    ///< sinkage at which the belly touches the ground
+  Category,   ///< category at this slope not allowed by the policy
+  Tips,       ///< centre of mass beyond the wheel base
 };
 
-/// The reason of a refusal as text: "required drawbar pull above the available drawbar pull".
+/// Text of a reason: "required drawbar pull above the available drawbar pull".
 const char* toText(Refusal refusal) noexcept;
 
-/// What driving over one kind of ground at one gradient is like: the numbers behind a cost. A wheel's worth
-/// where it is of a wheel, else the rover's. Metres are horizontal.
+/// State of driving over one kind of ground at one gradient: the quantities behind a cost. Per wheel where
+/// noted, else for the rover; metres are horizontal.
 struct DriveState {
   float slip = 0.0F;            ///< [-], driven > 0, braked < 0
-  float sinkage_m = 0.0F;       ///< of a wheel
-  float torque_Nm = 0.0F;       ///< on a wheel
-  float energy_J_per_m = 0.0F;  ///< drive and hotel, expected over the belief
-  float time_s_per_m = 0.0F;    ///< expected over the belief
+  float sinkage_m = 0.0F;       ///< per wheel
+  float torque_Nm = 0.0F;       ///< per wheel
+  float energy_J_per_m = 0.0F;  ///< drive and hotel power, expectation over the soil uncertainty
+  float time_s_per_m = 0.0F;    ///< expectation over the soil uncertainty
   float risk_per_m = 0.0F;      ///< hazard rate of immobilisation: P over d metres = 1 - exp(-risk_per_m d)
-  float weak = 0.0F;            ///< probability that the ground gives less than is asked, 0 to 1
-  float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the slope's demand [-]
+  float weak = 0.0F;            ///< probability that the available pull is below the required pull, 0 to 1
+  float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the required pull [-]
   terramech::Category category = terramech::Category::Unknown;  ///< at this gradient along the heading
   Refusal refusal = Refusal::None;
-  std::uint8_t class_index = 0;  ///< of the ground, in the model's classes
+  std::uint8_t class_index = 0;  ///< index of the ground's class in the model
 };
 
-/// The worse of two states in each of their numbers; the first refusal of the two.
+/// The less favourable value of each quantity of two states; the first refusal of the two.
 DriveState worse(const DriveState& a, const DriveState& b) noexcept;
 
-/// A state on the way from one to another, share in [0, 1]: numbers linear between both, the worse category, the first
-/// refusal of the two but for tipping, which no ground mends.
+/// Interpolation between two states, share in [0, 1]: linear quantities, the worse category, and the first
+/// refusal of the two. Tipping takes precedence, because tipping does not depend on the soil.
 DriveState between(const DriveState& a, const DriveState& b, float share) noexcept;
 
-/// A curve's numbers over the gradient, the bins of DriveCurve.
+/// States of a curve over the gradient along, at the bins of DriveCurve.
 using DriveTable = std::array<DriveState, 512>;
 
 }  // namespace talus::costmap

@@ -12,7 +12,7 @@ using terramech::MobilityCurve;
 
 constexpr int kSteps = 1024;
 
-// Gauss-Hermite of seven points: deviations and weights of the pairs, and the weight of the mean.
+// Seven-point Gauss-Hermite quadrature: deviations and weights of the pairs, and the weight of the mean.
 constexpr std::array<double, 3> kDeviation{1.1544053947399682, 2.3667594107345416, 3.7504397177257425};
 constexpr std::array<double, 3> kPairWeight{0.2401231786050127, 0.030757123967586498, 5.4826885597221781e-4};
 constexpr double kMeanWeight = 0.45714285714285714;
@@ -21,7 +21,7 @@ bool drivable(const MobilityCurve& curve, double demand) {
   return curve.at(std::atan(demand)).feasible;
 }
 
-// The last drivable demand between one that is and one that is not.
+// The limit of drivable demands between a drivable and an undrivable demand, by bisection.
 double edge(const MobilityCurve& curve, double drives, double fails) {
   for (int halving = 0; halving < 50; ++halving) {
     const double middle = 0.5 * (drives + fails);
@@ -30,7 +30,7 @@ double edge(const MobilityCurve& curve, double drives, double fails) {
   return drives;
 }
 
-// From a demand that can be driven as far as none in between fails, to at most `end`.
+// The farthest drivable demand from `from` towards `end` without an undrivable demand between.
 double followed(const MobilityCurve& curve, double from, double end) {
   const double step = (end - from) / kSteps;
   double last = from;
@@ -47,7 +47,7 @@ double followed(const MobilityCurve& curve, double from, double end) {
 ExpectedDrive::ExpectedDrive(const MobilityCurve& curve) {
   if (curve.maxSlope_rad() < curve.minSlope_rad()) return;
   const double low = std::tan(curve.minSlope_rad()), high = std::tan(curve.maxSlope_rad());
-  // Level ground, or else the greatest demand that can be driven.
+  // Start at level ground, or else at the greatest drivable demand.
   double from = 0.0;
   for (int k = 0; k <= kSteps && !drivable(curve, from); ++k) from = high + k * (low - high) / kSteps;
   if (!drivable(curve, from)) return;

@@ -9,45 +9,47 @@ namespace talus::costmap {
 
 using terramech::Estimate;
 
-/// What a metre along the surface costs, expected over a doubtful demand.
+/// Expected cost per metre along the surface for an uncertain demand.
 struct ExpectedCost {
   double energy_J_per_m = 0.0;
   double time_s_per_m = 0.0;
 };
 
-/// The mobility curve of a soil over the pull that is demanded of it (rise over run, plus what the ground
-/// gives less than the soil does), and what a metre costs when that demand is doubtful.
+/// Mobility curve of a soil over the demand (gradient plus the pull by which the ground is weaker than the
+/// soil), and the expected cost per metre for an uncertain demand.
 ///
-/// A demand beyond the limit is charged, not left out: the attempt at the limit, and the same again for the
-/// way back (ours, not from the literature); what it is worth to be held there for good is DriveState's risk.
-/// The expected cost never falls as the standard deviation or the mean grows, by construction:
-/// - the tabulated cost is the greatest up to each demand, so that it never falls with it;
-/// - the quadrature (seven-point Gauss-Hermite) has pairs of points mean -+ d of equal, positive weight, and
-///   each pair counts with the greatest sum c(mean - d') + c(mean + d') of all d' <= d: where the cost is
-///   convex that is the pair itself, elsewhere doubt must not make it cheaper. The greatest is exact: between
-///   the points at which the tabulated cost bends downwards the sum of a pair cannot turn.
-/// Immutable; safe to share between threads.
+/// A demand beyond the limit adds the cost of an attempt at the limit and of the way back (ours, not from the
+/// literature). DriveState::risk_per_m covers the risk of permanent immobilisation. The expected cost never
+/// decreases with the standard deviation or the mean, by construction:
+///   - The tabulated cost is the running maximum over the demand.
+///   - The quadrature is seven-point Gauss-Hermite: pairs of points mean -+ d of equal positive weight. A
+///     pair counts with the maximum of c(mean - d') + c(mean + d') over all d' <= d. For a convex cost, the
+///     maximum is the pair itself; elsewhere, the maximum prevents a lower cost for a greater uncertainty.
+///     The maximum is exact, because between the demands at which the slope of the tabulated cost falls the
+///     sum has no interior maximum.
+/// Immutable and thread-safe.
 class ExpectedDrive {
  public:
   explicit ExpectedDrive(const terramech::MobilityCurve& curve);
 
-  /// Demands that can be driven: from the steepest that locked wheels hold to the limit of slip, torque and
-  /// soil. first > last where there are none.
+  /// Interval of drivable demands: from the steepest descent that locked wheels hold to the limit of slip,
+  /// torque and soil. first > last: empty.
   double first() const noexcept { return first_; }
   double last() const noexcept { return last_; }
 
-  /// Expected cost where the demand is normal about a mean <= last(); demands below `least` count as `least`:
-  /// ground that is stronger than its soil does not push the rover.
+  /// Expected cost for a normally distributed demand with mean <= last(). Demands below `least` count as
+  /// `least`: ground that is stronger than the soil does not propel the rover.
   ExpectedCost at(const Estimate& demand, double least) const noexcept;
 
-  /// Greatest sinkage of a wheel [m] from level ground up to a demand; at a demand below 0, that there.
+  /// Greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0, the sinkage
+  /// at the demand.
   double sinkage_m(double demand) const noexcept;
 
  private:
-  // Values at equal steps of the demand, linear between them, constant outside.
+  // Values at equal steps of the demand, linear between steps, constant outside.
   struct Table {
     std::vector<double> values;
-    std::vector<double> bends;  // demands at which the slope falls
+    std::vector<double> bends;  // demands at which the slope of the table decreases
   };
   double value(const Table& table, double demand) const noexcept;
   double expected(const Table& table, const Estimate& demand, double least) const noexcept;

@@ -10,8 +10,8 @@
 
 namespace talus::costmap {
 
-/// A word of 32 bits for each cell of a map that was learned, 0 for all others: memory for the tiles alone that
-/// hold one.
+/// Sparse grid of 32-bit words for cells with learned values; 0 elsewhere. Memory is allocated for tiles with
+/// non-zero words only.
 class LearnedCells {
  public:
   explicit LearnedCells(const maps::Grid& grid);
@@ -20,10 +20,10 @@ class LearnedCells {
     const auto& tile = tiles_[slot(cell)];
     return tile ? tile->words[inside(cell)] : 0U;
   }
-  /// False when it was that word before.
+  /// Sets the word of a cell; returns false if unchanged.
   bool set(maps::Cell cell, std::uint32_t word);
 
-  /// Boxes around all cells that were ever set, one a tile, in a fixed order.
+  /// Bounding boxes of all cells ever set, one for each tile, in a fixed order.
   std::vector<maps::CellBox> boxes() const;
 
  private:

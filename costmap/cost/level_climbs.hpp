@@ -6,17 +6,18 @@
 
 namespace talus::costmap {
 
-/// Values at equal steps by linear interpolation, `at` counted in steps from the first; constant beyond the ends.
+/// Linear interpolation of values at equal steps; `at` is in steps from the first value. Constant beyond the
+/// ends.
 double interpolated(const std::vector<double>& values, double at);
 
-/// Climbs straight up under even loads, and which of them cost as much as a slope in two dimensions.
+/// Straight climbs under even loads, for finding the climb with the same cost as a two-dimensional slope.
 class LevelClimbs {
  public:
-  /// Of the row without a gradient across; climbs beyond `last` count as that.
+  /// Uses row 0 (no gradient across); climbs beyond `last` count as `last`.
   LevelClimbs(const SlopeRow& level, double last);
 
-  /// By how much steeper the climb is that takes as much energy and time as each state that a row holds, >= 0, and by how
-  /// much that state slips more than it.
+  /// For each state of a row: additional gradient of the straight climb with the same energy and time (>= 0),
+  /// and additional slip of the state relative to that climb.
   struct Surcharges {
     std::vector<double> climb, slip;
   };
@@ -30,14 +31,14 @@ class LevelClimbs {
   std::vector<double> energies_, times_, slips_;
 };
 
-/// The steepest climb that holds, and the gross thrust over load there.
+/// Steepest climb without failure, and the gross thrust over load there.
 struct LevelStrength {
   double last, thrust;
 };
 
-/// The strength over load that ground may lose until nothing holds on a slope, <= 0 where nothing does: what is lost of the pull
-/// adds to the climb, what is lost of the side force makes the slope across count for more. `losses` are what each row, 1/64 of gradient
-/// across apart, takes of the steepest climb.
+/// Strength over load that the ground may lose until a slope fails; <= 0 if the slope fails without a loss. A
+/// loss of pull adds to the climb, and a loss of side force increases the effective gradient across. `losses`
+/// are the reductions of the steepest climb in rows of gradient across 1/64 apart.
 double strengthToLose(double along, double across, const LevelStrength& level,
                       const std::vector<double>& losses);
 

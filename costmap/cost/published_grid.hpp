@@ -7,9 +7,9 @@
 
 namespace talus::costmap {
 
-/// The version that readers see, replaced as a whole. Any thread may call load() at any time. A mutex, since the
-/// std::atomic<std::shared_ptr> of GCC 12 unlocks without ordering: on a processor that reorders, a reader could pair one
-/// grid with the reference count of another.
+/// The current version of the cost map; replaced as a whole. load() is thread-safe. Uses a mutex because
+/// std::atomic<std::shared_ptr> of GCC 12 unlocks without memory ordering: on a weakly ordered processor, a
+/// reader could combine one grid with the reference count of another.
 class PublishedGrid {
  public:
   std::shared_ptr<const CostGrid> load() const {
@@ -18,7 +18,7 @@ class PublishedGrid {
   }
   void store(std::shared_ptr<const CostGrid> next) {
     const std::lock_guard lock(mutex_);
-    grid_.swap(next);  // the version before is freed after the lock
+    grid_.swap(next);  // the previous version is destroyed after the unlock
   }
 
  private:

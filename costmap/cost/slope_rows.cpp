@@ -12,11 +12,12 @@ using terramech::SlopeState;
 
 namespace {
 
-constexpr double kNear_rad = 0.1;  // to tipping: an axle or side then carries nearly all (ours)
+constexpr double kNear_rad = 0.1;  // below, an axle or side carries nearly the whole load (ours)
 
 }  // namespace
 
-// Beyond the equilibria a gradient of one more is an angle of at most one more.
+// Beyond the tabulated gradients, the margin decreases by 1 rad per unit of gradient, an upper bound of the
+// change of angle.
 double SlopeRow::margin_rad(double along) const {
   if (margins_rad.empty()) return kNaN;
   if (along <= margins_rad.front().first)
@@ -37,7 +38,7 @@ SlopeRows::SlopeRows(const terramech::SlopeEquilibrium& equilibrium, double low,
 
 SlopeRow SlopeRows::solved(double across) const {
   SlopeRow row{.step = step_};
-  // Of several ranges the one nearest to level ground, of two as near the longer.
+  // Selects the interval nearest to level ground; of equally near intervals, the longest.
   std::size_t begin = 0, length = 0, most = 0;
   int nearest = std::numeric_limits<int>::max();
   for (int node = low_; node <= high_; ++node) {
@@ -78,7 +79,7 @@ SlopeState SlopeRows::at(double along, double across) const {
   return right.grip == SlopeFailure::None && right.energy_J_per_m < left.energy_J_per_m ? left : right;
 }
 
-// The last gradient that holds from a node towards its neighbour, which does not.
+// The limit gradient without failure between a node and its failing neighbour, by bisection.
 double SlopeRows::edge(int node, int towards, double across) const {
   double holds = node * step_, fails = (node + towards) * step_;
   for (int halving = 0; halving < 7; ++halving) {

@@ -7,32 +7,34 @@
 
 namespace talus::costmap {
 
-/// Equilibria of one gradient across, on a lattice of gradients along.
+/// Slope equilibria for one gradient across, at equally spaced gradients along.
 struct SlopeRow {
-  double step = 1.0;  ///< of the lattice
+  double step = 1.0;  ///< step of the gradients along
   double first = 0.0,
-         last = -1.0;  ///< gradients that the ground holds; infinite where they lie beyond the lattice
-  bool tips_before = false, tips_behind = false;  ///< ends so near to tipping that loads end it, not strength
-  int first_node = 0;                             ///< the first of `states`, in steps
-  std::vector<terramech::SlopeState> states{};    ///< the longest range that the ground holds, tipping apart
-  std::vector<terramech::SlopeState> all{};       ///< of the whole lattice
+         last = -1.0;  ///< interval of gradients without failure; infinite beyond the tabulated gradients
+  bool tips_before = false, tips_behind = false;  ///< whether tipping, not strength, limits that end
+  int first_node = 0;                             ///< gradient of states[0], in steps
+  std::vector<terramech::SlopeState> states{};    ///< states in the interval, tipping ones included
+  std::vector<terramech::SlopeState> all{};       ///< states at all tabulated gradients
   std::vector<std::pair<double, double>>
-      margins_rad{};  ///< against tipping, by gradient along, over that range
+      margins_rad{};  ///< stability margin by gradient along, over the interval of `states`
 
-  /// Whether it lies within the range that the ground holds.
+  /// Whether a gradient lies within the interval without failure.
   bool holds(double along) const noexcept { return along >= first && along <= last; }
 
-  /// Linear between equilibria; NaN where the ground holds nothing, or the rover's height is not known.
+  /// Stability margin [rad] by linear interpolation; NaN without states, or if the height of the centre of
+  /// mass is unknown.
   double margin_rad(double along) const;
 };
 
-/// Solves rows on a lattice of gradients along, of a rover whose left and right differ on the slope to the worse side.
+/// Solves rows of equilibria. For a rover whose left and right sides differ, the less favourable side counts.
 class SlopeRows {
  public:
-  /// From low to high, both included, at multiples of the step. The equilibrium must outlive it.
+  /// Gradients along at the multiples of `step` from low to high, both included. The equilibrium must outlive
+  /// this object.
   SlopeRows(const terramech::SlopeEquilibrium& equilibrium, double low, double high, double step);
 
-  /// The lattice's first gradient, in steps.
+  /// The first gradient along, in steps.
   int low() const noexcept { return low_; }
 
   SlopeRow solved(double across) const;

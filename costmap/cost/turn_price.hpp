@@ -7,21 +7,21 @@
 
 namespace talus::costmap {
 
-/// An effort under weights of energy [-] and time [W].
+/// Cost of a turn with weights of energy [-] and time [W].
 inline TurnPrice priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
   return {.cost_J = energy * effort.energy_J + time_W * effort.time_s,
           .energy_J = effort.energy_J,
           .time_s = effort.time_s};
 }
 
-/// The same turns under other weights.
+/// The same turns with other weights.
 inline TurnPrices reweighted(TurnPrices turns, double energy, double time_W) noexcept {
   for (TurnPrice* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
     *price = priced({price->energy_J, price->time_s}, energy, time_W);
   return turns;
 }
 
-/// The dearer in everything.
+/// The maximum of each quantity.
 inline TurnPrices dearer(const TurnPrices& a, const TurnPrices& b) noexcept {
   const auto of = [](const TurnPrice& x, const TurnPrice& y) {
     return TurnPrice{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),

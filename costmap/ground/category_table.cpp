@@ -13,22 +13,23 @@ namespace {
 using terramech::Category;
 
 constexpr int kJudgedHeadings =
-    24;                       // over half a turn, as CrossSlope::steepest(): left and right count alike
-constexpr int kSteps = 2898;  // of the steepest gradient that CellCode holds, 2048 sqrt(2)
+    24;                       // over 180 degrees, as CrossSlope::steepest(): left and right are symmetric
+constexpr int kSteps = 2898;  // greatest gradient of CellCode in steps: 2048 sqrt(2)
 
-// Whether doubt about the pull of the ground may lift it.
+// Whether the reason depends on the uncertain pull of the ground.
 bool isOfSoil(Refusal refusal) {
   return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }
 
 CategoryTable::Entry entryOf(const Ranked& ranked) {
-  // Of danger the nearest step, of all else the one below: no more is promised than is believed.
+  // Rounded to the nearest step for dangerous ground, else down: the probability of better ground is never
+  // overstated.
   const double steps = 16.0 * ranked.probability;
   const double told = ranked.category == Category::Dangerous ? std::round(steps) : std::floor(steps);
   return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)};
 }
 
-// The model's category at the first climb from this one on at which it is no better.
+// The model's category at the first climb, from `climb` upwards, whose category is at least `least`.
 Ranked atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
   Ranked ranked = model.category(belief, climb);
   while (ranked.category < least && climb < 4.0)
@@ -40,7 +41,7 @@ CellCode planeOf(int step) {
   return CellCode({.dz_dx = step * CellCode::kStep, .dz_dy = 0.0, .curve = 0});
 }
 
-// The state in the worst heading, with the worst category of any.
+// State in the worst heading, with the worst category over all headings.
 DriveState stateOn(const DriveCost& cost, CellCode plane) {
   DriveState state = cost.detail(plane, worstHeading(cost, plane));
   for (int k = 0; k < kJudgedHeadings; ++k) {
@@ -64,7 +65,7 @@ Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept {
   const double length = std::hypot(cell.dzDx(), cell.dzDy());
   if (!(length > 0.0)) return {};
   const Direction up{cell.dzDx() / length, cell.dzDy() / length};
-  constexpr double kClearly = 1.0 / 32.0;  // of gradient: two rows across
+  constexpr double kClearly = 1.0 / 32.0;  // two rows of gradient across
   Direction found = up;
   double most = climbAt(cost, cell, up) + kClearly;
   for (int k = 1; k < kJudgedHeadings; ++k) {
@@ -89,13 +90,13 @@ Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveS
 CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief,
                              const DriveGround& ground) {
   DriveCost::Limits limits = model.limits();
-  limits.stance.reset();  // asked by DriveCost::tips() alone
+  limits.stance.reset();  // only DriveCost::tips() needs the stance
   const DriveCost cost(limits, std::vector{ground});
   const auto judgedAt = [&](int step) {
     return judged(model, belief, stateOn(cost, planeOf(step)),
                   ground.crossing->steepest(step * CellCode::kStep));
   };
-  // The first step that is no better: a steeper plane is not.
+  // First step with a category at least `least`, by bisection: categories are monotone in the gradient.
   const auto boundOf = [&](Category least) {
     int from = 0;
     for (int beyond = kSteps - 1; from < beyond;) {

@@ -8,33 +8,34 @@
 
 namespace talus::costmap {
 
-/// The gradient straight up that leaves as little as a cell's plane does in a heading; that along where its ground has no soil.
+/// Gradient of the straight climb with the same strength reserve as the plane of a cell in a heading; the
+/// gradient along for ground without a soil.
 double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) noexcept;
 
-/// The heading that a cell is judged by where none is asked for: straight up its plane, or that across which clearly
-/// leaves less.
+/// Heading for the category of a cell if no heading is given: straight uphill, or a heading across the slope
+/// whose equivalent climb is steeper by more than 1/32.
 Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept;
 
-/// Category of ground in a heading as planners read it, and its probability: `state` is DriveCost::detail() there, `climb`
-/// climbAt(). What is refused for another reason than its category is dangerous.
+/// Category of ground in a heading and its probability: `state` is DriveCost::detail(), `climb` is climbAt()
+/// there. Ground that is refused for a reason other than its category is dangerous.
 Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb);
 
-/// The category of one kind of ground over the steepness of its plane, in CellCode's own steps: the worst that planners read
-/// of any heading, and dangerous where worstHeading() is refused. A cell has that of the next whole step.
+/// Category of one kind of ground over the gradient of its plane, in steps of CellCode: the worst category
+/// over all headings, and dangerous if worstHeading() is refused. A cell uses the next whole step.
 class CategoryTable {
  public:
-  /// A row of the table.
+  /// Table entry for one gradient.
   struct Entry {
     std::uint8_t category;    ///< terramech::Category as a number
-    std::uint8_t confidence;  ///< probability in steps of 1/16, rounded down unless it is of danger
+    std::uint8_t confidence;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
   };
 
   /// Dangerous at every gradient.
   CategoryTable() = default;
-  /// Of ground that was made from the belief.
+  /// Table of the ground that GroundModel made from the estimate.
   CategoryTable(const GroundModel& model, const GroundBelief& belief, const DriveGround& ground);
 
-  /// The entry for the gradient of a cell.
+  /// Entry for the gradient of a cell.
   Entry at(CellCode cell) const noexcept;
 
  private:

@@ -5,7 +5,7 @@
 namespace talus::costmap {
 namespace {
 
-// For each column of a row: whether all cells at most `reach` columns away are of its class.
+// For each column of a row: whether all cells within `reach` columns have the same class.
 std::vector<bool> alikeAlong(const maps::Raster<std::uint8_t>& classes, int row, int reach) {
   const int width = classes.grid().width;
   std::vector<bool> alike(static_cast<std::size_t>(width), true);
@@ -23,7 +23,8 @@ std::vector<bool> classBorders(const maps::Raster<std::uint8_t>& classes, int re
   if (classes.empty()) return {};
   const maps::Grid& grid = classes.grid();
   std::vector<bool> border(grid.size(), true);
-  // Rows up to this one, without a gap, that are alike along and of one class in the column.
+  // For each column: number of consecutive rows, up to this row, that are uniform along the row and of one
+  // class.
   std::vector<int> rows(static_cast<std::size_t>(grid.width), 0);
   for (int row = 0; row < grid.height + reach; ++row) {
     const bool inside = row < grid.height;

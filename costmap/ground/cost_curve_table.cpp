@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kNumbers = CellCode::kUnknown;
 
-// Ground that no heading may enter: of a class whose number nobody asked for.
+// Ground that no heading may enter, for classes whose number was not requested.
 const DriveGround& refused() {
   static const DriveGround ground = [] {
     auto states = std::make_shared<DriveTable>();
@@ -58,7 +58,7 @@ std::uint8_t CostCurveTable::prior(int class_index) {
   return standIn(GroundKind::of(model_->prior(class_index), class_index, class_index, priors_[i], level_));
 }
 
-// Grows by one, or lends the last number that no class has.
+// Appends a number, or reuses the last class number that is free.
 std::optional<std::uint8_t> CostCurveTable::freeNumber() {
   if (grounds_.size() < kNumbers) {
     grounds_.emplace_back();
@@ -81,7 +81,7 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
     overflowed_ = true;
     return standIn(kind);
   }
-  // All of the kind, so that a curve does not depend on who asked for it first.
+  // The worst estimate of the kind, so that the curve does not depend on the estimate that occurred first.
   const GroundBelief worst =
       kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
   grounds_[*number] = model_->ground(class_index, other_class, worst);
@@ -92,7 +92,8 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
   return *number;
 }
 
-// The strongest of the known beliefs on the same classes that are no better in anything.
+// The number of the greatest pull among the known kinds of the same classes that are no better; kBlocked if
+// there is none.
 std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
   const GroundKind* best = nullptr;
   std::uint8_t number = CellCode::kBlocked;
@@ -167,7 +168,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
   if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
   priors_[i] = next;
-  if (slots_[i] != Slot::Own) return true;  // its cells are judged by it where they lie beside others
+  if (slots_[i] != Slot::Own) return true;  // the prior is used where the class borders on other classes
   price(i);
   for (const auto& [from, its] : dearer_)
     if (from.first == i) {
@@ -190,7 +191,8 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
   return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 
-// What a class's belief is less sure of than the scatter from place to place, all of its ground shares.
+// Fraction of the pull variance of each class that is common to all of its ground: the excess over the
+// variance between places.
 SoilDoubt CostCurveTable::doubt() const {
   const GroundModel::Parts& parts = model_->parts();
   SoilDoubt doubt{.correlation_length_m = parts.policy.correlation_length_m,

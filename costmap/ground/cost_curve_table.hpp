@@ -14,53 +14,55 @@
 
 namespace talus::costmap {
 
-/// Gives curve numbers to beliefs. The priors of the classes are numbers 0 .. classes-1, refused in every heading until
-/// their number is asked for: only classes that occur are priced, and the first, the default. A learned belief is
-/// rounded towards danger (GroundKind) and gets its number when it first occurs. When the 254 numbers are used
-/// up, those of classes that nobody asked for are lent; then a known number whose ground is no better in anything stands in, and where there is none the ground is
-/// blocked: running out makes ground dearer, never cheaper. Not thread-safe.
+/// Assigns curve numbers (0 to 253) to estimates of ground. Numbers 0 .. classes-1 belong to the priors of
+/// the classes. A prior is refused in every heading until its number is requested, so that only classes that
+/// occur are computed; the first class, the default, is computed at once. A learned estimate is quantised
+/// towards danger (GroundKind) and gets a number at its first occurrence. If no number is left, numbers of
+/// unrequested classes are used; then a known number with no better ground substitutes, and without such a
+/// number the ground is blocked. Exhaustion therefore never reduces a cost. Not thread-safe.
 class CostCurveTable {
  public:
   explicit CostCurveTable(std::shared_ptr<const GroundModel> model);
 
-  /// Number of ground of a class that nobody drove on, and what is believed of it.
+  /// Number of the prior of a class; priorBelief() is the estimate itself.
   std::uint8_t prior(int class_index);
   const GroundBelief& priorBelief(int class_index) const {
     return priors_[static_cast<std::size_t>(class_index)];
   }
-  /// Number of ground under a learned belief. `other_class`: its curve is nowhere below that of the same belief
-  /// on that class either.
+  /// Number of ground with a learned estimate. The curve is nowhere below that of the same estimate on
+  /// `other_class`.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
   }
 
-  /// Number of the ground of another number, any but those of dearer(), where a metre costs so much more energy.
-  /// `step` > 0 stands for the joules and grows with them; where numbers run out, a greater one of the ground stands in.
+  /// Number of the ground of `number` (not a result of dearer()) with an additional energy per metre. `step`
+  /// > 0 is the key of the energy and increases with the energy. If no number is left, the number of a
+  /// greater step of the same ground substitutes, else the ground is blocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
-  /// Whether some belief had to do with another's number since the last restart.
+  /// Whether a substitute was needed since the last restart.
   bool overflowed() const noexcept { return overflowed_; }
-  /// Share of the numbers for learned beliefs that are given away, 0 to 1.
+  /// Fraction of the numbers for learned estimates that are in use, 0 to 1.
   double used() const noexcept;
-  /// Forgets all learned beliefs; those to come are rounded at this level of GroundKind.
+  /// Discards all learned estimates; later estimates are quantised at this level of GroundKind.
   void restart(int level);
   int level() const noexcept { return level_; }
 
-  /// Replaces the belief of a class prior, after its soil was learned. False when it is what it was: in steps
-  /// (EvidenceField::Classes::InSteps) that is most often so.
+  /// Replaces the prior of a class after learning its soil; returns false if unchanged. Priors learned in
+  /// steps (EvidenceField::Classes::InSteps) are mostly unchanged.
   bool setPrior(int class_index, const GroundBelief& next);
 
-  /// The belief that a number's curve was made from.
+  /// The estimate from which the curve of a number was made.
   const GroundBelief& belief(std::uint8_t number) const { return beliefs_[number]; }
-  /// Category of ground of this number over the steepness of its plane.
+  /// Category of the ground of a number over the gradient of its plane.
   const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
-  /// The cost function over all numbers given so far; the same object until one is added.
+  /// Cost function of all assigned numbers; the same object until a number is added.
   std::shared_ptr<const DriveCost> cost() const;
 
  private:
-  // The bits of a prior: while a class is learned it moves to and fro between a few.
+  // Bits of a prior, as the key of a cache: a class that is being learned alternates between few priors.
   using PriorKey = std::array<std::int64_t, 5>;
   struct Worked {
     DriveGround ground;
@@ -80,8 +82,9 @@ class CostCurveTable {
   std::vector<DriveGround> grounds_;
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
-  std::vector<GroundBelief> priors_;  // of the classes
-  // What the numbers of the classes stand for: nothing yet, the class, another belief, or one that the class is to have back.
+  std::vector<GroundBelief> priors_;  // priors of the classes
+  // Use of a class's number: none, the class, another estimate, or another estimate while the class waits for
+  // its number.
   enum class Slot : std::uint8_t { Free, Own, Lent, Wanted };
   std::vector<Slot> slots_;
   struct Dearer {

@@ -23,10 +23,10 @@ constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFie
      {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
      {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
 
-// Half the deviation each way keeps parameters in range that are a few deviations from their bound.
+// Central difference over half a deviation on either side keeps parameters near their bounds in range.
 constexpr double kStep = 0.5;
 
-// Of the exponent of underGravity(), one standard deviation: ours.
+// Standard deviation of the exponent of underGravity(): ours.
 constexpr double kGravityExponentStd = 0.5;
 
 double pullOf(const Soil& soil, const terramech::Rover& rover) {
@@ -37,12 +37,12 @@ bool isStiffer(const Soil& tested, const terramech::Rover& rover) {
   return tested.test_gravity_m_s2 > rover.gravity_m_s2;
 }
 
-// The soil where the rover drives, if gravity matters less by one standard deviation.
+// The soil on the rover's body for a gravity exponent lower by one standard deviation.
 Soil lessAffected(const Soil& tested, const terramech::Rover& rover) {
   return underGravity(tested, rover.gravity_m_s2, 1.0 - kGravityExponentStd);
 }
 
-// The prior where the rover drives.
+// The prior converted to the gravity of the rover.
 terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& rover) {
   if (!isStiffer(prior.mean, rover)) return prior;
   const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);

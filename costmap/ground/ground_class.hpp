@@ -5,16 +5,17 @@
 
 namespace talus::costmap {
 
-/// The class of a soil prior on a rover. Its mean_std is what the stated deviations of cohesion, friction,
-/// sinkage exponent, moduli and shear modulus make of drawbar pull over load at the reference slip, to first
-/// order and independent; a prior that states none keeps GroundClass's default. Where the soil was tested in greater gravity it is
-/// as underGravity() has it, and what an exponent of 0.5 in place of 1 makes of the pull adds to mean_std. Throws
-/// std::invalid_argument as MobilityCurve does.
+/// Ground class of a soil prior on a rover. mean_std is the standard deviation of drawbar pull over load at
+/// the reference slip that follows, to first order and for independent parameters, from the stated deviations
+/// of cohesion, friction, sinkage exponent, moduli, shear modulus and slip-sinkage exponent; a prior without
+/// deviations keeps GroundClass's default. A soil that was tested in greater gravity is converted by
+/// underGravity(), and mean_std then includes the effect of a gravity exponent of 0.5 instead of 1. Throws
+/// std::invalid_argument as MobilityCurve.
 GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
 
-/// The class of a refined model on a rover. Its mean_std is what the model's covariance makes of drawbar pull
-/// over load at the reference slip; a model without one keeps GroundClass's default. Effects of sensors are
-/// left out; gravity as above. Throws std::invalid_argument as MobilityCurve does.
+/// Ground class of a refined model on a rover. mean_std is the standard deviation of drawbar pull over load
+/// at the reference slip by the model's covariance; a model without a covariance keeps GroundClass's default.
+/// Sensor effects are omitted; gravity as for a soil prior. Throws std::invalid_argument as MobilityCurve.
 GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

@@ -6,9 +6,9 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kLeastStd = 0.01;  // of a prior that is surer
+constexpr double kLeastStd = 0.01;  // least unit of the standard deviation, for priors with a smaller one
 constexpr double kSinkageStep = 0.1;
-constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
+constexpr double kSame = 1e-6;  // rounding tolerance [steps], so that quantised values are unchanged
 constexpr double kOctaveStep = 0.25;
 constexpr double kLeastOctaves = -6.0, kMostOctaves = 8.0;
 constexpr double kMostSteps = 1e6;
@@ -17,7 +17,7 @@ int bounded(double steps) {
   return static_cast<int>(std::clamp(steps, -kMostSteps, kMostSteps));
 }
 
-// Whole multiples of 2^level steps.
+// Rounds down to a multiple of 2^level steps.
 int stepsBelow(double value, double step, int level) {
   const int many = 1 << level;
   return bounded(std::floor(value / step / many + kSame)) * many;
@@ -31,7 +31,7 @@ double unitOf(const GroundBelief& prior) noexcept {
   return std::max(prior.pull.std, kLeastStd);
 }
 
-// Steps of the logarithm.
+// Rounds the logarithm up to a step.
 int logStepsAbove(double share, int level) {
   const double octaves = std::log2(std::clamp(share, std::exp2(kLeastOctaves), std::exp2(kMostOctaves)));
   return stepsAbove(octaves, kOctaveStep, level);

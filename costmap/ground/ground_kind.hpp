@@ -6,35 +6,38 @@
 
 namespace talus::costmap {
 
-/// A belief in whole steps from the prior of its class, rounded towards danger: pull down in steps of 0.02, its standard
-/// deviation up in quarters of an octave from 1/64 to 256 of the prior's, sinkage over radius up in steps of 0.1. At level n
-/// steps are 2^n times as large. What is no worse than the prior is rounded to nothing worse: little evidence makes no ground
-/// dearer. What is rounded twice, to the same level or a higher one, is rounded as at once. The deviation has the finest
-/// steps, because the probability of immobilisation of ground with a reserve of z deviations depends on it most: a
-/// step of a whole octave would halve z.
+/// Estimate of ground quantised relative to the prior of its class and rounded towards danger, in steps of
+///   - pull: 0.02, rounded down;
+///   - standard deviation of the pull: a quarter octave, from 1/64 to 256 of the prior's, rounded up;
+///   - sinkage over radius: 0.1, rounded up.
+/// At level n, steps are 2^n times as large. An estimate no worse than the prior is rounded to no worse than
+/// the prior, so that little evidence never increases a cost. Rounding twice to equal or increasing levels
+/// equals rounding once. The standard deviation has the finest steps, because the probability of
+/// immobilisation with a reserve of z deviations is most sensitive to the standard deviation: a step of one
+/// octave would halve z.
 struct GroundKind {
   static constexpr int kCoarsest = 3;        ///< highest level
   static constexpr double kPullStep = 0.02;  ///< at level 0 [-]
 
   int class_index = 0;
-  int other_class = 0;  ///< ground is as bad as the worse of its own class and this one; its own: none
+  int other_class = 0;  ///< second possible class of the ground; class_index if there is none
   int pull = 0;
-  int pull_std = 0;  ///< quarters of an octave above the prior's
+  int pull_std = 0;  ///< quarter octaves relative to the prior's standard deviation
   int sinkage = 0;
 
   auto operator<=>(const GroundKind&) const = default;  // NOLINT(modernize-use-nullptr): of clang 14
 
-  /// `prior`: of the class, whatever was learned (GroundModel::prior()).
+  /// `prior` is that of the class before any evidence (GroundModel::prior()).
   static GroundKind of(const GroundBelief& prior, int class_index, int other_class,
                        const GroundBelief& belief, int level = 0) noexcept;
 
-  /// The belief that stands for all that are rounded to this: the worst of them. The standard deviation of sinkage
-  /// shrinks with that of the pull, as far as the class says.
+  /// The worst estimate that is quantised to this kind. The standard deviation of sinkage decreases in
+  /// proportion to that of the pull, up to the class's sinkage_std.
   GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
 };
 
-/// Whether ground of one belief costs no less than ground of the other, at any gradient, on any class: no
-/// stronger, no surer, sinking no less.
+/// Whether ground of one estimate costs at least as much as ground of the other, at any gradient and on any
+/// class: pull no greater, standard deviation no smaller, sinkage no smaller.
 bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept;
 
 }  // namespace talus::costmap

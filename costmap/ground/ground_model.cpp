@@ -23,7 +23,7 @@ namespace {
 using terramech::Category;
 using terramech::MobilityState;
 
-// P(value < bound) for a normal estimate; a step where it is certain.
+// P(value < bound) of a normal estimate; a step function for std = 0.
 double probabilityBelow(const Estimate& value, double bound) {
   if (value.std <= 0.0) return value.value < bound ? 1.0 : 0.0;
   return terramech::normalProbability((bound - value.value) / value.std);
@@ -31,7 +31,7 @@ double probabilityBelow(const Estimate& value, double bound) {
 
 constexpr double kLeastThrust = 0.02;  // over load [-]
 
-// A class at the reference slip: what its shear gives over load, against what resists.
+// Pull and gross thrust of a class over load, at the reference slip.
 struct Thrust {
   double pull, thrust;
 
@@ -40,7 +40,7 @@ struct Thrust {
         thrust(std::max({at.torque_over_load_radius, at.drawbar_pull_over_load, kLeastThrust})) {}
 
   double resistance() const noexcept { return thrust - pull; }
-  // What ground of this pull gives of the class's thrust, at most all of it.
+  // Thrust of ground with this pull as a fraction of the class's thrust, at most 1.
   double share(double own_pull) const noexcept {
     return std::clamp((own_pull + resistance()) / thrust, 1e-3, 1.0);
   }
@@ -77,7 +77,7 @@ terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::
   return {modelOf(ground), rover};
 }
 
-// In the rut of an equal wheel: as data have shown, or as rutted() supposes.
+// The class in the rut of an equal wheel: by the effects found in data, else by rutted().
 GroundClass rutOf(const GroundClass& ground) {
   GroundClass rut = ground;
   if (!terramech::knowsPasses(ground.effects)) rut.soil = terramech::rutted(ground.soil);
@@ -89,7 +89,7 @@ terramech::MobilityOptions passOf(const GroundClass& rut) {
                                              : terramech::MobilityOptions{};
 }
 
-// All axles together, where they differ.
+// Options for all axles together, if the axles differ.
 std::optional<terramech::MobilityOptions> axlesOf(const GroundClass& ground, const terramech::Rover& rover) {
   if (!terramech::knowsPasses(ground.effects)) return std::nullopt;
   return terramech::MobilityOptions{.axles = rover.wheel_count / 2};
@@ -110,10 +110,10 @@ terramech::MobilityReference referenceOf(const GroundClass& ground, const terram
 }
 
 struct GroundModel::ClassGround {
-  terramech::MobilityCurve wheel;   // one on fresh ground
-  terramech::MobilityCurve in_rut;  // of an equal wheel
-  terramech::MobilityCurve all;     // axles of the rover together
-  ExpectedDrive drive;              // the same over the demand
+  terramech::MobilityCurve wheel;   // a wheel on fresh ground
+  terramech::MobilityCurve in_rut;  // a wheel in the rut of an equal wheel
+  terramech::MobilityCurve all;     // all axles of the rover
+  ExpectedDrive drive;              // expected cost by `all`
   terramech::SlopeEquilibrium slope;
   std::shared_ptr<const CrossSlope> crossing;
 };
@@ -139,7 +139,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    // Whatever of a class may leave its range leaves it here: what is worked out later has the same ground.
+    // References throw here if a field is out of range; later computations use the same values.
     const GroundClass rut = rutOf(c);
     const terramech::MobilityReference fresh = costmap::referenceOf(c, parts_.rover);
     references_.push_back(
@@ -218,7 +218,7 @@ SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept 
   return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
 }
 
-// tan(slope -+ margin) by the addition theorem; beyond a right angle nothing is enough.
+// tan(slope -+ margin) by the addition theorem; infinite beyond a right angle.
 GroundModel::Edges GroundModel::edges(double gradient) const noexcept {
   const double left = 1.0 - gradient * tan_margin_, right = 1.0 + gradient * tan_margin_;
   constexpr double kSteeper = std::numeric_limits<double>::infinity();
@@ -248,7 +248,7 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
   const double critical = criticalSinkage(), threshold = std::min(parts_.policy.sinkage_threshold, critical);
   const double carried = probabilityBelow(belief.sinkage, threshold);
   const double free = probabilityBelow(belief.sinkage, critical);
-  // What each of the three pull ranks becomes at each of the three of sinkage; their chances add up.
+  // Sums the probabilities of the combinations of pull and sinkage ranks that have the category of the mean.
   constexpr double kMost = std::numeric_limits<double>::infinity();
   const std::array<std::pair<double, double>, 3> pulls{
       {{kMost, 1.0 - below_high}, {gradient, below_high - below_low}, {-kMost, below_low}}};
@@ -262,7 +262,7 @@ Ranked GroundModel::category(const GroundBelief& belief, double gradient) const 
   return {mean, probability};
 }
 
-// Up to the reference slip by the shift of the curve; beyond it the ground has its share of the class's thrust left.
+// Up to the reference slip by the shift of the curve, beyond by the ground's fraction of the class's thrust.
 Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradient) const noexcept {
   const Thrust own(referenceOf(class_index).fresh);
   const double beyond = std::max(gradient - pull.value, 0.0), share = own.share(pull.value);
@@ -270,21 +270,22 @@ Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradi
           pull.std * (1.0 + beyond / (share * own.thrust)) / share};
 }
 
-// At most, the ground pulls what it pulls at its strongest slip, its share of what the class has there. Where even the mean
-// falls short it is taken for certain: doubt is no hope.
+// The greatest pull of the ground is its fraction of the class's pull at the strongest slip. The probability
+// is 1 if the mean falls short: a large standard deviation must not reduce it.
 double GroundModel::weakProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
   const double strongest = ground.all.strongest().drawbar_pull_over_load;
   const double reserve = std::max({strongest, ground.drive.last(), own.pull}) - own.pull;
-  // The pull at the reference slip from which on the gradient is within reach; of ground stronger than its class by the shift.
+  // Least pull at the reference slip for the gradient; by the shift for ground stronger than its class.
   const double least = gradient > own.pull + reserve
                            ? gradient - reserve
                            : (gradient * own.thrust - reserve * own.resistance()) / (own.thrust + reserve);
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
-// The locked wheels of ground that is weaker by d hold d less, or their share of what the class's hold, if that is less.
+// On ground weaker by d, locked wheels brake less by d, or by the ground's fraction of the class's braking if
+// that is less.
 double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                         double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
@@ -325,7 +326,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
 
   DriveState state;
   state.slip = static_cast<float>(s.slip);
-  // Stronger ground on the same slope brakes harder: weaker ground is not let off what refuses that.
+  // Stronger ground brakes harder on the same slope; that braking also counts for weaker ground.
   state.sinkage_m = static_cast<float>(
       std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);
@@ -372,7 +373,7 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
   return ground;
 }
 
-// Of ground of a class on which the flat costs so much.
+// Turns on ground of a class with the given state on level ground.
 TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
   const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
   const terramech::Rover& rover = parts_.rover;

@@ -17,121 +17,124 @@
 
 namespace talus::costmap {
 
-/// A terrain class as a prior for the ground of its cells. Plain data.
+/// Prior of a terrain class for the ground of its cells. Plain data.
 struct GroundClass {
-  int number = 0;        ///< in the terrain-class raster
-  terramech::Soil soil;  ///< its mean soil
-  std::vector<terramech::Effect>
-      effects{};             ///< that data have shown of it, beyond a rigid wheel on that soil
-  double pull_std = 0.05;    ///< how drawbar pull over load differs from place to place within the class [-]
-  double mean_std = 0.05;    ///< how far the class as a whole may be off [-]
-  double sinkage_std = 0.1;  ///< sinkage over radius, place to place [-]
+  int number = 0;                            ///< number in the terrain-class raster
+  terramech::Soil soil;                      ///< mean soil
+  std::vector<terramech::Effect> effects{};  ///< effects found in data, beyond a rigid wheel on the soil
+  double pull_std = 0.05;    ///< standard deviation of drawbar pull over load between places of the class [-]
+  double mean_std = 0.05;    ///< standard deviation of the class mean of drawbar pull over load [-]
+  double sinkage_std = 0.1;  ///< standard deviation of sinkage over radius between places [-]
 };
 
-/// What a slope asks of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve does.
+/// Mobility curve of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve.
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options = {});
 
-/// mobilityOf().reference() alone, a hundred times as fast.
+/// mobilityOf().reference(), computed a hundred times as fast.
 terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
                                          const terramech::MobilityOptions& options = {});
 
-/// What is believed of the strength of a piece of ground, both at the reference slip 0.5.
+/// Estimated strength of ground, at the reference slip 0.5.
 struct GroundBelief {
   Estimate pull;     ///< drawbar pull over load [-]
   Estimate sinkage;  ///< sinkage over wheel radius [-]
 };
 
-/// A wheel at a slip, on fresh ground or in the rut of an equal one, that travels at an angle to its plane.
+/// State of a driven wheel on fresh ground or in the rut of an equal wheel.
 struct DrivenWheel {
   double slip = 0.0;
   bool in_rut = false;
-  double slip_angle_rad = 0.0;  ///< more than 60 deg counts as that
+  double slip_angle_rad = 0.0;  ///< limited to 60 degrees
 };
 
-/// Of a wheel that drives steadily.
+/// Quantities of a wheel in steady motion.
 struct SteadyWheel {
-  double gradient = 0.0;  ///< of the slope it does so on, which is the drawbar pull over load it gives [-]
+  double gradient = 0.0;  ///< gradient of the slope, equal to the drawbar pull over load [-]
   double sinkage_over_radius = 0.0;
   double torque_over_load_radius = 0.0;
-  double hold = 0.0;  ///< force across it, against its sideways motion, over load [-]
+  double hold = 0.0;  ///< side force against sideways motion over load [-]
 };
 
-/// A category and the probability that it is that one.
+/// A category and its probability.
 struct Ranked {
   terramech::Category category = terramech::Category::Unknown;
   double probability = 0.0;
 };
 
-/// The ground of one rover on one body: per class the mobility curve of its soil, and from it what any belief
-/// costs. At the reference slip the class has a thrust H (its torque over load and radius) against a resistance R: P = H - R.
-/// Ground whose pull there is believed to be P - d drives on a gradient g as the class does
-///   on g + d            up to the reference slip, where g <= P - d: the shift of the curve
-///   on P + (g - P + d) / f,  f = 1 - d / H   beyond it: it has the share f of the class's thrust, and so of what more slip gives
-/// (ours; at the reference slip both are exact. Of soils drawn from the deviations of mars_crusty, sandy_loam and dry_sand, pulls at slip
-/// 0.8 that the shift takes 0.02, 0.04, 0.01 too high on average are 0.00, 0.01, 0.00 too high by the share; below the reference slip
-/// the shift takes them too low). The standard deviation grows as the demand does with P - d. Ground that pulls more drives as on
-/// a flatter slope, at most as on the level, and has no more reserve than its class. Cost and
-/// risk never fall as a standard deviation grows, nor, from the level upwards, as the gradient grows
-/// (ExpectedDrive). Downhill, ground that gives less by d brakes less by d, or its share, too, so that weaker ground is nowhere
-/// allowed where stronger ground is refused. What crossing a slope costs is CrossSlope's to say. What takes long of a class, its
-/// curves and what crossing slopes costs, is worked out when it is first asked for, once: a class raster may declare hundreds of
-/// classes and a window hold three. Immutable to its callers; safe to share between threads, and so are copies.
+/// Ground model of one rover on one body: the mobility curve of each class, and the cost of ground for any
+/// estimated strength. At the reference slip, a class has a thrust H (torque over load and radius), a
+/// resistance R and a pull P = H - R, all over load. Ground with an estimated pull P - d drives on a gradient
+/// g as the class does on the gradient
+///   g + d                                  for g <= P - d (up to the reference slip): shift of the curve;
+///   P + (g - P + d) / f,  f = 1 - d / H    beyond: the ground has the fraction f of the class's thrust
+/// (ours; both are exact at the reference slip. For soils drawn from the deviations of mars_crusty,
+/// sandy_loam and dry_sand, the shift overestimates the pull at slip 0.8 by 0.02, 0.04, 0.01 on average, and
+/// the fraction by 0.00, 0.01, 0.00. Below the reference slip, the shift underestimates the pull.) The
+/// standard deviation scales with the derivative of the demand by P - d. Ground with a greater pull drives as
+/// on a flatter slope, at most as on level ground, and has no more reserve than its class. Cost and risk
+/// never decrease with the standard deviation nor, from level ground upwards, with the gradient
+/// (ExpectedDrive). Downhill, ground weaker by d brakes less by d or by the fraction f: weaker ground is
+/// never allowed where stronger ground is refused. CrossSlope adds the effect of cross slopes.
+///
+/// Curves and cross slopes of a class are computed once, at the first use: a class raster may declare
+/// hundreds of classes, of which few occur in a window. Logically immutable and thread-safe; copies share the
+/// computed classes.
 class GroundModel {
  public:
-  /// Everything the model is made from.
+  /// Rover, classes and policy of the model.
   struct Parts {
     terramech::Rover rover;
-    std::vector<GroundClass> classes;  ///< the first is the default, for cells without a class
+    std::vector<GroundClass> classes;  ///< the first class is the default, for cells without a class
     DrivePolicy policy;
-    bool prices_crossing =
-        true;  ///< false: CrossSlope::alongOnly(), for comparison; no rover is to drive by it
+    bool prices_crossing = true;  ///< false: CrossSlope::alongOnly(), for comparison only; unsafe for driving
   };
 
-  /// Throws std::invalid_argument when there is no class, two share a number, or a field leaves its range.
+  /// Throws std::invalid_argument if there is no class, if two classes have the same number, or if a field is
+  /// out of range.
   explicit GroundModel(Parts parts);
 
   const Parts& parts() const noexcept { return parts_; }
   const terramech::Rover& rover() const noexcept { return parts_.rover; }
 
-  /// Position in parts().classes of a class number, or -1 when no soil is declared for it.
+  /// Index in parts().classes of a class number; -1 for an undeclared number.
   int classIndex(int number) const noexcept;
 
-  /// Belief before any evidence.
+  /// Estimate before any evidence.
   const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
 
-  /// What a wheel of a rover that drives steadily at this slip on ground of the class reads, as its soil
-  /// says; the ends of what it can drive beyond them. A slip angle changes it as it changes a wheel on fresh ground.
+  /// Quantities of a wheel that drives steadily at this slip on ground of the class, by its soil; limited to
+  /// the drivable range. The effect of a slip angle is that of a wheel on fresh ground.
   SteadyWheel steady(int class_index, const DrivenWheel& wheel) const;
-  /// The same of a wheel that drives straight on a slope of this gradient (rise over run), or on the nearest that its
-  /// soil holds.
+  /// Quantities of a wheel that drives straight on a slope of this gradient (rise over run), limited to the
+  /// drivable gradients.
   SteadyWheel onSlope(int class_index, double gradient, bool in_rut) const;
-  /// The same at the reference slip.
+  /// Quantities of a wheel at the reference slip.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
-  /// Drive curve and states of ground of a class under a belief.
+  /// Drive curve and states of ground of a class with an estimated strength.
   DriveGround ground(int class_index, const GroundBelief& belief) const {
     return ground(class_index, class_index, belief);
   }
-  /// The same of ground that may be of either class: the worse of both in everything.
+  /// The same for ground of either class: each quantity is the less favourable of both.
   DriveGround ground(int class_index, int other_class, const GroundBelief& belief) const;
 
-  /// What crossing slopes is worth on ground of a class.
+  /// Effect of cross slopes on ground of a class.
   const std::shared_ptr<const CrossSlope>& crossing(int class_index) const;
 
-  /// State at one gradient along the heading (rise over run) with none across, as ground() tabulates it.
+  /// State at a gradient along the heading (rise over run) without cross slope, as tabulated by ground().
   DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
 
-  /// Cost of one horizontal metre [J]; infinite when refused.
+  /// Cost of one horizontal metre [J]; infinite if refused.
   double cost_J_per_m(const DriveState& state) const noexcept;
 
-  /// Category of ground at a gradient along the heading, and its probability under the belief.
+  /// Category of ground at a gradient along the heading, and its probability under the estimate.
   Ranked category(const GroundBelief& belief, double gradient) const;
 
   DriveCost::Limits limits() const;
 
  private:
-  // What is known of a class at once, and what is worked out when it is first asked for.
+  // Quantities computed at construction; Lazy has those computed at the first use.
   struct Reference {
     terramech::MobilityReference fresh, in_rut;  // of one wheel
     GroundBelief prior;
@@ -144,7 +147,7 @@ class GroundModel {
   const ClassGround& groundOf(int class_index) const;
   ClassGround workedOut(const GroundClass& ground) const;
 
-  // Drawbar pull over load at which a slope is no longer dangerous, and from which it is safe.
+  // Drawbar pull over load below which a slope is dangerous (low), and above which it is safe (high).
   struct Edges {
     double low, high;
   };
@@ -155,7 +158,7 @@ class GroundModel {
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
   static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept;
-  // The pulls over load that the class must give: driven at most, braked at least.
+  // Required pulls over load: at most when driven, at least when braked.
   struct Demand {
     double driven, braked;
   };

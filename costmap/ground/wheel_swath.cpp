@@ -9,9 +9,9 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kHeadings = 16;  // over half a turn: a rover stands alike forwards and backwards
+constexpr int kHeadings = 16;  // over 180 degrees: forward and backward stances are equal
 
-// Places of the middle along a side of the cell: no further apart than a quarter of the track.
+// Number of positions of the centre along a side of the cell: spaced at most a quarter of the track.
 int placesAcross(double side_m, double track_m) {
   return std::clamp(static_cast<int>(std::ceil(4.0 * side_m / track_m)), 1, 8) + 1;
 }
@@ -20,7 +20,7 @@ struct Offset {
   double x_m, y_m;
 };
 
-// Wheel centres in the body frame: as many axles as pairs, evenly along the wheelbase.
+// Wheel centres in the body frame: wheel_count / 2 axles, equally spaced along the wheelbase.
 std::vector<Offset> wheelCentres(const terramech::Rover& rover) {
   std::vector<Offset> centres;
   const int axles = std::max(1, rover.wheel_count / 2);

@@ -13,7 +13,7 @@
 namespace talus::costmap {
 namespace {
 
-// Number 0: none of that id.
+// Entry of a drive; number 0 if the journal lacks the id.
 DriveEntry find(const JournalDatabase& database, const std::string& id) {
   const auto entry = database.prepare("SELECT number, checksum FROM drive WHERE id = ?");
   sqlite3_bind_text(entry.get(), 1, id.c_str(), static_cast<int>(id.size()), SQLITE_TRANSIENT);
@@ -27,7 +27,7 @@ DriveEntry find(const JournalDatabase& database, const std::string& id) {
   return drive;
 }
 
-// Rows behind those that the drive has, and its id with them.
+// Appends rows to a drive and updates its id and checksum.
 void write(const JournalDatabase& database, DriveEntry entry, const std::string& id,
            const std::vector<JournalRow>& rows) {
   const std::int64_t before = database.single("SELECT ifnull(max(id), 0) FROM evidence");
@@ -51,7 +51,7 @@ void requireId(const std::string& id) {
 EvidenceJournal::EvidenceJournal(const std::string& path)
     : database_(std::make_unique<JournalDatabase>(path)) {
   beginJournal(*database_);
-  // Under a lock, so that two processes do not both make the tables.
+  // The lock prevents two processes from both creating the tables.
   Transaction transaction(*this);
   bringUpToDate(*database_);
   transaction.commit();
@@ -108,7 +108,7 @@ std::vector<std::string> EvidenceJournal::drives() const {
   const auto rows = database_->prepare("SELECT number, id FROM drive ORDER BY number");
   std::vector<std::string> ids;
   while (database_->step(rows)) {
-    // They are numbered from 1 on, and none is ever removed.
+    // Numbers count from 1, and no drive is ever removed.
     const std::int64_t number = sqlite3_column_int64(rows.get(), 0);
     if (number != static_cast<std::int64_t>(ids.size()) + 1)
       database_->refuse("drives are missing in it: the journal was changed");

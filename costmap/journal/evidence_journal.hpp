@@ -11,13 +11,14 @@ namespace talus::costmap {
 
 class JournalDatabase;
 
-/// EVIDENCE.db: every telemetry row ever offered to a map, drive by drive, in SQLite (write-ahead log). A drive is
-/// taken in once, whatever its file is called, and as a whole or not at all, synced before append() or
-/// Transaction::commit() returns. Several processes may share one journal; they queue. One object a thread.
+/// EVIDENCE.db: all telemetry rows offered to a map, by drive, in an SQLite file with a write-ahead log. A
+/// drive is stored once, independently of its file name, atomically, and synchronised to the disk before
+/// append() or Transaction::commit() returns. Several processes may use one journal; they wait for each
+/// other. One object per thread.
 class EvidenceJournal {
  public:
-  /// Holds the journal from its making on: what is appended stays only after commit(). Throws InputError when another
-  /// process holds it for longer than 30 s.
+  /// Write lock of the journal during the lifetime of the object; changes are undone unless commit() is
+  /// called. Throws InputError if another process keeps the lock for more than 30 s.
   class Transaction {
    public:
     explicit Transaction(EvidenceJournal& journal);
@@ -27,39 +28,41 @@ class EvidenceJournal {
     void commit();
 
    private:
-    EvidenceJournal* journal_;  // null once committed
+    EvidenceJournal* journal_;  // null after commit()
   };
 
-  /// Opens or creates a file of that very name: no URI, no database in memory. A journal of Talus 0.1.0 becomes of the
-  /// present format. Throws InputError when the file is no journal, is of another format, has tables, columns, triggers or
-  /// views that a journal has not, or cannot be written.
+  /// Opens or creates the file `path` (no URI, no in-memory database). A journal of Talus 0.1.0 is converted.
+  /// Throws InputError if the file is not a journal, has another format, has foreign tables, columns,
+  /// triggers or views, or cannot be written.
   explicit EvidenceJournal(const std::string& path);
   ~EvidenceJournal();
   EvidenceJournal(const EvidenceJournal&) = delete;
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
-  /// Appends the rows of a drive, its id by driveId(), in a transaction of its own where none is open; nothing where the journal holds the
-  /// drive already. `continued`: the id that the drive had without these rows, if it is in the journal. Throws
-  /// InputError when the disk is full or another process holds the file for longer than 30 s, std::invalid_argument when
-  /// the id is not of 16 hexadecimal digits.
+  /// Appends the rows of a drive with its driveId(), in a new transaction unless one is open; no effect if
+  /// the journal has the drive. `continued`: id of the drive without these rows, if the journal has that
+  /// drive. Throws InputError if the disk is full or if another process keeps the journal for more than 30 s,
+  /// std::invalid_argument for an invalid id (isDriveId()).
   void append(const std::string& drive, const std::vector<JournalRow>& rows,
               const std::string& continued = {});
 
-  /// Puts rows in the place of those of a drive that the journal holds, in a transaction of its own where none is open.
+  /// Replaces the rows of a drive, in a new transaction unless one is open; no effect if the journal lacks
+  /// the drive.
   void replace(const std::string& drive, const std::vector<JournalRow>& rows);
 
-  /// Ids of its drives, in the order in which they were appended. Throws InputError when a drive or a drive's entry is
-  /// missing, or an id is none.
+  /// Ids of the drives in the order of their addition. Throws InputError if a drive or its entry is missing,
+  /// or if an id is invalid.
   std::vector<std::string> drives() const;
 
-  /// Throws InputError unless the journal has the drive, its rows and its id as they were written. Returns its number.
+  /// Verifies the rows and the id of a drive by the checksum, and returns the number of the drive. Throws
+  /// InputError if the drive is missing or changed.
   std::int64_t check(const std::string& drive) const;
 
-  /// The rows of a drive in order, numbers to the bit. Throws InputError where check() does, or when a row holds a number
-  /// that no wheel can give.
+  /// The rows of a drive in order; numbers equal the written ones to the bit. Throws InputError as check(),
+  /// or for a number that no wheel can produce.
   std::vector<JournalRow> rows(const std::string& drive) const;
 
-  /// Rows that it holds.
+  /// Number of rows.
   std::int64_t size() const;
 
  private:

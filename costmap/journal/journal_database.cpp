@@ -12,7 +12,8 @@
 namespace talus::costmap {
 namespace {
 
-// SQLite takes some names for what is no file, and rows in it would be gone with the process.
+// Rejects names that SQLite interprets as an in-memory database or a URI, whose rows would be lost with the
+// process.
 void requireFileName(const std::string& path) {
   if (path.empty()) throw InputError({"evidence journal", "its name is empty", "name a file"});
   if (path == ":memory:" || path.starts_with("file:"))
@@ -21,7 +22,8 @@ void requireFileName(const std::string& path) {
   if (path.back() == '/') throw InputError({path, "is the name of a folder", "name a file"});
 }
 
-// SQLite takes a file of a few bytes for a new database: the drives of one that was cut would be lost in silence.
+// Rejects truncated files: SQLite treats a file of a few bytes as a new database and would silently discard
+// the drives.
 void requireJournalOrNothing(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -37,7 +39,7 @@ void requireJournalOrNothing(const std::string& path) {
         {path, "is no evidence journal, or was cut", "name the journal, or a file that does not exist"});
 }
 
-// SQLite's words hold names as a damaged file has them: any bytes.
+// Replaces unprintable bytes: SQLite's messages contain names from a possibly damaged file.
 std::string printable(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');

@@ -9,7 +9,8 @@ struct sqlite3_stmt;
 
 namespace talus::costmap {
 
-/// An open SQLite file of a journal. What SQLite refuses is an InputError that names the file. One object a thread.
+/// An open SQLite file of a journal. SQLite errors are thrown as InputError with the file name. One object
+/// per thread.
 class JournalDatabase {
  public:
   struct Close {
@@ -18,8 +19,8 @@ class JournalDatabase {
   };
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 
-  /// Opens or creates a file of that very name: neither URIs nor databases in memory. Throws InputError when it is
-  /// another file than SQLite's or cannot be opened.
+  /// Opens or creates the file `path`; neither URIs nor in-memory databases. Throws InputError if the file is
+  /// not an SQLite file or cannot be opened.
   explicit JournalDatabase(const std::string& path);
 
   const std::string& path() const noexcept { return path_; }
@@ -27,14 +28,14 @@ class JournalDatabase {
   std::int64_t lastRow() const noexcept;
 
   Statement prepare(const char* sql) const;
-  /// Whether a statement gave one more row.
+  /// Executes a step of a statement; returns whether there is a row.
   bool step(const Statement& statement) const;
   void run(const std::string& sql) const;
-  /// The first number of a query's answer; nothing of the query stays open.
+  /// First number of a query's result, 0 without a row; closes the query.
   std::int64_t single(const char* sql) const;
   void rollBack() const noexcept;
 
-  /// Throws InputError: the journal is not as it was written.
+  /// Throws InputError: the journal differs from its written state.
   [[noreturn]] void refuse(const std::string& reason) const;
 
  private:

@@ -25,7 +25,8 @@ constexpr const char* kSelect =
     "wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence WHERE drive = ? AND id > ? ORDER "
     "BY id";
 
-// NULL stands for NaN: SQLite has none. What is no number, "0" for SQLite, is refused by fault().
+// NULL represents NaN, which SQLite lacks. Other types than numbers give infinity, which fault() rejects;
+// SQLite would read 0.
 double number(sqlite3_stmt* row, int column) {
   const int type = sqlite3_column_type(row, column);
   if (type == SQLITE_NULL) return std::numeric_limits<double>::quiet_NaN();
@@ -106,7 +107,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Column by column with its kind; NULL is left out.
+// Appends the columns with their types; NULL is omitted.
 void append(std::string& bytes, sqlite3_stmt* row) {
   for (int column = 0; column < sqlite3_column_count(row); ++column) {
     const int type = sqlite3_column_type(row, column);
@@ -174,7 +175,7 @@ bool isDriveId(const std::string& id) {
   constexpr std::size_t kDigits = 16, kLongest = 5000;
   const auto digit = [](unsigned char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
   if (!id.starts_with("source ")) return id.size() == kDigits && std::ranges::all_of(id, digit);
-  // A map lists ids line by line.
+  // Ids must fit on one line, because a map lists ids line by line.
   return id.size() < kLongest && std::ranges::none_of(id, [](unsigned char c) { return c < ' '; });
 }
 

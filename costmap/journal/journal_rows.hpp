@@ -8,37 +8,39 @@
 #include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
 
-/// Rows of a journal's tables `evidence` and `drive`.
+/// Access to the rows of the tables `evidence` and `drive` of a journal.
 namespace talus::costmap {
 
-/// The bytes of a column, as text.
+/// Text of a column, byte by byte.
 std::string journalText(sqlite3_stmt* row, int column);
 
-/// Appends rows of the drive of that number.
+/// Appends rows to the drive with that number.
 void insertRows(const JournalDatabase& database, std::int64_t drive, const std::vector<JournalRow>& rows);
 
 /// The rows of a drive in order.
 std::vector<JournalRow> selectRows(const JournalDatabase& database, std::int64_t drive);
 
-/// An id before that of every row, of changed journals, too.
+/// An id below that of every row, also in a modified journal.
 constexpr std::int64_t kBeforeAllRows = std::numeric_limits<std::int64_t>::min();
 
-/// What a drive's rows sum up to, each with those before it; `before`: what the rows up to id `after` do, 0 for none.
+/// Chained checksum of the rows of a drive with an id above `after`; `before` is the checksum of the earlier
+/// rows, 0 for none.
 std::uint64_t rowsChecksum(const JournalDatabase& database, std::int64_t drive, std::uint64_t before,
                            std::int64_t after);
 
-/// A drive's entry in table `drive`. What is stored there as its checksum is that of its rows, changed by its number and id,
-/// so that neither can be another's.
+/// Entry of a drive in the table `drive`. The stored checksum combines that of the rows with the number and
+/// id (sealed()), so that an exchange of any of these is detected.
 struct DriveEntry {
   std::int64_t number = 0;
   std::string id;
-  std::uint64_t checksum = 0;  ///< of its rows
+  std::uint64_t checksum = 0;  ///< checksum of the rows
 };
 
-/// The checksum as it is stored, and back: both are one function.
+/// Converts the checksum of the rows to the stored checksum, and back: checksum XOR hash of number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// Whether it is 16 hexadecimal digits, as driveId() gives, or "source NAME", as the rows of Talus 0.1.0 have.
+/// Whether the id has 16 hexadecimal digits, as from driveId(), or is "source NAME", as rows of Talus 0.1.0
+/// have.
 bool isDriveId(const std::string& id);
 
 }  // namespace talus::costmap

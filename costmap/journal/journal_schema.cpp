@@ -13,10 +13,10 @@ namespace talus::costmap {
 namespace {
 
 constexpr int kFormat = 10;
-constexpr int kFormat010 = 3;             // of Talus 0.1.0, the only other one that a release wrote
+constexpr int kFormat010 = 3;             // format of Talus 0.1.0, the only other released format
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
-// Columns that 0.1.0 has, too.
+// Columns that also exist in 0.1.0.
 const std::string kColumns010 =
     "id INTEGER PRIMARY KEY AUTOINCREMENT, source TEXT NOT NULL, line INTEGER NOT NULL,"
     " accepted INTEGER NOT NULL, reason TEXT NOT NULL, time_s REAL, x_m REAL, y_m REAL, load_N REAL, slip "
@@ -30,14 +30,14 @@ constexpr const char* kNames010 =
     "drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m, pull_may_raise, "
     "sinkage_may_raise";
 
-// A table or index, by type and name, and how it was made.
+// A table or index: type, name and SQL definition.
 struct Entry {
   std::string type, name, sql;
   friend bool operator==(const Entry&, const Entry&) = default;
 };
 const Entry kSequence{"table", "sqlite_sequence", "CREATE TABLE sqlite_sequence(name,seq)"};
 
-// All that a journal has, by name.
+// All entries of a journal, by name.
 const std::vector<Entry>& entriesOfJournal() {
   static const std::vector<Entry> entries{
       {"table", "drive",
@@ -83,7 +83,7 @@ void makeTables(const JournalDatabase& database) {
     if (!entry.sql.empty() && entry != kSequence) database.run(entry.sql);
 }
 
-// Writes the checksum of each drive.
+// Writes the checksums of all drives.
 void sealDrives(const JournalDatabase& database) {
   std::vector<DriveEntry> drives;
   const auto rows = database.prepare("SELECT number, id FROM drive");
@@ -102,7 +102,7 @@ void sealDrives(const JournalDatabase& database) {
   }
 }
 
-// 0.1.0 has no drives: the rows of one source count as one drive.
+// 0.1.0 has no drives: the rows of a source become a drive.
 void takeOver010(const JournalDatabase& database) {
   requireExact(database, entriesOf010());
   database.run("ALTER TABLE evidence RENAME TO evidence_010");
@@ -133,7 +133,7 @@ void beginJournal(const JournalDatabase& database) {
     throw InputError({database.path(), "an SQLite file, but no evidence journal", "name another file"});
   database.run("PRAGMA journal_mode = WAL");
   database.run("PRAGMA synchronous = FULL");
-  // The mark comes before the table: a process killed in between leaves a journal, if an empty one.
+  // The mark precedes the tables: a process that is killed in between leaves a valid empty journal.
   if (!marked) database.run("PRAGMA application_id = " + std::to_string(kApplication));
 }
 

@@ -4,12 +4,12 @@
 
 namespace talus::costmap {
 
-/// Sets the write-ahead log, and marks a new file as a journal. Throws InputError for another SQLite file.
+/// Enables the write-ahead log and marks a new file as a journal. Throws InputError for another SQLite file.
 void beginJournal(const JournalDatabase& database);
 
-/// Makes the tables of a new journal, or those of Talus 0.1.0 into those of the present format, and requires that the file
-/// has these and nothing else: a trigger or a view could drop rows in silence. Within a transaction. Throws InputError, for
-/// all other formats, too.
+/// Creates the tables of a new journal, or converts those of Talus 0.1.0, and requires that the file has no
+/// other entries: a trigger or view could silently drop rows. Call within a transaction. Throws InputError,
+/// also for other formats.
 void bringUpToDate(const JournalDatabase& database);
 
 }  // namespace talus::costmap

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-// The metrics of one cell, from a window around it just large enough.
+// Terrain metrics of a cell, computed in the smallest sufficient window around the cell.
 maps::TerrainMetrics measuredAround(const TraversabilityMap& map, maps::Cell cell, maps::Cell& inside) {
   const maps::Grid& grid = map.grid();
   const int halo = maps::metricsReach(map.surface().footprint(1), grid.resolution_m) + 1;
@@ -105,7 +105,7 @@ void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) 
   }
 }
 
-// What excludes a cell, and the layer where one does.
+// Text of a hazard of a cell, with the name of the layer that causes the hazard.
 std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard hazard) {
   for (const CostLayer& layer : map.surface().costLayers()) {
     const float added = layer.added_J_per_m[cell];
@@ -157,7 +157,7 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
       {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
 }
 
-// The other levels of a cell: what is believed there does not mix with its top.
+// Adds the other levels of a cell; their estimates are separate from that of the surface.
 void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   for (const Floor& floor : map.surface().floors().of(map.grid().index(cell))) {
     const CellBelief belief = map.belief(cell, floor);
@@ -213,7 +213,8 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
 }
 
-// The category of the map holds for the worst heading; asked for one, that of the heading counts.
+// The category of the map is that of the worst heading; with a requested heading, the category of that
+// heading.
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, bool asked,
            Explanation& out) {
   const Hazard hazards = map.surface().hazards(cell);
@@ -226,7 +227,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
-  // Where what is not seen is opened, something else excludes the cell.
+  // If unknown ground is allowed, another hazard excludes the cell.
   const bool unseen = map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
     if (has(hazards, one) && !opened && !(unseen && one == Hazard::Unknown)) {
@@ -240,7 +241,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
                        : ": no cost curve is left for this ground";
     return;
   }
-  // What is said is what planners read, at the gradient that they read it at.
+  // Uses the cost and the gradient that planners read.
   const CellCode code = map.published()->at(cell);
   const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
   const DriveState state = map.published()->cost().detail(code, heading);

@@ -9,24 +9,24 @@
 
 namespace talus::costmap {
 
-/// One number behind a cell's category.
+/// One quantity behind the category of a cell.
 struct Cause {
   std::string name;                                       ///< "slope_rad"
-  double value = 0.0;                                     ///< in the unit that the name ends with
-  double std = std::numeric_limits<double>::quiet_NaN();  ///< its standard deviation; NaN: not known
-  std::string source;                                     ///< where it comes from
-  std::string remark;                                     ///< what it does to the category; may be empty
+  double value = 0.0;                                     ///< in the unit of the name's suffix
+  double std = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation; NaN: unknown
+  std::string source;                                     ///< origin of the value
+  std::string remark;                                     ///< effect on the category; may be empty
 };
 
-/// Why a cell is what it is.
+/// Category of a cell with the quantities behind it.
 struct Explanation {
   terramech::Category category = terramech::Category::Unknown;
-  double probability = 0.0;  ///< of that category; NaN where it is Unknown, which has none
-  std::string verdict;       ///< one line
+  double probability = 0.0;  ///< probability of the category; NaN for Unknown
+  std::string verdict;       ///< summary in one line
   std::vector<Cause> causes;
 };
 
-/// Explains a cell inside the map, for one heading or, without one, for the worst: straight up its slope, or across.
+/// Explains a cell inside the map for one heading; without a heading, for worstHeading().
 Explanation explain(const TraversabilityMap& map, maps::Cell cell,
                     const std::optional<Direction>& heading = std::nullopt);
 

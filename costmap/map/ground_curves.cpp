@@ -9,10 +9,11 @@ namespace talus::costmap {
 namespace {
 
 constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
-constexpr int kFew = 4;  // cells that a box may hold in vain for a new one
+constexpr int kFew = 4;  // cells by which a box may grow in addition to a new cell
 constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 24, kSinkageZero = 64;
 
-// A kind as a word that is not 0; drawbar pull over load within 10 of the prior's and sinkage up to 44 radii above.
+// Packs a kind into a non-zero word: drawbar pull over load within 10 of the prior's, sinkage up to 44 radii
+// above.
 std::uint32_t packed(const GroundKind& kind) {
   const auto field = [](int value, int bits) {
     return static_cast<std::uint32_t>(std::clamp(value, 0, (1 << bits) - 1));
@@ -31,7 +32,8 @@ GroundKind unpacked(std::uint32_t word, int class_index) {
           .sinkage = field(0, kSinkageBits) - kSinkageZero};
 }
 
-// Boxes in which most cells changed: a cell that lies beside the last box grows it, where that adds few others.
+// Adds a cell to the last box if the box grows by few other cells, else as a new box: boxes hold mostly
+// changed cells.
 void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
   const auto area = [](const maps::CellBox& b) {
     return (b.last.column - b.first.column + 1) * (b.last.row - b.first.row + 1);
@@ -75,7 +77,7 @@ maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
   return grown(range, swath_.reach(), site_->grid());
 }
 
-// A border is one up to a reach away from where classes changed; it is found from what lies as far again.
+// A change of class alters borders within the reach; their computation needs cells within twice the reach.
 maps::CellBox GroundCurves::takeClasses(const maps::CellBox& box) {
   const maps::CellBox changed = within(box), seen = within(changed);
   const std::vector<bool> borders = classBorders(cut(site_->classes, seen), swath_.reach());

@@ -16,40 +16,40 @@
 
 namespace talus::costmap {
 
-/// Which cost curve the ground of each cell has: that of its own ground where all ground that a wheel may touch
-/// is like it, else what WheelSwath makes of them. Keeps the ground of cells that were learned, rounded as
-/// GroundKind, so that a cell is judged anew only when ground within its reach changed. Not thread-safe.
+/// Assigns a cost curve to the ground of each cell: the curve of the cell's own ground if all ground that a
+/// wheel may touch is equal, else that of the result of WheelSwath. Stores the learned ground of cells as
+/// GroundKind, so that cells are recomputed only after changes within reach. Not thread-safe.
 class GroundCurves {
  public:
   explicit GroundCurves(std::shared_ptr<const GroundSite> site);
 
   const CostCurveTable& table() const noexcept { return table_; }
 
-  /// Number of the curve of a cell whose class has a soil; CellCode::kUnknown where a wheel may touch ground without a
-  /// class, unless the policy allows that.
+  /// Curve number of a cell whose class has a soil. CellCode::kUnknown if a wheel may touch ground without a
+  /// class and the policy excludes unknown ground.
   std::uint8_t number(maps::Cell cell);
-  /// The same of a cell that nobody has seen, where the policy takes it for level ground of the first class.
+  /// Curve number of an unseen cell that the policy allows, as ground of the first class.
   std::uint8_t numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
 
-  /// What taking over the classes' beliefs changes.
+  /// Changes by learnClasses().
   struct ClassChange {
-    bool priors = false;   ///< of ground that nobody drove on
-    bool learned = false;  ///< what learned ground has of its class
+    bool priors = false;   ///< whether priors of classes changed
+    bool learned = false;  ///< whether the class state behind learned ground changed
   };
-  /// Takes over what is believed of the classes.
+  /// Takes over the estimates of the classes.
   ClassChange learnClasses(const EvidenceField& field);
-  /// Takes over what is believed of the cells of the ranges, with classes in steps. The ranges in which numbers may have
-  /// changed.
+  /// Takes over the estimates of the cells of the ranges, with class states in steps. Returns the ranges
+  /// whose numbers may have changed.
   std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
-  /// Takes over the site's classes in a box, which have changed. The box in which numbers may have, too.
+  /// Takes over changed terrain classes of the site in a box. Returns the box whose numbers may have changed.
   maps::CellBox takeClasses(const maps::CellBox& box);
 
-  /// Where more than one ground takes part in a number, some of which may be a class's prior.
+  /// Ranges whose numbers depend on several kinds of ground, priors of classes possibly included.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Gives all numbers anew, after it ran out of them, in steps that are coarser the higher the level is.
-  /// Steps of layers grow coarse before beliefs do: those decide what may be driven.
+  /// Discards all numbers after they are exhausted; a higher level has coarser steps. Steps of cost layers
+  /// become coarser before those of estimates, because estimates decide which ground is drivable.
   void restart(int level) {
     level_ = level;
     step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);
@@ -74,7 +74,7 @@ class GroundCurves {
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;
-  std::vector<ClassState> states_;  // that learned_ rests on
+  std::vector<ClassState> states_;  // class states behind learned_
   bool any_learned_ = false;
   std::vector<WheelSwath::Ground> around_;
 };

@@ -6,10 +6,10 @@
 
 namespace talus::costmap {
 
-/// Held by each call that changes a map: a second thread that changes it meanwhile gets an exception instead of a data race.
+/// Guard of calls that change a map: a concurrent change throws instead of causing a data race.
 class MapChange {
  public:
-  /// Throws std::logic_error that names the call when another thread is changing the map.
+  /// Throws std::logic_error that names the call if another thread is changing the map.
   MapChange(std::atomic_flag& changing, const char* call) : changing_(changing) {
     if (changing_.test_and_set(std::memory_order_acquire))
       throw std::logic_error(std::string("TraversabilityMap: ") + call +

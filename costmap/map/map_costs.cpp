@@ -11,7 +11,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kFull = 0.75;  // share of the curves' numbers from which on there is no room for more
+constexpr double kFull = 0.75;  // fraction of curve numbers in use above which numbers are reassigned
 
 std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
   const auto across = [](int cells) {
@@ -22,7 +22,7 @@ std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
   return tiles;
 }
 
-// Ranges of a drive overlap: neighbours in time are joined where that covers little more than both.
+// Appends a range. Ranges of a drive overlap: a range is merged into the last if the union is little larger.
 std::vector<maps::CellBox> joined(std::vector<maps::CellBox> ranges, const maps::CellBox& range) {
   const auto area = [](const maps::CellBox& r) {
     return static_cast<double>(r.last.column - r.first.column + 1) * (r.last.row - r.first.row + 1);
@@ -151,8 +151,9 @@ void MapCosts::publish(const EvidenceField& field, bool whole) {
   heights_m_.reset();
 }
 
-// No cheaper than all of it at once. At the finest level each curve is that of its kind, whatever came before; at a coarser
-// one that leaves room, all at once would take that level or a finer one. What is left cannot be compared: all of it anew.
+// Ensures that an incremental version is no cheaper than a complete one. At level 0, each curve depends on
+// its kind alone. At a coarser level with free numbers, a complete computation would use the same or a finer
+// level. In all other cases, all numbers are reassigned.
 std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox>& changed) {
   std::shared_ptr<const CostGrid> next = rewritten(changed);
   const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
@@ -160,7 +161,7 @@ std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox
   return curves_->table().overflowed() || !room ? renumbered() : next;
 }
 
-// In the finest steps that leave room for what is yet to be learned.
+// Recomputes all cells at the finest level that leaves free numbers.
 std::shared_ptr<const CostGrid> MapCosts::renumbered() {
   for (int level = 0;; ++level) {
     curves_->restart(level);
@@ -170,7 +171,7 @@ std::shared_ptr<const CostGrid> MapCosts::renumbered() {
   }
 }
 
-// The cost is asked for after the codes are made: they may bring new curves.
+// The cost is requested after the codes, because codes may add curves.
 std::shared_ptr<const CostGrid> MapCosts::rewritten(const std::vector<maps::CellBox>& ranges) {
   return std::make_shared<CostGrid>(
       revised(*published(), {.ranges = ranges,
@@ -187,7 +188,7 @@ CellCode MapCosts::coded(maps::Cell cell, CellCode code) {
   if (found == Hazard::None) return code.withCurve(curves_->number(cell));
   if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
   if (!surface_->model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
-  // Shape that cannot be measured is no reason to forget what is known of the soil.
+  // The learned soil still applies to cells whose shape cannot be measured.
   return code.withCurve(surface_->classIndex(cell) >= 0 ? curves_->number(cell)
                                                         : curves_->numberOfUnseen(cell));
 }

@@ -17,49 +17,50 @@ class EvidenceField;
 class GroundCurves;
 class PublishedGrid;
 
-/// How many cells fall in each category, hazards counted as dangerous where they refuse the cell, unknown
-/// where unseen.
+/// Number of cells of each category. Cells with a hazard count as dangerous if refused, as unknown if unseen.
 struct CategoryCounts {
   std::size_t safe = 0, marginal = 0, dangerous = 0, unknown = 0;
 };
 
-/// A category and how certain it is.
+/// Category of a cell and its probability.
 struct CellCategory {
   std::uint8_t category = 0;    ///< terramech::Category as a number
-  std::uint8_t confidence = 0;  ///< probability in steps of 1/16, rounded down unless it is of danger
+  std::uint8_t confidence = 0;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
 };
 
-/// The cost grid that planners read, version by version, and what changed since the newest one. published() may be called from
-/// any thread at any time, other const members while no thread changes the map; only the map changes it.
+/// The published cost grid and the changes since its newest version. published() may be called from any
+/// thread at any time, other const members while no thread changes the map. Only the map calls non-const
+/// members.
 class MapCosts {
  public:
-  /// Measures the surface and publishes version 1, without any evidence.
+  /// Measures the surface and publishes version 1, without evidence.
   MapCosts(std::shared_ptr<MapSurface> surface, const ProgressMonitor& watch);
   ~MapCosts();
 
-  /// The newest version, for planners to pin.
+  /// The newest version.
   std::shared_ptr<const CostGrid> published() const noexcept;
 
-  /// The ground that the published cost of a cell was made from: what its wheels' swath and the rounding of the
-  /// cost curves make of the estimate; nothing where no heading may enter or nobody has seen it.
+  /// Ground estimate behind the published cost of a cell, after WheelSwath and the quantisation of the cost
+  /// curves; nullopt for blocked and unknown cells.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
-  /// Category of a cell as published; nothing where no heading may enter it or it is unknown.
+  /// Published category of a cell; nullopt for blocked and unknown cells.
   std::optional<CellCategory> ranked(maps::Cell cell) const;
-  /// The same for people, terramech::Category as a number: hazards as dangerous.
+  /// Published category as a number (terramech::Category); blocked cells are dangerous.
   std::uint8_t category(maps::Cell cell) const noexcept { return categoryOf(*published(), cell); }
   CategoryCounts countCategories() const;
 
-  /// Notes cells whose estimate, or whose hazards or class, may have changed since the last version.
+  /// Marks cells whose estimate (learned) or whose hazards or class (changed) may differ from the last
+  /// version.
   void noteLearned(const maps::CellBox& box);
   void noteChanged(const maps::CellBox& box) { changed_.push_back(box); }
-  /// Notes what a patch changed, classes among it or not.
+  /// Marks the changes of a patch; `classes`: whether the patch has terrain classes.
   void notePatched(MapSurface::PatchEffect effect, bool classes);
 
-  /// Publishes what was noted as a new version; see TraversabilityMap::publish().
+  /// Publishes the marked changes as a new version; see TraversabilityMap::publish().
   void publish(const EvidenceField& field);
-  /// The same over all cells.
+  /// Recomputes and publishes all cells.
   void publishAll(const EvidenceField& field);
-  /// Publishes the newest version again under another number.
+  /// Publishes the newest version again under another version number.
   void republishAs(std::uint64_t version);
 
  private:
@@ -75,8 +76,8 @@ class MapCosts {
   std::unique_ptr<GroundCurves> curves_;
   std::unique_ptr<PublishedGrid> published_;
   std::vector<maps::CellBox> learned_, changed_;    // since the last version
-  std::optional<MapSurface::Gradients> gradients_;  // not published yet, as the next
-  std::optional<HeightTable> heights_m_;            // of the whole map
+  std::optional<MapSurface::Gradients> gradients_;  // gradients of the next version
+  std::optional<HeightTable> heights_m_;            // heights of the next version, whole map
 };
 
 }  // namespace talus::costmap

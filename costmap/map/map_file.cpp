@@ -70,7 +70,7 @@ std::uint64_t sizeOf(std::istream& stream) {
   return end < 0 ? 0 : static_cast<std::uint64_t>(end);
 }
 
-// Of the first bytes of a stream that can seek.
+// Checksum of the first `size` bytes of a seekable stream.
 std::uint64_t checksumOf(std::istream& stream, std::uint64_t size) {
   std::vector<char> piece(std::size_t{1} << 20U);
   Checksum checksum;
@@ -84,7 +84,7 @@ std::uint64_t checksumOf(std::istream& stream, std::uint64_t size) {
   return checksum.value();
 }
 
-// Before a byte is interpreted: nothing of a damaged map is read.
+// Verifies the checksum before any byte is interpreted.
 void requireWhole(std::istream& stream, const std::string& name) {
   const std::uint64_t size = sizeOf(stream);
   End end{.tag = {}, .version = 0};
@@ -126,7 +126,7 @@ class TrailerReader {
     return bytes;
   }
 
-  // A raster over the grid, or none when the section is empty.
+  // Reads a raster of the grid; an empty raster for an empty section.
   template <typename T>
   maps::Raster<T> raster(const char (&tag)[5], const maps::Grid& grid) {
     const std::uint64_t size = open(tag);
@@ -139,7 +139,7 @@ class TrailerReader {
 
   bool more() { return bytesLeft() > sizeof(End); }
 
-  /// Nothing may stand between the last section and the checksum.
+  /// Verifies that the checksum follows directly.
   void finish() {
     if (bytesLeft() != sizeof(End)) fail("damaged section");
   }
@@ -154,7 +154,7 @@ class TrailerReader {
     if (size > bytesLeft()) fail("truncated");
     return size;
   }
-  // Asked before memory is taken for a section, so that a damaged size cannot exhaust it.
+  // Checked before the allocation of a section, so that a damaged size cannot exhaust the memory.
   std::uint64_t bytesLeft() {
     const auto here = stream_.tellg();
     const auto end = stream_.seekg(0, std::ios::end).tellg();
@@ -181,7 +181,7 @@ maps::Raster<Hazard> declared(const TraversabilityMap& map) {
   return hazards;
 }
 
-// A block as it stands in the file, before its readings.
+// Header of a block in the file; its readings follow.
 struct BlockHeader {
   std::int32_t column = 0, row = 0;
   std::uint32_t updated_s = 0;
@@ -210,7 +210,7 @@ std::string evidenceOf(const TraversabilityMap& map) {
   return bytes;
 }
 
-// False for bytes that no writer wrote.
+// Restores the evidence; returns false for invalid bytes.
 bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
   while (!bytes.empty()) {
     BlockHeader header;
@@ -232,7 +232,7 @@ bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
   return true;
 }
 
-// A layer a section: its name, a line end, what unseen cells cost, and the raster.
+// Section of a cost layer: name, newline, cost of unseen cells, raster.
 std::string bytesOf(const CostLayer& layer) {
   const auto& values = layer.added_J_per_m.values();
   std::string bytes = layer.name + '\n';
@@ -292,7 +292,7 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
     const std::string bytes = bytesOf(layer);
     trailer.section("COST", bytes.data(), bytes.size());
   }
-  // Read back: the octree's writer goes back to its header, so that bytes do not come in their order.
+  // The checksum is computed by reading back, because the octree writer updates its header at the end.
   stream.flush();
   const End end{.checksum = checksumOf(stream, sizeOf(stream))};
   stream.seekp(0, std::ios::end);
@@ -310,8 +310,7 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
 
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
   requireWhole(stream, reading.name);
-  readLeaves(stream, reading.name,
-             [](const TreeLeaf&) {});  // what follows says the same, and how it came to it
+  readLeaves(stream, reading.name, [](const TreeLeaf&) {});  // the trailer contains the same information
   TrailerReader trailer(stream, reading.name);
   MapText text = parsed(trailer.bytes("TEXT"), reading.name);
   requireSane(text.grid, reading.name);

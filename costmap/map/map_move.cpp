@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace {
 
-// Cells by which the window moves.
+// Shift of the window in cells.
 maps::Cell cellsOf(const maps::Grid& grid, maps::Cell tiles) {
   const auto refuse = [&] {
     throw std::invalid_argument(
@@ -77,7 +77,7 @@ MapLayers MapShift::layers(const MapSurface& surface) const {
   layers.floors = floors(surface);
   for (const CostLayer& layer : surface.costLayers())
     layers.costs.push_back({layer.name, shifted(layer.added_J_per_m, kUnseen), layer.unseen_J_per_m});
-  // Levels beneath the top are heights above the base: both maps have the same.
+  // Floor heights are relative to the base elevation, so both maps need the same base.
   layers.base_elevation_m = surface.keys().baseElevation_m();
   return layers;
 }

@@ -6,17 +6,18 @@
 
 namespace talus::costmap {
 
-/// How the window of a map that moves with the rover is shifted: whole tiles drop out at one side and come in, unseen, at the
-/// other. Immutable.
+/// Shift of a map window by whole tiles: tiles leave at one side, and unseen tiles enter at the other.
+/// Immutable.
 class MapShift {
  public:
-  /// By so many tiles of 64 cells further east (columns) and north (rows), where evidence is kept in blocks of so many cells a
-  /// side. Throws std::invalid_argument where nothing of the map would be left or a tile holds no whole number of blocks.
+  /// Shift by `tiles` tiles of 64 cells eastward (columns) and northward (rows); evidence blocks have
+  /// block_cells cells per side. Throws std::invalid_argument if the new window does not overlap the old one,
+  /// or if a block is larger than a tile.
   MapShift(const maps::Grid& grid, maps::Cell tiles, int block_cells);
 
-  /// What is left of a surface.
+  /// The shifted layers of a surface; unseen cells are NaN or without class and hazard.
   MapLayers layers(const MapSurface& surface) const;
-  /// Where the evidence of a block is in the new window; it may lie outside.
+  /// The evidence block with its position in the new window; may lie outside.
   SavedBlock block(SavedBlock saved) const;
 
  private:
@@ -25,7 +26,7 @@ class MapShift {
   Floors floors(const MapSurface& surface) const;
 
   maps::Cell cells_;
-  maps::Grid grid_;  // of the new window
+  maps::Grid grid_;  // grid of the new window
   int block_cells_;
 };
 

@@ -66,7 +66,7 @@ CellCode flatCode(const GroundShape& shape) {
   return CellCode({.dz_dx = static_cast<double>(shape.dz_dx), .dz_dy = static_cast<double>(shape.dz_dy)});
 }
 
-// Calls take(cell of the map, value of the patch) for each cell of a layer, if there is one.
+// Calls take(cell of the map, value of the patch) for each cell of a layer; no call for an empty layer.
 template <typename T, typename Take>
 void forEachGiven(const maps::Raster<T>& layer, const maps::CellBox& window, const Take& take) {
   if (layer.empty()) return;
@@ -110,7 +110,7 @@ void MapSurface::measure(const TakeShape& take, const ProgressMonitor& watch) {
   inflate(hazards_, limits_, spreading());
 }
 
-// A shape that is not known is the slope that the heights around it allow, where the policy opens it.
+// For an unknown shape, uses unseenSlope() if the policy allows unknown ground.
 MapSurface::Ground MapSurface::grounded(maps::Cell cell, const GroundShape& shape, Hazard found) const {
   if (!std::isnan(shape.dz_dx) || !site_->model->parts().policy.allow_unknown)
     return {flatCode(shape), found};
@@ -119,9 +119,9 @@ MapSurface::Ground MapSurface::grounded(maps::Cell cell, const GroundShape& shap
   return {CellCode({.dz_dx = slope.dz_dx, .dz_dy = slope.dz_dy}), steep ? found | Hazard::Slope : found};
 }
 
-// A changed cell changes the shape of those whose footprint it lies in, and the slope that is possible between it and the next
-// height; these may begin or cease to be kept clear of,
-// or to lie at the edge of what is. Refused places were never kept clear of: they are left out meanwhile.
+// A changed cell affects the shape of all cells whose footprint contains the cell, and the possible slope
+// between the cell and the next height. These cells may enter or leave the clearance around hazards. Refused
+// places have no clearance, so their marks are removed during the update.
 MapSurface::PatchEffect MapSurface::take(const SurfacePatch& patch) {
   const maps::CellBox window = placeOf(patch, *site_, any_height_);
   takeHazards(patch, window);
@@ -212,7 +212,7 @@ maps::CellBox MapSurface::refuse(const RefusedPlace& place) {
   return mark(place, true);
 }
 
-// Marks the cells of a place as obstacles, or takes the marks off again. Returns the box around them.
+// Sets or clears the obstacle mark of the cells of a place. Returns their bounding box.
 maps::CellBox MapSurface::mark(const RefusedPlace& refusal, bool refused) {
   const double cell_m = grid().resolution_m;
   const auto clamped = [](double value, int cells) {

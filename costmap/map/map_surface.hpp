@@ -15,19 +15,19 @@
 
 namespace talus::costmap {
 
-/// How the shape of the ground is measured.
+/// Options for measuring the terrain shape.
 struct ShapeOptions {
-  double footprint_radius_m = 0.0;  ///< disc that slope and roughness are measured over, > 0
-  int threads = 1;                  ///< >= 1; the result does not depend on it
+  double footprint_radius_m = 0.0;  ///< radius of the disc for slope and roughness, > 0
+  int threads = 1;                  ///< >= 1; the result does not depend on the number of threads
 };
 
-/// The site of a map and its surface: elevation, terrain classes, levels, cost layers and the hazards of each cell, declared
-/// places included. Knows neither evidence nor cost. Const members may be called from several threads while none changes it;
-/// only the map changes it.
+/// Site and surface of a map: elevation, terrain classes, floors, cost layers, and the hazards of each cell
+/// including refused places. Independent of evidence and cost. Concurrent const calls are safe while no
+/// thread changes the surface; only the map changes the surface.
 class MapSurface {
  public:
-  /// Throws std::invalid_argument when a layer lies on another grid or holds an impossible value. Hazards are those of no
-  /// cell until measure().
+  /// Throws std::invalid_argument if a layer has another grid or an invalid value. Hazards are computed by
+  /// measure().
   MapSurface(MapLayers layers, std::shared_ptr<const GroundModel> model, const ShapeOptions& options);
 
   const maps::Grid& grid() const noexcept { return site_->grid(); }
@@ -38,21 +38,21 @@ class MapSurface {
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
   const maps::Raster<std::uint8_t>& classes() const noexcept { return site_->classes; }
-  /// Class number in the raster, 0 where there is no raster.
+  /// Class number in the raster; 0 without a raster.
   int classNumber(maps::Cell cell) const noexcept {
     return site_->classes.empty() ? 0 : site_->classes[cell];
   }
-  /// Position of the cell's class in model().parts().classes, or -1.
+  /// Index of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
-  /// The same of the ground at a height there, which is the first class beneath an overhang.
+  /// Class index of the ground at a height; the first class for a floor beneath the surface.
   int classIndex(maps::Cell cell, double z_m) const noexcept {
     return floorAt(cell, z_m) ? 0 : classIndex(cell);
   }
   const std::vector<CostLayer>& costLayers() const noexcept { return site_->costs; }
 
-  /// Ground beneath the top surface. It is no part of the cost grid: a planner drives on top.
+  /// Ground beneath the top surface. The cost grid covers the top surface only.
   const Floors& floors() const noexcept { return site_->floors; }
-  /// The floor that something at this height stands on; nothing where that is the top surface.
+  /// Floor at a height; nullopt if the height belongs to the top surface.
   std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
     return site_->floorAt(cell, z_m);
   }
@@ -60,44 +60,45 @@ class MapSurface {
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   const HazardLimits& limits() const noexcept { return limits_; }
-  /// Hazards by rocks, keep-out areas and declared places, without the clearance around them; an empty raster if the map has none.
+  /// Hazards by rocks, keep-out areas and refused places, without the clearance around them; empty if the map
+  /// has none.
   const maps::Raster<Hazard>& declared() const noexcept { return declared_; }
-  /// Places that were declared impassable, in order.
+  /// Places declared impassable, in order.
   const std::vector<RefusedPlace>& refused() const noexcept { return refused_; }
 
   double footprintRadius_m() const noexcept { return options_.footprint_radius_m; }
   int threads() const noexcept { return options_.threads; }
-  /// How the shape of the ground is measured, on a number of threads >= 1.
+  /// Options of maps::terrainMetrics() for `threads` threads (>= 1).
   maps::FootprintOptions footprint(int threads) const noexcept {
     return {
         .radius_m = options_.footprint_radius_m, .step_span_m = limits_.wheel_diameter_m, .threads = threads};
   }
 
-  /// Receives the gradient of a cell, as a code without a curve.
+  /// Callback with the gradient of a cell, as a code without a curve.
   using TakeShape = std::function<void(maps::Cell, CellCode)>;
-  /// Measures all of it: hazards of every cell, and its gradients.
+  /// Measures the whole surface: hazards and gradients of all cells.
   void measure(const TakeShape& take, const ProgressMonitor& watch);
 
-  /// Gradients of a box, as codes without a curve on a grid of the box's own.
+  /// Gradients of a box, as codes without a curve on a grid of that box.
   struct Gradients {
     maps::CellBox box;
     maps::Raster<CellCode> codes;
   };
-  /// What a patch changes.
+  /// Cells changed by a patch.
   struct PatchEffect {
-    maps::CellBox window;  ///< covered by the patch
-    maps::CellBox judged;  ///< in which hazards or gradients may have changed
-    Gradients gradients;   ///< of the cells that were measured again
+    maps::CellBox window;  ///< cells covered by the patch
+    maps::CellBox judged;  ///< cells whose hazards or gradients may have changed
+    Gradients gradients;   ///< gradients of the cells measured again
   };
-  /// Replaces the surface in a window and measures the cells that it reaches again. Throws std::invalid_argument, in one
-  /// line with place and remedy, for a patch that does not fit; the surface stays as it was.
+  /// Replaces the surface in a window and measures all affected cells again. Throws std::invalid_argument
+  /// with place and remedy for an invalid patch; the surface is then unchanged.
   PatchEffect take(const SurfacePatch& patch);
 
-  /// Marks the cells of a place as obstacles. Returns the box around them.
+  /// Marks the cells of a place as obstacles. Returns their bounding box.
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:
-  // What a shape is to planners.
+  // Code and hazards of a measured cell.
   struct Ground {
     CellCode code;
     Hazard hazards;

@@ -48,7 +48,7 @@ class Writer {
   void count(const std::string& name, const std::vector<T>& list, std::size_t = 0) {
     if (!list.empty()) (*this)(name, list.size());
   }
-  /// A line only where it holds: files without it stay as they were.
+  /// Writes true values only: files without the flag are unchanged.
   void flag(const std::string& name, bool value) {
     if (value) (*this)(name, value);
   }
@@ -90,13 +90,13 @@ class Reader {
     values_.erase(found);
   }
 
-  /// A value that older maps do not have: it stays as it is.
+  /// Reads an optional value; older maps lack it, and the default remains.
   template <typename T>
   void added(const std::string& name, T& value) {
     if (values_.contains(name)) (*this)(name, value);
   }
 
-  /// Makes the list as long as is written; none where nothing is.
+  /// Sets the length of a list; 0 without a line.
   template <typename T>
   void count(const std::string& name, std::vector<T>& list, std::size_t most = 1000) {
     std::size_t size = 0;
@@ -139,7 +139,7 @@ class Reader {
   std::string name_;
 };
 
-// One list of fields serves both directions: V is Writer over const values or Reader over mutable ones.
+// One list of fields for both directions: V is Writer with const values or Reader with mutable values.
 template <typename V, typename G>
 void visitGrid(V& v, G& grid) {
   v("grid.width", grid.width);

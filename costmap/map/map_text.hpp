@@ -11,8 +11,8 @@
 
 namespace talus::costmap {
 
-/// Everything of a map file that is not a raster: a line "name value" each, numbers as the shortest text that
-/// reads back to the same bits.
+/// All content of a map file that is not a raster, as lines "name value". Numbers are written as the shortest
+/// text that reads back to the same bits.
 struct MapText {
   maps::Grid grid;
   std::optional<maps::CoordinateSystem> coordinate_system;
@@ -22,10 +22,11 @@ struct MapText {
   std::vector<RefusedPlace> refused{};
 };
 
-/// The lines of a map's text.
+/// The text of a map.
 std::string written(const MapText& text);
 
-/// Reads them back. Throws InputError (where = name) for a line that is missing, unknown or no number.
+/// Parses the text of a map. Throws InputError (where = name) for a missing or unknown line, or an invalid
+/// number.
 MapText parsed(const std::string& lines, const std::string& name);
 
 }  // namespace talus::costmap

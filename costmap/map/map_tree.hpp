@@ -7,10 +7,10 @@
 
 namespace talus::costmap {
 
-/// The whole map as an octree of estimates: every cell at its elevation, and the floors beneath it that have evidence.
+/// The map as an octree of estimates: all cells at their elevation, and the floors with evidence.
 TraversabilityTree treeOf(const TraversabilityMap& map);
 
-/// Writes that tree without holding it in memory; the stream must be able to seek.
+/// Writes the octree of treeOf() without holding it in memory; the stream must be seekable.
 void writeTree(const TraversabilityMap& map, std::ostream& stream);
 
 }  // namespace talus::costmap

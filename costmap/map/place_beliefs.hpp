@@ -12,17 +12,18 @@ namespace talus::costmap {
 
 class TraversabilityMap;
 
-/// Questions about places of a map: the estimate of a cell from its surface, its evidence and its published category. Keeps
-/// what neighbouring cells share, for many questions in a row. Valid until the map changes. Not thread-safe.
+/// Estimates of cells from surface, evidence and published category. Caches data that adjacent cells share,
+/// for sequences of calls. Valid until the map changes. Not thread-safe.
 class PlaceBeliefs {
  public:
   explicit PlaceBeliefs(const TraversabilityMap& map);
 
-  /// The estimate of a cell inside the map.
+  /// Estimate of a cell inside the map.
   CellBelief at(maps::Cell cell);
-  /// The estimate of a cell's floor: the strength of its ground. Its shape is not judged: Hazard::Unknown.
+  /// Estimate of a floor of a cell: soil strength only. The shape is unknown (Hazard::Unknown).
   CellBelief at(maps::Cell cell, const Floor& floor) const;
-  /// The strength of a cell's ground: prior of the class and evidence together; nothing where the cell has no class.
+  /// Strength of a cell's ground from the prior of the class and the evidence; nullopt for a cell without a
+  /// class.
   std::optional<GroundBelief> ground(maps::Cell cell);
 
  private:

@@ -23,7 +23,7 @@ std::shared_ptr<MapSurface> surfaceOf(MapLayers layers, std::shared_ptr<const Gr
   return std::make_shared<MapSurface>(std::move(layers), std::move(model), shape);
 }
 
-// Around the block that an observation lies in, so that a wheel that spins on the spot is one place.
+// Place around the block of an observation: repeated observations of a spinning wheel give the same place.
 RefusedPlace blockAround(const WheelObservation& observation, const maps::Grid& grid, double side_m) {
   const auto middle = [&](double at, double from) {
     return from + (std::floor((at - from) / side_m) + 0.5) * side_m;
@@ -70,7 +70,7 @@ bool TraversabilityMap::restore(const SavedBlock& saved) {
   return range.has_value();
 }
 
-// Of danger where the map has no ground. False where the place lies off the map.
+// For evidence of danger on unobserved ground. Returns false if the place does not reach the map.
 bool TraversabilityMap::refuseUnobserved(const WheelObservation& observation) {
   const RefusedPlace refusal = blockAround(observation, grid(), field_.blockCells() * grid().resolution_m);
   if (!reaches(refusal, grid())) return false;

@@ -18,23 +18,23 @@
 
 namespace talus::costmap {
 
-/// The map of a site, made of three parts: its surface with the hazards of each cell (MapSurface), the evidence of wheels
-/// (EvidenceField), and the cost grid that planners read (MapCosts). The map alone changes them, through the members below.
-/// Fifteen bytes a cell and some sixty a block that was driven.
+/// The map of a site: surface with the hazards of each cell (MapSurface), wheel evidence (EvidenceField), and
+/// the cost grid for planners (MapCosts). Only the members below change these parts. Memory: 15 bytes per
+/// cell and about 60 bytes per block with evidence.
 ///
-/// One thread changes a map: a second that calls learn(), forget(), refuse(), patch() or publish() meanwhile gets a
-/// std::logic_error. published() may be called from any thread at any time and never waits. Other const members may be
-/// called from several threads while none changes the map.
+/// One thread changes a map: a concurrent call of learn(), forget(), refuse(), patch(), publish() or
+/// publishAll() throws std::logic_error. published() may be called from any thread at any time and never
+/// waits. Concurrent calls of other const members are safe while no thread changes the map.
 class TraversabilityMap {
  public:
   struct Options {
     double footprint_radius_m =
-        0.0;          ///< disc that slope and roughness are measured over; 0: half the rover's diagonal
-    int threads = 1;  ///< >= 1; the result does not depend on it
+        0.0;  ///< radius of the disc for slope and roughness; 0: half the diagonal of the rover's wheel base
+    int threads = 1;  ///< >= 1; the result does not depend on the number of threads
   };
 
-  /// Builds the map. Cells of a class without a soil count as obstacles, cells that the class raster leaves
-  /// out as unknown. Throws std::invalid_argument when a layer lies on another grid.
+  /// Builds the map. Cells of a class without a soil are obstacles; cells outside the class raster are
+  /// unknown. Throws std::invalid_argument if a layer has another grid or an invalid value.
   TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model, const Options& options,
                     const ProgressMonitor& watch = {});
   TraversabilityMap(TraversabilityMap&&) noexcept;
@@ -42,74 +42,76 @@ class TraversabilityMap {
 
   /// Elevation, classes, layers and hazards.
   const MapSurface& surface() const noexcept { return *surface_; }
-  /// What the wheels measured so far.
+  /// Evidence from wheel measurements.
   const EvidenceField& evidence() const noexcept { return field_; }
-  /// The cost grid and the categories that follow from it.
+  /// Cost grid and categories.
   const MapCosts& costs() const noexcept { return *costs_; }
 
   const maps::Grid& grid() const noexcept { return surface_->grid(); }
   const maps::ElevationMap& elevation() const noexcept { return surface_->elevation(); }
   const GroundModel& model() const noexcept { return surface_->model(); }
-  /// The newest published version, for planners to pin.
+  /// The newest published version.
   std::shared_ptr<const CostGrid> published() const noexcept { return costs_->published(); }
 
-  /// The estimate of a cell inside the map, and of its floor; for many cells in a row see PlaceBeliefs.
+  /// Estimate of a cell inside the map, and of a floor of the cell; for many cells, use PlaceBeliefs.
   CellBelief belief(maps::Cell cell) const;
   CellBelief belief(maps::Cell cell, const Floor& floor) const;
-  /// The strength of its ground: prior of the class and evidence together; nothing where the cell has no
+  /// Strength of a cell's ground from the prior of the class and the evidence; nullopt for a cell without a
   /// class.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
 
-  /// Takes an observation in; planners see it after publish(). Ground whose class is known learns before its height is
-  /// seen: patched in later it is what a map that began with it believes. What points to danger where the map has no
-  /// class, or beyond its edge by less than the error of the pose, refuses that place as refuse() does, whatever is
-  /// patched in later: a block and two standard deviations of the pose around. False when the place has no
-  /// ground to learn about.
+  /// Adds an observation; visible to planners after publish(). A cell with a known class accumulates evidence
+  /// before its height is known, with the same result as if the height had been known first. Evidence of
+  /// danger on a cell without a class, or beyond the map's edge by less than the pose error, refuses the
+  /// place like refuse(): a block and two standard deviations of the pose around the place, independently of
+  /// later patches. Returns false if the map has no ground at the place.
   bool learn(const WheelObservation& observation);
-  /// Takes the pulls and sinkages of what was learned off again, as evidence().heardOf() gave them then, where something else
-  /// is to count in their place; bounds of the place stay. Planners see it after publish().
+  /// Removes pulls and sinkages that were learned, given as evidence().heardOf() returned them, in order to
+  /// replace them. Bounds of the place remain. Visible to planners after publish().
   void forget(const SavedBlock& heard);
-  /// Puts saved evidence of a block back, as read from a file; planners see it after publish(). False when the map has
-  /// no such block or class.
+  /// Restores the evidence of a block from a file; visible to planners after publish(). Returns false if the
+  /// map has no such block or class.
   bool restore(const SavedBlock& saved);
 
-  /// Ids of the drives that were put into it (driveId()), sorted.
+  /// Ids of the drives in the map (driveId()), sorted.
   const std::set<std::string>& drives() const noexcept { return drives_; }
-  /// Notes that a drive is in; `continued` is the id that it had when it was shorter, if any.
+  /// Records that a drive is in the map. `continued` is the id of the shorter drive that the drive replaces,
+  /// if any.
   void noteDrive(const std::string& id, const std::string& continued = {}) {
     drives_.erase(continued);
     drives_.insert(id);
   }
 
-  /// Declares the ground around a place impassable, as a driver does who got stuck there: Hazard::Obstacle on
-  /// every cell whose centre lies within the radius, > 0. Planners see it after publish(); a map file keeps it.
-  /// Throws std::invalid_argument for a place or radius that is no finite number.
+  /// Declares the ground around a place impassable, for example after an immobilisation: Hazard::Obstacle on
+  /// all cells whose centre lies within radius_m > 0. Visible to planners after publish(); stored in map
+  /// files. Throws std::invalid_argument for a non-finite place or radius, or a radius <= 0.
   void refuse(const maps::Point& place, double radius_m);
 
-  /// Takes a window of ground in and publishes it, with all that was learned before, as one new version: heights,
-  /// rocks, classes and keep-out count from then on as if the map had been built with them. Measures only the cells
-  /// that a footprint, a clearance or the wheels' swath carries the change to; evidence stays where it is, with the
-  /// class that it was learned of. Throws std::invalid_argument, in one line with place and remedy, for a patch of
-  /// another resolution, off the map, without an observation or with an impossible value; the map stays as it was.
+  /// Replaces a window of the ground and publishes the window, with all learned evidence, as one new version.
+  /// Heights, rocks, classes and keep-out areas then count as if the map had been built with them. Only cells
+  /// affected through footprint, clearance or wheel swath are measured again. Evidence is kept with the class
+  /// for which it was learned. Throws std::invalid_argument with place and remedy for a patch of another
+  /// resolution, outside the map, without an observation, or with an invalid value; the map is then
+  /// unchanged.
   void patch(const SurfacePatch& patch);
 
-  /// The map of the window that lies so many whole tiles of 64 cells further east (columns) and north (rows): what
-  /// lies in both keeps all that is known and believed of it, refused places included; tiles that come in are unseen; what
-  /// falls off is forgotten. Equal to a map built at once from what is left. Its version follows on this one's. Throws
-  /// std::invalid_argument where nothing of the map would be left.
+  /// The map of a window shifted by `tiles` tiles of 64 cells eastward (columns) and northward (rows). The
+  /// common area keeps its surface, evidence and refused places; new tiles are unseen. Equals a map built
+  /// from the remaining data. The version number is that of this map plus 1. Throws std::invalid_argument if
+  /// the windows do not overlap, or if a block of evidence is larger than a tile.
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
-  /// Publishes what was learned since the last time as a new version: rewrites the cells whose ground changed,
-  /// or that of a cell within reach of their wheels, and shares the tiles that hold none. Readers never wait; a
-  /// planner that runs keeps its version. Where the numbers of cost curves run out all cells are given theirs
-  /// anew, in steps as coarse as it takes (GroundKind).
+  /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
+  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running planner
+  /// keeps its version. If the numbers of cost curves are exhausted, all cells get new numbers with coarser
+  /// steps (GroundKind).
   ///
-  /// The costs are those of publishAll() to the bit, whatever was learned, patched, refused and published before: a cell
-  /// depends on its shape, the classes in steps (ClassLessons::stateInSteps()) and the evidence that can reach its patch of
-  /// blocks, and is looked at again whenever one of these changed. Where curves ran out steps may be up to 8 times as
-  /// coarse as publishAll() would have them; then no cost is lower.
+  /// The costs equal those of publishAll() to the bit, for any sequence of changes. A cell depends on its
+  /// shape, on the class states in steps (ClassLessons::stateInSteps()) and on the evidence within reach of
+  /// its patch of blocks, and is recomputed after a change of any of these. Exception: after curve numbers
+  /// were exhausted, steps may be up to 8 times as coarse as those of publishAll(); no cost is then lower.
   void publish();
-  /// The same over all cells.
+  /// Recomputes and publishes all cells.
   void publishAll();
 
  private:
@@ -119,7 +121,7 @@ class TraversabilityMap {
   EvidenceField field_;
   std::unique_ptr<MapCosts> costs_;
   std::set<std::string> drives_;
-  std::unique_ptr<std::atomic_flag> changing_;  // cannot move
+  std::unique_ptr<std::atomic_flag> changing_;  // indirect, because std::atomic_flag is not movable
 };
 
 }  // namespace talus::costmap

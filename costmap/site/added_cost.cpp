@@ -11,7 +11,7 @@ constexpr std::array kDigits{10, 11, 12, 13, 15, 16, 18, 20, 22, 25, 28, 30, 35,
 constexpr int kPerDecade = static_cast<int>(kDigits.size());
 constexpr int kLeastPower = -2;  // step 1 is 10e-2 J/m
 constexpr int kLast = 180;       // 9e7 J/m
-constexpr double kSame = 1e-7;   // sums of floats
+constexpr double kSame = 1e-7;   // tolerance for sums of floats
 
 std::array<double, kLast + 1> tabulated() {
   std::array<double, kLast + 1> values{};
@@ -29,7 +29,7 @@ const std::array<double, kLast + 1>& values() {
   return all;
 }
 
-// The sum over the layers; infinite counts as nothing.
+// Sum over the layers without infinite costs.
 double sumAt(const std::vector<CostLayer>& layers, std::size_t cell) {
   double sum = 0.0;
   for (const CostLayer& layer : layers) {

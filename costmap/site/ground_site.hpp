@@ -15,63 +15,63 @@
 
 namespace talus::costmap {
 
-/// What somebody else knows of the ground, such as shadow, radio or hazards of one's own: joules that a metre costs more,
-/// counted as energy, 0 to kMost_J_per_m; infinite: must not be entered. NaN: not known, which refuses the cell as unknown ground
-/// or, where the policy allows that, costs unseen_J_per_m.
+/// External cost per metre [J/m] of the ground, for example for shadow, radio or other hazards; added to the
+/// energy. 0 to kMost_J_per_m; infinite: impassable. NaN: unknown; the cell is refused as unknown ground, or
+/// costs unseen_J_per_m if the policy allows unknown ground.
 struct CostLayer {
   static constexpr float kMost_J_per_m = 1e6F;
   static constexpr std::size_t kMostLayers = 64;
 
   std::string name;
   maps::Raster<float> added_J_per_m;
-  float unseen_J_per_m = 0.0F;  ///< at least the dearest known, so that doubt makes nothing cheaper
+  float unseen_J_per_m = 0.0F;  ///< at least the greatest known cost: missing data never lowers a cost
 };
 
-/// What a map is built from; layers on the elevation's grid, empty where nobody gave one.
+/// Input of a map: layers on the grid of the elevation; empty layers are absent.
 struct MapLayers {
   maps::ElevationMap elevation;
-  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255 = none there
-  maps::Raster<float> rock_abundance;   ///< share of the ground, NaN = none there
-  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered
-  maps::Raster<Hazard> declared;        ///< hazards judged elsewhere, as when a map is read back
-  Floors floors;                        ///< ground beneath overhangs, where the source is a point cloud
-  std::vector<CostLayer> costs{};       ///< what comes on top of the rover's own cost; a name each
-  /// From which the keys of heights count [m]; nothing: the middle of the range of heights.
+  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers, 255: no class
+  maps::Raster<float> rock_abundance;   ///< fraction of the area covered by rocks, NaN: no data
+  maps::Raster<std::uint8_t> keep_out;  ///< non-zero: impassable
+  maps::Raster<Hazard> declared;        ///< known hazards, for example of a map file
+  Floors floors;                        ///< ground beneath overhangs, from a point cloud
+  std::vector<CostLayer> costs{};       ///< costs in addition to those of the rover, each with a name
+  /// Base of the height keys [m]; nullopt: middleElevation().
   std::optional<double> base_elevation_m{};
 };
 
-/// A window of ground observed anew, as from the rover's own cameras: layers on one grid whose cells are cells of the
-/// map, empty where nobody gave one. What was not observed leaves the map as it is.
+/// New observation of a window of the ground, for example by the rover's cameras: layers on one grid aligned
+/// with the map's cells; empty layers are absent. Cells without an observation remain unchanged.
 struct SurfacePatch {
-  maps::Raster<float> elevation_m;      ///< in the map's frame; NaN = not observed yet
-  maps::Raster<float> rock_abundance;   ///< share of the ground, 0 to 1; NaN = not observed yet
-  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers; 255 = not observed yet
-  maps::Raster<std::uint8_t> keep_out;  ///< not 0: must not be entered; 0 lifts what was declared
+  maps::Raster<float> elevation_m;      ///< in the map frame; NaN: not observed
+  maps::Raster<float> rock_abundance;   ///< fraction of the area covered by rocks, 0 to 1; NaN: not observed
+  maps::Raster<std::uint8_t> classes;   ///< terrain-class numbers; 255: not observed
+  maps::Raster<std::uint8_t> keep_out;  ///< non-zero: impassable; 0 removes an earlier declaration
 };
 
-/// Ground that somebody declared impassable: the cells whose centre lies within the radius.
+/// Ground declared impassable: the cells whose centre lies within the radius.
 struct RefusedPlace {
   maps::Point place;
   double radius_m = 0.0;
 };
 
-/// The ground as it was before anybody drove on it: what a map and its evidence share. Only the map changes it.
+/// The ground before any evidence, shared by a map and its evidence. Only the map changes the site.
 struct GroundSite {
-  static constexpr std::uint8_t kNoClass = 255;  ///< class number where the raster leaves a cell out
+  static constexpr std::uint8_t kNoClass = 255;  ///< class number of a cell without a class
 
   maps::ElevationMap elevation;
-  maps::Raster<std::uint8_t> classes;  ///< class numbers; empty: all of the first class
+  maps::Raster<std::uint8_t> classes;  ///< class numbers; empty: all cells have the first class
   SurfaceKeys keys;
   std::shared_ptr<const GroundModel> model;
-  Floors floors{};                 ///< beneath the elevation, which is the top surface
-  std::vector<CostLayer> costs{};  ///< on the elevation's grid
+  Floors floors{};                 ///< floors beneath the elevation, which is the top surface
+  std::vector<CostLayer> costs{};  ///< on the grid of the elevation
 
   const maps::Grid& grid() const noexcept { return elevation.grid(); }
-  /// Position of a cell's class in the model's classes, or -1 when it has no soil.
+  /// Index of a cell's class in the model's classes, or -1 for a class without a soil.
   int classIndex(maps::Cell cell) const noexcept {
     return classes.empty() ? 0 : model->classIndex(classes[cell]);
   }
-  /// The floor beneath the top surface that a wheel at this height stands on; nothing where it is on top.
+  /// The floor beneath the top surface at the height of a wheel; nullopt if the wheel is on the top surface.
   std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
     return floors.under(grid().index(cell), z_m, static_cast<double>(elevation.elevation_m[cell]));
   }

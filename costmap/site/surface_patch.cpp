@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kSameCells = 1e-6;  // of a cell: rounding of coordinates
+constexpr double kSameCells = 1e-6;  // tolerance for the rounding of coordinates [cells]
 constexpr double kMostKeys = 32767.0;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -56,7 +56,7 @@ maps::Grid gridOf(const SurfacePatch& patch) {
   return *grid;
 }
 
-// First column, or row, of a patch in a map.
+// First column or row of a patch in a map.
 int firstOf(double patch_m, double map_m, double resolution_m, const maps::Grid& patch,
             const maps::Grid& map) {
   const double first = (patch_m - map_m) / resolution_m;
@@ -88,7 +88,8 @@ struct Bounds {
   double low, high;
 };
 
-// Values that are NaN or within a range; what lies beyond, where, and what it must be.
+// Text of the first value that is neither NaN nor within a range, with its position and the valid range;
+// nullopt if all are valid.
 std::optional<std::string> impossible(const char* layer, const maps::Raster<float>& raster,
                                       const Bounds& range) {
   for (std::size_t i = 0; i < raster.values().size(); ++i) {

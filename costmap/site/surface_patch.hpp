@@ -4,20 +4,20 @@
 
 namespace talus::costmap {
 
-/// Heights beyond lose steps of centimetres to single precision; no body that a rover drives on has them.
+/// Limit of |height|: the resolution of single precision beyond is coarser than 1/64 m. No planetary surface
+/// exceeds the limit.
 inline constexpr double kHighest_m = 131072.0;
 
-/// The cells of a map that a patch covers; any_height: whether the map has an elevation anywhere. Throws
-/// std::invalid_argument, in one line with place and remedy, for a patch of another resolution, between the map's cells
-/// or beyond its edge, whose layers lie on different grids, that says nothing, or that holds an impossible value.
+/// The cells of a map that a patch covers; any_height: whether the map has an elevation. Throws
+/// std::invalid_argument with place and remedy for a patch of another resolution, not aligned with the cells,
+/// beyond the edge, with layers on different grids, without content, or with an invalid value.
 maps::CellBox placeOf(const SurfacePatch& patch, const GroundSite& site, bool any_height);
 
-/// Throws std::invalid_argument, in one line with place and remedy, where a map's layers hold an impossible height or
-/// share of rocks: they would count as no hazard, or as nothing at all.
+/// Throws std::invalid_argument with place and remedy if a layer of the map has an invalid height or rock
+/// abundance: invalid values would count as no hazard or as no data.
 void requirePossible(const MapLayers& layers);
 
-/// The middle of the range of its heights [m], which keeps every height inside the octree; 0 where there is none.
-/// The median would be steadier.
+/// Middle of the range of the heights [m], which keeps all heights inside the octree; 0 without heights.
 double middleElevation(const maps::Raster<float>& elevation_m);
 
 }  // namespace talus::costmap

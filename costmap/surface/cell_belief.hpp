@@ -4,17 +4,17 @@
 
 namespace talus::costmap {
 
-/// Reasons other than the soil for which a cell is refused or ranked lower; a cell may have several.
+/// Reasons other than the soil for which a cell is refused or its category lowered; a bit set.
 enum class Hazard : std::uint8_t {
   None = 0,
-  Unknown = 1,    ///< no elevation there
-  Slope = 2,      ///< steeper than the rover may stand in any heading
-  Step = 4,       ///< higher edge under the wheels than the rover clears
-  Roughness = 8,  ///< the ground departs from its plane by more than the belly clears
-  Rocks = 16,     ///< rocks that it cannot cross are too likely
-  KeepOut = 32,   ///< inside a keep-out polygon
-  Obstacle = 64,  ///< the terrain class is declared impassable
-  Near = 128,     ///< the footprint would touch a refused cell
+  Unknown = 1,    ///< no elevation, no terrain class, no measurable shape, or no data in a cost layer
+  Slope = 2,      ///< gradient above the limit for any heading
+  Step = 4,       ///< step or relief under the wheels above the ground clearance
+  Roughness = 8,  ///< roughness above the clearance of the belly
+  Rocks = 16,     ///< rocks too large to cross are too probable
+  KeepOut = 32,   ///< keep-out polygon, or infinite cost in a layer
+  Obstacle = 64,  ///< terrain class without a soil, or a place declared impassable
+  Near = 128,     ///< closer to a refused cell than half the rover's width
 };
 
 constexpr Hazard operator|(Hazard a, Hazard b) noexcept {
@@ -24,34 +24,33 @@ constexpr Hazard& operator|=(Hazard& a, Hazard b) noexcept {
   return a = a | b;
 }
 
-/// Whether the set holds the hazard.
+/// Whether the set contains the hazard.
 constexpr bool has(Hazard set, Hazard one) noexcept {
   return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(one)) != 0;
 }
 
-/// What is believed of one cell: the strength of its ground, from the prior of its terrain class and from the
-/// wheels that drove on or near it, and the category that follows for people (worst case over headings). The
-/// payload of the tree.
+/// Estimate of one cell: the strength of the ground from the prior of the terrain class and from wheel
+/// evidence, and the category, which is the worst over all headings. Payload of the octree.
 struct CellBelief {
   float pull_mean = 0.0F;     ///< drawbar pull over load at the reference slip 0.5 [-], posterior mean
-  float pull_std = 0.0F;      ///< its standard deviation [-]
+  float pull_std = 0.0F;      ///< standard deviation of pull_mean [-]
   float sinkage_mean = 0.0F;  ///< sinkage over wheel radius at the reference slip [-], posterior mean
-  float sinkage_std = 0.0F;   ///< its standard deviation [-]
-  /// Samples in its block, each weighed by its certainty [-]; 0 = nobody drove there.
+  float sinkage_std = 0.0F;   ///< standard deviation of sinkage_mean [-]
+  /// Samples in the cell's block, each weighted by its certainty [-]; 0: no evidence.
   float evidence = 0.0F;
-  float evidence_pull = 0.0F;      ///< drawbar pull over load of the weakest part of them [-]
-  float evidence_sinkage = 0.0F;   ///< sinkage over radius of the deepest [-]; 0: none was measured
+  float evidence_pull = 0.0F;      ///< drawbar pull over load of the weakest part of the samples [-]
+  float evidence_sinkage = 0.0F;   ///< sinkage over radius of the deepest sample [-]; 0: not measured
   std::uint32_t updated_s = 0;     ///< telemetry time of the newest sample, rounded down [s]
-  std::uint8_t terrain_class = 0;  ///< number in the terrain-class raster; 0 where there is none
+  std::uint8_t terrain_class = 0;  ///< number in the terrain-class raster; 0 without a raster
   std::uint8_t category = 3;       ///< terramech::Category as a number: safe, marginal, dangerous, unknown
-  std::uint8_t confidence = 0;     ///< probability of that category in steps of 1/16, 16 = certain
-  Hazard hazards = Hazard::None;   ///< what else stands against it
+  std::uint8_t confidence = 0;     ///< probability of the category in steps of 1/16; 16 = certain
+  Hazard hazards = Hazard::None;   ///< hazards of the cell
 
   friend bool operator==(const CellBelief&, const CellBelief&) = default;
 };
 
-/// Whether it speaks for a floor beneath the top surface: wheels spoke for it, its shape is not known. Such a
-/// leaf stands for its own voxel and is never merged with others.
+/// Whether the estimate belongs to a floor beneath the top surface: evidence exists, and the shape is
+/// unknown. Such a leaf represents its own voxel and is never merged.
 inline bool ofFloor(const CellBelief& belief) noexcept {
   return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);
 }

@@ -4,17 +4,17 @@
 
 #include <talus/maps/grid/grid.hpp>
 
-/// Rectangles of cells.
+/// Functions on rectangles of cells.
 namespace talus::costmap {
 
-/// The box and all cells at most so many columns and rows away that lie in the grid.
+/// The box extended by `cells` columns and rows on each side, within the grid.
 inline maps::CellBox grown(const maps::CellBox& box, int cells, const maps::Grid& grid) noexcept {
   return {
       {std::max(box.first.column - cells, 0), std::max(box.first.row - cells, 0)},
       {std::min(box.last.column + cells, grid.width - 1), std::min(box.last.row + cells, grid.height - 1)}};
 }
 
-/// The least box around both.
+/// The bounding box of two boxes.
 inline maps::CellBox around(const maps::CellBox& a, const maps::CellBox& b) noexcept {
   return {{std::min(a.first.column, b.first.column), std::min(a.first.row, b.first.row)},
           {std::max(a.last.column, b.last.column), std::max(a.last.row, b.last.row)}};
@@ -30,14 +30,14 @@ inline maps::CellBox allOf(const maps::Grid& grid) noexcept {
   return {{0, 0}, {grid.width - 1, grid.height - 1}};
 }
 
-/// Calls each(cell) row by row from the south-west.
+/// Calls each(cell) for the cells of a box, row by row from the south-west.
 template <typename Each>
 void forEachCell(const maps::CellBox& box, const Each& each) {
   for (int row = box.first.row; row <= box.last.row; ++row)
     for (int column = box.first.column; column <= box.last.column; ++column) each(maps::Cell{column, row});
 }
 
-/// The part of a raster in a box inside it, on a grid of the box's own.
+/// Copies the cells of a box inside the raster to a raster with the grid of the box.
 template <typename T>
 maps::Raster<T> cut(const maps::Raster<T>& from, const maps::CellBox& box) {
   maps::Grid grid = from.grid();

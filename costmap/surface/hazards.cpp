@@ -12,7 +12,7 @@ bool touches(Hazard a, Hazard set) noexcept {
   return (static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(set)) != 0;
 }
 
-// Offsets of the cells some place of which lies closer than the radius to a cell at the origin.
+// Offsets of the cells that have a point closer than the radius to the cell at the origin.
 std::vector<maps::Cell> discOffsets(double radius_cells) {
   std::vector<maps::Cell> disc;
   const int reach = static_cast<int>(std::ceil(radius_cells + 0.5));
@@ -70,7 +70,7 @@ Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
 
 namespace {
 
-// Outside the map nothing is seen either.
+// The ground outside the map is unseen.
 void keepOffEdge(maps::Raster<Hazard>& hazards, const maps::CellBox& box, int cells) {
   const maps::Grid& grid = hazards.grid();
   for (int row = box.first.row; row <= box.last.row; ++row)

@@ -44,7 +44,7 @@ std::optional<PointTreeHeader> readPointTreeHeader(std::istream& stream) {
   return std::nullopt;
 }
 
-// An occupied cube by its lowest keys.
+// An occupied cube, given by its lowest keys and its side.
 struct Leaf {
   std::uint32_t x, y, z, side;
 };
@@ -60,13 +60,13 @@ struct PointCube {
   }
 };
 
-// Walks the nodes of a file without trusting it: depth and stream are checked at each.
+// Reads the nodes of an untrusted file: verifies depth and stream at each node.
 class LeafReader {
  public:
   LeafReader(std::istream& stream, const std::string& name, std::size_t color_bytes)
       : stream_(stream), name_(name), color_bytes_(color_bytes) {}
 
-  // .ot: log odds (and colour), then a bit a child.
+  // .ot: log odds (and colour), then one bit per child.
   void readFull(const PointCube& cube) {
     float log_odds = 0.0F;
     take(&log_odds, sizeof log_odds);
@@ -80,7 +80,7 @@ class LeafReader {
       if (children >> i & 1U) readFull(cube.child(i));
   }
 
-  // .bt: two bits a child: 0 unknown, 1 free, 2 occupied, 3 has children of its own.
+  // .bt: two bits per child: 0 unknown, 1 free, 2 occupied, 3 inner node.
   void readBinary(const PointCube& cube) {
     if (cube.depth >= kOctreeDepth) damaged();
     std::array<std::uint8_t, 2> bits{};
@@ -129,7 +129,7 @@ struct Run {
   std::uint16_t low, high;
 };
 
-// Runs of all columns; those of column c are [first[c], first[c + 1]).
+// Runs of all columns; column c has the runs [first[c], first[c + 1]).
 struct Columns {
   std::vector<std::uint32_t> first;
   std::vector<Run> runs;
@@ -142,7 +142,7 @@ void forEachColumn(const Leaf& leaf, const maps::Grid& grid, const Box& box, Vis
       visit(grid.index({static_cast<int>(x), static_cast<int>(y)}));
 }
 
-// Counted, then filled: a cube of side s has s^2 runs, too many to sort as one list. Each column runs upwards.
+// Counting sort by column, because a cube of side s has s^2 runs; then each column is sorted by height.
 Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
   Columns columns{.first = std::vector<std::uint32_t>(grid.size() + 1, 0U), .runs = {}};
   for (const Leaf& leaf : leaves)
@@ -153,7 +153,7 @@ Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const
     const Run run{static_cast<std::uint16_t>(leaf.z), static_cast<std::uint16_t>(leaf.z + leaf.side - 1)};
     forEachColumn(leaf, grid, box, [&](std::size_t column) { columns.runs[columns.first[column]++] = run; });
   }
-  // Filling moved each first to the next column's.
+  // Filling advanced each `first` to that of the next column; restore.
   std::copy_backward(columns.first.begin(), columns.first.end() - 1, columns.first.end());
   columns.first.front() = 0;
   for (std::size_t c = 0; c + 1 < columns.first.size(); ++c)
@@ -162,7 +162,7 @@ Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const
   return columns;
 }
 
-// Keys of the voxels of each column that have headroom, lowest first, in the order of columns.
+// Ground voxels of each column: those with headroom, lowest first, in the order of columns.
 std::vector<Floor> groundOf(const Columns& columns, double resolution_m) {
   const double headroom = std::max(2.0, std::ceil(Floors::kHeadroom_m / resolution_m));
   std::vector<Floor> ground;
@@ -176,7 +176,7 @@ std::vector<Floor> groundOf(const Columns& columns, double resolution_m) {
   return ground;
 }
 
-// The surface takes the highest of each column below the ceiling; the others stay.
+// Moves the highest ground voxel at or below the ceiling of each column to the surface; the others remain.
 maps::Raster<float> takeSurface(std::vector<Floor>& ground, const maps::Grid& grid, double ceiling_m) {
   maps::Raster<float> surface(grid, std::numeric_limits<float>::quiet_NaN());
   for (const Floor& floor : ground)
@@ -198,7 +198,7 @@ std::vector<Leaf> leavesOf(std::istream& stream, const PointTreeHeader& header, 
 
 std::optional<std::string> octomapType(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;  // a FIFO would wait
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;  // opening a FIFO would block
   std::ifstream stream(path, std::ios::binary);
   std::array<char, 18> start{};
   if (!stream.read(start.data(), start.size()) ||
@@ -233,7 +233,7 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
-  double runs = 0.0;  // a leaf may be a cube of 65536 voxels
+  double runs = 0.0;  // a leaf may be a cube of side 65536
   for (const Leaf& leaf : leaves) runs += static_cast<double>(leaf.side) * static_cast<double>(leaf.side);
   if (runs > static_cast<double>(kMostColumns))
     throw InputError(

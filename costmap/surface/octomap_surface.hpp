@@ -11,25 +11,25 @@
 
 namespace talus::costmap {
 
-/// The tree type of an OctoMap file ("OcTree", "ColorOcTree", "TraversabilityTree", ...); nothing when the
-/// file cannot be opened or is no OctoMap.
+/// Tree type of an OctoMap file ("OcTree", "ColorOcTree", "TraversabilityTree", ...); nullopt if the file
+/// cannot be opened or is not an OctoMap.
 std::optional<std::string> octomapType(const std::string& path);
 
-/// The ground of a point-cloud OctoMap: one surface, and what other floors its columns have.
+/// Ground of a point-cloud OctoMap: the surface and the other floors of its columns.
 struct OctomapGround {
   maps::ElevationMap surface;  ///< local metres
-  std::vector<Floor> floors;   ///< beneath the surface and, with a ceiling, above it
+  std::vector<Floor> floors;   ///< floors beneath the surface and, with a ceiling, above the surface
 };
 
-/// Reads a .bt or .ot of type OcTree or ColorOcTree. Its surface is, in each column of voxels, the middle of
-/// the highest occupied one whose middle is not above `ceiling_m`, NaN where there is none; half a voxel is
-/// the most a flat surface is off. A floor is any other occupied voxel with Floors::kHeadroom_m (and two
-/// voxels) of free or unknown space above. Throws InputError for a file that is truncated, of another type,
-/// empty (or empty below the ceiling), or larger than 4e8 columns.
+/// Reads a .bt or .ot file of type OcTree or ColorOcTree. Ground voxels are occupied voxels with free or
+/// unknown space of at least Floors::kHeadroom_m and two voxels above. The surface is, in each column, the
+/// centre of the highest ground voxel at or below `ceiling_m`; NaN without one. The error of a flat surface
+/// is at most half a voxel. All other ground voxels are floors. Throws InputError for a file that is
+/// truncated, of another type, empty (or empty below the ceiling), or larger than 4e8 columns.
 OctomapGround octomapGround(const std::string& path,
                             double ceiling_m = std::numeric_limits<double>::infinity());
 
-/// The same from a stream; `name` for messages.
+/// The same from a stream; `name` identifies the stream in messages.
 OctomapGround octomapGround(std::istream& stream, const std::string& name,
                             double ceiling_m = std::numeric_limits<double>::infinity());
 

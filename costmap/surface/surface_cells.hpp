@@ -10,24 +10,23 @@
 
 namespace talus::costmap {
 
-/// Where a map's cells lie in an octree: keys count cells from the grid's middle, heights from a base
-/// elevation, all in the map's resolution. Tree coordinates are map metres less origin().
+/// Octree keys of a map's cells: x and y count cells from the centre of the grid, z counts cell heights from
+/// a base elevation. Tree coordinates are map coordinates minus origin().
 class SurfaceKeys {
  public:
-  /// Throws std::invalid_argument when the grid has more than 65536 cells on a side, the most that OctoMap
-  /// addresses.
+  /// Throws std::invalid_argument for more than 65536 cells on a side, the limit of OctoMap's keys.
   SurfaceKeys(const maps::Grid& grid, double base_elevation_m);
 
-  /// The key of the cell at an elevation [m]; heights beyond the tree are clamped into it.
+  /// Key of the cell at an elevation [m]; elevations outside the tree are clamped.
   octomap::OcTreeKey key(maps::Cell cell, double elevation_m) const noexcept;
 
-  /// The middle of a voxel with this height key [m].
+  /// Elevation of the centre of a voxel with this height key [m].
   double heightOf_m(octomap::key_type height) const noexcept;
 
   double baseElevation_m() const noexcept { return base_elevation_m_; }
   const maps::Grid& grid() const noexcept { return grid_; }
 
-  /// Map metres of the tree's (0, 0).
+  /// Map coordinates of the tree's origin.
   maps::Point origin() const noexcept;
 
  private:
@@ -35,11 +34,11 @@ class SurfaceKeys {
   double base_elevation_m_;
 };
 
-/// Highest and lowest key under each power-of-two block of cells: tells which cubes the surface passes
-/// through.
+/// Lowest and highest height key of the surface over each power-of-two block of cells, for finding the cubes
+/// through which the surface passes.
 class SurfacePyramid {
  public:
-  /// Lowest and highest height key of a block; empty (low > high) where no cell has an elevation.
+  /// Lowest and highest height key of a block; empty (low > high) without elevations.
   struct Range {
     std::uint16_t low = 0xffff;
     std::uint16_t high = 0;
@@ -49,7 +48,7 @@ class SurfacePyramid {
 
   SurfacePyramid(const maps::Raster<float>& elevation_m, const SurfaceKeys& keys);
 
-  /// Range of the block of 2^level cells a side that starts at these keys (multiples of 2^level).
+  /// Range of the block of 2^level cells per side that starts at these keys (multiples of 2^level).
   Range range(unsigned level, unsigned x_key, unsigned y_key) const noexcept;
 
  private:

@@ -9,19 +9,19 @@
 
 namespace talus::costmap {
 
-/// The shape of the ground under the footprint at each cell, measured in boxes of a map: the same bits as measuring
-/// all of it, in a sixteenth of the memory. Immutable.
+/// Terrain shape and hazards at each cell of a box, measured in bands of rows to limit memory. The results
+/// equal those of measuring the whole map to the bit. Immutable.
 class SurfaceShape {
  public:
-  /// Throws std::invalid_argument as maps::terrainMetrics() does.
+  /// Throws std::invalid_argument as maps::terrainMetrics().
   explicit SurfaceShape(const maps::FootprintOptions& footprint) : footprint_(footprint) {}
 
-  /// How many columns and rows, at most, lie between a cell and those whose shape its height takes part in.
+  /// Greatest column or row offset between a cell and the cells whose shape depends on its height.
   int reach(const maps::Grid& grid) const;
 
-  /// A cell of the box, its shape and what limits make of that.
+  /// Receives a cell of the box, its shape and its hazards by the limits.
   using Visit = std::function<void(maps::Cell, const GroundShape&, Hazard)>;
-  /// Visits each cell of a box inside the map once. Once a stop is requested the rest is left out.
+  /// Visits each cell of a box inside the map once; after a stop request, remaining cells are omitted.
   void measure(const maps::Raster<float>& elevation_m, const maps::CellBox& box, const HazardLimits& limits,
                const Visit& visit, const ProgressMonitor& watch) const;
 

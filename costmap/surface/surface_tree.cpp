@@ -23,7 +23,7 @@ Cube childOf(const Cube& cube, unsigned child) noexcept {
           cube.z + (child & 4U ? half : 0), cube.level - 1};
 }
 
-// The place of a voxel in depth-first order.
+// Position of a voxel in depth-first order (Morton code).
 std::uint64_t orderOf(unsigned x, unsigned y, unsigned z) noexcept {
   std::uint64_t order = 0;
   for (unsigned bit = 0; bit < kOctreeDepth; ++bit)
@@ -31,7 +31,7 @@ std::uint64_t orderOf(unsigned x, unsigned y, unsigned z) noexcept {
   return order;
 }
 
-// Which cubes hold ground.
+// Occupancy of cubes by the surface and the floors.
 class Cubes {
  public:
   explicit Cubes(const Surface& surface) : pyramid_(surface.elevation_m, surface.keys) {
@@ -54,7 +54,7 @@ class Cubes {
   maps::Cell cellOf(const Cube& voxel) const {
     return {static_cast<int>(voxel.x - first_x_), static_cast<int>(voxel.y - first_y_)};
   }
-  // Of a voxel; null where it is of the surface.
+  // Estimate of a floor voxel; null for a voxel of the surface.
   const CellBelief* floor(const Cube& voxel) const {
     const auto found = floors_.find(orderOf(voxel.x, voxel.y, voxel.z));
     return found == floors_.end() ? nullptr : found->second;
@@ -68,7 +68,8 @@ class Cubes {
     return found != floors_.end() && found->first - from < std::uint64_t{1} << (3 * cube.level);
   }
 
-  // The pyramid may only say maybe where the surface jumps across the cube.
+  // The range of the pyramid is inconclusive if the surface spans the cube vertically; the children then
+  // decide.
   bool holdsSurface(const Cube& cube) const {
     const auto range = pyramid_.range(cube.level, cube.x, cube.y);
     const unsigned side = 1U << cube.level;
@@ -84,7 +85,7 @@ class Cubes {
   std::map<std::uint64_t, const CellBelief*> floors_;
 };
 
-// Fills a tree cube by cube, depth first; prunes each cube as soon as it is done.
+// Fills a tree depth first and prunes each cube after its children.
 template <typename Tree, typename Node, typename SetLeaf>
 class Filler {
  public:
@@ -96,7 +97,7 @@ class Filler {
     const unsigned children = cubes_.childrenOf(cube);
     for (unsigned i = 0; i < 8; ++i)
       if (children >> i & 1U) fill(childNode(node, i), childOf(cube, i));
-    // ColorOcTree prunes by occupancy alone and would mix colours.
+    // ColorOcTree prunes by occupancy alone, which would merge different colours.
     if constexpr (std::is_same_v<Tree, TraversabilityTree>) tree_.pruneNode(node);
   }
 
@@ -110,8 +111,8 @@ class Filler {
   SetLeaf set_leaf_;
 };
 
-// Writes nodes in the order of the file. A cube is written once it is known that its parts differ; until then
-// it holds how many equal leaves it has seen.
+// Writes nodes in the order of the file. A cube is written as soon as two of its leaves differ; until then,
+// only the common estimate and the number of leaves are stored.
 class Streamer {
  public:
   using Leaf = std::function<CellBelief(const Cube&)>;
@@ -131,7 +132,7 @@ class Streamer {
     unsigned count = 0;
   };
 
-  // The one belief of a cube whose parts are alike; nothing where it wrote itself.
+  // Common estimate of a cube with equal leaves; nullopt if the cube was written as an inner node.
   std::optional<CellBelief> walk(const Cube& cube, Open* parent) {
     if (cube.level == 0) return leaf_(cube);
     Open open{.parent = parent, .children = cubes_.childrenOf(cube)};
@@ -208,7 +209,7 @@ std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
   };
   if (!cubes.anything()) return owned;
   Filler<octomap::ColorOcTree, octomap::ColorOcTreeNode, decltype(set)> filler(tree, cubes, set);
-  // OctoMap makes a root only for a voxel: any voxel of the surface will do.
+  // OctoMap creates a root only through a voxel; any voxel of the surface serves.
   const auto& heights = surface.elevation_m.values();
   const auto first =
       std::find_if(heights.begin(), heights.end(), [](float height) { return !std::isnan(height); });

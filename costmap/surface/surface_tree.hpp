@@ -12,30 +12,30 @@
 
 namespace talus::costmap {
 
-/// A voxel of ground beneath the surface.
+/// A floor voxel with its estimate.
 struct FloorLeaf {
   octomap::OcTreeKey key;
   CellBelief belief;
 };
 
-/// A surface of cells to be turned into an octree.
+/// Input of an octree: surface and floors.
 struct Surface {
-  const maps::Raster<float>& elevation_m;  ///< NaN: no cell there
+  const maps::Raster<float>& elevation_m;  ///< NaN: no cell
   const SurfaceKeys& keys;
-  std::vector<FloorLeaf> floors{};  ///< none in a voxel of the surface
+  std::vector<FloorLeaf> floors{};  ///< floors outside the voxels of the surface
 };
 
-/// The tree of a surface: one leaf a cell at its elevation and one a floor, equal neighbours pruned as the
-/// tree is built, so that memory follows what is different rather than how many cells there are.
+/// Octree of a surface: one leaf per cell at its elevation and one per floor. Equal neighbours are pruned
+/// during construction, so that memory depends on the number of different leaves.
 TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief);
 
-/// Writes that tree without holding it: the bytes of writeTree(surfaceTree(...)), in next to no memory. The
-/// stream must be able to seek.
+/// Writes the bytes of writeTree(surfaceTree(...)) without holding the tree in memory. The stream must be
+/// seekable.
 void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief,
                       std::ostream& stream);
 
-/// The surface, without floors, as a tree that stock octovis opens: green safe, amber marginal, red dangerous
-/// or refused, grey unknown.
+/// The surface, without floors, as a tree for octovis: green safe, amber marginal, red dangerous or refused,
+/// grey unknown.
 std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
                                                 const std::function<CellBelief(maps::Cell)>& belief);
 

@@ -19,10 +19,10 @@ namespace {
 using octomap::OcTreeKey;
 
 constexpr std::size_t kPayloadBytes = 36;
-constexpr std::size_t kVersionAt = 6;  // in the preamble
+constexpr std::size_t kVersionAt = 6;  // index in the preamble
 using Payload = std::array<char, kPayloadBytes>;
 constexpr std::array<char, 8> kPreamble{'T', 'A', 'L', 'U',
-                                        'S', 'T', 2,   0};  // last two: version 2, little-endian
+                                        'S', 'T', 2,   0};  // last two bytes: version 2, little-endian
 
 template <typename T>
 T littleEndian(T value) noexcept {
@@ -225,14 +225,14 @@ void TraversabilityTree::prune() {
 
 namespace {
 
-// As wide as any number of nodes, so that it can be written last.
+// Fixed width for any number of nodes, so that the field can be overwritten at the end.
 std::string sizeField(std::size_t nodes) {
   std::string digits = std::to_string(nodes);
   digits.resize(20, ' ');
   return digits;
 }
 
-// Returns where the number of nodes stands.
+// Writes the header; returns the position of the number of nodes.
 std::streampos writeHeader(std::ostream& stream, double resolution_m, std::size_t nodes) {
   std::array<char, 32> resolution{};
   const auto end = std::to_chars(resolution.begin(), resolution.end(), resolution_m).ptr;
@@ -273,7 +273,7 @@ struct Header {
   double resolution_m = 0.0;
 };
 
-// The text lines up to "data"; false when they are not an OctoMap header.
+// Reads the text lines up to "data"; returns false if they are not an OctoMap header.
 bool readHeader(std::istream& stream, Header& header) {
   std::string line;
   if (!std::getline(stream, line) || line.compare(0, 21, "# Octomap OcTree file") != 0) return false;
@@ -320,13 +320,13 @@ void requireSize(std::size_t nodes, const Header& header, const std::string& nam
                       "write the map again"});
 }
 
-// Walks the nodes of a stream depth first and counts them.
+// Traverses the nodes of a stream depth first and counts them.
 class LeafWalk {
  public:
   LeafWalk(std::istream& stream, const std::function<void(const TreeLeaf&)>& visit)
       : stream_(stream), visit_(visit) {}
 
-  // The cube's belief is read here.
+  // Reads the node of a cube and all nodes below; returns false on failure.
   bool below(TreeLeaf cube) {
     ++nodes_;
     char bits = 0;

@@ -13,29 +13,29 @@
 
 namespace talus::costmap {
 
-/// A node of the traversability tree: the belief that holds in its cube.
+/// Node of the traversability tree: the estimate of its cube.
 class TraversabilityNode : public octomap::OcTreeDataNode<CellBelief> {
  public:
   TraversabilityNode() : OcTreeDataNode(CellBelief{}) {}
   TraversabilityNode(const TraversabilityNode& other);
   TraversabilityNode& operator=(const TraversabilityNode&) = delete;
 
-  /// Writes the 36 bytes of the payload, little-endian, in the order of CellBelief's fields.
+  /// Writes the payload of 36 bytes, little-endian, in the order of CellBelief's fields.
   std::ostream& writeData(std::ostream& stream) const;
-  /// Reads them; the stream fails when they are missing or hold a value that no writer wrote.
+  /// Reads the payload; sets failbit if bytes are missing or a value is invalid.
   std::istream& readData(std::istream& stream);
 
   const CellBelief& belief() const noexcept { return value; }
   CellBelief& belief() noexcept { return value; }
 
-  /// Frees the array of children once all of them are gone.
+  /// Frees the array of children; all children must have been deleted.
   void forgetChildren() noexcept;
 };
 
-/// OctoMap tree of type "TraversabilityTree": leaves are the cubes of ground that share one belief.
-/// A node whose children are all leaves and equal is pruned into one leaf, also where some children do not
-/// exist: it then says "all ground in this cube is so". Where the ground's surface runs inside the cube is
-/// the elevation's matter. Not thread-safe while changed.
+/// OctoMap tree of type "TraversabilityTree"; leaves are cubes of ground with one estimate. A node with equal
+/// leaves as its only children is pruned, even if some children do not exist. A leaf then applies to all
+/// ground in its cube; the elevation determines the position of the ground in the cube. Not thread-safe
+/// during changes.
 class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, octomap::AbstractOcTree> {
  public:
   explicit TraversabilityTree(double resolution_m);
@@ -43,24 +43,24 @@ class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, oc
   TraversabilityTree* create() const override { return new TraversabilityTree(resolution); }
   std::string getTreeType() const override { return "TraversabilityTree"; }
 
-  /// The belief at a key: that of the leaf whose cube holds it, or null where nothing is known.
+  /// Estimate of the leaf that contains a key; null if there is no leaf.
   const CellBelief* find(const octomap::OcTreeKey& key) const;
-  /// The belief at a key for change; makes the leaf (splitting a pruned cube) when there is none. A depth
-  /// below 16 makes a leaf of a cube of 2^(16 - depth) cells a side; the tree must hold nothing finer there.
+  /// Writable estimate at a key; creates the leaf, splitting a pruned cube if needed. A depth below 16
+  /// creates a leaf for a cube of 2^(16 - depth) cells per side; the tree must have no finer nodes there.
   CellBelief& at(const octomap::OcTreeKey& key, unsigned depth = 16);
 
-  /// The root, made when there is none.
+  /// The root; created if absent.
   TraversabilityNode* makeRoot();
 
-  /// Writes a preamble with the payload's version, then the nodes.
+  /// Writes a preamble with the version of the payload, then the nodes.
   std::ostream& writeData(std::ostream& stream) const override;
-  /// Reads the nodes from a stream without its header; sets failbit on a truncated or foreign one and stays
-  /// empty.
+  /// Reads preamble and nodes from a stream without the header; on a truncated or foreign stream, sets
+  /// failbit and leaves the tree empty.
   std::istream& readData(std::istream& stream) override;
 
   bool isNodeCollapsible(const TraversabilityNode* node) const override;
   bool pruneNode(TraversabilityNode* node) override;
-  /// Merges equal children bottom-up.
+  /// Prunes equal children bottom-up.
   void prune() override;
 
  private:
@@ -74,17 +74,17 @@ class TraversabilityTree : public octomap::OcTreeBaseImpl<TraversabilityNode, oc
   static const Registration registration_;
 };
 
-/// Writes header and nodes; same tree, same bytes.
+/// Writes header and nodes; equal trees give equal bytes.
 void writeTree(const TraversabilityTree& tree, std::ostream& stream);
 
-/// Writes the same bytes node by node, in depth-first order, for a tree that is held nowhere.
+/// Writes the same bytes node by node in depth-first order, without a tree in memory.
 class TreeWriter {
  public:
-  /// Writes the header; the stream must be able to seek.
+  /// Writes the header; the stream must be seekable.
   TreeWriter(std::ostream& stream, double resolution_m);
-  /// A node; bit i of `children`: child i follows.
+  /// Writes a node; bit i of `children`: child i follows.
   void node(const CellBelief& belief, std::uint8_t children);
-  /// Puts the number of nodes into the header.
+  /// Writes the number of nodes into the header.
   void finish();
 
  private:
@@ -93,18 +93,18 @@ class TreeWriter {
   std::size_t nodes_ = 0;
 };
 
-/// Reads what writeTree wrote and leaves the stream behind the last node.
-/// Throws InputError (where = name) for a stream that is truncated, damaged or another tree type.
+/// Reads the output of writeTree() and leaves the stream after the last node. Throws InputError (where =
+/// name) for a stream that is truncated, damaged or of another tree type.
 TraversabilityTree readTree(std::istream& stream, const std::string& name);
 
-/// A cube of ground that shares one belief, by its lowest keys and its side in cells.
+/// A cube of ground with one estimate, given by its lowest keys and its side in cells.
 struct TreeLeaf {
   octomap::OcTreeKey low;
   unsigned side = 1;
   CellBelief belief;
 };
 
-/// Reads the same stream leaf by leaf, with no tree in memory. Throws as readTree does.
+/// Reads the output of writeTree() leaf by leaf, without a tree in memory. Throws as readTree().
 void readLeaves(std::istream& stream, const std::string& name,
                 const std::function<void(const TreeLeaf&)>& visit);
 

@@ -4,16 +4,17 @@
 
 namespace talus::costmap {
 
-/// A slope as rise over run eastwards and northwards [-].
+/// Slope as rise over run eastward and northward [-].
 struct UnseenSlope {
   double dz_dx = 0.0, dz_dy = 0.0;
 };
 
-/// Cells, at most, from one without a known shape to heights that bound its slope.
+/// Greatest distance of the heights that determine the slope of a cell [cells].
 inline constexpr int kUnseenReach = 32;
 
-/// What the nearest heights to both sides of a cell, along its row and along its column, say of the ground between them: the mean slope there,
-/// which it has or exceeds somewhere. 0 along an axis on which a side has none within kUnseenReach. NaN is no height.
+/// Slope of a cell without a known shape: along the row and along the column, the mean slope between the
+/// nearest heights on both sides, which the ground reaches or exceeds somewhere between. 0 along an axis
+/// without a height on a side within kUnseenReach. NaN heights are skipped.
 UnseenSlope unseenSlope(const maps::Raster<float>& elevation_m, maps::Cell cell);
 
 }  // namespace talus::costmap

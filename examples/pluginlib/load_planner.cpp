@@ -1,5 +1,6 @@
-// Shows   how a program finds the planners that packages describe to pluginlib, and plans with one of them.
-// Needs   talus::planner, pluginlib; AMENT_PREFIX_PATH. Prints  their names, and the route.
+// Shows   finding the planners that packages describe to pluginlib, and planning with one of them.
+// Needs   talus::planner, pluginlib; AMENT_PREFIX_PATH.
+// Prints  their names, and the number of vertices and violations of the route.
 // Next    ../load_plugin.cpp: the same without pluginlib.
 #include <cstdio>
 #include <exception>
@@ -40,7 +41,7 @@ std::shared_ptr<const talus::costmap::CostGrid> sand() {
 }
 
 int run(const std::string& wanted) {
-  // The base class is declared to belong to the package `talus`; any package may offer planners.
+  // The base class is registered for the package `talus`; any package may provide planners.
   pluginlib::ClassLoader<talus::GlobalPlanner> loader("talus", "talus::GlobalPlanner");
   for (const std::string& name : loader.getDeclaredClasses())
     std::printf("%s: %s\n", name.c_str(), loader.getClassDescription(name).c_str());
@@ -55,7 +56,7 @@ int run(const std::string& wanted) {
     std::printf("no route: %s\n", route.reason.c_str());
     return 1;
   }
-  // Whoever planned it: the map decides whether it may be driven.
+  // The map checks the route of any planner.
   std::vector<talus::maps::Point> points;
   for (const auto& vertex : route.vertices) points.push_back({vertex.x_m, vertex.y_m});
   const auto against = talus::planner::violations(*map, points);

@@ -1,6 +1,6 @@
-// Shows   Talus' planners as a class of pluginlib, for stacks that load what they run by name.
+// Shows   Talus' planners as a class of pluginlib, for systems that load planners by name.
 // Needs   talus::planner, pluginlib. Described to pluginlib by plugins.xml.in.
-// Next    load_planner.cpp: who loads it.
+// Next    load_planner.cpp: a program that loads the class.
 #include <memory>
 #include <utility>
 
@@ -10,7 +10,7 @@
 
 namespace talus_pluginlib {
 
-/// The planner that configure() names, the default before.
+/// Planner selected by configure(); the default planner before that call.
 class Planner final : public talus::GlobalPlanner {
  public:
   talus::PlannerCapabilities capabilities() const override { return planner_->capabilities(); }

@@ -1,4 +1,4 @@
-// Shows   how messages of ROS 1 become points, telemetry and paths.
+// Shows   conversion of ROS 1 messages to points and telemetry, and of routes to paths.
 #include "messages.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using sensor_msgs::PointField;
 
-// A field of a cloud as numbers, whatever its type.
+// Numeric access to one field of a point cloud, for any data type.
 class Field {
  public:
   Field(const sensor_msgs::PointCloud2& cloud, const PointField& field) : cloud_(cloud), field_(field) {

@@ -9,15 +9,16 @@
 
 #include "navigator.hpp"
 
-/// Between messages of ROS and what the navigator takes. What is malformed throws std::runtime_error, in one line.
+/// Conversion between ROS messages and the types of navigator.hpp. A malformed message throws
+/// std::runtime_error with one line.
 namespace rover_ros {
 
-/// A rigid motion from the frame of a message into the map's.
+/// Rigid transform from the frame of a message to the map frame.
 class Motion {
  public:
   explicit Motion(const geometry_msgs::Transform& transform);
   CloudPoint operator()(const CloudPoint& p) const;
-  /// Of the frame's x axis, in the map plane, counter-clockwise from the map's x.
+  /// Returns the direction of the frame's x axis in the map plane, counter-clockwise from the map's x axis.
   double heading_rad() const;
 
  private:
@@ -25,18 +26,19 @@ class Motion {
   CloudPoint t_;
 };
 
-/// The finite points of a cloud, fields x, y and z.
+/// Returns the finite points of a cloud with fields x, y and z. Throws if no point is finite.
 std::vector<CloudPoint> pointsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion);
 
-/// The pixels of a height image (32FC1, metres above the frame's origin, NaN: not observed): the middle of the image lies at
-/// the origin, its columns run along x, its rows against y, a pixel is pixel_m wide.
+/// Returns the pixels of a height image (32FC1, metres above the origin of the frame, NaN: not observed). The
+/// centre of the image is at the origin, columns run along x, rows against y, and a pixel is pixel_m wide.
 std::vector<CloudPoint> pointsOf(const sensor_msgs::Image& image, double pixel_m, const Motion& motion);
 
-/// Telemetry of wheels, a point a wheel: where it stands (x, y, z), and fields named as columns of a telemetry file (load_N
-/// and slip at least). The time, the place on the map and, where it is no field, the heading come from message and motion.
+/// Returns wheel telemetry from a cloud with one point per wheel: position (x, y, z), and fields named as
+/// columns of a telemetry file (at least load_N and slip). Time, map position and, without a field
+/// heading_rad, the heading come from the message and the transform.
 Wheels wheelsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion);
 
-/// A path in the map's frame.
+/// Returns a path in the map frame.
 nav_msgs::Path pathOf(const std::vector<Pose>& poses, const std_msgs::Header& header);
 
 }  // namespace rover_ros

@@ -1,4 +1,4 @@
-// Shows   Talus behind a header that C++17 reads, with a state that outlives the process.
+// Shows   Talus behind a C++17 header, with a state that survives a restart of the process.
 // Needs   talus::planner, talus::terramech_io. Used by talus_node.cpp.
 #include "navigator.hpp"
 
@@ -50,7 +50,7 @@ std::string inFolder(const Settings& s, const char* name) {
   return s.state_folder.empty() ? std::string() : (fs::path(s.state_folder) / name).string();
 }
 
-// Heights as the last process left them; all unobserved where there are none.
+// Returns the heights stored in the state folder; all unobserved if there are none.
 talus::costmap::MapLayers keptHeights(const Settings& s, std::string& restored) {
   const talus::maps::Grid grid = gridOf(s);
   talus::costmap::MapLayers layers;
@@ -69,7 +69,7 @@ talus::costmap::MapLayers keptHeights(const Settings& s, std::string& restored) 
   return layers;
 }
 
-// The window of the map that holds the points; nothing where none is on it.
+// Returns the window of the map that contains the points; empty if no point is on the map.
 std::optional<talus::maps::Grid> windowOf(const std::vector<talus::maps::CloudPoint>& points,
                                           const talus::maps::Grid& map) {
   talus::maps::CellBox box{{map.width, map.height}, {-1, -1}};
@@ -86,7 +86,7 @@ std::optional<talus::maps::Grid> windowOf(const std::vector<talus::maps::CloudPo
                                           map.south_west.y_m + box.first.row * map.resolution_m}};
 }
 
-// A number that is missing or impossible stays: its row may indicate danger all the same.
+// Rows with missing or impossible numbers are kept, because they may indicate danger.
 talus::terramech::Telemetry telemetryOf(const Wheels& wheels) {
   const std::size_t width = wheels.columns.size();
   if (width == 0 || wheels.values.empty() || wheels.values.size() % width != 0)
@@ -103,8 +103,8 @@ talus::terramech::Telemetry telemetryOf(const Wheels& wheels) {
   return t;
 }
 
-// Poses along a route: its vertices, and places between them where they lie far apart. Where the ground was not observed
-// the height is that of the pose before.
+// Returns the poses along a route: its vertices, and intermediate poses at most spacing_m apart. At
+// unobserved ground the height is that of the previous pose.
 std::vector<Pose> posesOf(const std::vector<talus::planner::RouteVertex>& route, double spacing_m) {
   std::vector<Pose> poses;
   double z_m = 0.0;
@@ -146,13 +146,13 @@ struct Navigator::State {
   std::optional<talus::costmap::EvidenceJournal> journal;
   std::optional<talus::costmap::DriveIntake> intake;
   std::unique_ptr<talus::GlobalPlanner> planner;
-  bool changed = false;      // heights, since they were saved
-  mutable std::mutex mutex;  // of what follows
+  bool changed = false;      // heights changed since the last save
+  mutable std::mutex mutex;  // guards the members below
   std::stop_source stop;
   std::optional<Place> goal;
 };
 
-// What Talus throws is one line already.
+// Converts all exceptions to std::runtime_error; the texts of Talus are one line already.
 Navigator::Navigator(const Settings& settings) {
   if (!(settings.path_spacing_m > 0.0)) throw std::runtime_error("path_spacing_m must be > 0");
   if (!(settings.tolerance_m >= 0.0)) throw std::runtime_error("tolerance_m must be >= 0");

@@ -1,4 +1,4 @@
-// Shows   Talus as a node of ROS 1: sensors to a map, wheels to evidence, goals to paths.
+// Shows   Talus as a ROS 1 node: sensor messages to a map, wheel messages to evidence, goals to paths.
 // Needs   talus::planner, talus::terramech_io, roscpp, tf2_ros.  Topics and parameters: README.md.
 // Next    ../rover_loop.cpp: the same loop without ROS.
 #include <algorithm>
@@ -29,7 +29,7 @@ namespace {
 
 using actionlib_msgs::GoalStatus;
 
-// Parameters of the node's own namespace; one that it does not know is refused.
+// Parameters in the private namespace of the node; an unknown parameter is an error.
 class Parameters {
  public:
   explicit Parameters(ros::NodeHandle own) : own_(std::move(own)) {}
@@ -63,8 +63,8 @@ struct NodeSettings {
   Settings navigator;
   std::string map_frame = "map", base_frame = "base_link";
   double max_age_s = 5.0;        // of a message
-  double pixel_m = 0.0;          // of the height image; 0: a cell
-  double replan_period_s = 1.0;  // at least between two plans of one goal
+  double pixel_m = 0.0;          // pixel size of the height image; 0: Settings::resolution_m
+  double replan_period_s = 1.0;  // shortest time between two plans for one goal
   double save_period_s = 1.0;
 };
 
@@ -103,7 +103,8 @@ NodeSettings settingsOf(const ros::NodeHandle& own) {
   return s;
 }
 
-// The callbacks run in the thread that spins, which alone changes the map; plans run in a thread of their own.
+// Callbacks run in the thread of ros::spin(), the only one that changes the map; plans run in a second
+// thread.
 class Node {
  public:
   explicit Node(ros::NodeHandle own)
@@ -141,7 +142,7 @@ class Node {
   Node& operator=(const Node&) = delete;
 
  private:
-  // A message that cannot be used is one line in the log, at most one a second of each topic, and changes nothing.
+  // Runs `work`. An exception is logged, at most once per second and topic; the message is then ignored.
   void guarded(const char* topic, const std::function<void()>& work) {
     try {
       work();
@@ -166,7 +167,8 @@ class Node {
       throw std::runtime_error("its stamp is " + std::to_string(age_s) + " s old, more than ~max_age_s = " +
                                std::to_string(settings_.max_age_s) + "; check the clocks");
   }
-  // Where the rover stands; not where it stood when it was last located. A place that never changes has no stamp.
+  // Returns the current place of the rover; throws if the transform is outdated. A static transform has no
+  // stamp.
   Place rover() const {
     const Motion motion = motionAt(settings_.base_frame, ros::Time(0));
     const ros::Time stamp =
@@ -175,7 +177,7 @@ class Node {
     const CloudPoint at = motion({});
     return {at.x_m, at.y_m};
   }
-  // tf2 takes frames without a leading slash.
+  // Returns the motion from a frame to the map frame. tf2 expects frames without a leading slash.
   Motion motionAt(const std::string& frame, const ros::Time& stamp) const {
     const std::string plain = frame.substr(std::min(frame.find_first_not_of('/'), frame.size()));
     if (plain.empty()) throw std::runtime_error("has no frame_id; name a frame that tf knows");
@@ -205,7 +207,7 @@ class Node {
     });
   }
 
-  // The newest goal counts: one that comes while a plan runs waits for its end, in place of one that waits already.
+  // Sets the goal. A goal that arrives during a plan waits for its end and replaces any other waiting goal.
   void goal(const geometry_msgs::PoseStampedConstPtr& message) {
     try {
       const auto& p = message->pose.position;
@@ -244,8 +246,8 @@ class Node {
     last_text_ = text;
     status_.publish(status);
   }
-  // An ended goal leaves an empty path, which a controller that follows it stops on. `planned`: that of which a plan is, not
-  // one that came meanwhile.
+  // Ends the current goal and publishes an empty path, on which a path-following controller stops. With
+  // `planned`, a goal that arrived since the plan began is kept.
   void end(std::uint8_t code, const std::string& text, bool planned = false) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!active_ || (planned && fresh_)) return;
@@ -275,7 +277,7 @@ class Node {
     occupancy_.publish(grid);
   }
 
-  // Plans whenever the goal is new or the map changed, at most once a period for one goal.
+  // Plans when the goal is new or the map changed, at most once per period for one goal.
   void plans() {
     unsigned long planned = 0;
     ros::WallTime last;
@@ -296,7 +298,7 @@ class Node {
       lock.lock();
     }
   }
-  // Whether it planned.
+  // Returns whether a plan was made.
   bool step(const Place& goal, bool wanted) {
     Place start;
     try {
@@ -317,7 +319,7 @@ class Node {
     }
     return true;
   }
-  // Unless another goal came meanwhile, or this one was cancelled.
+  // Publishes the outcome of a plan, unless the goal was cancelled or replaced.
   void answer(const Outcome& outcome) {
     if (outcome.cancelled) return;
     const std::string reason = outcome.reason.empty() ? "" : ": " + outcome.reason;
@@ -344,10 +346,10 @@ class Node {
   ros::Subscriber cloud_, image_, wheels_, goal_, cancel_;
   ros::Timer save_;
   ros::WallTime warned_[3];
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable wake_;
-  bool active_ = false;  // there is a goal
-  bool fresh_ = false;   // which no plan was made for
+  bool active_ = false;  // a goal is set
+  bool fresh_ = false;   // the goal has no plan yet
   bool ending_ = false;
   std::mutex reporting_;
   std::string last_text_;
@@ -358,7 +360,7 @@ class Node {
 }  // namespace rover_ros
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a log that a kill does not cut
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // line buffering: a killed process leaves a complete log
   try {
     ros::init(argc, argv, "talus");
     if (!ros::master::check()) {

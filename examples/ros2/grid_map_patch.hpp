@@ -1,5 +1,5 @@
 // Shows   elevation maps of grid_map as patches of a Talus map, and layers of a Talus map for grid_map.
-// Needs   talus::planner, grid_map_core.  Used by nav2_planner.cpp; of use to any node that has both.
+// Needs   talus::planner, grid_map_core.  Used by nav2_planner.cpp; usable in any node with both libraries.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,22 @@
 
 namespace talus_ros2 {
 
-/// Where the cells of a grid map lie. Its index (0, 0) is the cell with the greatest x and y, the first index counts against x,
-/// the second against y, and its data is a ring: the cell of that corner stands at the start index.
+/// Converts cells of a grid map to its indices. Index (0, 0) of a grid map is the cell with the largest x and
+/// y; the first index runs against x, the second against y. The data is a ring buffer, in which that corner
+/// cell is at the start index.
 class CellsOf {
  public:
   explicit CellsOf(const grid_map::GridMap& map)
       : size_(map.getSize()), start_(map.getStartIndex()), resolution_m_(map.getResolution()) {
-    // The position of a grid map is its middle; a corner of it is half of its length away.
+    // The position of a grid map is its centre; the corner is half its length away.
     south_west_ = {map.getPosition().x() - 0.5 * size_(0) * resolution_m_,
                    map.getPosition().y() - 0.5 * size_(1) * resolution_m_};
   }
-  /// Width goes along x, height along y.
+  /// Returns the grid, with width along x and height along y.
   talus::maps::Grid grid() const {
     return {.width = size_(0), .height = size_(1), .resolution_m = resolution_m_, .south_west = south_west_};
   }
-  /// Position in the data of the cell in a column (along x) and row (along y).
+  /// Returns the index in the data of the cell in a column (along x) and row (along y).
   grid_map::Index index(talus::maps::Cell cell) const {
     return {(size_(0) - 1 - cell.column + start_(0)) % size_(0),
             (size_(1) - 1 - cell.row + start_(1)) % size_(1)};
@@ -43,15 +44,16 @@ class CellsOf {
   talus::maps::Point south_west_;
 };
 
-/// How far the cells of two grids are apart, as a share of a cell, at most half of one.
+/// Returns the offset between the cells of two grids in cells, 0 to 0.5.
 inline double offset(double a_m, double b_m, double resolution_m) {
   const double cells = (a_m - b_m) / resolution_m;
   return std::abs(cells - std::round(cells));
 }
 
-/// The heights of a layer as a patch, cut to the map: NaN where the layer is. Nothing where they do not meet or where no height
-/// is known. Throws std::invalid_argument for a layer that is not there, another resolution, or cells that lie more than a
-/// hundredth of a cell beside the map's: heights are not interpolated, which would flatten steps.
+/// Returns the heights of a layer as a patch, cropped to the map, NaN where the layer is NaN. Empty if layer
+/// and map do not overlap or no height is known. Throws std::invalid_argument for a missing layer, another
+/// resolution, or an offset of more than 0.01 cells from the map: heights are not interpolated, because
+/// interpolation would flatten steps.
 inline std::optional<talus::costmap::SurfacePatch> patchOf(const grid_map::GridMap& seen,
                                                            const std::string& layer,
                                                            const talus::maps::Grid& map) {
@@ -92,8 +94,8 @@ inline std::optional<talus::costmap::SurfacePatch> patchOf(const grid_map::GridM
   return patch;
 }
 
-/// The whole map as a grid map with layers `elevation`, `category` (0 safe, 1 marginal, 2 dangerous; NaN: not observed),
-/// `drawbar_pull` (over load, mean) and `drawbar_pull_std`.
+/// Returns the whole map as a grid map with layers `elevation`, `category` (0 safe, 1 marginal, 2 dangerous;
+/// NaN: not observed), `drawbar_pull` (mean DP/W) and `drawbar_pull_std`.
 inline grid_map::GridMap gridMapOf(const talus::costmap::TraversabilityMap& map, const std::string& frame) {
   const talus::maps::Grid& grid = map.grid();
   grid_map::GridMap out({"elevation", "category", "drawbar_pull", "drawbar_pull_std"});

@@ -21,7 +21,8 @@ using talus::maps::CellBox;
 
 namespace {
 
-// The cells of a grid that a square around a place touches by more than a rounding; nothing where it lies off the grid.
+// Returns the cells of a grid that a square overlaps by more than a rounding error; empty if the square is
+// off the grid.
 std::optional<CellBox> touched(const talus::maps::Grid& grid, talus::maps::Point middle, double side_m) {
   const double half = std::max(0.5 * side_m / grid.resolution_m - 1e-6, 0.0);
   const double x = (middle.x_m - grid.south_west.x_m) / grid.resolution_m,
@@ -60,7 +61,7 @@ void Nav2Layer::reset() {
   current_ = true;
 }
 
-// Versions share the tiles that did not change.
+// Unchanged tiles are shared between versions.
 std::vector<CellBox> Nav2Layer::changedSince(const Version& before) const {
   constexpr int kSide = talus::costmap::CostTile::kSide;
   const talus::maps::Grid& grid = now_->grid();
@@ -84,7 +85,7 @@ void Nav2Layer::updateBounds(double, double, double, double* min_x, double* min_
     judge_ = std::make_unique<talus::planner::CellJudge>(now_->content().cost);
     cells_.assign(now_->grid().size(), {CellCode(), refuse_unknown_ ? LETHAL_OBSTACLE : NO_INFORMATION});
   }
-  // A window that moves with the rover brings in cells of its own.
+  // A rolling window also brings new cells into view.
   const bool all = redraw_.exchange(false) || layered_costmap_->isRolling();
   const talus::maps::Grid& grid = now_->grid();
   for (const CellBox& box : changedSince(all ? nullptr : before)) {

@@ -1,4 +1,4 @@
-// Shows   Talus' judgement of the ground as a layer of Nav2's 2D costmap, for planners and controllers that know no headings.
+// Shows   Talus' traversability as a layer of Nav2's 2D costmap, for planners and controllers without headings.
 // Needs   talus::planner, nav2_costmap_2d (Jazzy or later), grid_map_core, grid_map_msgs.  Parameters: README.md.
 #pragma once
 
@@ -13,9 +13,10 @@
 
 namespace talus_ros2 {
 
-/// Writes, by the greatest of what stands there: what Talus refuses in every heading as lethal, what it refuses in some as the
-/// dearest that is not an obstacle (252), other ground by its dearest heading. Cells off Talus' map stay as they are. The
-/// costmap calls it in one thread, the subscription may run in another.
+/// Writes the maximum of the existing and its own cost: lethal for cells refused in every heading, 252 (the
+/// highest cost that is no obstacle) for cells refused in some headings, otherwise a cost by the most
+/// expensive heading. Cells off Talus' map are unchanged. The costmap calls the layer in one thread; the
+/// subscription may run in another.
 class Nav2Layer : public nav2_costmap_2d::Layer {
  public:
   ~Nav2Layer() override;
@@ -35,12 +36,12 @@ class Nav2Layer : public nav2_costmap_2d::Layer {
   std::uint8_t worstIn(const talus::maps::CellBox& box);
 
   std::unique_ptr<PatchedMap> map_;
-  std::shared_ptr<void> subscription_;  // refers to the map
+  std::shared_ptr<void> subscription_;  // refers to map_
   double full_cost_ratio_ = 20.0;
   bool refuse_unknown_ = true;
-  std::atomic<bool> redraw_ = true;  // everything, at the next update
-  Version now_;                      // what is drawn
-  // What its cells cost, by the code that they had when they were asked.
+  std::atomic<bool> redraw_ = true;  // true: the next update redraws everything
+  Version now_;                      // version drawn last
+  // Cost of each cell, with the cell code for which it was computed.
   struct Judged {
     talus::costmap::CellCode code;
     std::uint8_t cost;

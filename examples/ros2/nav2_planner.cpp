@@ -22,7 +22,7 @@ double headingOf(const PoseStamped& pose) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
 }
 
-// Looks whether the caller wants the plan to end: at once, and 50 times a second as long as it lives.
+// Polls the caller's cancel function: once at construction, then every 20 ms until destruction.
 class CancelWatch {
  public:
   CancelWatch(const std::function<bool()>& wanted, std::stop_source stop) : stop_(std::move(stop)) {
@@ -41,7 +41,7 @@ class CancelWatch {
     bool end = true;
     try {
       end = wanted();
-    } catch (const std::exception&) {  // who cannot be asked is no longer there
+    } catch (const std::exception&) {  // a failing function counts as cancelled
     }
     if (end) stop_.request_stop();
     return end;
@@ -51,7 +51,7 @@ class CancelWatch {
   std::jthread watching_;
 };
 
-// What did not lead to a route, as Nav2's behaviours know it. Talus' reason holds where, why and the remedy.
+// Throws the exception of nav2_core for a failed plan. The text is Talus' reason: place, cause and remedy.
 [[noreturn]] void refuse(const talus::planner::Route& route, bool start_inside, bool goal_inside) {
   switch (route.status) {
     case RouteStatus::StartInvalid:
@@ -116,7 +116,7 @@ void Nav2Planner::cleanup() {
   map_.reset();
 }
 
-// What ends the plan that begins now.
+// Returns a new stop source for the plan that begins.
 std::stop_source Nav2Planner::begin() {
   const std::lock_guard lock(stopping_);
   if (!active_) throw nav2_core::PlannerException("Talus: not active");

@@ -18,7 +18,7 @@
 
 namespace talus_ros2 {
 
-/// The first parameter of configure(), whose type differs between releases of Nav2.
+/// Type of the first parameter of configure(), which differs between releases of Nav2.
 template <typename Method>
 struct FirstParameter;
 template <typename Class, typename First, typename... Others>
@@ -26,9 +26,9 @@ struct FirstParameter<void (Class::*)(const First&, Others...)> {
   using type = First;
 };
 
-/// Plans on a Talus map that was read from a file and that patches of a grid map may change while it runs. createPlan(), the
-/// subscription and deactivate() may run in three threads; a second createPlan() waits for the first. Throws the typed
-/// exceptions of nav2_core, each with one line.
+/// Plans on a Talus map from a file, which patches of a grid map may change at run time. createPlan(), the
+/// subscription and deactivate() may run in three threads; a second createPlan() waits for the first. Throws
+/// the typed exceptions of nav2_core, each with a text of one line.
 class Nav2Planner : public nav2_core::GlobalPlanner {
  public:
   using Poses = std::vector<geometry_msgs::msg::PoseStamped>;
@@ -38,10 +38,10 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
                  std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) override;
   void cleanup() override;
   void activate() override;
-  /// Cancels the plan that runs.
+  /// Cancels the running plan.
   void deactivate() override;
 
-  // One of the two overrides what Nav2 declares, depending on its release; neither can be marked.
+  // Depending on the release of Nav2, one of the two is an override; neither can be marked as such.
   nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped& start,
                                  const geometry_msgs::msg::PoseStamped& goal,
                                  std::function<bool()> cancel_checker);
@@ -62,11 +62,11 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
   double spacing_m_ = 0.5;
   bool headings_ = false;
   std::unique_ptr<PatchedMap> map_;
-  std::shared_ptr<void> subscription_;  // refers to the map
+  std::shared_ptr<void> subscription_;  // refers to map_
   std::shared_ptr<rclcpp::Publisher<visualization_msgs::msg::Marker>> categories_;
-  std::mutex planning_;  // one plan at a time
+  std::mutex planning_;  // serialises plans
   std::unique_ptr<talus::GlobalPlanner> planner_;
-  std::mutex stopping_;  // of what follows
+  std::mutex stopping_;  // guards the members below
   std::stop_source stop_;
   bool active_ = false;
 };

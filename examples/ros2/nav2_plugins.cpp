@@ -1,4 +1,4 @@
-// Offers talus_ros2::Nav2Planner to Nav2's planner server and talus_ros2::Nav2Layer to its costmaps.
+// Exports talus_ros2::Nav2Planner to Nav2's planner server and talus_ros2::Nav2Layer to its costmaps.
 #include <pluginlib/class_list_macros.hpp>
 
 #include "nav2_layer.hpp"

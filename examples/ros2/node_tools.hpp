@@ -1,4 +1,4 @@
-// Shows   parameters and subscriptions on any node class of ROS 2: nav2::LifecycleNode hides rclcpp's members by others.
+// Shows   parameters and subscriptions on any node class of ROS 2: nav2::LifecycleNode hides members of rclcpp.
 // Needs   rclcpp.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace talus_ros2 {
 
-/// A parameter, declared where it is not yet.
+/// Returns a parameter, after declaring it if necessary.
 template <typename T, typename Node>
 T parameter(Node& node, const std::string& name, const T& usual) {
   if (!node.has_parameter(name)) node.template declare_parameter<T>(name, usual);
@@ -19,7 +19,8 @@ T parameter(Node& node, const std::string& name, const T& usual) {
   return value;
 }
 
-/// The newest message of a topic, whatever reliability its publisher offers. No group: the node's own.
+/// Subscribes to the newest message of a topic, with any reliability of its publisher. Without a group the
+/// node's default group is used.
 template <typename Message, typename Node, typename Callback>
 std::shared_ptr<void> newestOf(const std::shared_ptr<Node>& node, const std::string& topic, Callback callback,
                                const rclcpp::CallbackGroup::SharedPtr& group = nullptr) {

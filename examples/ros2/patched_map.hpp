@@ -1,4 +1,4 @@
-// Shows   a Talus map from a file that elevation messages of grid_map patch while it runs: what planner and layer share.
+// Shows   a Talus map from a file that elevation messages of grid_map patch at run time, for planner and layer.
 // Needs   talus::planner, grid_map_core, grid_map_msgs, rclcpp.  Used by nav2_planner.cpp and nav2_layer.cpp.
 #pragma once
 
@@ -16,24 +16,27 @@
 
 namespace talus_ros2 {
 
-/// One layer of a message as a grid map. Throws std::invalid_argument for a message that is empty, without the layer, turned
-/// against its frame, or whose sizes contradict each other: grid_map's own conversion asserts or reads beyond the data.
+/// Returns one layer of a message as a grid map. Throws std::invalid_argument for a message that is empty,
+/// lacks the layer, is rotated against its frame, or has inconsistent sizes: grid_map's own conversion
+/// asserts or reads beyond the data.
 grid_map::GridMap gridMapFrom(const grid_map_msgs::msg::GridMap& message, const std::string& layer);
 
-/// One thread calls see(), any thread the others.
+/// Map from a file with patches from messages. One thread calls see(); published() may be called from any
+/// thread.
 class PatchedMap {
  public:
-  /// Which messages count.
+  /// Conditions on messages.
   struct Intake {
-    std::string frame;                ///< of the map file
+    std::string frame;                ///< frame of the map file
     std::string layer = "elevation";  ///< heights [m]
-    double max_age_s = 2.0;           ///< stamps further from the node's time are refused; 0: none is
+    double max_age_s = 2.0;           ///< larger age of a stamp, in either direction, is an error; 0: any age
   };
 
-  /// Throws talus::InputError for a file that is no map.
+  /// Throws talus::InputError if the file is not a map.
   PatchedMap(const std::string& file, Intake intake);
 
-  /// Takes the heights of a message in. Throws std::invalid_argument, in one line; the map stays as it was.
+  /// Patches the map with the heights of a message. Throws std::invalid_argument with one line; the map is
+  /// then unchanged.
   void see(const grid_map_msgs::msg::GridMap& message, const rclcpp::Time& now);
 
   std::shared_ptr<const talus::costmap::CostGrid> published() const { return map_.published(); }
@@ -44,7 +47,8 @@ class PatchedMap {
   talus::costmap::TraversabilityMap map_;
 };
 
-/// A map by the parameters `NAME.map_file`, `.elevation_layer` and `.max_age_s`. Throws in one line that names the parameter.
+/// Returns the map given by the parameters `NAME.map_file`, `.elevation_layer` and `.max_age_s`. Throws
+/// std::invalid_argument with one line that names the parameter.
 template <typename Node>
 std::unique_ptr<PatchedMap> patchedMap(Node& node, const std::string& name, const std::string& frame) {
   const auto file = parameter<std::string>(node, name + ".map_file", "");
@@ -59,8 +63,8 @@ std::unique_ptr<PatchedMap> patchedMap(Node& node, const std::string& name, cons
   }
 }
 
-/// Lets messages of the topic `NAME.elevation_topic`, where one is given, patch the map. What cannot be used is a line in the
-/// log, every five seconds at most. The map must outlive what is returned.
+/// Subscribes to the topic `NAME.elevation_topic`, if given, to patch the map. Unusable messages are logged,
+/// at most every five seconds. The map must outlive the returned subscription.
 template <typename Node>
 std::shared_ptr<void> patchedByTopic(const std::shared_ptr<Node>& node, const std::string& name,
                                      PatchedMap& map,

@@ -7,7 +7,7 @@ namespace {
 
 using talus::planner::RouteVertex;
 
-// Calls for each pose, with the vertex whose motion it belongs to.
+// Calls `add` for each pose, with the vertex at which its motion begins.
 template <typename Add>
 void walk(const talus::planner::Route& route, double spacing_m, const Add& add) {
   geometry_msgs::msg::Pose pose;

@@ -1,5 +1,5 @@
 // Shows   a route of Talus as messages: a path with headings, and a line coloured by category.
-// Needs   talus::planner, nav_msgs, visualization_msgs.  Used by nav2_planner.cpp; of use to any node.
+// Needs   talus::planner, nav_msgs, visualization_msgs.  Used by nav2_planner.cpp; usable in any node.
 #pragma once
 
 #include <nav_msgs/msg/path.hpp>
@@ -9,12 +9,13 @@
 
 namespace talus_ros2 {
 
-/// A pose at each vertex and at most `spacing_m` apart, > 0; z is the ground's, where it was not observed that of the pose
-/// before.
+/// Returns a path with a pose at each vertex and at most `spacing_m` > 0 apart. z is the ground elevation; at
+/// unobserved ground it is that of the previous pose.
 nav_msgs::msg::Path pathOf(const talus::planner::Route& route, const std_msgs::msg::Header& header,
                            double spacing_m);
 
-/// The poses of that path joined by a line: green where the motion is safe, amber marginal, red dangerous, grey unknown.
+/// Returns the poses of pathOf() as a line: green where the motion is safe, amber marginal, red dangerous,
+/// grey unknown.
 visualization_msgs::msg::Marker categoriesOf(const talus::planner::Route& route,
                                              const std_msgs::msg::Header& header, double spacing_m);
 

@@ -9,7 +9,7 @@ namespace {
 
 struct Body {
   const char* name;
-  double least_radius_m;  ///< polar, less a little: maps use spheres of the local radius
+  double least_radius_m;  ///< slightly below the polar radius, because maps use spheres of the local radius
   double greatest_radius_m;
 };
 
@@ -22,12 +22,12 @@ constexpr std::array<Body, 8> kBodies{{{"Earth", 6.35e6, 6.40e6},
                                        {"Ceres", 4.4e5, 4.9e5},
                                        {"Vesta", 2.2e5, 2.9e5}}};
 
-// (b / a)^2 = 1 - e^2
+// Squared ratio of the semi-axes: (b / a)^2 = (1 - f)^2 = 1 - e^2.
 double squaredAxisRatio(const Ellipsoid& e) {
   return (1 - e.flattening) * (1 - e.flattening);
 }
 
-// tan(latitude) scaled; the poles stay the poles.
+// atan(factor tan(latitude)); latitudes of +-pi/2 are unchanged.
 double withScaledTangent(double latitude_rad, double factor) {
   return std::atan2(std::sin(latitude_rad) * factor, std::cos(latitude_rad));
 }

@@ -89,7 +89,8 @@ double Georeference::distance_m(Point from, Point to) const {
 }
 
 Point Georeference::groundScale(Point at) const {
-  // A reach that is short beside the body and long beside the rounding of its coordinates.
+  // Half the base of the central difference: 1e-6 of the radius is small compared with the body and large
+  // compared with the rounding error of its coordinates.
   const double h = 1e-6 * system_.ellipsoid.equatorial_radius_m;
   return {distance_m({at.x_m - h, at.y_m}, {at.x_m + h, at.y_m}) / (2 * h),
           distance_m({at.x_m, at.y_m - h}, {at.x_m, at.y_m + h}) / (2 * h)};

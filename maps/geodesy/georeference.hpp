@@ -9,45 +9,47 @@
 
 namespace talus::maps {
 
-/// What a file says of its coordinates.
+/// Coordinate reference system of a map file.
 struct CoordinateSystem {
   std::string name{};  ///< "WGS 84 / UTM zone 10N"
   Ellipsoid ellipsoid{};
   Projection projection{};
-  bool planetocentric =
-      false;          ///< latitudes are angles at the centre of the ellipsoid, not of its surface normal
-  std::string wkt{};  ///< the file's own words, written back into the layers made from it; may be empty
+  bool planetocentric = false;  ///< whether latitudes are angles at the centre, not of the surface normal
+  std::string wkt{};            ///< WKT of the file, copied into layers derived from it; may be empty
 };
 
 class Transform;
 
-/// Carries places between map metres and latitude, longitude on the body's own ellipsoid (WGS 84 on Earth), the
-/// latitude of the kind that the coordinate system has (planetocentric or geographic; the same on a sphere).
-/// Through GeographicLib [karney2013] where it has the projection, which agrees with PROJ to a millimetre, or a
-/// transform that is handed in. Immutable, cheap to copy, safe to share between threads.
+/// Converts between map coordinates [m] and latitude and longitude on the ellipsoid of the body (WGS 84 on
+/// Earth). Latitudes are planetocentric or geographic as CoordinateSystem::planetocentric states. Uses
+/// GeographicLib [karney2013] for the projections that GeographicLib has (agreement with PROJ: 1 mm), or a
+/// given Transform. Immutable, cheap to copy, thread-safe.
 class Georeference {
  public:
-  /// @throws std::invalid_argument when a parameter is out of its range
+  /// @throws std::invalid_argument if a parameter is out of range
   explicit Georeference(CoordinateSystem system);
 
-  /// The same by a transform from elsewhere, such as PROJ's (maps_io).
+  /// Uses the given transform, for example PROJ's (maps_io). @throws std::invalid_argument if a parameter is
+  /// out of range
   Georeference(CoordinateSystem system, std::shared_ptr<const Transform> transform);
 
-  /// Whether places are known: not for ProjectionMethod::Foreign without a transform. All that follows is NaN then.
+  /// Whether a transform exists. False for ProjectionMethod::Foreign without a given transform; all
+  /// conversions then return NaN.
   bool reachesPlaces() const noexcept { return transform_ != nullptr; }
 
   const CoordinateSystem& system() const noexcept;
 
-  /// Map metres of a place; NaN where the projection does not reach.
+  /// Map coordinates [m] of a position; NaN outside the range of the projection.
   Point forward(GeoPoint place) const;
 
-  /// Place of map metres, longitude in [-pi, pi]; NaN outside the projection's range.
+  /// Position of map coordinates, longitude in [-pi, pi]; NaN outside the range of the projection.
   GeoPoint reverse(Point point) const;
 
-  /// Length [m] of the shortest way on the ellipsoid between two points of the map.
+  /// Geodesic distance [m] on the ellipsoid between two map points.
   double distance_m(Point from, Point to) const;
 
-  /// Ground metres per map metre eastward and northward at a point (1 where the map is true).
+  /// Geodesic length per map length [-] along x and along y at a point; 1 where the projection preserves
+  /// lengths.
   Point groundScale(Point at) const;
 
   std::string body() const { return bodyName(system().ellipsoid); }

@@ -11,8 +11,8 @@
 namespace talus::maps {
 namespace {
 
-// Projections of GeographicLib whose calls read Forward(lon0, lat, lon, x, y): degrees, y from an origin of
-// their own, which is moved to the latitude of origin.
+// Adapter for GeographicLib's projections with the interface Forward(lon0, lat, lon, x, y), which uses
+// degrees and its own origin of y. Subtracts the y of the latitude of origin.
 template <typename Engine>
 class FromEngine final : public Transform {
  public:
@@ -64,7 +64,7 @@ class PolarStereographic final : public Transform {
   bool north_;
 };
 
-// x = a cos(phi_1) lambda, y = a (phi - phi_0): PROJ's eqc, spherical also on an ellipsoid.
+// PROJ's eqc, spherical also on an ellipsoid: x = a cos(phi_1) lambda, y = a (phi - phi_0).
 class Equirectangular final : public Transform {
  public:
   Equirectangular(const Ellipsoid& e, const Projection& p)
@@ -93,8 +93,8 @@ std::unique_ptr<const Transform> fromEngine(Engine engine, double latitude_of_or
   return std::make_unique<FromEngine<Engine>>(std::move(engine), latitude_of_origin_rad);
 }
 
-// Radius of the standard parallel over that of the equator, times the scale there: the scale on the equator
-// of the cylindrical projections.
+// Scale factor at the equator of a cylindrical projection with a standard parallel phi_1 and scale k there: k
+// cos(phi_1) / sqrt(1 - e^2 sin^2(phi_1)).
 double equatorScale(const Ellipsoid& e, const Projection& p) {
   const double sine = std::sin(p.standard_parallel_1_rad);
   const double e2 = e.flattening * (2 - e.flattening);
@@ -113,7 +113,7 @@ std::unique_ptr<const Transform> makeTransform(const Ellipsoid& e, const Project
     case TransverseMercator:
       return fromEngine(GeographicLib::TransverseMercator(a, f, p.scale), p.latitude_of_origin_rad);
     case Mercator:
-      // Lambert's conic on the equator.
+      // The Mercator projection is the Lambert conformal conic with its standard parallel at the equator.
       return fromEngine(GeographicLib::LambertConformalConic(a, f, 0.0, equatorScale(e, p)),
                         p.latitude_of_origin_rad);
     case LambertConformalConic:

@@ -8,8 +8,8 @@
 
 namespace talus::maps {
 
-/// One projection on one ellipsoid; longitudes are counted from the central meridian and the false origin is
-/// left to Georeference. Immutable.
+/// A projection on an ellipsoid. Longitudes are relative to the central meridian; Georeference adds the false
+/// origin. Immutable.
 class Transform {
  public:
   Transform() = default;
@@ -21,7 +21,7 @@ class Transform {
   virtual GeoPoint reverse(Point point) const = 0;
 };
 
-/// The transform of a method, null for Foreign; parameters are taken as checked.
+/// The transform of a projection method; null for Foreign. The parameters must have been validated.
 std::unique_ptr<const Transform> makeTransform(const Ellipsoid& ellipsoid, const Projection& projection);
 
 }  // namespace talus::maps

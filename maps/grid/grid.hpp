@@ -9,8 +9,8 @@
 
 namespace talus::maps {
 
-/// A place on the map: x east, y north, in metres of the map's projection (or local metres where it has
-/// none).
+/// A point in map coordinates [m], x east and y north: projected coordinates, or local metres for a map
+/// without a projection.
 struct Point {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -18,12 +18,12 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// Metres from one point to another.
+/// Euclidean distance [m] between two points.
 inline double distance_m(Point a, Point b) noexcept {
   return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
 }
 
-/// A cell by column (west to east) and row (south to north), both from 0.
+/// A cell index: column from west to east and row from south to north, both from 0.
 struct Cell {
   int column = 0;
   int row = 0;
@@ -31,19 +31,19 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// A rectangle of cells, both corners included.
+/// A rectangle of cells, including both corner cells.
 struct CellBox {
-  Cell first;  ///< south-west
-  Cell last;   ///< north-east
+  Cell first;  ///< south-west cell
+  Cell last;   ///< north-east cell
   int width() const noexcept { return last.column - first.column + 1; }
   int height() const noexcept { return last.row - first.row + 1; }
 };
 
-/// Where the square cells of a raster lie. Row 0 is the southernmost: y grows with the row.
+/// Geometry of a raster of square cells. Row 0 is the southernmost row: y increases with the row.
 struct Grid {
-  int width = 0;              ///< cells west to east
-  int height = 0;             ///< cells south to north
-  double resolution_m = 1.0;  ///< side of a cell, > 0
+  int width = 0;              ///< number of columns
+  int height = 0;             ///< number of rows
+  double resolution_m = 1.0;  ///< side length of a cell, > 0
   Point south_west{};         ///< outer corner of cell (0, 0)
 
   friend bool operator==(const Grid&, const Grid&) = default;
@@ -56,7 +56,7 @@ struct Grid {
     return c.column >= 0 && c.row >= 0 && c.column < width && c.row < height;
   }
 
-  /// Position of the cell in a row-major array; the cell must lie inside.
+  /// Index of the cell in a row-major array. The cell must lie inside the grid.
   std::size_t index(Cell c) const noexcept {
     return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(c.column);
@@ -66,7 +66,7 @@ struct Grid {
     return {south_west.x_m + (c.column + 0.5) * resolution_m, south_west.y_m + (c.row + 0.5) * resolution_m};
   }
 
-  /// The cell that holds the point; nothing outside the map or for a NaN.
+  /// The cell that contains the point; nullopt outside the grid or for NaN.
   std::optional<Cell> cellAt(Point p) const noexcept {
     const double column = std::floor((p.x_m - south_west.x_m) / resolution_m);
     const double row = std::floor((p.y_m - south_west.y_m) / resolution_m);
@@ -82,7 +82,8 @@ class Raster {
   Raster() = default;
   explicit Raster(const Grid& grid, T fill = T{}) : grid_(grid), values_(grid.size(), fill) {}
 
-  /// Takes values that exist already. @throws std::invalid_argument unless there is one for each cell
+  /// Takes ownership of existing values. @throws std::invalid_argument unless there is one value for each
+  /// cell
   Raster(const Grid& grid, std::vector<T> values) : grid_(grid), values_(std::move(values)) {
     if (values_.size() != grid.size()) throw std::invalid_argument("raster: one value a cell is needed");
   }
@@ -96,7 +97,7 @@ class Raster {
   std::vector<T>& values() noexcept { return values_; }
   const std::vector<T>& values() const noexcept { return values_; }
 
-  /// Start of a row of width values.
+  /// Pointer to the first of the `width` values of row r.
   T* row(int r) noexcept { return values_.data() + grid_.index({0, r}); }
   const T* row(int r) const noexcept { return values_.data() + grid_.index({0, r}); }
 

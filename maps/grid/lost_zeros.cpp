@@ -7,13 +7,14 @@
 namespace talus::maps {
 namespace {
 
-// A number whose upper bytes alone are 0 counts, too: it lies across the edge of what was lost.
+// Includes positive numbers below 1e-37: a number at the edge of a lost byte range keeps only its low bytes.
 bool isZero(float value) {
   constexpr float kTiny = 1e-37F;
   return !std::signbit(value) && value < kTiny;
 }
 
-// A file goes on from the end of a row to the next one, and the number behind what was lost may be lost in part.
+// Adds the run with a margin of one cell: the number beside a lost byte range may be lost in part. The margin
+// of a run at the end of a row includes the first cell of the next row, because the file continues there.
 void addAround(const CellRun& run, int width, int height, std::vector<CellRun>& to) {
   const int first = std::max(run.first - 1, 0), last = std::min(run.last + 1, width - 1);
   for (int row = std::max(run.row - 1, 0); row <= std::min(run.row + 1, height - 1); ++row)
@@ -46,7 +47,8 @@ std::uint32_t LostZeros::root(std::uint32_t region) {
   return region;
 }
 
-// The region of a run is that of all runs above which it touches, or a new one.
+// Assigns the run to the region of all touching runs of the previous row, merging their regions, or to a new
+// region.
 void LostZeros::join(std::size_t run) {
   Run& of = runs_[run];
   of.region = static_cast<std::uint32_t>(regions_.size());
@@ -83,7 +85,8 @@ void LostZeros::look(const Step& step, Region& region) const {
   region.abrupt += greatest > 0.0F && first > kAbrupt * greatest ? 1U : 0U;
 }
 
-// Rows that are looked at from it are there.
+// Finds the runs of zeros in a row. The kBehind rows on both sides must have been added, as far as they
+// exist.
 void LostZeros::search(int row) {
   above_ = here_;
   here_ = runs_.size();
@@ -102,7 +105,8 @@ void LostZeros::search(int row) {
   }
 }
 
-// From west to east in every row, but for where it begins and ends.
+// Sets Region::follows: every row of the region must span west to east. The first row may begin later, and
+// the last row may end earlier.
 void LostZeros::boundRegions() {
   std::vector<bool> seen(regions_.size());
   for (const Run& run : runs_) {

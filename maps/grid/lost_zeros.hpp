@@ -8,7 +8,7 @@
 
 namespace talus::maps {
 
-/// Cells of one row, both ends included.
+/// A range of cells of one row, both ends included.
 struct CellRun {
   int row = 0;
   int first = 0;
@@ -17,36 +17,39 @@ struct CellRun {
 
 /// Cells whose value was lost.
 struct LostCells {
-  std::vector<CellRun> runs{};  ///< with a cell around each region; they may overlap
-  std::size_t count = 0;        ///< cells of exactly 0 among them
+  std::vector<CellRun> runs{};  ///< lost regions with a margin of one cell; runs may overlap
+  std::size_t count = 0;        ///< number of cells with the value 0 (below 1e-37) in the lost regions
 };
 
-/// Finds connected regions of exact zeros that are lost data: a disk block of zero bytes leaves such a region in a file of numbers.
-/// At a border step from 0 to the first cell outside, the three steps behind it are compared. The border step is abrupt if it exceeds
-/// three times the greatest of them. A region is lost if more than half of its border steps are abrupt (ours, not from the
-/// literature). Where terrain descends to a plain or a sea of height 0, border steps are not abrupt. A border step counts as not
-/// abrupt, too, if the cells behind it are level (a drawn wall) or unknown. A region without a border (a level map) is ground.
-/// Where 0 is an ordinary value, as of rock abundance, a region must also have the shape that a file loses: cells that follow
-/// each other in rows of equal width, of a strip or a tile.
+/// Finds connected regions of zeros that are lost data: a disk block of zero bytes leaves such a region in a
+/// file of numbers. At each border of a region, the step from 0 to the first cell outside is compared with
+/// the next three steps outwards. The border step is abrupt if it exceeds three times the greatest of them. A
+/// region is lost if more than half of its border steps are abrupt (ours, not from the literature). Terrain
+/// that descends to a plain or a sea of height 0 has no abrupt border steps. A border step is not abrupt if
+/// the cells outside are level (a drawn wall) or unknown beyond the first. A border step is not counted if
+/// the first cell outside is unknown. A region without counted border steps (a level map) is ground. If 0 is
+/// an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost byte
+/// range: consecutive cells in the rows of a strip or tile of constant width.
 class LostZeros {
  public:
-  /// `zero_is_ordinary`: whether only regions of the shape that a file loses are lost.
+  /// `zero_is_ordinary`: whether a lost region must also have the shape of a lost byte range.
   explicit LostZeros(int width, bool zero_is_ordinary = false);
 
-  /// The next row of `width` values, NaN where there is none; from either end of the raster.
+  /// Adds the next row of `width` values, NaN for no data. Rows may be added from south to north or from
+  /// north to south.
   void add(std::span<const float> row);
 
-  /// What all rows hold. Ends the search.
+  /// Returns the lost cells of all rows. Call once, after the last row.
   LostCells finish();
 
  private:
-  static constexpr int kBehind = 4;  // cells that are looked at from a border on
+  static constexpr int kBehind = 4;  // number of cells outside a border whose steps are compared
 
   struct Region {
     std::uint32_t parent = 0;
-    std::size_t steps = 0, abrupt = 0;  // of its border
+    std::size_t steps = 0, abrupt = 0;  // counted border steps, and the abrupt ones among them
     int first_row = 0, last_row = 0, west = 0, east = 0;
-    bool follows = true;  // whether its cells follow each other in rows
+    bool follows = true;  // whether the cells are consecutive in the rows of a rectangle
   };
   struct Run {
     CellRun cells;
@@ -65,10 +68,10 @@ class LostZeros {
 
   int width_ = 0;
   bool zero_is_ordinary_ = false;
-  int rows_ = 0;                         // that were added
-  std::deque<std::vector<float>> near_;  // the last rows
+  int rows_ = 0;                         // number of rows added
+  std::deque<std::vector<float>> near_;  // the most recent rows, at most 2 kBehind + 1
   std::vector<Run> runs_;
-  std::size_t above_ = 0, here_ = 0;  // where the runs of the row above and of this row begin
+  std::size_t above_ = 0, here_ = 0;  // first run of the previous row and of the current row
   std::vector<Region> regions_;
 };
 

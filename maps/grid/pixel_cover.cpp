@@ -7,11 +7,11 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kTouch = 1e-3;  // of a cell's side
+constexpr double kTouch = 1e-3;  // smallest overlap that counts [cells]
 
 using Corners = std::array<Point, 4>;
 
-// Whether one side of the pixel has the whole cell beyond it; both in cells.
+// Whether a side of the pixel separates the pixel from the cell; coordinates in cells.
 bool apart(const Corners& pixel, double turn, Cell cell) {
   for (std::size_t i = 0; i < pixel.size(); ++i) {
     const Point a = pixel[i], b = pixel[(i + 1) % pixel.size()];
@@ -26,7 +26,7 @@ bool apart(const Corners& pixel, double turn, Cell cell) {
   return false;
 }
 
-// 1 where the corners go round to the left, -1 to the right.
+// 1 for corners in counter-clockwise order, -1 for clockwise.
 double turnOf(const Corners& p) {
   double area = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -40,7 +40,7 @@ struct Span {
   int first = 0, last = -1;
 };
 
-// Cells from the first to the last that the values reach into.
+// Indices of the cells that the interval [least, most] overlaps; coordinates in cells.
 Span span(double least, double most, int cells) {
   if (!(least < cells) || !(most > 0.0)) return {};
   return {std::max(0, static_cast<int>(std::floor(std::max(least, 0.0) + kTouch))),

@@ -6,18 +6,19 @@
 
 namespace talus::maps {
 
-/// The greatest value of all pixels that reach into each cell of a grid, whatever the size, angle and shape of the pixels:
-/// a cell and a pixel overlap unless a side of one of them has the other beyond it (separating axes of convex polygons).
-/// What reaches in by less than a thousandth of a cell only touches, so that rounding lets nothing reach into the next cell.
+/// Rasterises quadrilateral pixels: each cell gets the maximum of all pixels that overlap it, for any size,
+/// angle and shape of the pixels. A cell and a pixel overlap unless a side of either separates them
+/// (separating axes of convex polygons). An overlap below 0.001 cells is ignored, so that rounding does not
+/// extend a pixel into the neighbouring cell.
 class PixelCover {
  public:
   explicit PixelCover(const Grid& grid);
 
-  /// A pixel by its corners in order, in metres from the grid's south-west corner. One whose value is NaN, or that has a
-  /// corner that is not finite, is left out.
+  /// Adds a pixel, given by its corners in order [m] from the south-west corner of the grid. Ignores a pixel
+  /// with a NaN value or a non-finite corner.
   void add(const std::array<Point, 4>& corners, float value);
 
-  /// NaN where no pixel reached.
+  /// Maximum of each cell; NaN for cells without a pixel.
   Raster<float>& values() noexcept { return values_; }
 
  private:

@@ -7,7 +7,8 @@
 namespace talus::maps {
 namespace {
 
-/// From a to b, in cells from the grid's corner or in metres from the ring's first position.
+/// Edge from a to b, in cells from the grid corner (cover) or in metres from the first vertex
+/// (enclosesGround).
 struct Edge {
   Point a, b;
   bool outer = true;
@@ -15,14 +16,15 @@ struct Edge {
   double least() const { return std::min(a.y_m, b.y_m); }
   double greatest() const { return std::max(a.y_m, b.y_m); }
 
-  /// Its x at a height, which it must reach; of a level edge that of a.
+  /// x of the edge at height y, which must lie within the edge; a.x of a horizontal edge.
   double at(double y) const {
     if (a.y_m == b.y_m) return a.x_m;
     const double x = a.x_m + (y - a.y_m) * ((b.x_m - a.x_m) / (b.y_m - a.y_m));
     return std::clamp(x, std::min(a.x_m, b.x_m), std::max(a.x_m, b.x_m));
   }
 
-  /// +1 upwards through a height, -1 downwards, else 0; of two edges that meet at the height one crosses it.
+  /// +1 if the edge crosses height y upwards, -1 downwards, else 0. Of two edges that meet at height y,
+  /// exactly one crosses if the boundary crosses.
   int through(double y) const {
     if ((a.y_m <= y) == (b.y_m <= y)) return 0;
     return a.y_m <= y ? 1 : -1;
@@ -44,7 +46,7 @@ std::vector<Edge> edgesOf(const Polygon& polygon, const Map& placed) {
   return edges;
 }
 
-/// How often a place lies inside of the outer ring, and whether in a hole.
+/// Winding number of the outer ring at a point, and whether the point lies inside an odd number of holes.
 struct Inside {
   int windings = 0;
   bool hole = false;
@@ -77,7 +79,7 @@ bool hasGroundAt(double y, double thinnest, const std::vector<Edge>& edges) {
   return false;
 }
 
-/// One row of cells: what lies at their middles, and which ones an edge touches.
+/// One row of cells: the winding at the cell centres and the cells that an edge touches.
 class RowCover {
  public:
   explicit RowCover(int width) : crossings_(static_cast<std::size_t>(width)), touched_(crossings_.size()) {}
@@ -106,7 +108,8 @@ class RowCover {
     }
   }
 
-  /// A cell that no outer edge touches lies as a whole inside or outside of the outer ring.
+  /// Sets the covered cells of the row; returns whether there is any. A cell that no outer edge touches lies
+  /// entirely inside or outside the outer ring, so its centre decides.
   bool close(std::uint8_t* cells) const {
     Inside inside;
     bool any = false;
@@ -123,7 +126,7 @@ class RowCover {
 
  private:
   static constexpr std::uint8_t kOuter = 1, kHole = 2;
-  std::vector<Inside> crossings_;  // what changes from the middle of the cell before
+  std::vector<Inside> crossings_;  // change of the winding from the centre of the previous cell
   std::vector<std::uint8_t> touched_;
 };
 

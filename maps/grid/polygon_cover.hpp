@@ -7,22 +7,23 @@
 
 namespace talus::maps {
 
-/// Positions in map metres; the last is joined to the first.
+/// Vertices [m] in map coordinates; the last vertex is joined to the first.
 using Ring = std::vector<Point>;
 
-/// What its outer ring winds round at least once in sum (non-zero winding, so that a ring drawn twice or over itself
-/// counts as once), less the ground that its holes wind round an odd number of times together: an island in a hole stays.
+/// The area with a non-zero winding number of the outer ring (a ring drawn twice, or crossing itself, counts
+/// once), minus the area that lies inside an odd number of holes. An island inside a hole therefore remains.
 struct Polygon {
   Ring outer;
   std::vector<Ring> holes;
 };
 
-/// Whether any of the ground inside the outer ring is left by the holes. Slivers thinner than a billionth of the
-/// ring's extent count as none: rounding makes those of a hole upon its own ring.
+/// Whether the polygon has an area: the outer ring minus the holes. Slivers thinner than 1e-9 of the ring's
+/// extent are ignored, because rounding leaves such slivers if a hole coincides with the ring.
 bool enclosesGround(const Polygon& polygon);
 
-/// Sets every cell to 1 that has a point of the polygon, its boundary included; a point between two cells belongs to the
-/// eastern and the northern one. Clears none. @return whether it has a point on the grid
+/// Sets each cell to 1 that contains a point of the polygon or of its boundary. A point on the border of two
+/// cells belongs to the eastern or northern cell. Other cells are unchanged. @return whether any cell of the
+/// grid was set
 bool cover(const Polygon& polygon, Raster<std::uint8_t>& mask);
 
 }  // namespace talus::maps

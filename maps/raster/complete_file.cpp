@@ -40,20 +40,21 @@ void refuseFewerBytes(const std::string& path, std::uintmax_t needed) {
                       "fetch it again"});
 }
 
-// GDAL takes what is missing from the end of an ENVI file for zeros.
+// Size [bytes] that the header of an ENVI file states. GDAL reads missing bytes at the end of the file as
+// zeros.
 std::uintmax_t bytesOfEnvi(GDALDataset& dataset) {
   const auto bytes =
       static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
   return bytes * cellsOf(dataset) * static_cast<std::uintmax_t>(dataset.GetRasterCount());
 }
 
-// The header of a netCDF-3 file ("The NetCDF Classic Format Specification", Unidata): where its last variable ends. Reading
-// beyond the end of the file fails.
+// Parser of a netCDF-3 header ("The NetCDF Classic Format Specification", Unidata). A read beyond the end of
+// the file sets the failure state of the stream.
 class ClassicHeader {
  public:
   explicit ClassicHeader(const std::string& path) : path_(path), file_(path, std::ios::binary) {}
 
-  // None of a file that is no netCDF-3.
+  // Offset [bytes] of the end of the last variable; nullopt if the file is not netCDF-3.
   std::optional<std::uintmax_t> end() {
     char magic[4] = {};
     file_.read(magic, 4);
@@ -63,7 +64,8 @@ class ClassicHeader {
     offset_bytes_ = magic[3] == 1 ? 4 : 8;
     const std::uintmax_t stated = number(countBytes());
     const bool streamed =
-        stated == (wide_ ? UINTMAX_MAX : UINTMAX_C(0xffffffff));  // not known when it was written
+        // number of records unknown when the header was written
+        stated == (wide_ ? UINTMAX_MAX : UINTMAX_C(0xffffffff));
     readDimensions();
     skipAttributes();
     readVariables();
@@ -82,10 +84,10 @@ class ClassicHeader {
 
  private:
   struct Variable {
-    std::uintmax_t begin, bytes;  // bytes of all of it, or of a record of it
+    std::uintmax_t begin, bytes;  // size of the variable, or of one record of it
     bool by_record;
   };
-  static constexpr std::uintmax_t kMost = 1'000'000;  // dimensions, attributes or variables
+  static constexpr std::uintmax_t kMost = 1'000'000;  // limit of dimensions, attributes or variables
 
   int countBytes() const { return wide_ ? 8 : 4; }
   static std::uintmax_t padded(std::uintmax_t bytes) { return (bytes + 3) / 4 * 4; }
@@ -96,9 +98,9 @@ class ClassicHeader {
       value = value << 8 | static_cast<unsigned char>(static_cast<char>(file_.get()));
     return file_ ? value : 0;
   }
-  // Of a list; a number that no file has ends the reading.
+  // Length of a list. A length above kMost sets the failure state of the stream.
   std::uintmax_t length() {
-    number(4);  // its tag
+    number(4);  // tag of the list
     const std::uintmax_t count = number(countBytes());
     if (count > kMost) file_.setstate(std::ios::failbit);
     return file_ ? count : 0;
@@ -138,11 +140,11 @@ class ClassicHeader {
       }
       skipAttributes();
       const std::uintmax_t bytes = bytesOfType(number(4)) * count;
-      number(countBytes());  // vsize, which does not hold of large variables
+      number(countBytes());  // vsize, which is unreliable for large variables
       variables_.push_back({number(offset_bytes_), bytes, by_record});
     }
   }
-  // Records are padded unless one variable alone has them.
+  // Size of one record [bytes]. Record variables are padded to 4 bytes unless there is only one.
   std::uintmax_t recordBytes() const {
     std::uintmax_t sum = 0, own = 0, count = 0;
     for (const Variable& v : variables_)
@@ -162,7 +164,7 @@ class ClassicHeader {
   std::vector<Variable> variables_;
 };
 
-// Whether a text's last number is whole is not known where nothing ends it.
+// Rejects a text file that ends with a digit or a point: its last number may be incomplete.
 void refuseOpenEnd(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   file.seekg(-1, std::ios::cur);
@@ -172,7 +174,7 @@ void refuseOpenEnd(const std::string& path) {
                     "fetch it again; if it is whole, end its last line"});
 }
 
-// Neither a zero byte nor one beyond ASCII is in a table of numbers that is whole.
+// Rejects a table of numbers with control bytes or non-ASCII bytes.
 void refuseForeignBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string piece(kPiece, '\0');
@@ -189,7 +191,7 @@ void refuseForeignBytes(const std::string& path) {
     }
 }
 
-// What stands behind a VRT.
+// Calls `each` for every source raster of a VRT.
 template <typename Each>
 void forSources(GDALDataset& dataset, const std::string& path, Each each) {
   char** files = dataset.GetFileList();
@@ -207,9 +209,9 @@ bool lost(GDALRasterBand& band) {
           GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
 }
 
-constexpr std::size_t kLongest = 400;  // no number is so long
+constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
 
-// Decimal commas are GDAL's, too.
+// Accepts a decimal comma, as GDAL does.
 bool isNumber(std::string_view word) {
   if (word.size() > kLongest) return false;
   std::string text(word);
@@ -229,7 +231,7 @@ bool isKey(std::string_view word) {
   return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 && !isNumber(word);
 }
 
-// Names of the header come before the first value, each with a number.
+// Checks the words of an ASCII grid in order: header keys, each followed by a number, then numbers only.
 class Words {
  public:
   explicit Words(const std::string& path) : path_(path) {}
@@ -259,7 +261,7 @@ void refuseCutShort(GDALDataset& dataset, const std::string& path) {
   if (driver == "ENVI") refuseFewerBytes(path, bytesOfEnvi(dataset));
   if (driver == "netCDF")
     if (const auto end = ClassicHeader(path).end()) refuseFewerBytes(path, *end);
-  // A digit and a space for each number.
+  // Each value takes at least two bytes: a digit and a separator.
   if (driver == "AAIGrid" || driver == "GSAG") refuseFewerBytes(path, 2 * cellsOf(dataset));
   if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") {
     refuseForeignBytes(path);

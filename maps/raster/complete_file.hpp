@@ -6,17 +6,18 @@ class GDALDataset;
 
 namespace talus::maps {
 
-/// Throws InputError where the file behind an open raster is shorter than what it states, or ends within a number, and GDAL
-/// would make values of what is lost: ENVI, netCDF-3, text grids and XYZ; a VRT by its sources. What GDAL's drivers refuse by
-/// themselves when it is read is left to them (tests/maps/raster/complete_file_test.cpp cuts every format that is opened).
+/// Throws InputError if the file of an open raster is shorter than its header states, or ends within a
+/// number. Checks the formats for which GDAL substitutes values for the missing bytes: ENVI, netCDF-3, text
+/// grids and XYZ, and the sources of a VRT. Truncated files of other formats are rejected by GDAL's drivers
+/// on reading (tests/maps/raster/complete_file_test.cpp truncates each format).
 void refuseCutShort(GDALDataset& dataset, const std::string& path);
 
-/// Throws InputError where blocks of a band, or of its overviews, were never written and no value stands for that: GDAL
-/// would read zeros.
+/// Throws InputError if blocks of a band or of its overviews were never written and the band has no no-data
+/// value: GDAL would read zeros. For a VRT, all bands of its sources are checked.
 void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path);
 
-/// Refuses an Arc/Info ASCII grid with a word among its values that is no number: GDAL takes it for 0, which is ground.
-/// nan, inf and what ESRI's programs write for them are numbers here. Throws InputError with file, line and word.
+/// Throws InputError with file, line and word if an Arc/Info ASCII grid has a non-numeric word among its
+/// values, which GDAL would read as 0. Accepts nan, inf and their spellings by ESRI's programs.
 void refuseWordsInGrid(const std::string& path);
 
 }  // namespace talus::maps

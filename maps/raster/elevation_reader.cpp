@@ -37,14 +37,14 @@ void check(const ReadOptions& options) {
           "--vertical-scale", "must be 1e-6 to 1e6, or that below 0");
 }
 
-// A corner of the window in map metres.
+// A corner of the window in map coordinates [m].
 Point corner(const Place& place, const std::optional<Georeference>& georeference, const std::string& path) {
   if (const auto* point = std::get_if<Point>(&place)) return *point;
   if (georeference) return georeference->forward(std::get<GeoPoint>(place));
   throw InputError({path, "has no CRS for a window in degrees", "give --window in map metres"});
 }
 
-// The grid's cells that the window touches.
+// The cells of the grid that the window overlaps.
 CellBox cellsOf(const Window& window, const FramedRaster& from, const std::string& path) {
   const Grid& grid = from.grid;
   const Point a = corner(window.first, from.georeference, path);
@@ -55,7 +55,7 @@ CellBox cellsOf(const Window& window, const FramedRaster& from, const std::strin
   const auto row = [&](double y_m, double up) {
     return std::clamp((y_m - grid.south_west.y_m) / grid.resolution_m + up, 0.0, grid.height + 0.0);
   };
-  // A corner on a cell's edge, to rounding, does not reach the next cell.
+  // A corner that coincides with a cell edge within 1e-6 cells does not include the next cell.
   constexpr double kRounding = 1e-6;
   const CellBox box{{static_cast<int>(std::floor(column(std::min(a.x_m, b.x_m), kRounding))),
                      static_cast<int>(std::floor(row(std::min(a.y_m, b.y_m), kRounding)))},
@@ -99,14 +99,14 @@ double radius(GDALDataset& file) {
   return crs == nullptr ? 0.0 : crs->GetSemiMajor();
 }
 
-// What is read of a file: where its pixels lie, which of them, and how they say heights.
+// Pixels to read from a file, their grid and the conversion of their values to heights.
 struct Selection {
   FramedRaster from;
   HeightCode code;
   CellBox box;
-  Grid grid;            // of the result
-  GDALDataset* pixels;  // the file's own, which `from` keeps open
-  int band;             // of them
+  Grid grid;            // grid of the result
+  GDALDataset* pixels;  // raster of the file as opened; owned through `from`
+  int band;             // band of `pixels`
 
   bool resampled() const { return from.raster.get() != pixels; }
 };
@@ -139,7 +139,7 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   return {std::move(from), code, box, grid, pixels, band};
 }
 
-// Larger files are searched near what is read of them alone.
+// In larger files, only the vicinity of the pixels to read is searched for lost data.
 constexpr double kSearchedWhole = 1e8;  // pixels
 
 PixelBox wholeOf(GDALDataset& pixels) {
@@ -150,7 +150,7 @@ bool isSearchedWhole(GDALDataset& pixels) {
   return static_cast<double>(pixels.GetRasterXSize()) * pixels.GetRasterYSize() <= kSearchedWhole;
 }
 
-// The file as a whole, or what is read of it with as much around it.
+// Pixels searched for lost data: the whole file, or the box to read with a margin of its own size.
 PixelBox searched(const Selection& chosen, const PixelBox& read) {
   const PixelBox whole = wholeOf(*chosen.pixels);
   if (isSearchedWhole(*chosen.pixels)) return whole;
@@ -164,7 +164,8 @@ PixelBox searched(const Selection& chosen, const PixelBox& read) {
               row};
 }
 
-// Names, sizes and times of a raster's files: its label may not change where its data do.
+// Names, sizes and modification times of all files of a raster. All files are listed because the data may
+// change while the label does not.
 std::string stateOf(GDALDataset& pixels) {
   std::ostringstream state;
   char** files = pixels.GetFileList();
@@ -177,7 +178,8 @@ std::string stateOf(GDALDataset& pixels) {
   return state.str();
 }
 
-// In the file's own pixels. The last answer is kept: a map in windows is opened for each of them.
+// Lost cells in pixels of the file. Caches the last result, because a map that is read in windows opens the
+// file for each window.
 std::shared_ptr<const LostCells> lostOf(const Selection& chosen, const PixelBox& box,
                                         const std::string& path) {
   struct Known {
@@ -200,7 +202,7 @@ std::shared_ptr<const LostCells> lostOf(const Selection& chosen, const PixelBox&
   return lost;
 }
 
-// Resampled cells would be mixtures of what is lost and the ground beside it.
+// Rejects a raster with lost cells before resampling, which would mix lost values with the adjacent terrain.
 void refuseLostToResample(const Selection& chosen, const std::string& path) {
   if (!isSearchedWhole(*chosen.pixels) || chosen.code.nodata == 0.0) return;
   const auto lost = lostOf(chosen, wholeOf(*chosen.pixels), path);
@@ -213,8 +215,8 @@ void refuseLostToResample(const Selection& chosen, const std::string& path) {
          "fetch it again, or pass --nodata 0, or --keep-zeros if 0 is their elevation"});
 }
 
-// Rows as in the file. The overview cells in the north and east that the box fills in part only are the means of that
-// part: the overview covers the box.
+// Reads the pixels of the selection in the row order of the file. An overview cell that the box covers in
+// part only, at its northern or eastern edge, is the mean of the covered pixels.
 std::vector<float> pixelsOf(const Selection& chosen, const ReadOptions& options, const std::string& path,
                             std::vector<std::string>& notes) {
   const auto& [from, code, box, grid, pixels, band] = chosen;
@@ -248,13 +250,13 @@ std::vector<float> pixelsOf(const Selection& chosen, const ReadOptions& options,
   return values;
 }
 
-// Heights are kept in single precision: there to 1/64 m.
+// Limit of |height|: heights are stored in single precision, whose resolution is 1/64 m at 131072 m.
 constexpr float kFarthest_m = 131072.0F;
 
 }  // namespace
 
 ElevationMap readElevation(const std::string& path, const ReadOptions& options) {
-  const GdalErrors quiet;  // GDAL judges a CRS only when asked for it
+  const GdalErrors quiet;  // suppresses GDAL's messages about a CRS until the CRS is used
   ElevationMap map;
   map.source = path;
   const Selection chosen = select(path, options, map.notes);

@@ -7,14 +7,14 @@
 
 namespace talus::maps {
 
-/// Reads a DEM: whatever GDAL opens, or a NumPy .npz archive with the arrays elevation, xmin, xmax, ymin,
-/// ymax (degrees), as matplotlib ships one. Degrees, rotated and non-square pixels are resampled to square
-/// cells in metres (recorded in the map's notes).
-/// @throws InputError naming file, reason and remedy
+/// Reads a DEM: any raster that GDAL opens, or a NumPy .npz archive with the arrays elevation, xmin, xmax,
+/// ymin, ymax (degrees), as matplotlib distributes one. Rasters in degrees and rasters with rotated or
+/// non-square pixels are resampled to square cells in metres, which the notes of the map record. @throws
+/// InputError with file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
 
-/// Where the cells lie that readElevation() would read, without reading them. @throws InputError, also for more cells than
-/// `max_cells`
+/// Grid that readElevation() would return, without reading the values. @throws InputError, also if the grid
+/// exceeds ReadOptions::max_cells
 Grid elevationGrid(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace talus::maps

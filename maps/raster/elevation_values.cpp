@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kBeyondAnyHeight = 1e30F;
 
-// Metres per unit.
+// Length of a unit [m].
 double metres(std::string unit, std::vector<std::string>& notes) {
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -45,8 +45,8 @@ double metres(std::string unit, std::vector<std::string>& notes) {
   return 1.0;
 }
 
-// The mark of missing data that a file uses without declaring it, if any: its least value, one of the
-// customary.
+// A customary no-data value (-9999, -32768, -32767 or -99999) that equals the least value, if any. Called if
+// the file declares no no-data value.
 std::optional<float> undeclaredMark(const std::vector<float>& values) {
   float least = std::numeric_limits<float>::infinity();
   for (float v : values)

@@ -8,18 +8,20 @@ class GDALRasterBand;
 
 namespace talus::maps {
 
-/// How the numbers of a band become heights in metres: height = number * scale + offset.
+/// Conversion of band values to heights [m]: height = value * scale + offset_m.
 struct HeightCode {
   double scale = 1.0;
   double offset_m = 0.0;
-  std::optional<double> nodata{};  ///< as the band has it
+  std::optional<double> nodata{};  ///< no-data value of the band, before the conversion
 };
 
-/// The code that a band states through its scale, offset, unit and nodata value. A band whose offset is about
-/// `body_radius_m` counts from the body's centre: the radius is taken off. Decisions go to `notes`.
+/// Conversion by the scale, offset, unit and no-data value that the band states. An offset within 1 % of
+/// `body_radius_m` is measured from the centre of the body, and the radius is subtracted. Decisions are added
+/// to `notes`.
 HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes);
 
-/// Turns numbers into heights in place; nodata, and what is clearly an undeclared mark of it, becomes NaN.
+/// Converts values to heights in place. The no-data value becomes NaN; without a stated no-data value, so
+/// does a customary undeclared one. Magnitudes above 1e30 become NaN.
 void decodeHeights(std::vector<float>& values, const HeightCode& code, std::vector<std::string>& notes);
 
 }  // namespace talus::maps

@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <string>
 
-/// Text and numbers of files, before any format is known.
+/// Checks and text helpers that are independent of the file format.
 namespace talus::maps {
 
-/// @throws InputError unless the path is a file that can be read and is not empty
+/// @throws InputError unless the path is a readable, non-empty regular file
 void requireReadableFile(const std::string& path);
 
-/// ASCII letters in lower case.
+/// Converts ASCII letters to lower case.
 std::string lower(std::string text);
 
-/// A number with at most six digits, for messages.
+/// Formats a number with at most six significant digits, for messages.
 std::string number(double value);
 
-/// The whole number in `count` bytes from `at`, least significant first; count <= 8.
+/// The little-endian unsigned integer in the `count` bytes from index `at`; count <= 8.
 std::uint64_t littleEndian(const std::string& bytes, std::size_t at, std::size_t count);
 
 }  // namespace talus::maps

@@ -17,12 +17,12 @@
 namespace talus::maps {
 namespace {
 
-// Formats of elevation and of layers; none that reaches out or runs code.
+// Formats of elevation and layers. Drivers that access the network or run code are excluded.
 constexpr const char* kDrivers[] = {"GTiff",   "COG",    "PDS4",        "PDS", "ISIS3", "ENVI",
                                     "AAIGrid", "netCDF", "JP2OpenJPEG", "PNG", "JPEG",  "USGSDEM",
                                     "SRTMHGT", "EHdr",   "GSAG",        "XYZ", "VICAR", nullptr};
 
-// Formats of places, lines and areas: files of their own, without schemas or styles from elsewhere.
+// Formats of points, lines and areas in files without external schemas or styles.
 constexpr const char* kVectorDrivers[] = {"GPKG", "ESRI Shapefile", "FlatGeobuf", "GPX",
                                           "KML",  "MapInfo File",   "GeoJSON",    nullptr};
 
@@ -32,14 +32,16 @@ bool holdsName(const char* const* drivers, std::string_view name) {
   return false;
 }
 
-// Metadata inside of a GeoTIFF may name them, too; GDAL opens them when it is asked for overviews.
+// Rejects overviews in another folder: the metadata of a GeoTIFF may name overview files, which GDAL opens
+// when the overviews are requested.
 void refuseForeignOverviews(GDALDataset& dataset, const std::string& path) {
   const char* name = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
   if (name != nullptr && std::string_view(name).find_first_of("/\\") != std::string_view::npos)
     throw InputError({path, "has its overviews in another folder", "make them again with gdaladdo"});
 }
 
-// GDAL takes a grid of text for whole numbers where its first ones are, and reads "inf" and "nan" as 0.
+// Reopens an ASCII grid as Float64. By default, GDAL infers an integer type from the first values and reads
+// "inf" and "nan" as 0.
 Dataset withFractions(Dataset file, const std::string& path) {
   if (std::string_view(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
   refuseWordsInGrid(path);
@@ -55,16 +57,19 @@ Dataset withFractions(Dataset file, const std::string& path) {
 void registerDrivers() {
   static std::once_flag once;
   std::call_once(once, [] {
-    // What the environment may say of these is out of force: a log over any file, options from a file, and a cache that
-    // decides the order in which blocks are written. GDAL reads them when its drivers are registered, or later.
+    // Overrides environment settings that would write a log over any file, read options from a file, or
+    // change the order in which cached blocks are written. GDAL reads these settings during or after the
+    // registration of its drivers.
     CPLSetConfigOption("CPL_LOG", "");
     CPLSetConfigOption("CPL_DEBUG", "OFF");
     CPLSetConfigOption("GDAL_CONFIG_FILE", "");
     CPLSetConfigOption("GDAL_CACHEMAX", "5%");
-    CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");  // a cut picture is grey behind the cut
-    OSRSetPROJEnableNetwork(FALSE);                               // PROJ would fetch grids of datum shifts
+    // without this option, the missing rest of a truncated JPEG reads as grey
+    CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");
+    OSRSetPROJEnableNetwork(FALSE);  // prevents PROJ from downloading datum shift grids
     GDALAllRegister();
-    // What GDAL opens by itself, such as an overview that a file names, stays within the list, too.
+    // Deregistering all other drivers also limits files that GDAL opens implicitly, such as overviews named
+    // in a file.
     GDALDriverManager& manager = *GetGDALDriverManager();
     for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
       GDALDriver* driver = manager.GetDriver(i);

@@ -17,34 +17,37 @@ struct CloseDataset {
   void operator()(GDALDataset* dataset) const noexcept;
 };
 
-/// A GDAL dataset that closes itself once no virtual raster made from it needs it any more.
+/// An owned reference to a GDAL dataset. The dataset closes when its last reference is released, virtual
+/// rasters derived from it included.
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
-/// Makes the allowed drivers known to GDAL, once, and takes the others away.
+/// Registers the allowed GDAL drivers once per process and removes all others.
 void registerDrivers();
 
-/// The names of the drivers that openRaster() tries.
+/// GDAL's short names of the drivers that openRaster() tries.
 std::vector<std::string> rasterFormats();
 
-/// Opens a raster file for reading by a driver of that list; nothing from the network or an archive,
-/// no file that names others (referenced_files.hpp). @throws InputError: missing, a directory, unreadable, not a
-/// raster, no cells
+/// Opens a raster file for reading with a driver of rasterFormats(). Rejects network paths, archives and
+/// files that refer to other files (referenced_files.hpp). @throws InputError if the file is missing, a
+/// directory, unreadable, truncated, or without a raster
 Dataset openRaster(const std::string& path, bool allow_vrt = false);
 
-/// The names of the drivers that openVector() tries.
+/// GDAL's short names of the drivers that openVector() tries.
 std::vector<std::string> vectorFormats();
 
-/// Opens a vector file by a driver of that list, with the same care. @throws InputError
+/// Opens a vector file with a driver of vectorFormats() under the restrictions of openRaster(). @throws
+/// InputError
 Dataset openVector(const std::string& path);
 
-/// Pixels that GDAL keeps in memory in the whole process, in bytes; left alone a twentieth of the machine's
-/// memory.
+/// Sets the limit of GDAL's pixel cache for the whole process [bytes]. Default: 5 % of the physical memory.
 void limitPixelCache(std::int64_t bytes);
 
-/// The driver of a format by GDAL's name. @throws InputError where GDAL has none, as by GDAL_SKIP in the environment
+/// The GDAL driver of that name. @throws InputError if GDAL lacks the driver, for example because of
+/// GDAL_SKIP
 GDALDriver& driverNamed(const char* name);
 
-/// An empty raster in memory of one band of a GDALDataType, of 32-bit floats if none is given. @throws std::bad_alloc
+/// An empty in-memory raster with one band of the given GDALDataType (default 6: 32-bit float). @throws
+/// std::bad_alloc
 Dataset memoryRaster(int width, int height, int type = 6);
 
 }  // namespace talus::maps

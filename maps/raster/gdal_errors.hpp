@@ -4,7 +4,7 @@
 
 namespace talus::maps {
 
-/// Keeps GDAL from printing while it lives, and remembers the last error of this thread.
+/// Suppresses GDAL's error output during its lifetime and gives access to the last error of this thread.
 class GdalErrors {
  public:
   GdalErrors();
@@ -12,9 +12,9 @@ class GdalErrors {
   GdalErrors& operator=(const GdalErrors&) = delete;
   ~GdalErrors();
 
-  /// GDAL's last message, or "unknown error".
+  /// GDAL's last message, first line; "unknown error" if there is none.
   std::string last() const;
-  /// Whether an error, not a warning, came since construction.
+  /// Whether an error of class CE_Failure or worse is the last error since construction.
   bool any() const;
 };
 

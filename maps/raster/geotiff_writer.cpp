@@ -40,18 +40,19 @@ void place(GDALDataset& file, const Grid& grid, const Georeference* georeference
   file.SetSpatialRef(&reference);
 }
 
-// A raster's rows go south to north, a file's north to south: written from the last row with a negative
-// stride.
+// Raster rows run south to north and file rows north to south: the band is written from the last row with a
+// negative line stride.
 template <typename T>
 CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType type) {
   const Grid& grid = values.grid();
-  auto* last_row = const_cast<T*>(values.row(grid.height - 1));  // GDAL's writing call takes no const
+  // GDAL's write call requires a non-const pointer
+  auto* last_row = const_cast<T*>(values.row(grid.height - 1));
   const auto line = -static_cast<GSpacing>(grid.width) * static_cast<GSpacing>(sizeof(T));
   return band.RasterIO(GF_Write, 0, 0, grid.width, grid.height, last_row, grid.width, grid.height, type,
                        static_cast<GSpacing>(sizeof(T)), line, nullptr);
 }
 
-// Without its database PROJ knows no CRS to write, whatever the folder.
+// A missing PROJ database prevents the output of any CRS; the remedy then names PROJ instead of the folder.
 [[noreturn]] void fail(const OutputFile& file, const std::string& path, const GdalErrors& errors) {
   const std::string reason = errors.last();
   if (reason.starts_with("PROJ"))
@@ -60,7 +61,7 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
   file.fail(reason);
 }
 
-// Closing flushes: only then is it known whether all of it reached the disk.
+// Closes the file, which flushes all data: write errors may appear only here.
 void finish(Dataset dataset, OutputFile& file, const std::string& path, const GdalErrors& errors) {
   dataset->FlushCache();
   dataset.reset();
@@ -79,7 +80,8 @@ void describe(GDALRasterBand& band, const std::vector<NamedClass>& classes) {
   band.SetColorTable(&colours);
 }
 
-// From the north on; GDAL's own ways of resampling would hide a single cell of a greater class.
+// Maximum of each block of level x level cells, northernmost row first. GDAL's resampling methods would omit
+// a single cell of a greater class.
 std::vector<std::uint8_t> greatestOf(const Raster<std::uint8_t>& values, int level, int width, int height) {
   const Grid& grid = values.grid();
   std::vector<std::uint8_t> coarse(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
@@ -94,7 +96,7 @@ std::vector<std::uint8_t> greatestOf(const Raster<std::uint8_t>& values, int lev
   return coarse;
 }
 
-// Halves until the whole fits a screen.
+// Adds overviews by factors of 2, the coarsest at most 512 cells wide and high. Returns false on failure.
 bool addOverviews(GDALDataset& file, const Raster<std::uint8_t>& values) {
   const Grid& grid = values.grid();
   constexpr int kScreen = 512;

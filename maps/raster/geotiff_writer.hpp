@@ -13,29 +13,31 @@ namespace talus::maps {
 /// One band of a GeoTIFF.
 struct Layer {
   std::string name{};      ///< band description
-  std::string unit{};      ///< "m", "rad", "" for a ratio
+  std::string unit{};      ///< "m", "rad", ...; "" for a dimensionless value
   Raster<float> values{};  ///< NaN = no data
 };
 
-/// What is common to all bands.
+/// Path and coordinate system of a GeoTIFF.
 struct GeoTiff {
   std::string path{};
-  const Georeference* georeference = nullptr;  ///< none: local metres
+  const Georeference* georeference = nullptr;  ///< null: local metres without a CRS
 };
 
-/// Writes layers of one grid as a tiled, compressed GeoTIFF beside `path`, then renames it there: a reader
-/// sees the whole file or none.
-/// @throws InputError when it cannot be written, std::invalid_argument when grids differ or none is given
+/// Writes layers on a common grid as a tiled, compressed GeoTIFF. The file replaces `path` atomically
+/// (OutputFile). @throws InputError if the file cannot be written, std::invalid_argument if the grids differ
+/// or there is no layer
 void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers);
 
-/// A class of a raster of whole numbers, as programs list and draw it.
+/// Name and display colour of a class of an integer raster.
 struct NamedClass {
   std::string name{};
   std::array<std::uint8_t, 3> colour{};  ///< red, green, blue
 };
 
-/// The same for whole numbers (classes, masks) in one band; `nodata` cells are marked. With `classes`, those of 0, 1 ... have a
-/// colour table and names (items CLASS_0 ... of the band), and the file has overviews, each cell the greatest class under it.
+/// Writes an integer raster (classes, masks) as a GeoTIFF with one band; `nodata` is declared as the no-data
+/// value. With `classes`, entry i gives the name (band item CLASS_i) and the colour-table entry of value i,
+/// and the file has overviews whose cells are the maximum of the cells beneath. @throws InputError if the
+/// file cannot be written, std::invalid_argument for an empty raster
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes = {});
 

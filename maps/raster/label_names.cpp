@@ -16,10 +16,10 @@
 namespace talus::maps {
 namespace {
 
-// GDAL looks for the words of a label in less.
+// GDAL searches a shorter start of the file for the keywords of a label.
 constexpr std::size_t kBeginning = std::size_t{64} << 10U;
-constexpr std::size_t kMostText = std::size_t{16} << 20U;  // a label or a virtual raster is shorter
-// A node of the tree of "<a/>" takes 100 bytes; GDAL makes the tree once more.
+constexpr std::size_t kMostText = std::size_t{16} << 20U;  // no label or VRT is longer
+// Memory of the XML tree per byte of text: a node of "<a/>" takes 100 bytes, and GDAL builds the tree twice.
 constexpr double kTreePerByte = 50.0;
 
 std::string read(std::ifstream& file, std::size_t most) {
@@ -41,8 +41,8 @@ std::string withoutPrefix(std::string_view name) {
   return lower(std::string(colon == name.npos ? name : name.substr(colon + 1)));
 }
 
-// Every text and attribute of a tree of XML, with the element that holds it. GDAL's own parser: what it takes for a name
-// is what is checked, whatever comments, character data or references stand in between.
+// Calls `visit` for every text and attribute of an XML document with its enclosing element. Uses GDAL's own
+// parser, so that names are checked exactly as GDAL reads them despite comments, CDATA or entities.
 template <typename Visit>
 void eachText(const std::string& text, const std::string& path, Visit&& visit) {
   requireMemory(kTreePerByte * static_cast<double>(text.size()), path);
@@ -64,7 +64,7 @@ bool isOneOf(const std::string& word, std::initializer_list<const char*> words) 
   return std::any_of(words.begin(), words.end(), [&](const char* other) { return word == other; });
 }
 
-// Items of metadata that GDAL opens: overviews, positions of pixels, heights under them.
+// Whether a metadata item names a file that GDAL opens: overviews, pixel geolocation arrays, or a DEM.
 bool namesFile(const CPLXMLNode& item) {
   const char* key = CPLGetXMLValue(&item, "key", "");
   return isOneOf(lower(key), {"overview_file", "x_dataset", "y_dataset", "rpc_dem", "dempath"});
@@ -86,7 +86,7 @@ std::vector<std::string> names(const std::string& text, const std::string& path,
   return out;
 }
 
-// Blanks and comments between the words of a PDS3 or ISIS label.
+// Position after white space and comments of a PDS3 or ISIS label.
 std::size_t skipBlanks(const std::string& text, std::size_t at) {
   while (at < text.size()) {
     if (std::isspace(static_cast<unsigned char>(text[at])) != 0)
@@ -101,7 +101,8 @@ std::size_t skipBlanks(const std::string& text, std::size_t at) {
   return at;
 }
 
-// Quoted and bare words of the value that begins there: one, or those of a list. An open quote or list goes to the end.
+// Appends the quoted and bare words of the value at `at`: a single word or those of a list. An unterminated
+// quote or list extends to the end of the text.
 void valueWords(const std::string& text, std::size_t at, std::vector<std::string>& out) {
   const bool list = at < text.size() && (text[at] == '(' || text[at] == '{');
   if (list) ++at;
@@ -123,7 +124,7 @@ void valueWords(const std::string& text, std::size_t at, std::vector<std::string
   }
 }
 
-// Values of "^Core = name", "^Table = (name, 5)" and the like.
+// Appends the values of pointers such as "^Core = name" and "^Table = (name, 5)".
 void pointers(const std::string& text, std::vector<std::string>& out) {
   const auto in_key = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == ':'; };
   for (std::size_t at = text.find('^'); at != text.npos; at = text.find('^', at + 1)) {
@@ -134,8 +135,8 @@ void pointers(const std::string& text, std::vector<std::string>& out) {
   }
 }
 
-// What GDAL takes for the label, an image may follow it: parts of 512 bytes, each up to its first zero, until one line is
-// END.
+// Label text as GDAL reads it: blocks of 512 bytes, each up to its first zero byte, until a line END. Image
+// data may follow.
 std::string labelText(std::ifstream& file, std::size_t begin) {
   file.clear();
   file.seekg(static_cast<std::streamoff>(begin));
@@ -156,7 +157,8 @@ std::string labelText(std::ifstream& file, std::size_t begin) {
 LabelNames labelNames(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text = read(file, kBeginning);
-  const std::string start = lower(text.substr(0, text.find('\0')));  // a label is text, no format of bytes
+  // a label is text and ends before the first zero byte
+  const std::string start = lower(text.substr(0, text.find('\0')));
   const auto has = [&](const char* word) { return start.find(word) != start.npos; };
   if (has("<vrtdataset")) {
     text = rest(file, std::move(text), path);

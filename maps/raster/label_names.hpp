@@ -5,18 +5,18 @@
 
 namespace talus::maps {
 
-/// What of a raster file's text sends GDAL to other files.
+/// References of a raster file to other files, as found in its text.
 struct LabelNames {
-  bool virtual_raster = false;  ///< the text is a VRT
-  bool code = false;            ///< a VRT that names a function, a program or one of GDAL's own file systems
-  std::vector<std::string> names;  ///< of files, as GDAL reads them: escapes and quotes resolved
+  bool virtual_raster = false;  ///< whether the text is a VRT
+  bool code = false;  ///< whether a VRT contains a pixel function or a path of GDAL's virtual file systems
+  std::vector<std::string> names;  ///< file names as GDAL reads them: escapes and quotes resolved
 };
 
-/// Names of files in a VRT, a PDS4, PDS3 or ISIS label; nothing of any other file. `path` names the file in errors.
-/// Throws InputError when a label is too long to be checked or holds no XML.
+/// File names in a VRT or a PDS4, PDS3 or ISIS label; empty for other files. `path` identifies the file in
+/// errors. Throws InputError if a label exceeds the size limit or is not valid XML.
 LabelNames labelNames(const std::string& path);
 
-/// Overviews and grids of positions that auxiliary metadata (.aux.xml) name, as labelNames().
+/// File names of overviews and geolocation grids in auxiliary metadata (.aux.xml). Errors as labelNames().
 std::vector<std::string> auxiliaryNames(const std::string& path);
 
 }  // namespace talus::maps

@@ -31,10 +31,12 @@ bool hasCrs(const OGRSpatialReference* crs) {
 }
 
 using Affine =
-    std::array<double, 6>;  // GDAL's: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5]
+    std::array<double, 6>;  // GDAL's geotransform: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4]
+                            // + row c[5]
 
-// Where the pixels of a file lie in the map's own coordinates, from its south-west corner. A file of the map's very size
-// without even a pixel size lies cell upon cell.
+// Geotransform of a file in map coordinates relative to the south-west corner of the map. A file without a
+// CRS and of the size of the map, but of another or no pixel size, is assumed to coincide with the map cell
+// by cell.
 std::optional<Affine> inMapCoordinates(GDALDataset& file, const Grid& grid) {
   Affine c{};
   const bool stated = file.GetGeoTransform(c.data()) == CE_None;
@@ -54,8 +56,9 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
   return other.SetFromUserInput(wkt.c_str()) == OGRERR_NONE && crs.IsSame(&other, relaxed) != FALSE;
 }
 
-// A band in memory, as floats without a no-data value, and with a rim of unknown pixels: what lies beyond a file is not
-// known. It has its CRS only where that is not the map's; else it lies in the map's coordinates from the south-west corner.
+// Copies a band to memory as 32-bit floats with a margin of one NaN pixel, because values beyond a file are
+// unknown. No-data pixels become NaN. The copy has a CRS only if the CRS differs from that of the map;
+// otherwise its geotransform is relative to the south-west corner of the map.
 Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
   if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
@@ -97,7 +100,7 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
   return copy;
 }
 
-// Corners of pixels in metres from the map's south-west corner.
+// Pixel corners [m] relative to the south-west corner of the map.
 class PixelCorners {
  public:
   PixelCorners(GDALDataset& band, const ElevationMap& map, const std::string& path)
@@ -115,7 +118,7 @@ class PixelCorners {
         GDALCreateApproxTransformer(GDALGenImgProjTransform, exact_.get(), 1e-3 * map.grid().resolution_m));
   }
 
-  /// Along the upper edge of a line of pixels; not finite where the projection does not reach.
+  /// Corners along the upper edge of pixel row y; non-finite outside the range of the projection.
   void line(int y, std::vector<Point>& corners) {
     if (!near_) {
       const Affine& c = affine_;
@@ -144,13 +147,13 @@ class PixelCorners {
   };
   Point corner_;
   Affine affine_{};
-  std::unique_ptr<void, Destroy> exact_, near_;  // the second asks the first
+  std::unique_ptr<void, Destroy> exact_, near_;  // the approximate transformer calls the exact one
   std::vector<double> xs_, ys_, zs_;
   std::vector<int> reached_;
 };
 
-// The greatest value of all pixels that reach into each cell of the map, first row south; NaN where none is known. GDAL's own
-// resampling by the greatest misses pixels that lie askew.
+// Maximum of all pixels that overlap each cell of the map, southernmost row first; NaN without data. GDAL's
+// maximum resampling omits pixels of rotated rasters.
 Raster<float> greatest(GDALDataset& band, const ElevationMap& map, const std::string& path) {
   PixelCorners corners(band, map, path);
   const int width = band.GetRasterXSize();
@@ -175,7 +178,7 @@ void requireOverlap(bool overlaps, const ElevationMap& map, const std::string& p
     throw InputError({path, "does not overlap map '" + map.source + "'", "the map " + extent(map.grid())});
 }
 
-// Each pixel of a band in memory, changed in place.
+// Replaces each pixel v of an in-memory band by change(v).
 template <class Change>
 void changePixels(GDALDataset& band, const std::string& path, Change change) {
   const int width = band.GetRasterXSize();
@@ -189,8 +192,8 @@ void changePixels(GDALDataset& band, const std::string& path, Change change) {
     }
 }
 
-// Class numbers as ranks, the weakest greatest: what GDAL resamples by the greatest value. A class that nobody ranked is
-// weaker than all that are.
+// Bijection between class numbers and ranks, the weakest class with the greatest rank, so that the maximum
+// selects the weakest class. A class that `weakest_last` does not name is weaker than all that it names.
 class ClassRanks {
  public:
   explicit ClassRanks(std::span<const int> weakest_last) {
@@ -247,7 +250,7 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
     throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
   Dataset band = inMemory(*file, source.band.value_or(1), map, source.path);
   AddedJoules added;
-  // The resampling leaves out what is not known: numbers that are greater than any other stand for it.
+  // The maximum ignores NaN; values beyond any cost represent unknown and impassable pixels.
   constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
   const auto marked = [&](float v) {
     if (std::isnan(v)) return kUnknown;
@@ -274,7 +277,7 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
 
 namespace {
 
-// In a copy with a rim of a pixel.
+// Sets the lost cells to NaN in a copy with a margin of one pixel.
 void makeUnknown(GDALDataset& copy, const LostCells& lost, const std::string& path) {
   std::vector<float> unknown(static_cast<std::size_t>(copy.GetRasterXSize()),
                              std::numeric_limits<float>::quiet_NaN());

@@ -10,52 +10,55 @@
 
 namespace talus::maps {
 
-/// Class number of a cell that the class raster does not cover.
+/// Class number of a cell without a class.
 inline constexpr std::uint8_t kNoClass = 255;
 
-/// A layer's file and the band to take from it.
+/// File and band of a layer.
 struct LayerSource {
   std::string path{};
-  std::optional<int> band{};  ///< from 1; unset: the first, or for rock abundance the band so named
+  std::optional<int> band{};  ///< from 1; unset: the band whose description fits the layer, else the first
 };
 
-/// Terrain classes (whole numbers 0 to 254) on the map's grid: of all that reach into a cell the one that comes last in
-/// `weakest_last`, then those that it does not name (greatest number last, ground without a class the very last), so that no
-/// weak patch is lost between the middles of cells. kNoClass where the file has none.
-/// @throws InputError, also when the file and the map do not overlap or a value is no class number
+/// Terrain classes 0 to 254 on the grid of the map. A cell gets the weakest of the classes whose pixels
+/// overlap it, so that a small weak patch between cell centres is kept. Order: the classes of `weakest_last`,
+/// then the other classes by number, then kNoClass (no data) as the weakest. @throws InputError, also if the
+/// file and the map do not overlap or a value is not a class number
 Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map,
                                         std::span<const int> weakest_last = {});
 
-/// Rocks on the map's grid, of all that the file knows of a cell the greatest share.
+/// Rock abundance on the grid of the map: the maximum of all pixels of the file that overlap a cell.
 struct RockAbundance {
-  Raster<float> share;          ///< of the ground covered by rocks [-], 0 to 1; NaN where nothing is known
-  Raster<std::uint8_t> unseen;  ///< not 0: the file has no data in a part of the cell
-  std::vector<std::string> notes{};  ///< what the reader decided, a sentence each
+  Raster<float> share;               ///< fraction of the area covered by rocks [-], 0 to 1; NaN without data
+  Raster<std::uint8_t> unseen;       ///< non-zero if the file has no data in a part of the cell
+  std::vector<std::string> notes{};  ///< decisions of the reader, one sentence each
 };
 
-/// @throws InputError, also when the file and the map do not overlap or a value lies outside 0 to 1
+/// Reads rock abundance. @throws InputError, also if the file and the map do not overlap or a value lies
+/// outside 0 to 1
 RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map);
 
-/// What a metre costs more [J/m] on the map's grid: the greatest value of any cell of the file that reaches into a cell.
-/// Infinite: refused, also where that holds of a part of the cell alone; NaN where a part of it has no data and nothing is refused.
+/// Additional drive cost [J/m] on the grid of the map: the maximum of all pixels of the file that overlap a
+/// cell. Infinite: the cell is impassable, even if only a part of it is infinite. NaN: a part of the cell has
+/// no data and no part is infinite.
 struct AddedJoules {
   Raster<float> J_per_m;
-  float dearest_J_per_m = 0.0F;  ///< finite value of the whole file
+  float dearest_J_per_m = 0.0F;  ///< maximum finite value of the whole file
 };
 
-/// @throws InputError, also when the file and the map do not overlap or a value is negative or above 1e6
+/// Reads additional costs. @throws InputError, also if the file and the map do not overlap or a finite value
+/// lies outside 0 to 1e6
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map);
 
 /// Keep-out areas on the map's grid.
 struct KeepOut {
   Raster<std::uint8_t> mask;       ///< 1 in every cell that a polygon touches, else 0
-  std::vector<std::string> notes;  ///< which features lie beside the map, one sentence
+  std::vector<std::string> notes;  ///< one sentence on the features outside the map
 };
 
-/// Keep-out polygons of a vector file (GeoJSON: longitude, latitude; or map metres where the map has no CRS or the file
-/// says "crs": "local"). Each is drawn by itself, so that none opens what another closes: what its outer ring winds
-/// round, less its holes.
-/// @throws InputError, also when a feature is no polygon or encloses no ground, or none meets the map
+/// Reads keep-out polygons from a vector file (GeoJSON: longitude, latitude; map coordinates if the map has
+/// no CRS or the file states "crs": "local"). Polygons are rasterised separately, so that a hole of one
+/// polygon does not open another. @throws InputError, also if a feature is not a polygon or has no area, or
+/// if no polygon overlaps the map
 KeepOut readKeepOut(const std::string& path, const ElevationMap& map);
 
 }  // namespace talus::maps

@@ -1,4 +1,4 @@
-// The format: numpy.lib.format in NumPy's reference manual.
+// File format: numpy.lib.format in NumPy's reference manual.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,11 +15,11 @@
 namespace talus::maps {
 namespace {
 
-constexpr std::size_t kMostHeader = 10'000;  // as NumPy; a regular expression takes stack for each character
+constexpr std::size_t kMostHeader = 10'000;  // limit of NumPy; it also bounds the recursion of std::regex
 
 struct Header {
-  char kind = 'f';       // i, u or f
-  std::size_t size = 8;  // bytes
+  char kind = 'f';       // integer (i), unsigned (u) or float (f)
+  std::size_t size = 8;  // bytes per number
   bool swapped = false;
   bool fortran_order = false;
   std::vector<std::size_t> shape;
@@ -30,7 +30,7 @@ struct Header {
   throw InputError({where, reason, "save it with numpy.save as a plain array of numbers"});
 }
 
-// "2, 3", "2," or nothing.
+// Parses "2, 3", "2," or an empty shape.
 std::vector<std::size_t> parseShape(const std::string& text, const std::string& where) {
   std::vector<std::size_t> shape;
   std::istringstream extents(text);

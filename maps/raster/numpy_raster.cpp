@@ -22,10 +22,10 @@ namespace {
 
 using Arrays = std::map<std::string, NumpyArray>;
 
-// Largest .npy read: a raster beyond this belongs into a GeoTIFF.
+// Largest accepted file size [bytes]; larger rasters should be GeoTIFFs.
 constexpr vsi_l_offset kMostBytes = vsi_l_offset{2} << 30;
 
-// Content of a large array over its bytes in the archive: heights that were measured are never packed so small.
+// Limit of the compression ratio of large arrays; measured heights never compress as far.
 constexpr std::uint64_t kMostPacked = 500, kLarge = std::uint64_t{64} << 20;
 
 struct Limits {

@@ -7,13 +7,13 @@
 
 namespace talus::maps {
 
-/// Whether a path names a NumPy file by its ending (.npy, .npz).
+/// Whether the path ends in .npy or .npz.
 bool isNumpyFile(const std::string& path);
 
-/// A NumPy elevation grid as a raster in memory, north up: the array of a .npy, or of a .npz the array
-/// "elevation" or else its only array of two axes, with xmin, xmax, ymin, ymax (outer edges) where it has
-/// them: degrees on WGS 84 when they can be. Limits in the wrong order are swapped and said in `notes`.
-/// @throws InputError
+/// Opens a NumPy elevation grid as an in-memory raster, north up. Reads the array of a .npy file, or of a
+/// .npz archive the array "elevation", else the only two-dimensional array. The scalars xmin, xmax, ymin,
+/// ymax of an archive, if present, are the outer edges: degrees on WGS 84 if their magnitudes permit. Limits
+/// in reverse order are swapped, which is recorded in `notes`. @throws InputError
 Dataset openNumpyRaster(const std::string& path, std::vector<std::string>& notes);
 
 }  // namespace talus::maps

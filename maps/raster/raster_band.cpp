@@ -35,12 +35,12 @@ bool isPicture(GDALRasterBand& band) {
   return colour == GCI_RedBand || colour == GCI_PaletteIndex;
 }
 
-// Overview cells along a side of so many pixels.
+// Number of overview cells along a side of `pixels` pixels; at least 1.
 int shared(int pixels, int overview) {
   return std::max(1, pixels / overview);
 }
 
-// NaN where GDAL's mask of the band, if it has one of its own, says that the pixel does not count.
+// Sets pixels to NaN that the dataset mask or alpha mask of the band excludes.
 void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
                const std::string& where, int overview) {
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return;

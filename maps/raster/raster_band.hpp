@@ -13,23 +13,23 @@ class GDALDataset;
 
 namespace talus::maps {
 
-/// What a raster of floats holds where a cell has no value.
+/// Value of cells without data in a raster of floats.
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// Which band of a file to take when the user names none.
+/// Criteria for the choice of a band.
 struct BandWish {
-  std::string path{};                      ///< opens error lines
-  std::optional<int> band{};               ///< from 1, as the user selected
-  std::vector<std::string_view> words{};   ///< parts of a description that mark the band, in lower case
-  std::vector<std::string_view> others{};  ///< parts that rule it out
+  std::string path{};                      ///< path in error messages
+  std::optional<int> band{};               ///< selected by the user, from 1
+  std::vector<std::string_view> words{};   ///< lower-case substrings of the description that select a band
+  std::vector<std::string_view> others{};  ///< lower-case substrings of the description that exclude a band
 };
 
-/// The selected band, else the first whose description fits, else the first; a choice among several is said
-/// in `notes`. @throws InputError on a band that does not exist, or a picture (colours) when none was asked
-/// for
+/// The selected band, else the first band whose description fits, else the first band. A choice among several
+/// bands is recorded in `notes`. @throws InputError for a band that does not exist, or for a colour image
+/// without a selected band
 int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes);
 
-/// Pixels of a raster, from its upper left corner.
+/// A rectangle of pixels, counted from the upper left corner.
 struct PixelBox {
   int column = 0;
   int row = 0;
@@ -39,25 +39,25 @@ struct PixelBox {
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
 };
 
-/// Reads pixels of a band as they stand into rows of floats, first row first; masked pixels and infinities
-/// are NaN. With `overview` above 1 the mean of each overview x overview pixels, of which width and height
-/// are multiples, or less than one: from the file's overviews where it has some.
-/// @throws InputError with GDAL's words
+/// Reads raw values of a band, first row first; masked pixels and infinities are NaN. With overview > 1,
+/// returns the mean of each block of overview x overview pixels, from the overviews of the file if it has
+/// any. The width and height of the box are multiples of `overview`, or less than one. @throws InputError
+/// with GDAL's message
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
 
-/// Cells of a box of a band that were overwritten by zeros, as LostZeros finds them in that box; `nodata`: a value that stands for
-/// no data, `zero_is_ordinary` as there. @throws InputError
+/// Cells of a box that were overwritten by zeros, found by LostZeros within the box. `nodata` is the no-data
+/// value of the band; `zero_is_ordinary` as for LostZeros. @throws InputError
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
                     const std::string& where, bool zero_is_ordinary = false);
 
-/// Makes NaN of the values of a box, in rows of cells of overview x overview pixels, that lost cells reach into.
+/// Sets each value to NaN whose block of overview x overview pixels contains a lost cell.
 void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values);
 
-/// The line that is said of lost cells; `remedy`: what to do where 0 is their value.
+/// Message about lost cells; `remedy` is the option to use if 0 is their true value.
 std::string lostNote(const LostCells& lost, const std::string& remedy);
 
-/// Values of a file that begins in the north, as a raster that begins in the south.
+/// Reverses the row order: values from north to south become a raster from south to north.
 Raster<float> northUp(const Grid& grid, std::vector<float> values);
 
 }  // namespace talus::maps

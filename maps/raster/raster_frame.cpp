@@ -18,11 +18,11 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kMostStretch = 0.05;  // map metre against ground metre, beyond which a map is resampled
+constexpr double kMostStretch = 0.05;  // scale error of the projection [-] above which a map is resampled
 constexpr double kWidestSpan_rad =
-    20 * kDegree;  // of a geographic raster: one local projection serves no more
+    20 * kDegree;  // limit for a geographic raster: a single local projection is not accurate beyond
 
-// GDAL's six numbers: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5].
+// GDAL's geotransform: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5].
 struct Pixels {
   std::array<double, 6> c{0, 1, 0, 0, 0, -1};
   bool stated = false;
@@ -40,14 +40,14 @@ struct Pixels {
   }
   bool areUpright() const { return c[2] == 0 && c[4] == 0 && c[1] > 0; }
   double side() const { return std::abs(c[1]); }
-  // Cells that a raster drifts off a square grid from edge to edge stay below a twentieth.
+  // Upright, and the difference of the pixel sides accumulates to at most 0.05 cells across the raster.
   bool areSquare() const {
     return areUpright() && std::abs(side() - std::abs(c[5])) * std::max(width, height) <= 0.05 * side();
   }
   Point at(double column, double row) const {
     return {c[0] + column * c[1] + row * c[2], c[3] + column * c[4] + row * c[5]};
   }
-  // Side of a square of a pixel's area.
+  // Side of a square with the area of a pixel.
   double meanSide() const { return std::sqrt(std::abs(c[1] * c[5] - c[2] * c[4])); }
 };
 
@@ -55,7 +55,7 @@ bool near(double a, double b) {
   return std::abs(a - b) <= 1e-6 * std::abs(b);
 }
 
-// The frame of square, upright pixels, each `metres` per unit of the file.
+// Frame of a raster with square, upright pixels; `metres` is the length of a unit of the file.
 FramedRaster upright(Dataset raster, int band, double metres) {
   const Pixels p(*raster);
   const double south = std::min(p.c[3], p.c[3] + p.height * p.c[5]);
@@ -83,7 +83,7 @@ FramedRaster local(Dataset file, int band, double resolution_m, const std::strin
   return out;
 }
 
-// Middle of what will be read.
+// Centre of the window, or of the whole file without a window in degrees.
 GeoPoint geographicCentre(const Pixels& p, const ReadOptions& options) {
   if (options.window) {
     const auto* a = std::get_if<GeoPoint>(&options.window->first);
@@ -95,7 +95,7 @@ GeoPoint geographicCentre(const Pixels& p, const ReadOptions& options) {
   return {middle.y_m * kDegree, middle.x_m * kDegree};
 }
 
-// Metres of ground per degree of latitude and longitude, enough to choose a cell size.
+// Mean pixel side [m] at a latitude, rounded to four significant digits.
 double geographicResolution(const Pixels& p, double radius_m, double latitude_rad) {
   const double metres = p.meanSide() * kDegree * radius_m * std::sqrt(std::max(0.02, std::cos(latitude_rad)));
   const double step = std::pow(10.0, std::floor(std::log10(metres)) - 3);  // four digits are enough
@@ -110,7 +110,8 @@ void refuseWholeBodies(const Pixels& p, const ReadOptions& options, const std::s
                     "read a part with --window LATd,LONd,LATd,LONd or project it with gdalwarp"});
 }
 
-// Half a pixel beyond a pole is the edge of a raster whose pixels lie on it.
+// Rejects longitudes beyond 360 and latitudes beyond 90 degrees by more than a pixel. Half a pixel beyond a
+// pole is valid: the pixel centres may lie on the pole.
 void refuseBeyondBody(const Pixels& p, const std::string& path) {
   const double pixel = std::max(std::hypot(p.c[1], p.c[4]), std::hypot(p.c[2], p.c[5]));
   for (const double column : {0.0, static_cast<double>(p.width)})
@@ -126,7 +127,7 @@ void refuseBeyondBody(const Pixels& p, const std::string& path) {
 struct Resampling {
   Georeference target;
   double resolution_m = 0.0;
-  double finest_m = 0.0;  ///< about the side of the source's pixels
+  double finest_m = 0.0;  ///< approximate side of the source pixels
 };
 
 Georeference localGeoreference(const OGRSpatialReference& crs, GeoPoint centre, const std::string& path) {

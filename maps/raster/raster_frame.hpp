@@ -10,18 +10,17 @@
 
 namespace talus::maps {
 
-/// A raster whose pixels are square cells in metres, and where they lie.
+/// A raster of square cells in metres with its grid.
 struct FramedRaster {
   Dataset raster{};
   int band = 1;
-  Grid grid{};           ///< of the whole raster
-  bool north_up = true;  ///< the raster's first row is the northernmost
+  Grid grid{};           ///< grid of the whole raster
+  bool north_up = true;  ///< whether the first row of the raster is the northernmost
   std::optional<Georeference> georeference{};
 };
 
-/// Finds where the pixels of a file lie and resamples them where they are not square cells in metres; says in
-/// `notes` what was decided. `path` opens error lines.
-/// @throws InputError
+/// Determines the grid of a file; resamples pixels that are not square cells in metres. Decisions are added
+/// to `notes`. `path` identifies the file in error messages. @throws InputError
 FramedRaster frame(Dataset file, int band, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes);
 

@@ -34,7 +34,8 @@ bool endsWith(const std::string& text, std::string_view end) {
                     "put the files into one folder and name them without a path"});
 }
 
-// Endings of what GDAL's drivers open beside a raster, world files (.tfw, .wld) among them.
+// Whether the extension is one of the auxiliary files that GDAL's drivers open beside a raster, world files
+// (.tfw, .wld) included.
 bool isAuxiliary(const std::string& name) {
   const std::string ending = lower(fs::path(name).extension().string());
   constexpr const char* kEndings[] = {".xml", ".aux", ".ovr", ".msk", ".prj", ".hdr",  ".wld", ".clr",
@@ -46,7 +47,7 @@ bool isAuxiliary(const std::string& name) {
          (ending.size() >= 2 && ending.size() <= 5 && (ending.back() == 'w' || endsWith(ending, "wx")));
 }
 
-// One raster, what it names, and what lies beside each.
+// Checks a raster, the files that it names, and their auxiliary files.
 class References {
  public:
   References(const std::string& path, bool allow_vrt) : allow_vrt_(allow_vrt) {
@@ -70,9 +71,9 @@ class References {
 
  private:
   struct Folder {
-    fs::path path;  // links resolved
+    fs::path path;  // with links resolved
     fs::path as_given;
-    std::multimap<std::string, std::string> files;  // name in lower case -> name
+    std::multimap<std::string, std::string> files;  // lower-case name -> name
   };
 
   bool isOpen(const fs::path& path) const {
@@ -93,7 +94,7 @@ class References {
     folders_.push_back(std::move(folder));
   }
 
-  // A name of a file beside the label, and nothing that GDAL would take for more.
+  // Checks a named file. The name must be a plain file name without characters that GDAL interprets further.
   void follow(const std::string& path, std::string name, bool virtual_raster = false) {
     name.erase(0, std::min(name.size(), name.find_first_not_of(" \t\r\n")));
     if (name.find_first_of("/\\:&") != name.npos || name.find("..") != name.npos) refuseForeign(path, name);
@@ -134,7 +135,7 @@ class References {
     for (const std::string& name : label.names) follow(path, name, label.virtual_raster);
   }
 
-  // What GDAL opens because of its name.
+  // Checks the auxiliary files that GDAL opens because their names match the raster.
   void checkBeside(const std::string& path) {
     const fs::path itself = fs::path(path).filename();
     const std::string stem = lower(itself.stem().string());

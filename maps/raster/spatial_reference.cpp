@@ -22,7 +22,7 @@
 namespace talus::maps {
 namespace {
 
-// Parameters by their WKT 1 names, metres and radians.
+// Projection parameters by their WKT 1 names, in metres and radians.
 class Parameters {
  public:
   explicit Parameters(const OGRSpatialReference& reference) : reference_(reference) {}
@@ -37,7 +37,7 @@ class Parameters {
   const OGRSpatialReference& reference_;
 };
 
-// What most projections share.
+// Conversion of the parameters that most projections share.
 Projection common(ProjectionMethod method, const Parameters& p) {
   return {.method = method,
           .latitude_of_origin_rad = p.angle(SRS_PP_LATITUDE_OF_ORIGIN),
@@ -49,7 +49,7 @@ Projection common(ProjectionMethod method, const Parameters& p) {
           .false_northing_m = p.length(SRS_PP_FALSE_NORTHING)};
 }
 
-// One standard parallel where the origin is, with a scale there.
+// A projection with one standard parallel, at the latitude of origin.
 Projection trueAtOrigin(ProjectionMethod method, const Parameters& p) {
   Projection out = common(method, p);
   out.standard_parallel_1_rad = out.standard_parallel_2_rad = out.latitude_of_origin_rad;
@@ -63,7 +63,7 @@ Projection mercatorFromEquator(const Parameters& p) {
   return out;
 }
 
-// Of a pole alone.
+// Polar aspect only; other aspects are Foreign.
 Projection stereographic(const Parameters& p) {
   const bool polar = std::abs(p.angle(SRS_PP_LATITUDE_OF_ORIGIN)) > std::numbers::pi / 2 - 1e-9;
   return polar ? trueAtOrigin(ProjectionMethod::PolarStereographic, p)
@@ -115,8 +115,8 @@ bool isOcentric(const OGRSpatialReference& reference) {
   return reference.GetInvFlattening() > 0 && holdsNoCase(text(reference.GetAttrValue("GEOGCS")), "ocentric");
 }
 
-// The geographic system of places: on Earth WGS 84, elsewhere the geographic part of a CRS with longitudes eastward and
-// geographic latitudes on the same ellipsoid.
+// Geographic CRS for latitude and longitude: WGS 84 on Earth. Elsewhere the geographic CRS of `reference`,
+// converted to eastward longitudes and geographic latitudes on the same ellipsoid.
 OGRSpatialReference placesOf(const OGRSpatialReference& reference) {
   if (bodyName({reference.GetSemiMajor(), 0.0}) == bodyName(kEarth)) {
     OGRSpatialReference out;
@@ -138,7 +138,7 @@ OGRSpatialReference placesOf(const OGRSpatialReference& reference) {
   return out;
 }
 
-// A projected CRS by PROJ, places as above.
+// Transform of a projected CRS by PROJ, between placesOf() and map coordinates.
 class ProjTransform final : public Transform {
  public:
   explicit ProjTransform(const OGRSpatialReference& projected) {
@@ -158,7 +158,7 @@ class ProjTransform final : public Transform {
   }
 
  private:
-  // GDAL's transformations serve one thread at a time.
+  // Serialised, because GDAL's transformations are not thread-safe.
   Point changed(OGRCoordinateTransformation* change, Point p) const {
     const std::scoped_lock lock(mutex_);
     const GdalErrors quiet;
@@ -170,11 +170,11 @@ class ProjTransform final : public Transform {
   std::unique_ptr<OGRCoordinateTransformation> to_map_, to_place_;
 };
 
-constexpr double kAgreement_m = 0.01;  // our projections differ from PROJ's by a millimetre, datums by metres
+constexpr double kAgreement_m = 0.01;  // GeographicLib and PROJ differ by 1 mm, datums by metres
 
 bool agree(GeoPoint ours, GeoPoint theirs, double radius_m) {
   if (std::isnan(ours.latitude_rad) && std::isnan(theirs.latitude_rad))
-    return true;  // beyond the body's edge
+    return true;  // beyond the edge of the body
   const double north_m = (ours.latitude_rad - theirs.latitude_rad) * radius_m;
   const double turn = std::remainder(ours.longitude_rad - theirs.longitude_rad, 2 * std::numbers::pi);
   return std::hypot(north_m, turn * std::cos(ours.latitude_rad) * radius_m) <= kAgreement_m;
@@ -248,7 +248,7 @@ Georeference georeferenceAt(CoordinateSystem system, std::span<const Point> poin
   if (system.wkt.empty()) return Georeference(std::move(system));
   const auto proj = std::make_shared<const ProjTransform>(spatialReference(system));
   CoordinateSystem geographic = system;
-  geographic.planetocentric = false;  // as PROJ's places are here
+  geographic.planetocentric = false;  // latitudes of ProjTransform are geographic
   const Georeference own(std::move(geographic));
   const double radius_m = system.ellipsoid.equatorial_radius_m;
   if (own.reachesPlaces() &&

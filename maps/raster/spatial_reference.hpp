@@ -9,24 +9,26 @@ class OGRSpatialReference;
 
 namespace talus::maps {
 
-/// What Talus needs of a projected CRS as GDAL holds it; ProjectionMethod::Foreign where Georeference does not know
-/// its projection. `where` opens the error line. @throws InputError when it is not projected or its axes are mirrored
+/// Converts a projected CRS of GDAL; ProjectionMethod::Foreign for a projection unknown to Georeference.
+/// `where` is the location in error messages. @throws InputError if the CRS is not projected or its x axis
+/// points west
 CoordinateSystem coordinateSystem(const OGRSpatialReference& reference, const std::string& where);
 
-/// GDAL's form of a coordinate system, axes in the order x, y (longitude, latitude): from its WKT or else
-/// from its numbers.
+/// Converts a coordinate system to GDAL's form with the axis order x, y (longitude, latitude): from its WKT,
+/// else from its parameters.
 OGRSpatialReference spatialReference(const CoordinateSystem& system);
 
-/// Places of a coordinate system whose map has these points: longitude and latitude are those of WGS 84 on Earth, of the
-/// system's own ellipsoid elsewhere. By GeographicLib where that agrees with PROJ to a centimetre at each of the points,
-/// else by PROJ, and the system is then ProjectionMethod::Foreign.
+/// Georeference of a map that contains the given points. Latitude and longitude refer to WGS 84 on Earth,
+/// else to the ellipsoid of the system. Uses GeographicLib if it agrees with PROJ within 0.01 m at each
+/// point; otherwise uses PROJ and sets ProjectionMethod::Foreign.
 Georeference georeferenceAt(CoordinateSystem system, std::span<const Point> points);
 
-/// The same at the corners and in the middle of a grid.
+/// georeferenceAt() for the corners and the centre of a grid.
 Georeference georeferenceOn(const CoordinateSystem& system, const Grid& grid);
 
-/// A projection true to a millimetre per ten metres around a place: transverse Mercator, near a pole polar
-/// stereographic, on Earth of WGS 84. `geographic` holds the ellipsoid.
+/// A local projection around a position: transverse Mercator with scale 1 on the central meridian, or for
+/// |latitude| > 80 degrees polar stereographic with scale 1 at the pole (1.008 at latitude 80). Uses WGS 84
+/// on Earth, else the ellipsoid of `geographic`.
 OGRSpatialReference localProjection(const OGRSpatialReference& geographic, GeoPoint centre);
 
 }  // namespace talus::maps

@@ -20,7 +20,7 @@ std::string exact(double value) {
   return text.data();
 }
 
-// A virtual raster of one band alone: the warper would compute all of them.
+// A virtual raster with a single band: the warper would resample all bands.
 Dataset oneBand(GDALDataset& source, int band) {
   CPLStringList words;
   for (const std::string& word :

@@ -8,17 +8,18 @@
 
 namespace talus::maps {
 
-/// What a raster is resampled to: square cells of 32-bit floats, NaN where there is no data.
+/// Target of resampling: square cells of 32-bit floats, NaN for no data.
 struct WarpTarget {
   int band = 1;
-  std::string wkt{};             ///< CRS of the result; empty: the source's own coordinates
-  double resolution = 0.0;       ///< cell side in units of the target CRS; 0: as many cells as the source has
-  std::optional<Grid> grid{};    ///< exactly these cells, instead of resolution
-  std::string method = "cubic";  ///< GDAL's name: near, bilinear, cubic, average
+  std::string wkt{};             ///< CRS of the result; empty: the CRS of the source
+  double resolution = 0.0;       ///< cell side in units of the target CRS; 0: chosen by GDAL from the source
+  std::optional<Grid> grid{};    ///< exact grid of the result, instead of `resolution`
+  std::string method = "cubic";  ///< GDAL's resampling method: near, bilinear, cubic, average
   std::optional<double> nodata{};  ///< no-data value of the source; overrides the file
 };
 
-/// The band as a virtual raster that is computed where it is read. @throws InputError; `where` opens its line
+/// The resampled band as a virtual raster, computed on reading. `where` is the location in error messages.
+/// @throws InputError
 Dataset warp(GDALDataset& source, const WarpTarget& target, const std::string& where);
 
 }  // namespace talus::maps

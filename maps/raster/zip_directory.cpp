@@ -1,4 +1,4 @@
-// The format: PKWARE, APPNOTE.TXT - .ZIP File Format Specification, sections 4.3.12 and 4.3.16.
+// File format: PKWARE, APPNOTE.TXT - .ZIP File Format Specification, sections 4.3.12 and 4.3.16.
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -48,7 +48,7 @@ std::map<std::string, ZipEntry> zipDirectory(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::streamoff>(file.tellg());
   if (!file || size < static_cast<std::streamoff>(kEnd)) refuse(path);
-  // A comment of at most 65535 bytes may follow the end record.
+  // A comment of at most 65535 bytes may follow the end-of-central-directory record.
   const std::streamoff tail_begin = std::max<std::streamoff>(0, size - 65535 - static_cast<int>(kEnd));
   const std::string tail = bytesAt(file, tail_begin, static_cast<std::size_t>(size - tail_begin));
   const std::size_t end = tail.rfind("PK\5\6");

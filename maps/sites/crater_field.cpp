@@ -8,11 +8,12 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kReach = 3.0;  // of the ejecta, in radii
+constexpr double kReach = 3.0;  // extent of the ejecta [radii]
 constexpr int kBinCells = 32;
 
-// Depth under the rim and height of the rim over the surroundings, in diameters. Fresh: depth 0.2 and rim
-// 0.036 [pike_1977]; wear takes the depth of small craters down to a few hundredths [fassett_thomson_2014].
+// Depth below the rim and height of the rim above the surroundings [diameters]. Fresh craters: depth 0.2, rim
+// 0.036 [pike_1977]. Degradation reduces the depth of small craters to a few hundredths
+// [fassett_thomson_2014].
 double depth(double age) {
   return 0.2 - 0.16 * age;
 }
@@ -20,7 +21,7 @@ double rim(double age) {
   return 0.036 * (1 - 0.75 * age);
 }
 
-// The lower of two numbers, the corner between them rounded over about w.
+// Smooth minimum of two numbers, rounded over a width of about w.
 double smoothMinimum(double a, double b, double w) {
   const double d = (a - b) / w;
   return std::min(a, b) - w * std::log1p(std::exp(-std::abs(d)));
@@ -32,7 +33,8 @@ double Crater::height_m(double distance_m) const {
   const double r = distance_m / radius_m;
   if (r >= kReach) return 0.0;
   const double diameter_m = 2 * radius_m;
-  // A paraboloid inside; outside, ejecta that thin with the cube of the distance [mcgetchin_1973].
+  // Paraboloid inside the rim. Ejecta thickness outside decreases with the cube of the distance
+  // [mcgetchin_1973].
   const double bowl = depth(age) * (r * r - 1) + rim(age);
   const double cube = std::pow(std::max(r, 0.5), -3.0) - std::pow(kReach, -3.0);
   const double ejecta = rim(age) * cube;
@@ -46,7 +48,8 @@ double Crater::freshness(double distance_m) const {
 }
 
 std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options) {
-  // Craters outside whose rim or ejecta reach in; the largest would need a margin of thrice their radius.
+  // Margin for craters outside the grid whose rim or ejecta reach in. The ejecta of the largest craters reach
+  // farther: 1.5 diameters.
   const double margin_m = options.greatest_diameter_m;
   const double width_m = grid.width * grid.resolution_m + 2 * margin_m;
   const double height_m = grid.height * grid.resolution_m + 2 * margin_m;

@@ -9,38 +9,39 @@
 
 namespace talus::maps {
 
-/// A bowl with a raised rim.
+/// A crater: a paraboloid bowl with a raised rim and an ejecta blanket.
 struct Crater {
   Point centre;
   double radius_m = 0.0;
-  double age = 0.0;  ///< 0 fresh, 1 almost worn away
+  double age = 0.0;  ///< degradation [-]: 0 fresh, 1 almost eroded
 
-  /// Height over the ground around [m] at a distance [m] from the centre; 0 beyond three radii.
+  /// Height above the surrounding ground [m] at a distance [m] from the centre; 0 beyond three radii.
   double height_m(double distance_m) const;
 
-  /// How thick the ejecta lie, 0 to 1: 1 on the rim of a fresh crater, 0 beyond three radii.
+  /// Relative thickness of fresh ejecta [-], 0 to 1: 1 - age inside the rim, decreasing outwards with the
+  /// square of the distance, 0 beyond three radii.
   double freshness(double distance_m) const;
 };
 
-/// Numbers of a crater population.
+/// Parameters of a crater population.
 struct CraterOptions {
   std::uint64_t seed = 0;
   double least_diameter_m = 4.0;
   double greatest_diameter_m = 100.0;
-  double density = 0.04;  ///< craters larger than D [m] on an area A [m^2]: density A / D^2
+  double density = 0.04;  ///< craters with a diameter above D [m] on an area A [m^2]: density A / D^2
 };
 
-/// Craters of a power law of exponent -2, the slope of the lunar equilibrium population [trask_1966], over a
-/// grid and a margin around it, large before small; most are worn.
+/// Random craters over a grid and a margin around the grid, in order of decreasing size. The cumulative
+/// size-frequency distribution is a power law with exponent -2, as the lunar equilibrium population
+/// [trask_1966]. Most craters are degraded: age = cbrt(u), u uniform in [0, 1).
 std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options);
 
-/// Craters in square bins, each with those that reach into it, so that a place evaluates few of them.
-/// Immutable.
+/// Spatial index of craters: square bins, each with the craters that reach into the bin. Immutable.
 class CraterBins {
  public:
   CraterBins(const Grid& grid, std::vector<Crater> craters);
 
-  /// Calls visit(crater, distance_m) for each crater that may reach the place, large before small.
+  /// Calls visit(crater, distance_m) for each crater that may reach the point, in order of decreasing size.
   void forEachNear(Point p, const auto& visit) const {
     for (std::size_t i : bins_[bin(p)]) {
       const Crater& c = craters_[i];

@@ -6,23 +6,23 @@
 
 namespace talus::maps {
 
-/// Shape of transverse dunes.
+/// Parameters of transverse dunes.
 struct DuneOptions {
   std::uint64_t seed = 0;
-  double wavelength_m = 60.0;  ///< from crest to crest
-  double height_m = 4.0;       ///< of the tallest crest over its foot
-  double repose_rad = 0.5760;  ///< angle of the slip faces: 33 degrees, dry sand
-  double wind_rad = 0.3;       ///< direction the wind blows to, counter-clockwise from east
+  double wavelength_m = 60.0;  ///< crest spacing
+  double height_m = 4.0;       ///< greatest crest height above the dune foot
+  double repose_rad = 0.5760;  ///< angle of repose of the slip faces: 33 degrees, dry sand
+  double wind_rad = 0.3;       ///< direction to which the wind blows, counter-clockwise from east
 };
 
-/// Sand at a place.
+/// Sand cover at a point.
 struct Sand {
-  double height_m = 0.0;   ///< over the ground below; 0 between the dunes
-  bool slip_face = false;  ///< on a lee side at the angle of repose
+  double height_m = 0.0;   ///< above the underlying ground; 0 between dunes
+  bool slip_face = false;  ///< whether the point lies on a lee slope at the angle of repose
 };
 
-/// Transverse dunes: a gentle stoss side, a crest, and a slip face at the angle of repose; crests wave and
-/// die out where sand is scarce. Known at any place without its neighbours.
+/// Transverse dunes with a gentle stoss slope, a crest, and a slip face at the angle of repose. Crests
+/// undulate and end where the sand supply is low. Each point is computed independently of its neighbours.
 class DuneField {
  public:
   explicit DuneField(const DuneOptions& options);

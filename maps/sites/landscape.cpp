@@ -24,8 +24,7 @@ FractalGround rollingGround(const Grid& grid, std::uint64_t seed, double steepne
                         .hurst = 0.9});
 }
 
-// Regolith under craters: loose where ejecta lie and on the floors of worn craters, rocky around the fresh
-// ones.
+// Cratered regolith: loose on ejecta and on the floors of degraded craters, rocky around fresh craters.
 class CrateredPlain final : public Landscape {
  public:
   CrateredPlain(const Grid& grid, std::uint64_t seed)
@@ -59,7 +58,7 @@ class CrateredPlain final : public Landscape {
   double patch_m_;
 };
 
-// Sand over bedrock that crops out between the dunes.
+// Dunes over bedrock, which is exposed between the dunes.
 class DunePlain final : public Landscape {
  public:
   DunePlain(const Grid& grid, std::uint64_t seed)
@@ -94,7 +93,7 @@ class DunePlain final : public Landscape {
   double outcrop_m_;
 };
 
-// Rolling crusty ground with drifts in it and rocks in patches.
+// Rolling duricrust with drifts of loose sand and patches of rocks.
 class RockyPlain final : public Landscape {
  public:
   RockyPlain(const Grid& grid, std::uint64_t seed)
@@ -107,7 +106,7 @@ class RockyPlain final : public Landscape {
     const double u = p.x_m / patch_m_;
     const double v = p.y_m / patch_m_;
     Ground out{.height_m = ground_(p.x_m, p.y_m)};
-    // From 1 to 35 % of the ground, as Viking and Pathfinder met [golombek_rapp_1997].
+    // 1 to 35 % rock abundance, the range at the Viking and Pathfinder landing sites [golombek_rapp_1997].
     out.rock_share = std::clamp(0.06 * std::exp(2.2 * rocks_(u, v)), 0.01, 0.35);
     const double drift = drifts_(0.7 * u + 31.7, 0.7 * v);
     if (out.rock_share > 0.2)

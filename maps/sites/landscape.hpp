@@ -7,14 +7,14 @@
 
 namespace talus::maps {
 
-/// Elevation and class of one place of a site, before rocks are added.
+/// Elevation, soil class and rock abundance at a point of a site, before rocks are added.
 struct Ground {
   double height_m = 0.0;
   SiteClass soil = SiteClass::Firm;
-  double rock_share = 0.0;  ///< [-]
+  double rock_share = 0.0;  ///< fraction of the area covered by rocks [-]
 };
 
-/// One kind of site, known at any place without its neighbours. Immutable.
+/// Interface of a site generator; each point is computed independently of its neighbours. Immutable.
 class Landscape {
  public:
   Landscape() = default;
@@ -25,7 +25,7 @@ class Landscape {
   virtual Ground at(Point p) const = 0;
 };
 
-/// The landscape of a site of this grid. @throws std::invalid_argument on an unknown kind
+/// The landscape of a site on this grid. @throws std::invalid_argument for an unknown kind
 std::unique_ptr<const Landscape> makeLandscape(const Grid& grid, const SiteOptions& options);
 
 }  // namespace talus::maps

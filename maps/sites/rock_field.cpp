@@ -8,10 +8,10 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kPatch_m = 8.0;  // abundance is taken as even within one
-constexpr int kSizes = 12;        // steps of diameter, each a constant factor wider than the last
+constexpr double kPatch_m = 8.0;  // side of a square with constant abundance
+constexpr int kSizes = 12;        // number of diameter intervals, in geometric progression
 
-// How many, when `mean` are expected: whole part for sure, the rest by chance.
+// Random integer with the given mean: floor(mean) or floor(mean) + 1.
 int chance(double mean, RandomRow& random) {
   return static_cast<int>(mean + random());
 }
@@ -42,7 +42,7 @@ std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>
       const double q = rockDecay_per_m(k);
       double d = options.least_diameter_m;
       for (int i = 0; i < kSizes; ++i, d *= step) {
-        // Ground under rocks of this step of size, and the area of one of them.
+        // Area fraction of the rocks in this diameter interval, and the radius of a rock.
         const double share = k * (std::exp(-q * d) - std::exp(-q * d * step));
         const double radius_m = 0.5 * d * std::sqrt(step);
         const int count =

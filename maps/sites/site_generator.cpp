@@ -13,7 +13,7 @@
 namespace talus::maps {
 namespace {
 
-// Metres true at the site's middle, on the body itself; x and y count from the south-west corner.
+// Transverse Mercator on the body, true at the centre of the site; x and y are zero at the south-west corner.
 Georeference georeference(const SiteOptions& options) {
   const bool moon = options.kind == SiteKind::Craters;
   return Georeference({.name = moon ? "generated site, Moon" : "generated site, Mars",
@@ -56,7 +56,7 @@ void raise(Site& site, const Rock& rock) {
     }
 }
 
-// Boulders that the cells can show.
+// Adds the rocks that are large enough for the cell size.
 void setRocks(Site& site, const SiteOptions& options) {
   constexpr double kGreatest_m = 4.0;
   const double least_m = std::max(0.3, 1.5 * options.resolution_m);

@@ -9,15 +9,15 @@
 
 namespace talus::maps {
 
-/// A made-up site: every layer on one grid.
+/// A generated site; all layers have the same grid.
 struct Site {
   ElevationMap map;
   Raster<std::uint8_t> classes;  ///< SiteClass
-  Raster<float> rock_abundance;  ///< share of ground under rocks [-]
+  Raster<float> rock_abundance;  ///< fraction of the area covered by rocks [-]
 };
 
-/// Makes a site; a stop request throws nothing and leaves the map empty.
-/// @throws std::invalid_argument on an option out of range
+/// Generates a site. After a stop request, the returned site has an empty map. @throws std::invalid_argument
+/// for an option out of range
 Site generateSite(const SiteOptions& options, const ProgressMonitor& watch = {});
 
 }  // namespace talus::maps

@@ -4,24 +4,24 @@
 
 namespace talus::maps {
 
-/// What kind of ground is made.
+/// Kinds of generated terrain.
 enum class SiteKind {
-  Craters,  ///< lunar: power-law crater field, fresh to worn, on regolith
-  Dunes,    ///< martian: transverse dunes with slip faces at the angle of repose over bedrock
-  Rocks,    ///< martian plain: rocks of a size-frequency law on rolling duricrust
+  Craters,  ///< lunar: craters with a power-law size distribution, fresh to degraded, on regolith
+  Dunes,    ///< Martian: transverse dunes with slip faces at the angle of repose, over bedrock
+  Rocks,    ///< Martian plain: rocks with a size-frequency distribution on rolling duricrust
 };
 
-/// How large and which one.
+/// Kind, size and seed of a generated site.
 struct SiteOptions {
   SiteKind kind = SiteKind::Craters;
-  int width = 512;            ///< cells, 8 to 20000
-  int height = 512;           ///< cells, 8 to 20000
-  double resolution_m = 1.0;  ///< 0.01 to 1000
-  std::uint64_t seed = 1;     ///< same seed, same bytes, on any machine and with any number of threads
+  int width = 512;            ///< number of columns, 8 to 20000
+  int height = 512;           ///< number of rows, 8 to 20000
+  double resolution_m = 1.0;  ///< side length of a cell, 0.01 to 1000
+  std::uint64_t seed = 1;     ///< same seed, same bytes, on any machine and for any number of threads
   int threads = 1;
 };
 
-/// Class numbers of generated sites.
+/// Terrain classes of generated sites.
 enum class SiteClass : std::uint8_t { Firm = 1, Loose = 2, VeryLoose = 3, Rock = 4 };
 
 }  // namespace talus::maps

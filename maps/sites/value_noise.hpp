@@ -5,7 +5,7 @@
 
 namespace talus::maps {
 
-/// A well-mixed 64-bit word from another (the finaliser of SplitMix64).
+/// Pseudo-random 64-bit hash of a number: one step of SplitMix64.
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -13,7 +13,8 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// Numbers in [0, 1) in a row, from a seed; each generator of a site has its own.
+/// Sequence of uniform random numbers in [0, 1) from a seed: mixed() of a counter. Each generator of a site
+/// has a sequence of its own.
 class RandomRow {
  public:
   explicit RandomRow(std::uint64_t seed) noexcept : state_(seed) {}
@@ -24,9 +25,9 @@ class RandomRow {
   std::uint64_t state_;
 };
 
-/// Smooth noise over the plane, mostly in [-1, 1] and never beyond sqrt(2), known at any place without its
-/// neighbours: random slopes at whole numbers, joined by fifth-order curves (gradient noise). Distances in
-/// units of its wavelength.
+/// Gradient noise in the plane, mostly in [-1, 1] and within +-sqrt(2): random gradients at integer points,
+/// interpolated by fifth-order polynomials. The wavelength is 1. Each point is computed independently of its
+/// neighbours.
 class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed) noexcept : seed_(mixed(seed)) {}
@@ -59,23 +60,24 @@ class GradientNoise {
   std::uint64_t seed_;
 };
 
-/// Self-affine ground: octaves of noise from the longest wavelength down to the shortest, each rougher by the
-/// Hurst exponent's law (amplitude ~ wavelength^hurst).
+/// Self-affine terrain: octaves of gradient noise from the longest to the shortest wavelength, with amplitude
+/// ~ wavelength^hurst.
 class FractalGround {
  public:
   struct Options {
     std::uint64_t seed = 0;
     double longest_m = 100.0;
     double shortest_m = 1.0;
-    double amplitude_m = 1.0;  ///< of the longest wavelength
-    double hurst = 0.8;        ///< 0 to 1; higher is smoother
+    double amplitude_m = 1.0;  ///< amplitude at the longest wavelength
+    double hurst = 0.8;        ///< Hurst exponent, 0 to 1; higher is smoother
   };
 
   explicit FractalGround(const Options& options) noexcept
       : options_(options), noise_(options.seed), fall_(std::pow(2.0, -options.hurst)) {}
 
   double operator()(double x_m, double y_m) const noexcept {
-    // Each octave is turned by 36.9 degrees against the last, so that the squares of the noise do not show.
+    // Each octave is rotated by 36.9 degrees relative to the previous one, which hides the square lattice of
+    // the noise.
     double height = 0;
     double x = x_m / options_.longest_m;
     double y = y_m / options_.longest_m;
@@ -93,7 +95,7 @@ class FractalGround {
  private:
   Options options_;
   GradientNoise noise_;
-  double fall_;  // of the amplitude from octave to octave
+  double fall_;  // ratio of the amplitudes of consecutive octaves
 };
 
 }  // namespace talus::maps

@@ -19,8 +19,8 @@ std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point)
 std::optional<double> elevationAt(const Grid& grid, Point point,
                                   const std::function<float(Cell)>& elevation_m) {
   if (!grid.cellAt(point)) return std::nullopt;
-  // Position in cells from the centre of cell (0, 0); the half cell along the border takes the border's
-  // value.
+  // Position in cells from the centre of cell (0, 0). The half cell along the border has the elevation of the
+  // border cells.
   const double column =
       std::clamp((point.x_m - grid.south_west.x_m) / grid.resolution_m - 0.5, 0.0, grid.width - 1.0);
   const double row =
@@ -30,7 +30,7 @@ std::optional<double> elevationAt(const Grid& grid, Point point,
   const double u = column - sw.column;
   const double v = row - sw.row;
   const auto z = [&](int c, int r) { return static_cast<double>(elevation_m({c, r})); };
-  // A corner of weight 0 may be nodata.
+  // A corner with weight 0 may be without data.
   const auto mix = [](double a, double b, double t) { return t == 0 ? a : a + (b - a) * t; };
   const double south = mix(z(sw.column, sw.row), z(ne.column, sw.row), u);
   const double value = v == 0 ? south : mix(south, mix(z(sw.column, ne.row), z(ne.column, ne.row), u), v);

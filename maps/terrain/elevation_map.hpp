@@ -10,27 +10,28 @@
 
 namespace talus::maps {
 
-/// A digital elevation model in map metres, square cells, row 0 south.
+/// A digital elevation model: square cells in map coordinates, row 0 the southernmost.
 struct ElevationMap {
-  Raster<float> elevation_m{};  ///< above the body's datum; NaN where there is no data, never infinite
-  std::optional<Georeference> georeference{};  ///< none: x, y are local metres
-  std::string source{};                        ///< the file it came from, as the user named it
-  std::vector<std::string> notes{};  ///< what the reader decided that a person should know, a line each
+  Raster<float> elevation_m{};  ///< above the datum of the body; NaN for no data, never infinite
+  std::optional<Georeference> georeference{};  ///< nullopt: x, y are local metres
+  std::string source{};                        ///< path of the file, as the user stated it
+  std::vector<std::string> notes{};  ///< decisions of the reader that the user should know, one line each
 
-  /// The georeference where it reaches latitude and longitude, else null.
+  /// The georeference if it converts to latitude and longitude, else null.
   const Georeference* places() const noexcept {
     return georeference && georeference->reachesPlaces() ? &*georeference : nullptr;
   }
   const Grid& grid() const noexcept { return elevation_m.grid(); }
 };
 
-/// Share of the cells that hold an elevation [-], 0 to 1.
+/// Fraction of the cells with an elevation [-], 0 to 1.
 double validFraction(const Raster<float>& elevation_m);
 
-/// Elevation [m] at a point, bilinear between cell centres; nothing outside the map or beside nodata.
+/// Elevation [m] at a point by bilinear interpolation between cell centres; nullopt outside the map or next
+/// to a cell without data.
 std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point);
 
-/// The same of a grid whose cells have the elevations that the function returns.
+/// Elevation [m] at a point of a grid whose cell elevations are given by a function.
 std::optional<double> elevationAt(const Grid& grid, Point point,
                                   const std::function<float(Cell)>& elevation_m);
 

@@ -5,7 +5,7 @@
 namespace talus::maps {
 
 Footprint discFootprint(double radius_cells) {
-  // The disc through the diagonal neighbours is the 3x3 block.
+  // A radius of sqrt(2) includes the diagonal neighbours: the 3x3 block.
   const double squared = std::fmax(radius_cells * radius_cells, 2.0) * (1 + 1e-12);
   Footprint out;
   out.reach = static_cast<int>(std::sqrt(squared));

@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace {
 
-// Calls visit(dx, dy, height above the middle cell) for each cell of the footprint with data.
+// Calls visit(dx, dy, height above the central cell) for each cell of the footprint with data.
 void forEachValid(const Raster<float>& elevation_m, const Footprint& footprint, Cell cell,
                   const auto& visit) {
   const auto middle = static_cast<double>(elevation_m[cell]);
@@ -45,14 +45,14 @@ std::optional<PlaneFit> fitPartialPlane(const Raster<float>& elevation_m, const 
   if (std::isnan(elevation_m[cell])) return std::nullopt;
   const Sums s = sums(elevation_m, footprint, cell);
   if (s.n < 4 || 4 * s.n < static_cast<double>(footprint.offsets.size())) return std::nullopt;
-  // Normal equations about the mean.
+  // Normal equations relative to the mean.
   const double xx = s.xx - s.x * s.x / s.n;
   const double xy = s.xy - s.x * s.y / s.n;
   const double yy = s.yy - s.y * s.y / s.n;
   const double xh = s.xh - s.x * s.h / s.n;
   const double yh = s.yh - s.y * s.h / s.n;
   const double determinant = xx * yy - xy * xy;
-  if (determinant < 1e-9) return std::nullopt;  // whole numbers: it is 0 or not
+  if (determinant < 1e-9) return std::nullopt;  // sums of integers: the determinant is 0 or of order 1
   const double east = (yy * xh - xy * yh) / determinant;
   const double north = (xx * yh - xy * xh) / determinant;
   const double base = (s.h - east * s.x - north * s.y) / s.n;

@@ -7,17 +7,17 @@
 
 namespace talus::maps {
 
-/// A least-squares plane under one cell.
+/// A least-squares plane fitted to the footprint of a cell.
 struct PlaneFit {
   double dz_dx = 0.0;        ///< [-]
   double dz_dy = 0.0;        ///< [-]
-  double roughness_m = 0.0;  ///< root mean square residual
-  double relief_m = 0.0;     ///< range of the residuals
+  double roughness_m = 0.0;  ///< root mean square of the residuals
+  double relief_m = 0.0;     ///< greatest minus least residual
 };
 
-/// The plane over those cells of the footprint that lie on the raster and hold data. Nothing when the middle
-/// cell has none, or the others are fewer than four, fewer than a quarter of the footprint, or all in one
-/// line.
+/// Plane fitted to the cells of the footprint that lie on the raster and have data. Returns nullopt if the
+/// central cell has no data, or if the cells with data (the central cell included) are fewer than four, fewer
+/// than a quarter of the footprint, or collinear.
 std::optional<PlaneFit> fitPartialPlane(const Raster<float>& elevation_m, const Footprint& footprint,
                                         Cell cell);
 

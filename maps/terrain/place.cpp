@@ -89,7 +89,8 @@ Window parseWindow(std::string_view text) {
 
 namespace {
 
-// A cell holds its western and southern side; the map's eastern and northern border belongs to its last cells.
+// Moves a point on the eastern or northern border of the map into the last cell. Elsewhere a cell includes
+// its western and southern side.
 double withinBorder(double at_m, double from_m, int cells, double resolution_m) {
   const double border_m = from_m + cells * resolution_m;
   return at_m == border_m ? border_m - 1e-6 * resolution_m : at_m;

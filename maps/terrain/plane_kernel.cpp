@@ -7,8 +7,8 @@
 namespace talus::maps {
 namespace {
 
-// One source for every processor: GCC turns these lanes into whatever registers the target has, and as each
-// lane is rounded by itself (no contraction, no reordering) the bits are the same.
+// The same source serves every processor: GCC maps the lanes to the registers of the target. Each lane is
+// rounded separately, without contraction or reordering, so the bits are equal.
 using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline void load(Lanes& to, const float* from) {
@@ -19,9 +19,8 @@ using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
   std::memcpy(to, &from, static_cast<std::size_t>(count) * sizeof(float));
 }
 
-// Heights count from the middle cell: what is left is small, so that single precision loses nothing that
-// matters.
-//   a = sum(h) / n,  b = sum(x h) / sum(x^2),  c = sum(y h) / sum(y^2)       (sums of x, y, x y vanish)
+// Heights are relative to the central cell, which keeps them small enough for single precision.
+// a = sum(h) / n,  b = sum(x h) / sum(x^2),  c = sum(y h) / sum(y^2)       (sums of x, y, x y vanish)
 [[gnu::always_inline]] inline void fitBlock(const Footprint& footprint, const PlaneRow& row, int column) {
   const auto count = static_cast<float>(footprint.offsets.size());
   const auto sum_xx = static_cast<float>(footprint.sum_xx);
@@ -56,7 +55,7 @@ using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
   }
   Lanes rms = squares / count;
   for (int lane = 0; lane < kPlaneLanes; ++lane) rms[lane] = std::sqrt(rms[lane]);
-  const Lanes range = highest - lowest + mean * 0.0F;  // a NaN anywhere is in the mean, but in no comparison
+  const Lanes range = highest - lowest + mean * 0.0F;  // comparisons ignore NaN; the mean propagates NaN
   const int lanes = std::min(kPlaneLanes, row.width - column);
   store(east * row.cells_per_metre, row.dz_dx + column, lanes);
   store(north * row.cells_per_metre, row.dz_dy + column, lanes);

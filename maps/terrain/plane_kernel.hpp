@@ -4,10 +4,10 @@
 
 namespace talus::maps {
 
-/// One row of cells to fit and where its results go. Rows of heights are read `reach` cells beyond both ends,
-/// and up to kPlaneLanes beyond the east end more; all that must be there (NaN where there is no data).
+/// Input and output of a plane fit for one row of cells. Heights must be readable `reach` cells beyond both
+/// ends of the row and kPlaneLanes more beyond the eastern end, NaN for no data.
 struct PlaneRow {
-  const float* const* heights = nullptr;  ///< rows -reach to +reach about this one, each at its first cell
+  const float* const* heights = nullptr;  ///< rows -reach to +reach around this row, each from its first cell
   int width = 0;
   float cells_per_metre = 1.0F;
   float* dz_dx = nullptr;
@@ -18,15 +18,15 @@ struct PlaneRow {
 
 inline constexpr int kPlaneLanes = 8;
 
-/// Least-squares planes over whole footprints of one row: gradients, root mean square and range of the
-/// residuals. NaN wherever a cell of the footprint is NaN.
+/// Fits least-squares planes to the complete footprints of one row. Writes the gradients [-], and the root
+/// mean square and range of the residuals [m]; NaN if a cell of the footprint is NaN.
 using PlaneKernel = void (*)(const Footprint& footprint, const PlaneRow& row);
 
-/// For any processor, and for one with AVX2: the same bits.
+/// Kernels for any processor and for processors with AVX2; both give the same bits.
 void fitPlanesBaseline(const Footprint& footprint, const PlaneRow& row);
 void fitPlanesAvx2(const Footprint& footprint, const PlaneRow& row);
 
-/// The fastest that this processor runs.
+/// The fastest kernel that this processor supports.
 PlaneKernel planeKernel();
 
 }  // namespace talus::maps

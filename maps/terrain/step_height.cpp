@@ -9,7 +9,7 @@
 namespace talus::maps {
 namespace {
 
-// One source for every processor, as in plane_kernel.cpp.
+// The same source serves every processor, as in plane_kernel.cpp.
 using StepLanes = float __attribute__((vector_size(kStepLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline void loadStep(StepLanes& to, const float* from) {
@@ -20,10 +20,10 @@ struct Offset {
   int column = 0, row = 0;
 };
 
-// East, north, and the diagonals.
+// The directions of pairs: east, north, and both diagonals.
 constexpr std::array<Offset, 4> kLines{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
 
-// How far the rise between two cells exceeds the slope that both sides share.
+// Raises `out` to |rise - minmod(before, after)|, the rise between two cells without the shared slope.
 template <bool kHoles>
 [[gnu::always_inline]] inline void excess(StepLanes& out, StepLanes rise, StepLanes before, StepLanes after,
                                           bool diagonal) {
@@ -41,12 +41,13 @@ template <bool kHoles>
   const StepLanes greater = before > after ? before : after;
   const StepLanes shared = (lesser > zero ? lesser : zero) + (greater < zero ? greater : zero);
   StepLanes found = rise - shared;
-  if constexpr (kHoles) found += before * 0.0F;  // NaN still: a diagonal without sides
+  if constexpr (kHoles) found += before * 0.0F;  // NaN for a diagonal without data on either side
   found = found < zero ? -found : found;
   out = found > out ? found : out;
 }
 
-// Steps of the pairs that end in eight cells; no pair where an end has no data, as NaN is not greater.
+// Steps of the pairs that end in eight cells. A pair with a NaN height has no effect, because NaN compares
+// false.
 template <bool kHoles>
 [[gnu::always_inline]] inline void stepsAt(StepLanes& out, const float* const* rows, int column, int span) {
   out = StepLanes{};
@@ -80,12 +81,13 @@ template <bool kHoles>
   return std::isnan(total);
 }
 
-// Columns where no height that a step depends on is missing.
+// Columns whose steps depend on no missing height.
 struct Clean {
   int from = 0, past = 0;
 };
 
-// Most rows have no hole but the margin: all their blocks but the outer ones take the short way.
+// Most rows have missing heights in the margin only; all blocks but the outermost then use the faster
+// variant.
 [[gnu::always_inline]] inline Clean cleanColumns(const float* const* rows, int width, int span) {
   if (width < kStepLanes) return {};
   for (int row = -2 * span; row <= 2 * span; ++row)
@@ -94,7 +96,7 @@ struct Clean {
   return {2 * span, width - 2 * span};
 }
 
-// Greatest within a half width on either side, from that of a lesser half width.
+// Maximum over the half width `to` on either side, given the maximum over the smaller half width `from`.
 [[gnu::always_inline]] inline void widen(const float* steps, float* wide, int from, int to, int width) {
   for (int column = 0; column < width; column += kStepLanes) {
     StepLanes best;
@@ -121,7 +123,7 @@ struct Clean {
   for (; column < width; ++column) step_m[column] = std::max(step_m[column], wide[column]);
 }
 
-// Each row of steps is made once and spread to the rows that its disc reaches.
+// Each row of steps is computed once and applied to all rows that its disc reaches.
 [[gnu::always_inline]] inline void measureStrip(const StepReach& reach, const StepRows& rows,
                                                 std::vector<float>& steps, std::vector<float>& wide) {
   const int radius = static_cast<int>(reach.half_widths.size()) - 1;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-// Measures strips of rows, each through a copy of its heights with a margin of NaN.
+// Computes the metrics of strips of rows from copies of the heights with a margin of NaN.
 class Strips {
  public:
   Strips(const Raster<float>& elevation_m, const Footprint& footprint, const StepReach& steps,
@@ -68,7 +68,7 @@ class Strips {
                       static_cast<std::size_t>(margin_));
   }
 
-  // Cells whose footprint is not whole: the rest of it may do.
+  // Fits the cells with an incomplete footprint by the cells of the footprint that have data.
   void fitRowEdges(int row) const {
     const float* heights = elevation_m_.row(row);
     const float* gradient = out_.dz_dx.row(row);
@@ -93,7 +93,7 @@ class Strips {
   const Footprint& footprint_;
   const StepReach& steps_;
   TerrainMetrics& out_;
-  int margin_;  // of NaN about the raster
+  int margin_;  // width of the NaN margin [cells]
   std::size_t stride_;
   PlaneKernel kernel_ = planeKernel();
   StepKernel step_kernel_ = stepKernel();
@@ -110,13 +110,14 @@ void check(const FootprintOptions& options) {
     throw std::invalid_argument("footprint: threads = " + std::to_string(options.threads) + ", must be >= 1");
 }
 
-// Standard error of a gradient from n residuals of root mean square 1: three of them are spent on the plane.
+// Standard error of a gradient for n residuals of root mean square 1; the plane takes three degrees of
+// freedom.
 double gradientStd(const Footprint& footprint, double resolution_m) {
   const auto n = static_cast<double>(footprint.offsets.size());
   return std::sqrt(n / (n - 3)) / (resolution_m * std::sqrt(footprint.sum_xx));
 }
 
-// A footprint larger than the map sees all of it.
+// A length in cells, limited to the longer side of the map.
 double inCells(double length_m, const Grid& grid) {
   return std::min<double>(length_m / grid.resolution_m, std::max(grid.width, grid.height));
 }

@@ -5,42 +5,42 @@
 
 namespace talus::maps {
 
-/// How terrain is measured.
+/// Options of terrainMetrics().
 struct FootprintOptions {
   double radius_m =
-      0.0;  ///< disc under the rover; one that reaches no diagonal neighbour falls back to 3x3 cells
-  double step_span_m = 0.0;  ///< heights up to this far apart make a step; neighbouring cells always do, >= 0
-  int threads = 1;           ///< >= 1; the result does not depend on it
+      0.0;  ///< radius of the disc under the rover; a disc without the diagonal neighbours is replaced by 3x3
+            ///< cells
+  double step_span_m = 0.0;  ///< greatest distance of heights that form a step, >= 0; at least one cell
+  int threads = 1;           ///< >= 1; the result does not depend on the number of threads
 };
 
-/// Shape of the ground under a rover that stands at each cell: the least-squares plane over the disc of its
-/// footprint and what departs from it. NaN where the cell has no data or fewer than a quarter of its
-/// footprint has.
+/// Terrain shape under a rover at each cell: the least-squares plane over the disc of the footprint, and the
+/// residuals. NaN if the cell has no data, or if fewer than a quarter of the footprint has data.
 struct TerrainMetrics {
-  Raster<float> dz_dx;        ///< plane's gradient eastward [-]
-  Raster<float> dz_dy;        ///< plane's gradient northward [-]
-  Raster<float> roughness_m;  ///< root mean square residual of the plane
-  Raster<float> relief_m;  ///< highest minus lowest residual: what the plane does not explain of the relief
+  Raster<float> dz_dx;        ///< gradient of the plane eastward [-]
+  Raster<float> dz_dy;        ///< gradient of the plane northward [-]
+  Raster<float> roughness_m;  ///< root mean square of the residuals
+  Raster<float> relief_m;     ///< greatest minus least residual
   Raster<float>
-      step_m;  ///< highest step under the rover beyond the slope on both sides of it (step_height.hpp): the
-               ///< plane tilts with a sheer step and leaves 0.5 to 0.8 of it, this has all of it
-  int footprint_cells = 0;                  ///< cells of a whole footprint
-  bool fell_back = false;                   ///< whether 3x3 cells were taken because the footprint is smaller
-  double gradient_std_per_roughness = 0.0;  ///< [1/m] standard error of a gradient for roughness 1 m
+      step_m;  ///< greatest step under the rover without the slope on both sides (step_height.hpp); relief_m
+               ///< has only 0.5 to 0.8 of a vertical step, because the plane tilts
+  int footprint_cells = 0;                  ///< number of cells of a complete footprint
+  bool fell_back = false;                   ///< whether 3x3 cells replace a smaller footprint
+  double gradient_std_per_roughness = 0.0;  ///< standard error of a gradient for roughness 1 m [1/m]
 
   /// Inclination of the plane [rad], 0 to pi/2.
   float slope_rad(Cell c) const;
 
-  /// Direction the plane falls to, counter-clockwise from east [rad], -pi to pi.
+  /// Downslope direction of the plane, counter-clockwise from east [rad], -pi to pi.
   float aspect_rad(Cell c) const;
 };
 
-/// Columns and rows, at most, from a cell to those that its shape depends on.
+/// Upper bound of the column or row offset of the cells that the metrics of a cell depend on.
 int metricsReach(const FootprintOptions& options, double resolution_m);
 
-/// Measures the whole raster (NaN = no data). Cost per cell grows with the cells of the footprint;
-/// vectorised. Once a stop is requested the rows not yet done stay NaN.
-/// @throws std::invalid_argument on a radius or span that is negative or not finite, or threads < 1
+/// Computes the metrics of all cells of a raster (NaN for no data); the cost per cell is proportional to the
+/// cells of the footprint. After a stop request, remaining rows stay NaN. @throws std::invalid_argument for a
+/// radius or span that is negative or not finite, or for threads < 1
 TerrainMetrics terrainMetrics(const Raster<float>& elevation_m, const FootprintOptions& options,
                               const ProgressMonitor& watch = {});
 

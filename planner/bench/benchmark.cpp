@@ -17,8 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What a run sends home through a pipe: this, then its progress. Same program on both ends, so the layout
-// agrees.
+// Result of a run as sent through the pipe, followed by the progress. Both ends run the same program, so the
+// memory layout is identical.
 struct Answer {
   RouteStatus status = RouteStatus::NoneFound;
   bool breached = false;
@@ -43,8 +43,8 @@ bool breached(const BenchmarkCase& asked, const Plan& found) {
           !violations(*asked.map, found.drive, asked.kinematics.turning_radius_m).empty());
 }
 
-// From points half a cell apart to the nearest edge of a cell that no heading may enter, in cells; 10 when
-// there is none so near.
+// Smallest distance [cells] of points on the route, half a cell apart, to a cell without a drive curve; at
+// most 10.
 double clearance_cells(const costmap::CostGrid& map, const std::vector<maps::Point>& points) {
   constexpr int kReach = 10;
   const maps::Grid& grid = map.grid();
@@ -72,7 +72,7 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   const auto plugin = plan.plugins.find(job.planner);
   NamedPlanner named(plugin == plan.plugins.end() ? job.planner : std::string());
   const auto note = [&](double cost_J) {
-    // A planner starts from a route it was given; its own first ones may be worse.
+    // A planner may start from a given route; its own first routes may cost more and are not recorded.
     if (progress.empty() || cost_J < progress.back().cost_J) progress.push_back({elapsed(), cost_J});
   };
   named.onBetter(note);
@@ -85,7 +85,7 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   problem.kinematics = asked.kinematics;
   const Plan found =
       plugin == plan.plugins.end() ? named.plan(problem) : PluginPlanner(plugin->second).plan(problem);
-  // What a planner spoke of on the way was not checked: no cost below that of the route it ends with stands.
+  // Costs reported during planning were not checked: costs below that of the final route are removed.
   if (found.status != RouteStatus::Found) progress.clear();
   std::erase_if(progress, [&](const CostAtTime& at) { return at.cost_J < found.cost_J; });
   if (found.status == RouteStatus::Found) note(found.cost_J);
@@ -111,7 +111,7 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
 }  // namespace
 
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const ProgressMonitor& watch) {
-  const double longest_s = std::min(1e6, 10.0 * plan.time_limit_s + 60.0);  // a run-away ends here
+  const double longest_s = std::min(1e6, 10.0 * plan.time_limit_s + 60.0);  // time limit of the child process
   const ChildAnswer answer = inChild([&] { return answered(plan, job); }, {.seconds = longest_s}, watch);
   if (answer.bytes.size() < sizeof(Answer)) return {};
   Answer result;

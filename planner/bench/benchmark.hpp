@@ -16,86 +16,87 @@ namespace talus::planner {
 
 struct SlipWorld;
 
-/// One question of a benchmark suite.
+/// One planning problem of a benchmark suite.
 struct BenchmarkCase {
   std::string name;
   std::shared_ptr<const costmap::CostGrid> map;
   maps::Point start;
   maps::Point goal;
-  double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< where it is known, else NaN
-  Kinematics kinematics{};                                      ///< that planners of drives keep
-  std::shared_ptr<const SlipWorld> world{};  ///< over which routes are driven; null: not driven
-  std::string group{};                       ///< worlds of one group are scored together
+  double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< optimal cost [J] if known, else NaN
+  Kinematics kinematics{};                                      ///< kinematics for planners of drives
+  std::shared_ptr<const SlipWorld> world{};  ///< world in which routes are driven; null: routes are not
+                                             ///< driven
+  std::string group{};                       ///< cases of one group are scored together
 };
 
-/// A cost and when it was reached.
+/// A cost and the time at which it was reached.
 struct CostAtTime {
   double seconds = 0.0;
   double cost_J = 0.0;
 };
 
-/// How one run of one planner on one case went.
+/// Result of one run of one planner on one case.
 struct BenchmarkRun {
   std::string planner;
   std::size_t case_index = 0;
   std::uint64_t seed = 1;
   RouteStatus status = RouteStatus::NoneFound;
-  bool crashed = false;    ///< the process did not live to answer
+  bool crashed = false;    ///< the process ended without an answer
   bool breached = false;   ///< the independent check found a violation along the route
-  double seconds = 0.0;    ///< wall clock of planning
+  double seconds = 0.0;    ///< planning time (wall clock)
   double megabytes = 0.0;  ///< peak memory of the process
   double cost_J = std::numeric_limits<double>::infinity();
   double lower_bound_J = 0.0;
   double length_m = 0.0;
   int turns = 0;
-  int cusps = 0;                   ///< of drives: changes between forward and reverse
-  int turns_in_place = 0;          ///< of drives
-  double max_curvature_1_m = 0.0;  ///< of drives
-  double clearance_cells = 0.0;  ///< from the route to the nearest cell that no heading may enter, at most 10
-  bool reached = false;          ///< in worlds: the rover came to the goal
-  double drive_s = 0.0;          ///< in worlds: time that the drive took
-  double max_slip = 0.0;         ///< in worlds: largest slip met
-  std::vector<CostAtTime> progress;  ///< ever better costs, none below the route's; empty without a route
+  int cusps = 0;                     ///< drives only: changes between forward and reverse
+  int turns_in_place = 0;            ///< drives only
+  double max_curvature_1_m = 0.0;    ///< drives only
+  double clearance_cells = 0.0;      ///< from the route to the nearest cell without a drive curve, at most 10
+  bool reached = false;              ///< worlds only: the rover reached the goal
+  double drive_s = 0.0;              ///< worlds only: duration of the drive
+  double max_slip = 0.0;             ///< worlds only: largest slip on the drive
+  std::vector<CostAtTime> progress;  ///< decreasing costs, none below the route's cost; empty without a route
 };
 
-/// What a benchmark runs.
+/// Cases, planners and limits of a benchmark.
 struct BenchmarkPlan {
   std::vector<BenchmarkCase> cases;
-  std::vector<std::string> planners;             ///< names of plannerNames(), and of plugins
-  std::map<std::string, std::string> plugins{};  ///< shared libraries of those, by name
-  int seeds = 1;                                 ///< runs a case and planner: seeds 1 to so many
-  double time_limit_s = 1.0;                     ///< a run
-  std::string began = "1970-01-01 00:00:00";     ///< for the logs, in UTC
+  std::vector<std::string> planners;             ///< names of plannerNames() and of plugins
+  std::map<std::string, std::string> plugins{};  ///< shared library of each plugin, by name
+  int seeds = 1;                                 ///< runs per case and planner, with seeds 1 to `seeds`
+  double time_limit_s = 1.0;                     ///< per run
+  std::string began = "1970-01-01 00:00:00";     ///< start time for the logs, UTC
 };
 
-/// One run to be made.
+/// One run of a benchmark.
 struct BenchmarkJob {
   std::string planner;
   std::size_t case_index = 0;
   std::uint64_t seed = 1;
 };
 
-/// All runs of a benchmark: planner by planner, case by case, seed by seed.
+/// All runs of a benchmark, ordered by planner, case and seed.
 std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
 
-/// One run in a process of its own: a crash, an abort or a run-away is a result, not the end of the
-/// benchmark. Call it while the program has no other threads. Returns the answer as bytes, for benchmarkRun()
-/// on this or another machine of the same kind; empty when the process did not live to answer, and when a
-/// stop was requested, which ends it. Throws std::runtime_error when none can be made.
+/// Executes one run in a process of its own, so that a crash, an abort or an endless run is a result and does
+/// not end the benchmark. Must be called while the program has no other threads. Returns the result as bytes
+/// for benchmarkRun() on this machine or another machine of the same kind; empty if the process ended without
+/// an answer or a stop was requested. Throws std::runtime_error if no process can be created.
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job,
                         const ProgressMonitor& watch = {});
 
-/// The inverse: a run from its bytes.
+/// Converts the bytes returned by runIsolated() to a run.
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
 
-/// All jobs, one after another; fewer when a stop is requested.
+/// Executes all jobs one after another; returns fewer runs when stopped.
 std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const ProgressMonitor& watch = {});
 
-/// Whether a run ended with a route that the independent check allows: only its costs mean anything.
+/// Returns true if the run ended with a route without violations. Costs of other runs are meaningless.
 bool stands(const BenchmarkRun& run) noexcept;
 
-/// The best cost known of a case: the optimum where it is known, else the best of all its runs whose routes
-/// stand [J]; infinite for none.
+/// Best known cost of a case [J]: the optimum if known, else the lowest cost of all runs with stands();
+/// infinite if there is none.
 double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index);
 
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace {
 
-// OMPL's PlannerStatus::StatusType by position.
+// OMPL's PlannerStatus::StatusType in order.
 constexpr const char* kStatusNames =
     "Unknown status|Invalid start|Invalid goal|Unrecognized goal type|Timeout|Approximate solution|Exact "
     "solution|Crash|"
@@ -33,7 +33,7 @@ int omplStatus(const BenchmarkRun& run) {
   return 0;
 }
 
-// OMPL leaves out what is not there: an empty field between semicolons.
+// OMPL omits missing values: an empty field between semicolons.
 std::string number(double value) {
   if (!std::isfinite(value)) return {};
   std::ostringstream text;
@@ -63,7 +63,7 @@ void writeRuns(std::ostream& log, const std::vector<const BenchmarkRun*>& runs, 
   for (const BenchmarkRun* run : runs) {
     for (std::size_t i = 0; i < run->progress.size(); ++i) {
       const CostAtTime& at = run->progress[i];
-      // A run and a time are a key in Planner Arena's tables: of equal times the last holds.
+      // Run and time form a key in Planner Arena's tables, so only the last entry of equal times is written.
       const bool again =
           i + 1 < run->progress.size() && number(run->progress[i + 1].seconds) == number(at.seconds);
       if (!again) log << number(at.seconds) << "," << number(at.cost_J) << ",;";
@@ -73,14 +73,14 @@ void writeRuns(std::ostream& log, const std::vector<const BenchmarkRun*>& runs, 
   log << ".\n";
 }
 
-// Planner Arena takes the last word of its line for the name of an experiment.
+// Planner Arena reads the last word of the line as the experiment's name.
 std::string oneWord(std::string name) {
   for (char& c : name)
     if (std::isspace(static_cast<unsigned char>(c))) c = '_';
   return name;
 }
 
-// Said of a case that a stop kept from all its runs.
+// Note for a case whose runs were not all made because of a stop.
 std::string cutShort(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
                      std::size_t case_index) {
   const auto asked = plan.planners.size() * static_cast<std::size_t>(plan.seeds);
@@ -97,7 +97,7 @@ std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkR
   const BenchmarkCase& asked = plan.cases[case_index];
   const maps::Grid& grid = asked.map->grid();
   std::ostringstream log;
-  // No host: the same runs give the same log but for their date and measured seconds and megabytes.
+  // The host name is omitted: equal runs give equal logs except for date, seconds and megabytes.
   log << "OMPL version 1.5.2\nExperiment " << oneWord(asked.name)
       << "\n3 experiment properties\nwidth INTEGER = " << grid.width << "\nheight INTEGER = " << grid.height
       << "\nresolution_m REAL = " << grid.resolution_m << "\nRunning on talus\nStarting at " << plan.began

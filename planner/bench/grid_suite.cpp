@@ -18,7 +18,7 @@ namespace {
 using maps::Cell;
 using Walls = maps::Raster<std::uint8_t>;  // 1: blocked
 
-// A place on the lattice of half cells: cell centres are odd, corners even.
+// Position in units of half a cell: cell centres are odd, corners even.
 struct Place {
   int x = 0, y = 0;
 };
@@ -27,9 +27,9 @@ bool blocked(const Walls& walls, Cell cell) {
   return !walls.grid().contains(cell) || walls[cell] != 0;
 }
 
-// Whether the open segment between two places enters no blocked cell; running along a wall is seeing. In
-// every column of cells that it crosses, those are entered whose rows overlap its heights there; all in whole
-// numbers.
+// Returns true if the open segment between two positions enters no blocked cell; running along a wall is
+// allowed. In each column of cells, the cells entered are those whose rows overlap the segment's heights in
+// the column. Integer arithmetic only.
 bool sees(const Walls& walls, Place a, Place b) {
   if (a.x > b.x) std::swap(a, b);
   const long dx = b.x - a.x, dy = b.y - a.y;
@@ -56,8 +56,7 @@ bool sees(const Walls& walls, Place a, Place b) {
   return true;
 }
 
-// Corners that a shortest way may bend at: one blocked cell of the four around, or two across from each
-// other.
+// Corners at which a shortest path may turn: exactly one of the four surrounding cells is blocked.
 std::vector<Place> bends(const Walls& walls) {
   std::vector<Place> found;
   const maps::Grid& grid = walls.grid();
@@ -74,7 +73,7 @@ double apart_m(Place a, Place b) {
   return 0.5 * std::hypot(a.x - b.x, a.y - b.y);
 }
 
-// Dijkstra over the places, each joined to all that it sees.
+// Dijkstra's algorithm over the positions, each connected to all positions visible from it.
 double shortest_m(const Walls& walls, const std::vector<Place>& places, std::size_t from, std::size_t to) {
   std::vector<double> best(places.size(), kInfinity);
   std::vector<bool> done(places.size());
@@ -115,8 +114,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// A tenth of the ground under blocks; closed corners between diagonal blocks are filled, so that no way leads
-// through a single point.
+// Places random blocks until their areas sum to a fifth of the map. Overlaps and areas beyond the map's
+// border are counted.
 Walls blocks(const maps::Grid& grid, Random& random) {
   Walls walls(grid);
   const int largest = std::max(2, grid.width / 6);
@@ -131,7 +130,7 @@ Walls blocks(const maps::Grid& grid, Random& random) {
   return walls;
 }
 
-// Square rooms with walls of one cell; each wall between two rooms has a door of one to three cells.
+// Square rooms with walls one cell thick; each wall between two rooms has a door of one to three cells.
 Walls rooms(const maps::Grid& grid, Random& random) {
   Walls walls(grid);
   const int room = std::max(7, grid.width / 8);
@@ -150,7 +149,7 @@ Walls rooms(const maps::Grid& grid, Random& random) {
   return walls;
 }
 
-// Blocked cells that meet at a corner only leave a way through a point, which nothing can drive.
+// Fills blocked cells that meet only at a corner: a passage through a single point is not drivable.
 void closeDiagonals(Walls& walls) {
   const maps::Grid& grid = walls.grid();
   for (bool changed = true; changed;) {

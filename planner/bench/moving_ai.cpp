@@ -24,7 +24,7 @@ std::shared_ptr<const costmap::DriveCost> flatCost() {
   throw InputError({path + ":" + std::to_string(line), reason, "see movingai.com/benchmarks/formats.html"});
 }
 
-// A stream that fails for what is no regular file: a FIFO would wait.
+// Opens a regular file; the stream fails for other files, because opening a FIFO would block.
 std::ifstream opened(const std::string& path) {
   std::error_code error;
   std::ifstream file;

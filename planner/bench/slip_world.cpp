@@ -20,7 +20,7 @@ using costmap::DriveTable;
 
 constexpr double kSpeed_mps = 0.1;
 constexpr int kTerrains = 10;
-constexpr std::array kShares{0.4, 0.4, 0.1, 0.1};  // of the map, of the terrains that it has
+constexpr std::array kShares{0.4, 0.4, 0.1, 0.1};  // shares of the map's terrains
 
 using Generator = std::mt19937_64;
 
@@ -40,7 +40,7 @@ void validate(const SlipWorldOptions& o) {
   if (!(o.tail > 0.0 && o.tail <= 1.0)) refuse("tail", o.tail, "above 0 and at most 1");
 }
 
-// Steeper curves are the less sure ones, as in the set "ES" of the paper.
+// Steeper curves have a larger standard deviation, as in the set "ES" of the paper.
 std::vector<SlipTerrain> drawnTerrains(Generator& random) {
   std::vector<SlipTerrain> terrains;
   for (int k = 0; k < kTerrains; ++k) {
@@ -63,7 +63,8 @@ maps::Raster<float> noiseOver(const maps::Grid& grid, std::uint64_t seed, double
   return field;
 }
 
-// Rank of every cell in a field, as a share of all cells: blotches of any share are cut from it.
+// Rank of every cell's value as a share of all cells; a threshold on the ranks selects a given share of the
+// map.
 maps::Raster<float> ranks(const maps::Raster<float>& field) {
   std::vector<std::size_t> order(field.values().size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -82,7 +83,7 @@ std::size_t bandOf(double share) {
 }
 
 struct Ground {
-  std::array<std::uint8_t, kShares.size()> terrains;  // that the map has
+  std::array<std::uint8_t, kShares.size()> terrains;  // terrains of the map
   maps::Raster<std::uint8_t> truth, seen;
 };
 
@@ -108,7 +109,7 @@ Ground drawnGround(const maps::Grid& grid, const SlipWorldOptions& options, Gene
   return ground;
 }
 
-// A slip believed as a mixture of Gaussians.
+// Component of a Gaussian mixture of slip.
 struct Part {
   double weight, mean, deviation;
 };
@@ -117,7 +118,7 @@ double upperTail(double z) {
   return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-// Mean of the mixture over its worst share, the largest values.
+// Mean of the mixture over its largest values, whose probability is `tail` (conditional value at risk).
 double tailMean(const std::vector<Part>& parts, double tail) {
   const auto above = [&](double q) {
     double sum = 0.0;
@@ -135,10 +136,10 @@ double tailMean(const std::vector<Part>& parts, double tail) {
   return sum / tail;
 }
 
-// The magnitude of slip that is planned with.
+// Magnitude of slip used for planning.
 double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t seen, double gradient,
                     const SlipWorldOptions& options) {
-  const double way = gradient >= 0.0 ? 1.0 : -1.0;  // braked: the tail is below
+  const double way = gradient >= 0.0 ? 1.0 : -1.0;  // when braking, the tail is at negative slip
   const SlipTerrain& own = world.terrains[seen];
   if (!options.risk_aware) return std::max(0.0, way * own.slip(gradient));
   std::vector<Part> parts;
@@ -237,7 +238,7 @@ SlipDrive driven(const SlipWorld& world, const std::vector<maps::Point>& route) 
     drive.max_slip = std::min(1.0, std::max(drive.max_slip, std::abs(slip)));
     drive.reached = std::abs(slip) < 1.0;
     if (!drive.reached) return drive;
-    // Driven, 1 - v / (r omega) = slip; braked, r omega / v - 1 = slip.
+    // Driving: 1 - v / (r omega) = slip. Braking: r omega / v - 1 = slip.
     const double speed_mps = slip >= 0.0 ? kSpeed_mps * (1.0 - slip) : kSpeed_mps / (1.0 + slip);
     drive.time_s += metres * std::hypot(1.0, gradient) / speed_mps;
   }

@@ -13,7 +13,8 @@ namespace {
 
 using Prices = DirectionalLowerBounds::Prices;
 
-constexpr float kNone = std::numeric_limits<float>::infinity();  // no motion there to be bounded
+// Cost of a heading without an allowed motion.
+constexpr float kNone = std::numeric_limits<float>::infinity();
 
 Prices nothing() noexcept {
   Prices prices{};
@@ -21,7 +22,7 @@ Prices nothing() noexcept {
   return prices;
 }
 
-// One pass towards a convex norm; whether it changed anything.
+// Lowers each cost above (its neighbours' sum) / sqrt(2). Returns true if any cost changed.
 bool lowered(Prices& prices) noexcept {
   bool any = false;
   for (std::size_t k = 0; k < 8; ++k) {
@@ -36,12 +37,12 @@ bool lowered(Prices& prices) noexcept {
 Prices convex(Prices prices) noexcept {
   for (int pass = 0; pass < 16; ++pass)
     if (!lowered(prices)) return prices;
-  prices.fill(*std::min_element(prices.begin(), prices.end()));  // round is convex, too
+  prices.fill(*std::min_element(prices.begin(), prices.end()));  // equal costs are convex, too
   return prices;
 }
 
-// Prices of a row of cells, from the column before the first to the one behind the last; none outside the map
-// and where no heading is allowed.
+// Costs of one row of cells, from column -1 to column `width`. Cells outside the map and cells without an
+// allowed heading have infinite costs.
 void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, int row,
                std::vector<Prices>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -53,7 +54,8 @@ void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, i
   }
 }
 
-// Prices of the steps into a corner: cells below and above it, west one first.
+// Costs of the eight steps into a corner. `below` and `above` point to the western of the two cells on either
+// side.
 Prices stepsInto(const Prices* below, const Prices* above) noexcept {
   constexpr float root = 1.4142135F;
   Prices into{};
@@ -68,7 +70,8 @@ Prices stepsInto(const Prices* below, const Prices* above) noexcept {
   return into;
 }
 
-// Calls each(corner, prices of the steps into it) for every corner, row by row; false when stopped.
+// Calls each(corner, costs of the steps into the corner) for every corner, row by row. Returns false when
+// stopped.
 template <typename Each>
 bool forEachCorner(const costmap::CostGrid& map, DirectionalLowerBounds& headings, const StopCheck& stop,
                    Each each) {
@@ -104,7 +107,7 @@ std::shared_ptr<const EdgeLayer> admissibleEdges(const std::shared_ptr<const cos
     std::uint16_t* steps = edges->into(edges->padded().index(corner));
     for (std::size_t k = 0; k < 8; ++k) {
       steps[k] = EdgeLayer::kBlocked;
-      if (std::isinf(into[k])) continue;  // no cell beside it, or none that may be entered
+      if (std::isinf(into[k])) continue;  // the step crosses or borders no cell that the heading may enter
       const double units = std::floor(static_cast<double>(into[k]) * side_m / unit_J);
       steps[k] = static_cast<std::uint16_t>(std::clamp(units, double{kCheapest}, EdgeUnits::kBlocked - 1.0));
     }

@@ -8,8 +8,9 @@
 
 namespace talus::planner {
 
-/// A grid cut into triangles: each cell into four, between two neighbouring corners and its middle. Nodes are the
-/// corners, row by row from the south-west, then the middles.
+/// Triangular mesh of a grid: each cell is divided into four triangles, each between two neighbouring corners
+/// and the cell's centre. Node numbers: first the corners, row by row from the south-west, then the cell
+/// centres.
 class CellMesh {
  public:
   explicit CellMesh(const maps::Grid& grid) noexcept
@@ -17,11 +18,11 @@ class CellMesh {
         width_(static_cast<std::size_t>(grid.width)),
         corners_((width_ + 1) * (static_cast<std::size_t>(grid.height) + 1)) {}
 
-  /// Nodes of a cell: corners counter-clockwise from the south-west one, then the middle.
+  /// Node numbers of a cell: corners counter-clockwise from the south-west corner, then the centre.
   using Nodes = std::array<std::uint32_t, 5>;
   static constexpr std::size_t kMiddle = 4;
 
-  /// Triangle k of a cell lies between its corners k and k + 1 and its middle.
+  /// Index of the corner after corner k. Triangle k of a cell lies between corners k, next(k) and the centre.
   static constexpr std::size_t next(std::size_t k) noexcept { return (k + 1) % 4; }
 
   std::size_t nodes() const noexcept { return corners_ + grid_.size(); }
@@ -36,7 +37,7 @@ class CellMesh {
             node(south_west + width_ + 1), node(corners_ + row * width_ + column)};
   }
 
-  /// For a corner node its column and row among corners, for a middle those of its cell.
+  /// Column and row of a node: among the corners for a corner node, among the cells for a centre node.
   maps::Cell positionOf(std::uint32_t node) const noexcept {
     const std::size_t columns = node < corners_ ? width_ + 1 : width_;
     const std::size_t index = node < corners_ ? node : node - corners_;

@@ -4,8 +4,8 @@
 
 namespace talus::planner {
 
-/// Joules of the cheapest metre that any cell of the map offers to any heading; 0 where none is allowed.
-/// It is found in the row of a curve without anything across, below which no other row lies.
+/// Lowest drive cost per metre [J/m] over all curves that occur on the map and all gradients. Returns 0 if no
+/// cell has a curve. Only row 0 of each curve (no gradient across) is read: no other row has a lower cost.
 double cheapestMetre_J(const costmap::CostGrid& map);
 
 }  // namespace talus::planner

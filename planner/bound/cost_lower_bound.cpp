@@ -11,7 +11,8 @@ using costmap::DriveCurve;
 
 constexpr int kMiddle = DriveCurve::kBins / 2;
 constexpr double kBinWidth = 1.0 / 256.0;
-// The line stays above this share of its level whatever the heading, so that every step has a price.
+// A tilted line stays above this share of its level for every heading, so that every step has a positive
+// cost.
 constexpr double kLeastShare = 0.1;
 
 double valueAt(const DriveCurve& curve, int bin) noexcept {
@@ -21,7 +22,8 @@ double valueAt(const DriveCurve& curve, int bin) noexcept {
              : kInfinity;
 }
 
-// The highest level that a line of this tilt can have below the curve, which is linear between nodes.
+// Highest level of a line with this tilt that stays below the curve. The curve is linear between nodes, so
+// nodes suffice.
 double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
   double level = kInfinity;
   for (int bin = -reach; bin <= reach; ++bin)
@@ -29,7 +31,7 @@ double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
   return level;
 }
 
-// The tilt of the curve about level ground: of the chord over four bins to either side.
+// Slope of the curve at level ground: of the chord from 4 bins below to 4 bins above.
 double tiltOf(const DriveCurve& curve) noexcept {
   const double rise = valueAt(curve, 4) - valueAt(curve, -4);
   return std::isfinite(rise) ? rise / (8 * kBinWidth) : 0.0;
@@ -65,7 +67,8 @@ int CostLowerBounds::reachOf(costmap::CellCode cell) noexcept {
 
 CostLowerBound CostLowerBounds::of(costmap::CellCode cell) const noexcept {
   const int reach = reachOf(cell);
-  if (reach == kReach) return level(cell);  // steeper than the table: no tilt is known to stay below
+  // Steeper than the curve's range: no tilt is proven to stay below the cost.
+  if (reach == kReach) return level(cell);
   return lines_[cell.curve()][static_cast<std::size_t>(reach)];
 }
 

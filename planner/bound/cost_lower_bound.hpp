@@ -7,35 +7,35 @@
 
 namespace talus::planner {
 
-/// A norm below the drive cost of a cell: a metre in the direction d costs at least level + tilt * (gradient
+/// Lower bound of the drive cost of a cell: a metre in direction d costs at least level + tilt * (gradient
 /// along d).
 struct CostLowerBound {
   double level_J_per_m = 0.0;  ///< >= 0
-  double tilt_J_per_m = 0.0;   ///< per rise over run
+  double tilt_J_per_m = 0.0;   ///< per unit gradient (rise over run)
 };
 
-/// The straight lines below each drive curve: for all gradients up to a steepest one, level + tilt * gradient
-/// never exceeds the curve. The tilt is the curve's own at level ground, as far as the line stays positive
-/// for every heading. Curves are those without anything across: in no bin does a cost fall from row to row
-/// (DriveCurve), so what is below row 0 is below all.
+/// Straight lines below each drive curve: level + tilt * gradient never exceeds the curve for gradients up to
+/// a given steepness. The tilt is the slope of the curve at level ground, halved until the line is positive
+/// for every heading. Only row 0 of a curve (no gradient across) is used: costs never decrease from row to
+/// row (DriveCurve), so a bound of row 0 bounds all rows.
 class CostLowerBounds {
  public:
   explicit CostLowerBounds(const costmap::DriveCost& cost);
 
-  /// The line for an allowed cell; it holds for every heading.
+  /// Lower bound for an allowed cell, valid for every heading.
   CostLowerBound of(costmap::CellCode cell) const noexcept;
 
-  /// The highest line without tilt.
+  /// Highest lower bound with zero tilt.
   CostLowerBound level(costmap::CellCode cell) const noexcept;
 
-  /// How many curves there are.
+  /// Number of drive curves.
   std::size_t curves() const noexcept { return lines_.size(); }
 
  private:
   static constexpr int kReach = costmap::DriveCurve::kBins / 2;
   static int reachOf(costmap::CellCode cell) noexcept;
 
-  std::vector<std::array<CostLowerBound, kReach + 1>> lines_;  // by curve and by bins to either side
+  std::vector<std::array<CostLowerBound, kReach + 1>> lines_;  // by curve, then by steepness in bins
   std::vector<std::array<double, kReach + 1>> levels_;
 };
 

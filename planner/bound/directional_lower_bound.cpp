@@ -13,13 +13,14 @@ namespace {
 using costmap::CellCode;
 using costmap::DriveCurve;
 
-constexpr double kBin = 1.0 / 256.0;  // gradients of one bin of a curve
+constexpr double kBin = 1.0 / 256.0;  // gradient step of one bin of a curve
 constexpr int kMiddleBin = DriveCurve::kBins / 2;
-constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than floats are off
-constexpr int kRaises =
-    4;  // of raising prices: more of them favour single headings, whose neighbours then are cheap
-constexpr double kRounding = 1.0 - 1e-6;  // prices are stored as floats
-constexpr double kLeastPriceShare = 0.1;  // of the least price without tilt: every step has a price
+constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than the float error
+// Raising rounds: more rounds favour single headings and leave their neighbours cheap.
+constexpr int kRaises = 4;
+constexpr double kRounding = 1.0 - 1e-6;  // costs are stored as floats
+// With tilt, each cost is at least this share of the lowest cost: every step has a positive cost.
+constexpr double kLeastPriceShare = 0.1;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 
 double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
@@ -28,8 +29,9 @@ double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
                                            : kInfinity;
 }
 
-// A lower bound of cost less tilt * gradient, over all gradients along of a range and across from one on: linear between
-// nodes, it is least at one, and rows never get cheaper.
+// Lower bound of cost - tilt * gradient over all gradients along in [from, to] and gradients across >=
+// `across`. The cost is linear between nodes, so its minimum lies at a node; costs never decrease from row to
+// row.
 double leastIn(const DriveCurve& curve, double tilt, double from, double to, double across) noexcept {
   double least = kInfinity;
   const int row = std::min(static_cast<int>(across * DriveCurve::kRowsPerUnit), curve.lastRow());
@@ -39,20 +41,20 @@ double leastIn(const DriveCurve& curve, double tilt, double from, double to, dou
   return least;
 }
 
-// Rise along a heading of the grid.
+// Gradient along grid heading k.
 double along(double dz_dx, double dz_dy, std::size_t k) noexcept {
   const double scale = k % 2 == 0 ? 1.0 : kDiagonal;
   return scale * (dz_dx * kStep[k].column + dz_dy * kStep[k].row);
 }
 
-constexpr int kParts = 8;  // of the 45 degrees between two headings
+constexpr int kParts = 8;  // sub-sectors of the 45 degrees between two headings
 constexpr std::size_t kDirections = 8 * kParts;
 constexpr double kPart = std::numbers::pi / 4 / kParts;
 
 using ByDirection = std::array<double, kDirections>;
 
-// The directions; and as what p times a heading and q times the next one a direction j parts away from the
-// first is made: 1 / p and q / p.
+// Unit vectors of the directions. A direction j sub-sectors from heading e is p e + q f, f the next heading;
+// inverse_p = 1 / p, q_over_p = q / p.
 struct Directions {
   std::array<double, kDirections + 1> x{}, y{};
   std::array<double, kParts> inverse_p{}, q_over_p{};
@@ -75,11 +77,12 @@ const Directions& directions() noexcept {
   return all;
 }
 
-// Room above before[k] under the limits of the directions around it, the neighbours being as they were.
+// Largest increase of before[k] allowed by the limits of the directions around heading k, neighbours
+// unchanged.
 double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 8>& before) noexcept {
   const Directions& mix = directions();
   const double left = before[(k + 1) % 8], right = before[(k + 7) % 8];
-  double most = (left + right) * kDiagonal;  // more would not be convex, and lowered again
+  double most = (left + right) * kDiagonal;  // a higher cost would not be convex and would be lowered again
   for (std::size_t j = 0; j < kParts; ++j) {
     const double on_left = limit[(k * kParts + j) % kDirections],
                  on_right = limit[(k * kParts + kDirections - j) % kDirections];
@@ -89,8 +92,8 @@ double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 
   return std::max(0.0, most - before[k]);
 }
 
-// Prices under the limits. Neighbours that take half of the room that each of them sees keep within it
-// together.
+// Heading costs below the limits. Each heading is raised by half of its allowed increase, so that two
+// neighbours raised in one round stay within a shared limit.
 std::array<double, 8> raised(const ByDirection& limit) noexcept {
   std::array<double, 8> prices{};
   prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));
@@ -101,7 +104,7 @@ std::array<double, 8> raised(const ByDirection& limit) noexcept {
   return prices;
 }
 
-// What the prices must keep below in each direction for a gradient; nothing where no direction is allowed.
+// Upper limit of the gauge in each direction, for one gradient. Empty if no direction is allowed.
 std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double dz_dx, double dz_dy,
                                     double off_gradient) {
   const double bulge = 1.0 - std::cos(kPart / 2);
@@ -125,7 +128,7 @@ std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double
     from = to;
   }
   if (!allowed) return std::nullopt;
-  // Where nothing is allowed any price will do; one that is dear keeps the sums finite.
+  // Directions that are not allowed need no limit; a high finite limit keeps the sums finite.
   for (std::size_t i = 0; i < kDirections; ++i)
     limit[i] = std::min({least[i], least[(i + kDirections - 1) % kDirections], 2 * most}) * (1.0 - bulge) *
                kRounding;
@@ -149,7 +152,7 @@ DirectionalLowerBounds::Square DirectionalLowerBounds::squareWith(std::size_t cu
   return made;
 }
 
-// With the tilt of which the prices' sum is highest, among those that leave a price to every heading.
+// Uses the tilt with the highest sum of costs, among the tilts that leave every heading a positive cost.
 DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curve, double dz_dx,
                                                                 double dz_dy) const {
   const DriveCurve& of = cost_.curves()[curve];

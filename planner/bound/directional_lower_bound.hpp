@@ -8,39 +8,40 @@
 
 namespace talus::planner {
 
-/// Prices of a metre along the eight grid headings such that the gauge with these values there, linear
-/// between neighbouring headings, is nowhere above the drive cost of a cell: a metre along p e_k + q e_(k+1),
-/// p, q >= 0, costs at least p w_k + q w_(k+1). Tighter than a CostLowerBound, since each heading has its own
-/// part of the curve.
+/// Lower bounds of the cost of a metre along the eight grid headings. The gauge with the values w_k at the
+/// headings e_k, linear between neighbouring headings, is nowhere above the drive cost of the cell: a metre
+/// along p e_k + q e_(k+1), p, q >= 0, costs at least p w_k + q w_(k+1). The bound is tighter than a
+/// CostLowerBound, because each heading has its own section of the curve.
 ///
-/// How (ours). The cost of a metre is H(s) + tilt * s, s the gradient along it; the second term is linear in
-/// the direction, so the gauge repeats it. Directions are taken in eighths of 45 degrees, gradients in
-/// squares of kSteps of CellCode's steps. Over the part between two directions and over a square, s stays in
-/// a range and the gradient across is at least some c; costs fall from no row to the next (DriveCurve), so H is no
-/// less than its least over the bins of that range in the row of c. On a part p w_k + q w_(k+1)
-/// is a sine of the angle, so it exceeds the larger of its ends by a factor of 1 / cos(half a part) at most;
-/// so it is enough that it stays below cos(half a part) times that least at both ends of every part. From one
-/// price for all headings each is raised by half of what its directions and its neighbours leave it, some
-/// rounds.
+/// Derivation (ours, not from the literature). The cost of a metre is H(s) + tilt * s, with s the gradient
+/// along the direction. The second term is linear in the direction, so the gauge reproduces it exactly.
+/// Directions are divided into sub-sectors of 45/8 degrees, gradients into squares of kSteps steps of
+/// CellCode. Over one sub-sector and one square, s stays in an interval and the gradient across is at least
+/// some c. Costs never decrease from row to row (DriveCurve), so H is at least its minimum over the bins of
+/// that interval in the row of c. Within a sub-sector, p w_k + q w_(k+1) is a sine of the angle and exceeds
+/// the larger of its end values by a factor of at most 1 / cos(half a sub-sector). The gauge is therefore
+/// below H if both ends of every sub-sector are below cos(half a sub-sector) times that minimum. The costs
+/// start equal for all headings; each round raises each cost by half of the increase that its directions and
+/// neighbours allow.
 ///
-/// Squares are computed at their first use. Not thread-safe. The DriveCost must outlive it.
+/// Squares are computed at first use. Not thread-safe. The DriveCost must outlive the object.
 class DirectionalLowerBounds {
  public:
-  using Prices = std::array<float, 8>;  ///< joules a metre, > 0, by GridHeading
+  using Prices = std::array<float, 8>;  ///< joules per metre, > 0, by GridHeading
 
   explicit DirectionalLowerBounds(const costmap::DriveCost& cost);
 
-  /// Prices for a cell with a drive curve; infinite where no heading is allowed.
+  /// Costs for a cell with a drive curve; infinite if no heading is allowed.
   Prices of(costmap::CellCode cell);
 
  private:
-  static constexpr int kParts = 8;    // of the 45 degrees between two headings
-  static constexpr int kSteps = 16;   // a square's side
-  static constexpr int kReach = 512;  // steps: steeper cells are left to CostLowerBounds
+  static constexpr int kParts = 8;    // sub-sectors of the 45 degrees between two headings
+  static constexpr int kSteps = 16;   // side of a square [steps]
+  static constexpr int kReach = 512;  // [steps]; steeper cells use CostLowerBounds
 
   struct Square {
     bool known = false;
-    Prices own{};  // without the tilt's part
+    Prices own{};  // without the term of the tilt
     double tilt_J_per_m = 0.0;
   };
 

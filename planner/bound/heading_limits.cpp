@@ -15,9 +15,10 @@ using costmap::DriveCurve;
 constexpr int kHeadings = HeadingLimits::kHeadings;
 constexpr double kSector = 2.0 * std::numbers::pi / kHeadings;
 constexpr double kLimitRounding = 1.0 - 1e-6;  // limits and drive costs are floats
-constexpr double kLittle = 1e-3;               // of a heading: less of it is none
-constexpr double kFalls = 0.25;                // of a cost: what is left at least of it within a sector
-constexpr double kRefused = 300.0;  // of the dearest limit: that of a heading that nothing near it allows
+constexpr double kLittle = 1e-3;               // smallest coefficient of a heading that is taken into account
+// A refused heading's limit is at least this share of each cost within the sector.
+constexpr double kFalls = 0.25;
+constexpr double kRefused = 300.0;  // upper limit of a refused heading, as a multiple of the highest limit
 
 using ByHeading = std::array<double, kHeadings>;
 
@@ -46,8 +47,8 @@ int sectorOf(const Direction& d) noexcept {
       kHeadings - 1);
 }
 
-// Lowers limits until none is above what two others imply: their ends, one over each, are then corners of a convex
-// figure.
+// Lowers each limit that exceeds the value implied by two others. The ends (unit vector / limit) are then the
+// corners of a convex polygon.
 void makeConvex(ByHeading& limits) noexcept {
   const double even = 2.0 * std::cos(kSector);
   bool convex = true;
@@ -55,7 +56,7 @@ void makeConvex(ByHeading& limits) noexcept {
     convex =
         convex && limits[k] * even <= limits[(k + 1) % kHeadings] + limits[(k + kHeadings - 1) % kHeadings];
   if (convex) return;
-  // Twice around from the least limit, which is a corner of the hull of the ends.
+  // Scans twice around, starting at the lowest limit, whose end is a corner of the convex hull.
   const auto first = static_cast<std::size_t>(std::ranges::min_element(limits) - limits.begin());
   std::array<Direction, kHeadings> ends;
   for (std::size_t k = 0; k < kHeadings; ++k) {
@@ -89,13 +90,15 @@ Direction HeadingLimits::heading(int k) noexcept {
   return headings()[static_cast<std::size_t>(k)];
 }
 
-// The directions of a quarter turn at which the gradient along or across passes a node, or is at its limit.
+// Directions within a quarter turn at which the gradient along or across passes a table node or reaches its
+// limit.
 void HeadingLimits::addNodes(double steepness) {
   nodes_.clear();
   const auto other = [](double share) { return std::sqrt(std::max(1.0 - share * share, 0.0)); };
   const double limit_along = cost_.limits().max_along, limit_across = cost_.limits().max_across;
   const double most_along = std::min(steepness, limit_along), most_across = std::min(steepness, limit_across);
-  // Cosines of the next node along and across, and of the limits; each of them falls, none is left at -1.
+  // Cosines of the next node along, the next node across and the two limits. Each decreases; -1 means that no
+  // node is left.
   int bin = static_cast<int>(std::floor(most_along * DriveCurve::kBinsPerUnit)), row = 1;
   const double along = limit_along < steepness ? limit_along / steepness : -1.0;
   const double across = limit_across < steepness ? other(limit_across / steepness) : -1.0;
@@ -125,7 +128,7 @@ void HeadingLimits::addNodes(double steepness) {
   nodes_.push_back({0.0, 1.0});
 }
 
-// The form of the cost is that of one square of the table.
+// The cost has the bilinear form of one square of the table.
 HeadingLimits::Piece HeadingLimits::pieceOf(const DriveCurve& curve, double steepness, const Direction& from,
                                             const Direction& to) const {
   const Piece refused{from, to, kInfinity};
@@ -151,7 +154,8 @@ HeadingLimits::Piece HeadingLimits::pieceOf(const DriveCurve& curve, double stee
           d * x_per_unit * y_per_unit};
 }
 
-// A direction at which the cost may be finite though it is infinite to one side of it.
+// Adds a single direction at which the cost is finite although the cost is infinite on one side of the
+// direction.
 void HeadingLimits::addRefused(const DriveCurve& curve, double steepness, const Direction& at) {
   const double along = steepness * at.x, across = steepness * at.y;
   if (std::abs(along) > cost_.limits().max_along * (1.0 + 1e-9) ||
@@ -177,14 +181,14 @@ void HeadingLimits::addPieces(const DriveCurve& curve, double steepness) {
     add({-nodes_[i].x, nodes_[i].y}, {-nodes_[i - 1].x, nodes_[i - 1].y});
 }
 
-// Calls each(sector, from, to, cost from, cost to, the most that f'' is where f = 0), in map axes, for all parts that
-// headings cut pieces into.
+// Calls each(sector, from, to, cost_from, cost_to, bound of f'' at f = 0), in map axes, for every piece cut
+// at the sector boundaries.
 template <typename Each>
 void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
   const auto& table = headings();
   const auto ahead = [&table](const Direction& d, int beyond) {
     const Direction& end = table[static_cast<std::size_t>(beyond) + 1];
-    return cross(end, d) > 0.0 && end.x * d.x + end.y * d.y > -0.5;  // pieces are quarter turns at most
+    return cross(end, d) > 0.0 && end.x * d.x + end.y * d.y > -0.5;  // a piece spans at most a quarter turn
   };
   Direction last{-climb.x, -climb.y};
   int sector = sectorOf(last);
@@ -194,7 +198,8 @@ void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
       return piece.level_J + piece.x_J * x + (piece.y_J + piece.both_J * x) * y;
     };
     const double bend = std::max(piece.level_J, 0.0) + 1.5 * std::abs(piece.both_J);
-    if (last.x * from.x + last.y * from.y < 0.99) sector = sectorOf(from);  // what lies between is refused
+    // Directions between two pieces are refused.
+    if (last.x * from.x + last.y * from.y < 0.99) sector = sectorOf(from);
     while (ahead(from, sector)) sector = (sector + 1) % kHeadings;
     Direction begin = from;
     double begin_J = cost(from);
@@ -208,7 +213,7 @@ void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
     each(sector, begin, to, begin_J, cost(to), bend);
     last = to;
   };
-  // From the steepest descent on, counter-clockwise.
+  // From the steepest descent, counter-clockwise.
   const auto turned = [&](const Direction& d, double side) {
     return Direction{climb.x * d.x - side * climb.y * d.y, climb.y * d.x + side * climb.x * d.y};
   };
@@ -217,8 +222,8 @@ void HeadingLimits::forEachPart(const Direction& climb, Each each) const {
   for (const Piece& piece : pieces_) whole(piece, turned(piece.from, 1.0), turned(piece.to, 1.0));
 }
 
-// The cost along each heading. A heading that is refused has the most with which the gauge, linear from an allowed neighbour
-// to it, is nowhere above the cost of what is allowed between them.
+// Cost along each heading. A refused heading has the largest value for which the gauge, linear between the
+// refused heading and its allowed neighbour, stays below the cost of all allowed directions between the two.
 HeadingLimits::Gauge HeadingLimits::gaugeOf(CellCode cell, const Direction& climb) const {
   Gauge gauge, most;
   most.fill(kInfinity);
@@ -234,7 +239,7 @@ HeadingLimits::Gauge HeadingLimits::gaugeOf(CellCode cell, const Direction& clim
         const bool low = std::isinf(gauge[k]), high = std::isinf(gauge[next]);
         const auto keepBelow = [&](const Direction& d, double cost_J) {
           dearest = std::max(dearest, cost_J);
-          // d is a sum of the headings about it.
+          // d is a positive combination of the two headings of its sector.
           const double of_next = cross(headings()[k], d) / std::sin(kSector),
                        of_k = cross(d, headings()[k + 1]) / std::sin(kSector);
           const auto lower = [cost_J](double& limit, double share, double rest_J) {
@@ -253,11 +258,11 @@ HeadingLimits::Gauge HeadingLimits::gaugeOf(CellCode cell, const Direction& clim
   return gauge;
 }
 
-// By how much the gauge exceeds the cost at most, by sector.
+// Largest excess of the gauge over the cost, by sector.
 HeadingLimits::Gauge HeadingLimits::lackOf(const Gauge& gauge, const Direction& climb) const {
   Gauge lack{};
   const double scale = 1.0 / std::sin(kSector);
-  int of = -1;  // the sector that `fall` is the gauge's of
+  int of = -1;  // sector of `fall`, the gauge's gradient
   Direction fall;
   forEachPart(climb, [&](int sector, const Direction& from, const Direction& to, double from_J, double to_J,
                          double bend) {
@@ -270,7 +275,7 @@ HeadingLimits::Gauge HeadingLimits::lackOf(const Gauge& gauge, const Direction& 
     }
     const double f = from_J - fall.x * from.x - fall.y * from.y, g = to_J - fall.x * to.x - fall.y * to.y;
     const double dx = to.x - from.x, dy = to.y - from.y;
-    // 1 / 8, and what the chord is shorter than the arc and f lies lower between the ends
+    // 0.126 = 1/8 plus the difference of chord and arc and the variation of f between the ends
     const double dip = 0.126 * (dx * dx + dy * dy) * (bend + std::max(std::abs(f), std::abs(g)));
     lack[k] = std::max(lack[k], dip - std::min(f, g));
   });

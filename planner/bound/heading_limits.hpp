@@ -7,34 +7,37 @@
 
 namespace talus::planner {
 
-/// What a metre costs at least along 64 headings of a cell. A function of the place of which a metre along each
-/// heading takes no more than the heading's limit falls in no direction faster than the drive cost.
+/// Lower bounds of the cost per metre along 64 headings of a cell. A function of position that falls along
+/// each of these headings by no more than the heading's limit falls in every direction no faster than the
+/// drive cost.
 ///
-/// Why between the headings too (ours). The gauge that is linear between the limits of neighbouring headings, c_i and
-/// c_(i+1), shall stay below the drive cost. Between directions at which the gradient along or across passes a node
-/// of the cost's table, cost less gauge is f = A + h1 + h2, a constant and harmonics of first and second order of the
-/// angle, so f'' = A - f - 3 h2: over a piece of width w, f lies below its chord by no more than w^2 / 8 times the
-/// largest f''. Every piece is looked at, and the limits of both headings about it are lowered by what it lacks. At
-/// last they are made convex: a limit that others imply is lowered to what they imply.
+/// Why the bound also applies between the headings (ours, not from the literature). The gauge is linear
+/// between the limits c_i and c_(i+1) of neighbouring headings and must stay below the drive cost. Between
+/// two directions at which the gradient along or across passes a node of the cost table, cost - gauge is f =
+/// A + h1 + h2, a constant and harmonics of first and second order of the angle, so f'' = A - f - 3 h2. Over
+/// a piece of width w, f lies below its chord by at most w^2 / 8 times the largest f''. For each piece, the
+/// limits of both adjacent headings are lowered by the largest violation. Finally the limits are made convex:
+/// a limit above the value implied by two others is lowered to that value.
 ///
 /// Not thread-safe.
 class HeadingLimits {
  public:
   static constexpr int kHeadings = 64;
-  using Limits = std::array<float, kHeadings>;  ///< joules a metre, > 0, counter-clockwise from east
+  using Limits = std::array<float, kHeadings>;  ///< joules per metre, > 0, counter-clockwise from east
 
-  /// The DriveCost must outlive it.
+  /// The DriveCost must outlive the HeadingLimits.
   explicit HeadingLimits(const costmap::DriveCost& cost) : cost_(cost) {}
 
-  /// False where no heading is allowed.
+  /// Computes the limits of a cell. Returns false if no heading is allowed.
   bool of(costmap::CellCode cell, Limits& limits);
 
-  /// Unit vector of a heading, 0 to kHeadings.
+  /// Unit vector of heading k, k = 0 to kHeadings.
   static costmap::Direction heading(int k) noexcept;
 
  private:
-  // Directions, as seen from the steepest climb, between which the gradients along and across pass no node of the
-  // table; towards (x, y) a metre costs level + x_J x + y_J |y| + both_J x |y|, infinite where refused.
+  // Interval of directions, relative to the steepest ascent, in which the gradients along and across pass no
+  // node of the table. A metre towards (x, y) costs level + x_J x + y_J |y| + both_J x |y|; infinite if
+  // refused.
   struct Piece {
     costmap::Direction from, to;
     double level_J, x_J = 0.0, y_J = 0.0, both_J = 0.0;
@@ -54,7 +57,7 @@ class HeadingLimits {
   Gauge lackOf(const Gauge& gauge, const costmap::Direction& climb) const;
 
   const costmap::DriveCost& cost_;
-  std::vector<costmap::Direction> nodes_;  // a quarter, of the steepest climb first
+  std::vector<costmap::Direction> nodes_;  // a quarter turn, from the steepest ascent
   std::vector<Piece> pieces_;              // half a turn
 };
 

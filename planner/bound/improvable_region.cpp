@@ -10,7 +10,7 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kTubeCells = 4.0;  // standard deviation of samples beside the known route
+constexpr double kTubeCells = 4.0;  // standard deviation of samples beside the known route [cells]
 constexpr int kTries = 100;
 
 double uniform01(ImprovableRegion::Engine& engine) {

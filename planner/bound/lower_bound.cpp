@@ -12,7 +12,7 @@
 namespace talus::planner {
 namespace {
 
-// All corners of cells within so many cells of a place, by column and by row.
+// All cell corners within a distance of `cells` cells of a place, per axis.
 std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place, double cells) {
   std::vector<maps::Cell> found;
   const double column = (place.x_m - grid.south_west.x_m) / grid.resolution_m;
@@ -26,8 +26,8 @@ std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place,
   return found;
 }
 
-// The least that the way costs at limits that hold in all cells of the map: those of a plane, on a plane, where a function
-// that falls evenly is the best. No more is looked at once it is below `enough_J`.
+// Lower bound on a uniform map whose limit for each heading is the lowest of all cells; on a uniform map the
+// optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
 double planeBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                     double enough_J) {
   constexpr int kHeadings = HeadingLimits::kHeadings;
@@ -36,7 +36,8 @@ double planeBound_J(const costmap::CostGrid& map, const Segment& places, double 
   HeadingLimits of(map.cost());
   HeadingLimits::Limits limits, least;
   least.fill(std::numeric_limits<float>::infinity());
-  // The way's price between two headings; infinite for those that do not enclose it.
+  // Cost per metre of the direction `way`, composed of two headings; infinite if the headings do not enclose
+  // `way`.
   const auto price = [&](int i, int j) {
     const costmap::Direction a = HeadingLimits::heading(i), b = HeadingLimits::heading(j);
     const double det = a.x * b.y - a.y * b.x, p = way.x * b.y - way.y * b.x, q = a.x * way.y - a.y * way.x;
@@ -67,7 +68,8 @@ double planeBound_J(const costmap::CostGrid& map, const Segment& places, double 
   return std::isfinite(metre_J) ? metre_J * length_m : 0.0;
 }
 
-// The corners of a place's cell, of both its cells where it lies on an edge, are no farther away.
+// Radius [cells] that contains the corners of the cell of a place, or of both cells if the place lies on an
+// edge.
 constexpr double kSquare = 1.001;
 
 }  // namespace
@@ -90,7 +92,7 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
   return std::min(known_J, std::max(bound_J, straight_J));
 }
 
-// 0 when stopped, or where some ground costs nothing.
+// Returns 0 when stopped, or if the lower bound of some step is 0.
 double LowerBound::overEdges_J(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                                double goal_tolerance_m, const StopCheck& stop) {
   const maps::Grid& grid = map->grid();

@@ -11,21 +11,24 @@
 
 namespace talus::planner {
 
-/// What no route to a goal costs less than, whatever its shape and headings: what a SubSolution proves on maps of up to kSmall cells,
-/// the field over admissibleEdges() on larger ones, kept for a map and a goal, or straightBoundOver_J() where that is higher.
+/// Lower bound of the cost of every route to a goal, of any shape and heading. Maps of up to kSmall cells use
+/// the larger of a SubSolution's bound and the bound of a uniform map; larger maps use the field over
+/// admissibleEdges(), which is cached for one map and goal. straightBoundOver_J() is used if higher.
 class LowerBound {
  public:
-  /// Joules, >= 0 and no more than the cost of a known route; the straight bound alone when stopped, or where it shows
-  /// that the known route is the best within kEven.
+  /// Returns the bound [J], from 0 to known_J. The straight-line bound is returned if it is within a share
+  /// kEven of known_J. A stopped SubSolution or field contributes 0.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                     double goal_tolerance_m, const StopCheck& stop = {},
                     double known_J = std::numeric_limits<double>::infinity());
 
-  /// Near the cheapest way in all headings, from the search for the last bound; to be refined. Empty where there was none.
+  /// Near-optimal route over all headings from the latest SubSolution, as a start for refinement. Empty if no
+  /// SubSolution was computed.
   const Polyline& way() const noexcept { return way_; }
 
   static constexpr double kEven = 1e-4;
-  static constexpr std::size_t kSmall = 250'000;  ///< cells: some 15 microseconds each
+  static constexpr std::size_t kSmall = 250'000;  ///< largest number of cells for a SubSolution, which takes
+                                                  ///< about 15 microseconds a cell
 
  private:
   double overEdges_J(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,

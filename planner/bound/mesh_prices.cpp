@@ -5,7 +5,7 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell that no heading may enter
+constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell without an allowed heading
 constexpr std::size_t kCodes = std::size_t{1} << 14;
 
 std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
@@ -23,7 +23,7 @@ MeshPrices::MeshPrices(std::shared_ptr<const costmap::CostGrid> map)
       recent_(kCodes) {}
 
 std::uint32_t MeshPrices::newPrices(costmap::CellCode code) {
-  Recent& recent = recent_[(code.bits() * 2654435761U) >> 18];  // multiplicative hashing, kCodes values
+  Recent& recent = recent_[(code.bits() * 2654435761U) >> 18];  // multiplicative hash to kCodes values
   if (recent.bits == code.bits() && recent.prices != kNone) return recent.prices;
   recent = {code.bits(), kClosed};
   HeadingLimits::Limits limits;

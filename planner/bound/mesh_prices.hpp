@@ -12,8 +12,8 @@
 
 namespace talus::planner {
 
-/// The prices of a map's cells, made as they are asked for. A cell that some heading may enter has a slot, by which what else
-/// is known of it is numbered. Not thread-safe.
+/// Heading costs of the map's cells, computed on first request. Each cell with an allowed heading has a slot
+/// number, which also indexes other data of the cell. Not thread-safe.
 class MeshPrices {
  public:
   explicit MeshPrices(std::shared_ptr<const costmap::CostGrid> map);
@@ -21,9 +21,9 @@ class MeshPrices {
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const CellMesh& mesh() const noexcept { return mesh_; }
-  /// Slot of a cell; kNone outside and where no heading is allowed.
+  /// Slot of a cell; kNone outside the map and for cells without an allowed heading.
   std::uint32_t slotOf(maps::Cell cell);
-  /// The same if anybody asked before; else kNone.
+  /// Slot of a cell if slotOf() was called for the cell before; otherwise kNone.
   std::uint32_t knownSlotOf(maps::Cell cell) const noexcept;
   const TrianglePrices& of(std::uint32_t slot) const noexcept { return prices_[slots_[slot].prices]; }
   maps::Cell cellOf(std::uint32_t slot) const noexcept { return slots_[slot].cell; }
@@ -34,7 +34,7 @@ class MeshPrices {
     std::uint32_t prices;
     maps::Cell cell;
   };
-  // A code and the prices of it, which neighbouring cells often share.
+  // Most recent code of a hash value and its costs. Neighbouring cells often have the same code.
   struct Recent {
     std::uint32_t bits = 0, prices = kNone;
   };

@@ -13,11 +13,11 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-constexpr double kUphill = 1e-4;  // of the value: what is gone up where no way leads down
-constexpr double kBeside = 0.02;  // of a side, from corners
-constexpr double kEdge = 1e-6;    // of a side: what lies nearer to a line of the grid lies on it
+constexpr double kUphill = 1e-4;  // relative increase of the value allowed if no step leads down
+constexpr double kBeside = 0.02;  // distance kept from corners [cell sides]
+constexpr double kEdge = 1e-6;    // a point this close to a grid line lies on the line [cell sides]
 
-// Backwards along the ways that a search from the start found.
+// Traces a route back from the goal by descending the values of a search from the start.
 class Descent {
  public:
   Descent(const MotionCost& cost, const MeshSearch& from_start, const CellMesh& mesh)
@@ -53,17 +53,17 @@ class Descent {
     double value = 0.0, through = 0.0;
   };
 
-  // A place to a fiftieth of a side.
+  // Position rounded to 1/50 of a cell side.
   using Key = std::pair<long, long>;
   static Key keyOf(Point at) noexcept { return {std::lround(50.0 * at.x_m), std::lround(50.0 * at.y_m)}; }
 
-  // In sides of a cell from the south-west corner.
+  // Coordinates in cell sides from the grid's south-west corner.
   Point local(Point place) const noexcept {
     return {(place.x_m - mesh_.grid().south_west.x_m) / side_m_,
             (place.y_m - mesh_.grid().south_west.y_m) / side_m_};
   }
 
-  // Cells that a place lies in, or touches.
+  // Calls each() for every cell that contains or touches a point.
   template <typename Each>
   void forEachCell(Point at, Each each) const {
     const auto low = [](double x) { return static_cast<int>(std::ceil(x - kEdge)) - 1; };
@@ -73,7 +73,8 @@ class Descent {
         if (mesh_.grid().contains({column, row})) each(Cell{column, row});
   }
 
-  // Whether the start is in a cell that the place lies in or touches, and may be left for it.
+  // Returns true if the start lies in a cell that contains or touches the point, and the heading from the
+  // start to the point is allowed in that cell.
   bool startsBeside(Point at, Point start) const {
     bool found = false;
     forEachCell(at, [&](Cell cell) {
@@ -115,12 +116,13 @@ class Descent {
     const bool to_side = to_x < to_y;
     const double side = (to_side ? back.x : back.y) > 0.0 ? 1.0 : 0.0,
                  met = std::clamp(to_side ? y + most * back.y : x + most * back.x, 0.0, 1.0);
-    // Corners and sides, at which other cells have a say, are passed beside, if that heading is allowed.
+    // Prefers points slightly off corners and sides, where only one cell determines the cost, if the heading
+    // is allowed.
     for (const double along : {std::clamp(met, kBeside, 1.0 - kBeside), met})
       if (step(cell, {x, y}, to_side ? Point{side, along} : Point{along, side}, below, best)) return;
   }
 
-  // Whether it may be driven.
+  // Updates `best` with one step. Returns false if the step is not allowed or has no length.
   bool step(Cell cell, Point from, Point out, double below, std::optional<Step>& best) const {
     const double dx = out.x_m - from.x_m, dy = out.y_m - from.y_m, length = std::hypot(dx, dy);
     if (!(length > kEdge)) return false;
@@ -134,7 +136,7 @@ class Descent {
     return true;
   }
 
-  // On the border of a cell.
+  // Search value on the border of a cell, linear between the corners.
   double valueOn(Cell cell, Point out) const {
     const CellMesh::Nodes nodes = mesh_.nodesOf(cell);
     const auto v = [&](std::size_t k) {
@@ -157,7 +159,7 @@ class Descent {
   std::set<Key> visited_;
 };
 
-// Moves vertices from sides of cells into the cell whose headings allow the turn.
+// Moves vertices on cell sides into one of the adjacent cells, choosing the cheaper one.
 void leaveSides(const MotionCost& cost, Polyline& points) {
   const double off_m = kBeside * cost.map().grid().resolution_m;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {

@@ -6,9 +6,10 @@
 
 namespace talus::planner {
 
-/// A way between two places down a search from the first of them, cell by cell, in 64 headings and towards corners, under
-/// the exact cost: near the cheapest of all headings. To be refined; turns are left out. Empty where the search leads
-/// nowhere that may be driven.
+/// Traces a route between two places by descending a search from the first place, cell by cell. Each step
+/// follows one of 64 headings or leads to a corner, and has its exact cost. The route is near the optimum
+/// over all headings and is meant to be refined; turn costs are not included. Empty if no allowed descent
+/// exists.
 Polyline meshRoute(const MotionCost& cost, const MeshSearch& from_start, const CellMesh& mesh,
                    const Segment& places);
 

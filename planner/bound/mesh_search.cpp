@@ -6,9 +6,11 @@
 namespace talus::planner {
 namespace {
 
-constexpr unsigned kUnits = 4;  // of the queue: 2^kUnits to half a side at the cheapest metre
-constexpr std::uint64_t kReach = std::uint64_t{1} << 20;    // units that queued values lie apart
-constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;  // nodes of a triangle, the middle last
+// 2^kUnits queue units = cost of half a cell side at the lowest cost per metre.
+constexpr unsigned kUnits = 4;
+constexpr std::uint64_t kReach = std::uint64_t{1} << 20;  // largest spread of queued keys [units]
+// Nodes of a triangle; the cell's centre is the third.
+constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;
 
 }  // namespace
 
@@ -148,7 +150,7 @@ void MeshSearch::change(std::uint32_t slot) {
   changed_.push_back(slot);
 }
 
-// The cells about a node that the search came to.
+// Marks the cells around a node that already have a slot.
 void MeshSearch::changeAround(std::uint32_t node) {
   const maps::Cell at = prices_.mesh().positionOf(node);
   const bool corner = node < prices_.mesh().corners();

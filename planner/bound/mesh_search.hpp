@@ -10,50 +10,52 @@
 
 namespace talus::planner {
 
-/// The highest function over the nodes of a CellMesh, linear on each triangle, that from no node to the side opposite falls by
-/// more than the way's price, or from no side to the node opposite: label correcting, since prices depend on headings, by the
-/// update of Tsitsiklis 1995 [tsitsiklis_1995]. Not thread-safe.
+/// Computes the highest function over the nodes of a CellMesh, linear on each triangle, whose fall from each
+/// node to the opposite side (or from each side to the opposite node) is at most the cost of the motion.
+/// Label-correcting, because costs depend on the heading, with the update of Tsitsiklis 1995
+/// [tsitsiklis_1995]. Not thread-safe.
 class MeshSearch {
  public:
   using Way = TrianglePrices::Way;
 
   struct Options {
     Way way = Way::FromNode;
-    double cheapest_J;  ///< of a metre, anywhere on the map, > 0
-    maps::Point other;  ///< where routes come from, or where they go
-    double most_J;      ///< nodes from which no route of less gets there are not searched
+    double cheapest_J;  ///< lower bound of the cost per metre on the whole map, > 0
+    maps::Point other;  ///< the other end of the routes: start or goal
+    double most_J;      ///< nodes on no route of at most this cost are not expanded [J]
   };
 
   MeshSearch(MeshPrices& prices, const Options& options);
 
-  static constexpr float kFar = 1e30F;  ///< of a node that was not reached
+  static constexpr float kFar = 1e30F;  ///< value of a node that was not reached
   static constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 
   float at(std::uint32_t node) const noexcept { return values_[node]; }
   bool expanded(std::uint32_t node) const noexcept { return expanded_[node] < kFar; }
-  /// From which value on nodes are taken in order.
+  /// Value [J] of queue key 0. Nodes with lower values are taken in any order.
   void startAt(double base_J) noexcept { base_J_ = base_J; }
-  /// A node may have no more than this; whether it had, by what matters.
+  /// Lowers a node to `value`. Returns false, without a change, if the reduction is below 1e-3 queue units.
   bool lower(std::uint32_t node, float value);
 
-  /// Searches up to a key, or until so many nodes are taken in all; false when stopped.
+  /// Searches up to the key `end`, or until `quota` nodes have been taken in total. Returns false when
+  /// stopped.
   bool run(std::uint64_t end, std::size_t quota, const StopCheck& stop);
   bool done() const noexcept { return queue_.queued() == 0; }
   std::size_t taken() const noexcept { return taken_; }
-  std::uint64_t front() const noexcept { return front_; }  ///< the key that it came to
+  std::uint64_t front() const noexcept { return front_; }  ///< highest key reached
 
-  /// What one node of a triangle may lie above another: first above second, first above middle, second above first, second
-  /// above middle, middle above first, middle above second.
+  /// Largest allowed difference of two nodes of a triangle: first - second, first - middle, second - first,
+  /// second - middle, middle - first, middle - second.
   using Caps = std::array<float, 6>;
   static constexpr std::size_t capOf(std::size_t node, std::size_t above) noexcept {
     return 2 * node + (above < node ? above : above - 1);
   }
-  /// Caps the two others from now on.
+  /// Adds caps for the two other nodes of a triangle relative to node `above`.
   void cap(std::uint32_t slot, std::size_t triangle, std::size_t above, const TrianglePrices::Rise& rise);
-  /// Lowers the nodes of a triangle as its prices and caps have it; whether that lowered any.
+  /// Lowers the nodes of a triangle to its costs and caps. Returns true if any node was lowered.
   bool relax(std::uint32_t slot, std::size_t triangle);
 
-  /// Slots of which values changed since they were last asked for.
+  /// Slots whose values changed since the previous call.
   std::vector<std::uint32_t> takeChanged();
   void change(std::uint32_t slot);
 
@@ -75,12 +77,12 @@ class MeshSearch {
 
   MeshPrices& prices_;
   Options options_;
-  std::vector<float> values_, expanded_;  // expanded_: the value with which a node was last expanded
+  std::vector<float> values_, expanded_;  // expanded_: value of the node at its latest expansion
   std::vector<Cell> cells_;               // by slot
   std::vector<std::uint32_t> changed_;
   BucketQueue queue_;
   double unit_J_, base_J_ = 0.0;
-  std::uint64_t front_ = 0, lowest_ = 0;  // keys: how far the search came, and the lowest that is queued
+  std::uint64_t front_ = 0, lowest_ = 0;  // keys: highest reached and lowest queued
   std::size_t taken_ = 0;
 };
 

@@ -17,8 +17,8 @@ using maps::Point;
 
 constexpr int kRounds = 6;
 
-// The cheapest metre of a cell over all headings, by curve and by how many bins its steepest gradient reaches from the
-// middle. Rows of ground that is crossed cost no less than row 0 (DriveCurve).
+// Lowest cost per metre of a cell over all headings, by curve and by the steepest gradient in bins. Rows with
+// a gradient across cost no less than row 0 (DriveCurve).
 class CheapestMetres {
  public:
   explicit CheapestMetres(const costmap::DriveCost& cost) : least_(cost.curves().size()) {
@@ -49,12 +49,13 @@ class CheapestMetres {
   std::vector<std::array<double, kMiddle + 1>> least_;
 };
 
-// The cheapest metre of the cells that a curve from one place to the other of a length touches; infinite if none. Zero
-// when stopped.
+// Lowest cost per metre of the cells that a curve of length `length_m` between the two places can touch.
+// Infinite if no such cell has a curve; 0 when stopped.
 double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres, const Segment& places,
                       double length_m, const StopCheck& stop) {
   const maps::Grid& grid = map.grid();
-  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;  // of the cells' middles
+  // Margin of half a cell diagonal per leg: distances are measured to cell centres.
+  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;
   const auto line = [&](double middle_m, double origin_m, double off_m, int count) {
     const double at = (middle_m + off_m - origin_m) / grid.resolution_m;
     return static_cast<int>(std::clamp(at, 0.0, count - 1.0));

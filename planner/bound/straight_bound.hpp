@@ -8,19 +8,21 @@
 
 namespace talus::planner {
 
-/// No motion of any shape from the one place to within the tolerance of the other costs less: the distance at
-/// the cheapest metre of any ground. Reads no cell.
+/// Lower bound [J] of the cost of any motion from the first place to within tolerance_m of the second:
+/// distance times the lowest cost per metre of all drive curves. Reads no cell.
 double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
 
-/// The same at the cheapest metre of the cells that matter, never lower. `known_J` is the cost of some route, infinite
-/// if none is known: no dearer route is asked about, so the answer never exceeds it. Sharp where the ground between the
-/// places is even: there the straight line is proven to be the best.
+/// Lower bound [J] with the lowest cost per metre of the reachable cells, never below straightBound_J()
+/// unless known_J is. `known_J` is the cost of a known route, infinite if none is known; the result never
+/// exceeds known_J. On uniform ground the bound proves the straight line optimal. When stopped, returns the
+/// bound found so far.
 ///
-/// How (ours). Let D be the distance and S >= 2 D. A route that leaves the ellipse of the places with distances
-/// that sum to S does so at least (S - D) / 2 from the one place and comes back as far from the other; so it
-/// drives D metres inside, as does one that stays, and each costs the cheapest metre there. A route of at most
-/// known_J stays within S = known_J over that metre, which may be less. A tolerance shortens all of this alike.
-/// Time: some nanoseconds a cell of the ellipse's box and round.
+/// Derivation (ours, not from the literature). Let D be the distance and S >= 2 D. A route that leaves the
+/// ellipse of points whose distances to both places sum to S drives at least (S - D) / 2 from the first place
+/// to the boundary and at least as far back to the second. Every route therefore drives D metres inside the
+/// ellipse, each at no less than the lowest cost per metre there. A route of at most known_J is no longer
+/// than S = known_J / (that cost per metre), also if S < 2 D. A tolerance shortens all lengths equally. Time:
+/// a few nanoseconds per cell of the ellipse's bounding box and iteration.
 double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                            double known_J = std::numeric_limits<double>::infinity(),
                            const StopCheck& stop = {});

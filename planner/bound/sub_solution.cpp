@@ -9,10 +9,11 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::size_t kBand = 16;  // nodes of the search between two looks at what exceeds its limits
-constexpr int kMostRounds = 60;    // of lowering what exceeds behind the front; more are for the check to see
-constexpr float kSlack = 5e-4F;    // that a triangle may exceed its limits by
-constexpr double kWithin = 1.02;   // of the cost known: the nodes that are searched lie within it
+constexpr std::size_t kBand = 16;  // nodes taken by the search between two checks of the limits
+// Rounds of lowering behind the front; remaining violations are left to provenBy().
+constexpr int kMostRounds = 60;
+constexpr float kSlack = 5e-4F;   // relative tolerance of a triangle's limits
+constexpr double kWithin = 1.02;  // nodes within this multiple of the known cost are searched
 
 MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way way) {
   return {.way = way,
@@ -43,7 +44,7 @@ const TrianglePrices* SubSolution::pricesOf(maps::Cell cell) const noexcept {
   return slot == MeshPrices::kNone ? nullptr : &prices_.of(slot);
 }
 
-// No proof rests on these values.
+// The proof does not depend on these values.
 void SubSolution::seedStart() {
   const auto cell = mesh().grid().cellAt(parts_.places.from);
   if (!cell || prices_.slotOf(*cell) == MeshPrices::kNone) return;
@@ -57,7 +58,8 @@ void SubSolution::seedDisc() {
       for (const std::uint32_t node : mesh().nodesOf(cell)) to_goal_.lower(node, 0.0F);
 }
 
-// A plane in the goal's cell, 0 at the goal, that falls along the straight line from the start as the limits allow.
+// Seeds the goal's cell with a plane: 0 at the goal, falling along the straight line from the start at the
+// limits.
 void SubSolution::seedPlane() {
   const maps::Point goal = parts_.places.to;
   const auto cell = mesh().grid().cellAt(goal);
@@ -81,9 +83,10 @@ void SubSolution::seedPlane() {
   }
 }
 
-// Caps what exceeds behind the front until nothing does; false when stopped.
+// Caps violations behind the front until none is left or kMostRounds is reached. Returns false when stopped.
 bool SubSolution::settle(bool all) {
-  // Triangles that the front has not passed change when it does; those that it never will are for the end.
+  // Triangles that the front has not passed change later; triangles that the front never passes are checked
+  // at the end.
   if (all)
     for (std::size_t slot = 0; slot < prices_.slots(); ++slot)
       to_goal_.change(static_cast<std::uint32_t>(slot));
@@ -93,8 +96,8 @@ bool SubSolution::settle(bool all) {
   return true;
 }
 
-// Whether anything was lowered, where a triangle exceeded a limit. Of triangles that the front has not passed only if all
-// are asked for.
+// Caps and relaxes triangles that exceed a limit. Returns true if any value was lowered. Triangles that the
+// front has not passed completely are included only if `all` is true.
 bool SubSolution::lowerExcess(bool all) {
   std::vector<std::pair<std::uint32_t, std::size_t>> over;
   for (const std::uint32_t slot : to_goal_.takeChanged()) {
@@ -115,7 +118,7 @@ bool SubSolution::lowerExcess(bool all) {
   return lowered;
 }
 
-// Where ways from a side to the node opposite fall by too much.
+// Adds caps for motions from a side to the opposite node whose fall exceeds their cost.
 void SubSolution::cap(std::uint32_t slot, std::size_t triangle) {
   const CellMesh::Nodes all = mesh().nodesOf(prices_.cellOf(slot));
   const std::array<std::uint32_t, 3> nodes{all[triangle], all[CellMesh::next(triangle)],

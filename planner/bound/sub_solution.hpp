@@ -12,43 +12,46 @@
 
 namespace talus::planner {
 
-/// A function over the nodes of a CellMesh, linear on each triangle, that comes close to the cost to the goal from
-/// below: no metre along any heading takes more of it than the HeadingLimits of its cell. Then no route between two
-/// places, of any shape, costs less than the function falls between them. What it proves, provenBy() verifies.
+/// Subsolution of the Hamilton-Jacobi equation of the drive cost: a function over the nodes of a CellMesh,
+/// linear on each triangle, that approximates the cost to the goal from below. Along every heading the
+/// function changes per metre by at most the HeadingLimits of the cell. No route between two places, of any
+/// shape, then costs less than the difference of the function's values. provenBy() verifies the resulting
+/// bound.
 ///
-/// How (ours). A search from the goal gives each node the least that the triangles about it allow, over the headings
-/// to the side opposite of the node. Where the function rises from a node to two sides at once, as it does around the goal,
-/// around corners of obstacles and beside ways that are cheaper than the ground about them, headings that lead from a side
-/// to the node opposite fall by more than their price. There the ends of the side are capped, one the less the more the
-/// other is, and what follows is searched again. Of the pairs of caps that hold the limits that one is taken which leaves
-/// the way that routes from the start take: by a search from the start, whose level lines keep these very limits. This is
-/// done behind the front, every kBand nodes, so that what lies ahead is searched from values that hold.
+/// Method (ours, not from the literature). A search from the goal gives each node the lowest value that the
+/// adjacent triangles allow, over the headings from the node to the opposite side. At some nodes the function
+/// rises towards two sides at once: around the goal, around corners of obstacles and beside corridors of low
+/// cost. There, headings from a side to the opposite node fall by more than their cost. The end values of
+/// such a side are capped relative to the opposite node (a lower cap of one end permits a higher cap of the
+/// other), and the affected nodes are searched again. Of the admissible pairs of caps, the pair closest to
+/// the values of a search from the start is taken, because that search respects the same limits. Caps are
+/// added behind the front after every kBand nodes, so that the search ahead starts from valid values.
 class SubSolution {
  public:
   struct Parts {
     std::shared_ptr<const costmap::CostGrid> map;
     Segment places;
     double goal_tolerance_m = 0.0;
-    double known_J;     ///< of some route: no dearer one matters; infinite where none is known
-    double cheapest_J;  ///< of a metre, anywhere on the map, > 0
+    double known_J;     ///< cost of a known route: costlier routes are ignored; infinite if none is known
+    double cheapest_J;  ///< lower bound of the cost per metre on the whole map, > 0
   };
 
-  /// Searches at once.
+  /// Runs the search.
   SubSolution(const Parts& parts, const StopCheck& stop);
 
   /// False when stopped.
   bool complete() const noexcept { return complete_; }
 
-  static constexpr float kFar = MeshSearch::kFar;  ///< of a node that was not reached
+  static constexpr float kFar = MeshSearch::kFar;  ///< value of a node that was not reached
 
   const CellMesh& mesh() const noexcept { return prices_.mesh(); }
   float at(std::uint32_t node) const noexcept { return to_goal_.at(node); }
-  /// The solution consists of the triangles that have an inner node.
+  /// True for an expanded node. The solution consists of the triangles with an inner node.
   bool inner(std::uint32_t node) const noexcept { return to_goal_.expanded(node); }
-  /// Prices of the cell; null where the search did not come, and where no heading is allowed.
+  /// Costs of a cell; null for cells not searched and cells without an allowed heading.
   const TrianglePrices* pricesOf(maps::Cell cell) const noexcept;
 
-  /// A way from start to goal near the cheapest of all headings, turns left out, as meshRoute() has it.
+  /// Near-optimal route from start to goal over all headings, without turn costs; see meshRoute().
   Polyline way() const { return meshRoute(MotionCost(parts_.map), from_start_, mesh(), parts_.places); }
 
  private:

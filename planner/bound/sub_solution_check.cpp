@@ -16,14 +16,15 @@ double value(const SubSolution& u, std::uint32_t node) noexcept {
   return static_cast<double>(u.at(node));
 }
 
-// The largest ratio of what a side's length along a heading takes of the solution and the limit, in one cell.
+// Largest ratio, in one cell, of the solution's fall over a side's length along a heading to the heading's
+// limit.
 double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const TrianglePrices& limits) noexcept {
   static constexpr std::array<std::array<double, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   double worst = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t l = CellMesh::next(k);
     if (!u.inner(nodes[k]) && !u.inner(nodes[l]) && !u.inner(nodes[CellMesh::kMiddle])) continue;
-    // The gradient from the differences to the middle.
+    // Gradient from the corner values relative to the centre's value.
     const double ax = kCorners[k][0] - 0.5, ay = kCorners[k][1] - 0.5, bx = kCorners[l][0] - 0.5,
                  by = kCorners[l][1] - 0.5, det = ax * by - bx * ay;
     const double a = value(u, nodes[k]) - value(u, nodes[CellMesh::kMiddle]),
@@ -39,7 +40,7 @@ double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const Triangl
   return worst;
 }
 
-// The solution at a place, where it has one.
+// Value of the solution at a place; empty outside the solution.
 std::optional<double> valueAt(const SubSolution& u, Point place) {
   const maps::Grid& grid = u.mesh().grid();
   const auto cell = grid.cellAt(place);
@@ -49,7 +50,7 @@ std::optional<double> valueAt(const SubSolution& u, Point place) {
   const double x = (place.x_m - middle.x_m) / grid.resolution_m,
                y = (place.y_m - middle.y_m) / grid.resolution_m;
   const std::size_t k = std::abs(y) >= std::abs(x) ? (y < 0.0 ? 0 : 2) : (x > 0.0 ? 1 : 3);
-  const double out = 2.0 * std::max(std::abs(x), std::abs(y));  // from the middle to the side
+  const double out = 2.0 * std::max(std::abs(x), std::abs(y));  // 0 at the centre, 1 on the side
   const std::array<double, 4> along{x, y, -x, -y};
   const double second = 0.5 * out + along[k], first = out - second;
   const std::uint32_t a = nodes[k], b = nodes[CellMesh::next(k)], m = nodes[CellMesh::kMiddle];
@@ -57,7 +58,7 @@ std::optional<double> valueAt(const SubSolution& u, Point place) {
   return first * value(u, a) + second * value(u, b) + (1.0 - out) * value(u, m);
 }
 
-// The most that the solution is where a route may end.
+// Largest value of the solution among the places where a route may end.
 std::optional<double> atGoal(const SubSolution& u, const SubSolution::Parts& parts) {
   if (parts.goal_tolerance_m <= 0.0) return valueAt(u, parts.places.to);
   double most = std::numeric_limits<double>::lowest();

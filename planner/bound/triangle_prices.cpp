@@ -11,8 +11,8 @@ constexpr std::size_t kHeadingCount = HeadingLimits::kHeadings;
 constexpr std::size_t kQuarter = kHeadingCount / 4;
 constexpr std::size_t kEighth = kHeadingCount / 8;
 
-// Along the headings of an angle of a triangle: how far the opposite side is, in sides of a cell, and at which share
-// of that side it is met.
+// For each heading within one angle of a triangle: distance to the opposite side [cell sides], and the
+// position on that side where the heading meets the side [0, 1].
 template <std::size_t kCount>
 struct Fan {
   std::array<float, kCount> share, length;
@@ -20,7 +20,7 @@ struct Fan {
 
 constexpr double kTurn = 2.0 * std::numbers::pi / kHeadingCount;
 
-// From a corner, from its side of the cell towards the middle.
+// Headings out of a corner, from the cell's side towards the centre.
 const Fan<kEighth + 1>& cornerFan() noexcept {
   static const auto fan = [] {
     Fan<kEighth + 1> made;
@@ -35,7 +35,7 @@ const Fan<kEighth + 1>& cornerFan() noexcept {
   return fan;
 }
 
-// From the middle, from the first corner of a triangle to the second.
+// Headings out of the centre, from the first corner of a triangle to the second.
 const Fan<kQuarter + 1>& middleFan() noexcept {
   static const auto fan = [] {
     Fan<kQuarter + 1> made;
@@ -51,7 +51,7 @@ const Fan<kQuarter + 1>& middleFan() noexcept {
   return fan;
 }
 
-// From the headings out of a node to those into it.
+// Index offset from headings out of a node to headings into the node.
 constexpr std::size_t turnOf(TrianglePrices::Way way) noexcept {
   return way == TrianglePrices::Way::FromNode ? 0 : kHeadingCount / 2;
 }

@@ -10,11 +10,11 @@
 
 namespace talus::planner {
 
-/// What a side's length of a cell costs at least by heading, and what follows for a function that is linear on each
-/// of the cell's triangles (CellMesh). Triangles are numbered by their first corner.
+/// Lower bounds of the cost of one cell side by heading, and the resulting limits for a function that is
+/// linear on each triangle of the cell (CellMesh). Triangles are numbered by their first corner.
 struct TrianglePrices {
   static constexpr std::size_t kStored = HeadingLimits::kHeadings + 12;
-  std::array<float, kStored> prices;  ///< the first ones again at the end
+  std::array<float, kStored> prices;  ///< by heading; the first 12 are repeated at the end
 
   enum class Way : std::uint8_t { FromNode, ToNode };
 
@@ -25,26 +25,27 @@ struct TrianglePrices {
     float first, second, middle;
   };
 
-  /// The most that one node may have, the other two being as they are: the least over the ways between it and the
-  /// side opposite, both ends included, of the value there and the way's price; from the node to the side, or, with
-  /// Way::ToNode, from the side to the node.
+  /// Largest value that one node may have for given values of the other two: the minimum, over the motions
+  /// between the node and the opposite side (ends included), of the value on the side plus the motion's cost.
+  /// Motions lead from the node to the side, or with Way::ToNode from the side to the node.
   float first(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float second(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float middle(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
 
-  /// Of the two nodes opposite of a node: the most that they may lie above it.
+  /// Largest rise of the two opposite nodes above a node.
   struct Rise {
     float a, b;
   };
-  /// Where some way from the side opposite to a node falls by more than its price: what the side's ends, in the order of
-  /// Values, may lie above the node so that none does, no more than they do; of all such pairs the one in which the first
-  /// end comes nearest to `wanted` of it.
+  /// Limits of a side's ends above the opposite node such that no motion from the side to the node falls by
+  /// more than its cost. Empty if no motion exceeds its cost. Neither limit exceeds the present rise. Of all
+  /// admissible pairs, the pair whose first end is closest to `wanted` is returned; ends are in the order of
+  /// Values.
   std::optional<Rise> lowered(std::size_t triangle, std::size_t node, const Values& values, float wanted,
                               float slack) const noexcept;
 
-  /// By how much a side's length falls along x and y.
+  /// Fall over one cell side along x and y.
   static costmap::Direction fall(std::size_t triangle, const Values& values) noexcept;
-  /// Whether some heading falls more than `share` of its price.
+  /// Returns true if the fall along some heading exceeds `share` times its cost.
   bool exceeds(const costmap::Direction& fall, float share) const noexcept;
 };
 

@@ -13,7 +13,7 @@
 #include <talus/common/input_error.hpp>
 #include <talus/planner/c/session.hpp>
 
-/// The border to C: sizes and pointers are checked here, and what is thrown behind it becomes a code and a line.
+/// Boundary to C: checks sizes and pointers, and converts exceptions to a code and a one-line message.
 namespace talus::border {
 
 using planner::Session;
@@ -35,7 +35,7 @@ struct Busy : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs what a call does. An invalid argument or input is the caller's.
+/// Runs a call. Invalid arguments and input return TALUS_BAD_INPUT, other exceptions TALUS_FAILURE.
 template <typename Work>
 talus_code guarded(talus_error* error, const Work& work) noexcept {
   try {
@@ -67,7 +67,7 @@ inline void requirePointer(const void* pointer, const char* name) {
   require(pointer != nullptr, std::string(name) + " is NULL; pass one");
 }
 
-/// A structure of this version.
+/// Returns the structure. Throws std::invalid_argument if its size is not that of this version.
 template <typename T>
 const T& read(const T* given, const char* name) {
   requirePointer(given, name);
@@ -83,7 +83,8 @@ inline std::shared_ptr<Session> open(talus_session number) {
   return session;
 }
 
-/// A session for one call alone; the one that the number has once it is held, since talus_move() replaces it.
+/// Exclusive access to a session for one call. Reads the session again after locking, because talus_move()
+/// may have replaced it.
 struct Held {
   explicit Held(talus_session number) {
     do {

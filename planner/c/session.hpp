@@ -11,7 +11,7 @@
 
 namespace talus::planner {
 
-/// What a session of the C interface holds. `work` is held while a call changes or reads it.
+/// Data of a session of the C interface. `work` is locked while a call reads or changes the session.
 struct Session {
   explicit Session(costmap::TraversabilityMap built)
       : map(std::move(built)), intake(map, nullptr, {.settles = true}) {}
@@ -22,11 +22,11 @@ struct Session {
   Route route;
   std::mutex work;
 
-  /// A token for the plan that begins now.
+  /// Stop token for a plan that begins now.
   std::stop_token begin();
-  /// Requests the stop of the plan that runs, if one does.
+  /// Requests a stop of the running plan, if any.
   void cancel();
-  /// The same, and of every plan that begins from now on.
+  /// Requests a stop of the running plan and of every later plan.
   void end();
 
  private:
@@ -35,15 +35,15 @@ struct Session {
   bool ended_ = false;
 };
 
-/// Sessions by number: C can hold no pointer that this side knows to be dead. Thread-safe.
+/// Sessions by number, so that a C program holds no pointer that may dangle. Thread-safe.
 class Sessions {
  public:
   std::uint64_t add(std::shared_ptr<Session> session);
-  /// Null for a number that never was or is no longer.
+  /// Null for a number that was never used or was removed.
   std::shared_ptr<Session> find(std::uint64_t number) const;
-  /// Puts another session in the place of one; false, and nothing is done, where there is none.
+  /// Replaces the session of a number. Returns false, without a change, if the number is not in use.
   bool replace(std::uint64_t number, std::shared_ptr<Session> session);
-  /// As find(), and forgets it.
+  /// Returns a session as find() and removes it.
   std::shared_ptr<Session> remove(std::uint64_t number);
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 using namespace talus::border;
 
-// Ranges of what is read from files hold here, too.
+// Limits that also apply to values read from files.
 constexpr double kFarthest_m = 1e9, kFinest_m = 1e-3, kCoarsest_m = 1e6;
 constexpr std::int64_t kMostCells = 400'000'000;
 
@@ -123,8 +123,8 @@ talus_session opened(talus::costmap::TraversabilityMap map, std::unique_ptr<talu
   return sessions().add(std::move(made));
 }
 
-// A channel that is dead or says the impossible is judged with the moment that it belongs to: its neighbours may speak
-// of danger.
+// A missing or impossible value does not remove the row: the other values of the moment are still checked for
+// danger.
 talus::terramech::Telemetry telemetryOf(const talus_wheel* rows, std::size_t count) {
   talus::terramech::Telemetry t;
   t.source = "talus_learn";
@@ -150,7 +150,7 @@ talus::terramech::Telemetry telemetryOf(const talus_wheel* rows, std::size_t cou
   return t;
 }
 
-// A layer counts where it is not known as dear as the dearest that is.
+// Unknown cells of a layer have the highest finite cost of the layer.
 talus::costmap::CostLayer costOf(const talus_cost_layer& given, const talus::maps::Grid& grid) {
   const talus_cost_layer& layer = read(&given, "cost layer");
   requirePointer(layer.name, "cost layer: name");

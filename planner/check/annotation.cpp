@@ -21,16 +21,16 @@ namespace {
 using costmap::Direction;
 using maps::Point;
 
-// Vertices nearer together than this share of a cell are one.
+// Vertices closer than this share of a cell are merged.
 constexpr double kTogether = 1e-2;
 
-// Of a cell: shorter pieces are rounding, of a vertex on a side, and tell nothing of the cell that follows.
+// [cells] Shorter pieces result from rounding of a vertex on a cell side and are ignored.
 constexpr double kRounding = 1e-9;
 
-// Shares of a segment at which it passes from cell to cell, both ends included, sorted.
+// Sorted shares of a segment at which it crosses from cell to cell, including 0 and 1.
 std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   std::vector<double> shares{0.0, 1.0};
-  // Only lines of the map: what lies outside of it, however far, is one piece.
+  // Only grid lines of the map: a section outside the map is one piece.
   const auto add = [&](double from, double to, int lines) {
     const double first = std::max(std::ceil(std::min(from, to)), 0.0);
     const double last = std::min(std::max(from, to), static_cast<double>(lines));
@@ -46,8 +46,8 @@ std::vector<double> passages(const maps::Grid& grid, const Segment& motion) {
   return shares;
 }
 
-// How a straight piece belongs to a drive. `heading`: of the pose on it, since the ends of the least of chords tell
-// none.
+// Drive properties of a straight piece. `heading` is the heading of the pose on a chord; the ends of a very
+// short chord do not determine a heading.
 struct Motion {
   bool reverse = false;
   double curvature_1_m = 0.0;
@@ -95,7 +95,7 @@ class Annotator {
     length_m_ += length_m;
   }
 
-  // A turn in place, or the turning of an arc.
+  // A turn in place, or the change of heading along an arc.
   void turn(double turn_rad, Point place) {
     const auto cell = grid_.cellAt(place);
     const TurnPrices& prices =
@@ -104,7 +104,7 @@ class Annotator {
     spend(in_place ? prices.in_place : prices.on_arc, std::abs(turn_rad));
   }
 
-  // The vertex at which the rover stands and turns.
+  // Adds the vertex at which the rover stops and turns in place.
   void stand(const Pose& pose, double turn_rad) {
     how_ = {};
     RouteVertex vertex =
@@ -117,7 +117,7 @@ class Annotator {
     turn(turn_rad, pose.place);
   }
 
-  // Between two legs of a polyline.
+  // Adds the turn between two legs of a polyline.
   void vertex(Point at, Direction from, Direction to) {
     const auto cell = grid_.cellAt(at);
     if (!cell) return;
@@ -156,7 +156,7 @@ class Annotator {
   std::vector<RouteVertex> vertices;
 
  private:
-  // What holds in the cell of `inside` for the heading, at the place `at`.
+  // Vertex at `at` with the properties of the cell that contains `inside`, for the heading.
   RouteVertex looked(Point inside, Point at, Direction heading) {
     RouteVertex vertex;
     vertex.x_m = at.x_m;
@@ -195,20 +195,22 @@ class Annotator {
            std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) < kTogether * grid_.resolution_m;
   }
 
-  // Whether the rover may drive from one vertex straight past another, which it reaches and leaves the same way.
+  // Returns true if the rover may drive straight from vertex `from` past `passed`, reached and left in the
+  // same direction.
   bool maySkip(const RouteVertex& from, const RouteVertex& passed, Point to) const {
     return from.turn_rad == 0.0 && from.reverse == passed.reverse &&
            std::isfinite(cost_({{from.x_m, from.y_m}, to}));
   }
 
-  // Whether the last vertex, a chord of a drive too short to tell a heading, may stand for the motion that follows.
+  // Returns true if the last vertex, a chord too short to determine a heading, may represent the following
+  // motion.
   bool tellsOf(const Segment& motion) const {
     return how_.heading && turns_ > 0 && turns_ == vertices.size() && isLeast(vertices.back(), motion.from) &&
            vertices.back().reverse == how_.reverse &&
            std::isfinite(cost_({{vertices.back().x_m, vertices.back().y_m}, motion.to}));
   }
 
-  // What holds behind it now; where it is and what was spent until there stays.
+  // Assigns the properties of `next` to `vertex`; position and accumulated quantities of `vertex` are kept.
   static void moveTo(RouteVertex& vertex, RouteVertex next) {
     next.x_m = vertex.x_m;
     next.y_m = vertex.y_m;
@@ -219,7 +221,7 @@ class Annotator {
     vertex = next;
   }
 
-  // Turns stay; where the route only enters another cell next to one, the turn is enough.
+  // Removes vertices close to the new one, except turns: a turn replaces a nearby entry into another cell.
   void leaveOutNear(const RouteVertex& vertex) {
     const auto near = [&](const RouteVertex& other) {
       return std::hypot(vertex.x_m - other.x_m, vertex.y_m - other.y_m) < kTogether * grid_.resolution_m;
@@ -256,9 +258,9 @@ class Annotator {
   const AnnotationInput& input_;
   const maps::Grid& grid_;
   MotionCost cost_;
-  std::size_t turns_ = 0;  // vertices up to the last at which the route turns, or begins
+  std::size_t turns_ = 0;  // number of vertices up to the last turn or the beginning
   Motion how_;
-  costmap::DriveState state_;  // of the cell looked at last
+  costmap::DriveState state_;  // of the cell of the latest looked()
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
          max_slope_rad_ = 0.0, max_slope_across_rad_ = 0.0, max_slip_angle_rad_ = 0.0;
 };
@@ -301,9 +303,10 @@ void polylineAlong(const Polyline& points, Annotator& annotator) {
 
 namespace {
 
-// Vertices hold the additive hazard until here: right where nothing is known of how doubts hang together.
+// Replaces the additive risk of the vertices by the simulated risk if the cost has a correlation length of
+// the soil.
 void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
-  constexpr int kWorlds = 400;  // some ten per cent of the risk
+  constexpr int kWorlds = 400;  // standard error of the risk about 10 %
   if (!(map.cost().doubt().correlation_length_m > 0.0)) return;
   RouteRiskOptions options = riskOptions(map);
   options.worlds = kWorlds;

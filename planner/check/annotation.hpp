@@ -13,31 +13,32 @@
 
 namespace talus::planner {
 
-/// What a bare polyline is annotated from.
+/// Input of annotated() beside the plan.
 struct AnnotationInput {
   const costmap::CostGrid& map;
-  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< none: the map's own
-  std::string planner = {};                                                 ///< its name, for the summary
-  Kinematics kinematics = {};                                               ///< prices of turning, for drives
-  ProgressMonitor watch = {};  ///< when stopped, the risk of a long route is not drawn
+  std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;  ///< null: the map's elevation
+  std::string planner = {};                                                 ///< planner's name for the
+                                                                            ///< summary
+  Kinematics kinematics = {};                                               ///< costs of turning, for drives
+  ProgressMonitor watch = {};  ///< when stopped, the risk of a long route is not simulated
 };
 
-/// The plan as a route for reports and controllers: a vertex at each turn and wherever the route enters
-/// another cell, so that slope, slip and soil of a vertex hold exactly until the next one. Energy and
-/// time are integrals of DriveCost::detail along the plan; the risk is riskAlong() of it, or 1 - exp(-sum of
-/// hazard rate times length) on maps whose cost does not state how uncertain soil is correlated (SoilDoubt). Of a long
-/// route that a stop left undrawn it is riskBoundAlong(), and the route is `interrupted`. A
-/// polyline that may not be driven is annotated, too: its cost is infinite, energy and time
-/// count what the map provides. A drive has a vertex more wherever an arc is cut into chords, but none for a chord of
-/// less than a hundredth of a cell where the way past it may be driven, and two where the rover turns in place; turning
-/// counts. Status and reason are the plan's.
+/// Converts a plan to a route for reports and controllers. The route has a vertex at each turn and at each
+/// entry into another cell; slope, slip and soil of a vertex apply until the next vertex. Energy and time are
+/// integrals of DriveCost::detail() along the plan. The risk is that of riskAlong(), or 1 - exp(-sum of
+/// hazard rate times length) on maps whose cost has no correlation length of the soil (SoilDoubt). If a stop
+/// ends the simulation of a long route, the risk is that of riskBoundAlong(), and the route is marked
+/// `interrupted`. A polyline that is not allowed is annotated, too: its cost is infinite, its energy and time
+/// include only the cells with finite values. A drive has an additional vertex at each chord of an arc,
+/// except for chords shorter than a hundredth of a cell that can be skipped, and two vertices at each turn in
+/// place; energy and time include turns. Status and reason are those of the plan.
 Route annotated(const Plan& plan, const AnnotationInput& input);
 
-/// annotated(), once what was found has no violations(), neither of its line nor of its drive where it has one; else NoneFound
-/// with the first of them, and the route as Route::refused.
+/// Returns the annotated() route if the plan is not Found or has no violations(). Otherwise returns a
+/// route with status NoneFound, the first violation as reason, and the annotated route in Route::refused.
 Route checkedRoute(const Plan& plan, const AnnotationInput& input);
 
-/// cost / lower bound - 1; 0 where both are 0, infinite for a bound of 0.
+/// Optimality gap cost / lower_bound - 1: 0 if both are 0, infinite if only the lower bound is 0.
 double gapOf(double cost, double lower_bound) noexcept;
 
 }  // namespace talus::planner

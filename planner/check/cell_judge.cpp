@@ -42,7 +42,7 @@ CellJudgement CellJudge::of(costmap::CellCode cell) {
   if (!allowed.all()) return {.kind = Kind::Restricted};
   float dearest = 0.0F;
   for (const HeadingCost& cost : headings_->costs) dearest = std::max(dearest, cost(cell));
-  // A heading that is refused by itself, within the rounding by which arcs are widened.
+  // A single refused heading, within the rounding by which allowed arcs are widened.
   if (!std::isfinite(dearest)) return {.kind = Kind::Restricted};
   return {.kind = Kind::Open, .dearest_J_per_m = dearest};
 }

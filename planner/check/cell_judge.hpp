@@ -8,30 +8,32 @@
 
 namespace talus::planner {
 
-/// What a cell is to a planner that knows no headings.
+/// Summary of a cell for a planner without headings.
 struct CellJudgement {
+  /// Restriction of the allowed headings.
   enum class Kind : std::uint8_t {
-    Unknown,     ///< not observed, and the map's policy does not drive there
-    Refused,     ///< refused in every heading
-    Restricted,  ///< refused in some headings
-    Open         ///< allowed in every heading
+    Unknown,     ///< not observed, and not drivable under the map's policy
+    Refused,     ///< no heading is allowed
+    Restricted,  ///< some headings are not allowed
+    Open         ///< every heading is allowed
   };
   Kind kind = Kind::Unknown;
-  /// Of a metre in the dearest of 64 headings [J/m]; infinite unless Open.
+  /// Highest cost per metre of 64 headings [J/m]; infinite unless Open.
   float dearest_J_per_m = std::numeric_limits<float>::infinity();
 };
 
-/// Judges cells under the drive cost of a map. Which headings are allowed is exact (allowedHeadings()). What was asked is kept by
-/// code for the next cell. Not thread-safe.
+/// Summarises cells under the drive cost of a map. The allowed headings are exact (allowedHeadings()) and
+/// cached by cell code. Not thread-safe.
 class CellJudge {
  public:
-  /// Throws std::invalid_argument without a cost.
+  /// Throws std::invalid_argument if the cost is null.
   explicit CellJudge(std::shared_ptr<const costmap::DriveCost> cost);
   ~CellJudge();
 
+  /// Restriction and cost of a cell.
   CellJudgement of(costmap::CellCode cell);
 
-  /// Of a metre on level ground of the cheapest kind [J/m]; infinite where none may be driven.
+  /// Lowest cost per metre on level ground over all curves [J/m]; infinite if level driving is not allowed.
   float level_J_per_m() const noexcept { return level_J_per_m_; }
 
  private:

@@ -12,9 +12,9 @@ namespace {
 
 using maps::Point;
 
-constexpr int kBellyParts = 6;  // of the belly, along and across
+constexpr int kBellyParts = 6;  // sections of the belly along and across
 constexpr int kTightenings = 4;
-constexpr double kStep = 0.1;  // between the poses looked at along a motion, of the wheelbase
+constexpr double kStep = 0.1;  // spacing of the poses checked along a motion [wheelbases]
 
 double asine(double sine) noexcept {
   return std::asin(std::clamp(sine, -1.0, 1.0));
@@ -55,8 +55,8 @@ Chassis::Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover&
           {rover.wheelbase_m * (0.5 - static_cast<double>(k) / (axles - 1)), side * rover.track_m});
 }
 
-// Rise of the ground under the rover, from the heights at the ends of a cross; level where one is not known.
-// Any plane would do for the bounds to hold; a near one makes them tight.
+// Plane of the ground under the rover, from the heights at the ends of a cross; level if a height is unknown.
+// The bounds hold for any plane; a close plane makes them tight.
 Chassis::Plane Chassis::planeUnder(const Pose& pose) const {
   const double arm_m = std::max(reach_m_, 0.5 * elevation_m_.grid().resolution_m);
   const auto height = [&](double dx, double dy) {
@@ -67,8 +67,8 @@ Chassis::Plane Chassis::planeUnder(const Pose& pose) const {
   return {pose.place, std::isfinite(east) ? east : 0.0, std::isfinite(north) ? north : 0.0};
 }
 
-// Least and greatest height of the bilinear surface above a plane over a square: on each patch between four
-// middles both lie at corners of what the square shares with it.
+// Smallest and largest height of the bilinear surface above a plane over a square. On each patch between four
+// cell centres, both extremes lie at corners of the intersection of the square and the patch.
 std::optional<Bounds> Chassis::above(const Plane& plane, Point middle, double reach_m) const {
   const maps::Grid& grid = elevation_m_.grid();
   const auto inCells = [&](double metres, double corner) {
@@ -97,17 +97,16 @@ std::optional<Bounds> Chassis::above(const Plane& plane, Point middle, double re
   return found;
 }
 
-// How far a point of the body, at the height of the contacts, moves in the map plane while the body tilts:
-// the long axis shortens to cos(pitch); the cross axis, perpendicular to it, also swings ahead by tan(pitch)
-// sin(roll).
+// Horizontal displacement of a point of the body at contact height when the body tilts: the long axis
+// shortens to cos(pitch); the cross axis, perpendicular to it, also swings forward by tan(pitch) sin(roll).
 double Chassis::moves_m(double x_m, double y_m, const Tilt& tilt) noexcept {
   const double rise = std::sin(tilt.roll_rad), swing = std::tan(tilt.pitch_rad) * rise;
   const double side = std::sqrt(std::max(0.0, 1.0 - rise * rise - swing * swing));
   return std::abs(x_m) * (1.0 - std::cos(tilt.pitch_rad)) + std::abs(y_m) * (swing + 1.0 - side);
 }
 
-// A shift of the whole rover lifts all of it alike along the plane, so only what leaves the plane counts
-// then.
+// A shift of the whole rover raises all wheels equally along the plane, so only deviations from the plane are
+// added for a shift.
 std::optional<Chassis::Heights> Chassis::heights(const Place& place, const Tilt& tilt) const {
   Heights z;
   for (const Wheel& wheel : wheels_) {
@@ -121,9 +120,9 @@ std::optional<Chassis::Heights> Chassis::heights(const Place& place, const Tilt&
   return z;
 }
 
-// Three wheels carry, two of them on one side: the rise between those two is the rise of the long axis. The
-// third lies across from a point of the line through them, which is nowhere below the ground and nowhere
-// above the highest such line.
+// Three wheels carry the rover, two of them on one side; the rise between these two wheels is the rise of the
+// long axis. The third wheel lies opposite a point of the line through the first two, which is nowhere below
+// the ground and nowhere above the highest such line.
 Stance Chassis::rigid(const Heights& z) const {
   Bounds pitch = nothing(), roll = nothing();
   const std::size_t axles = wheels_.size() / 2;
@@ -153,8 +152,9 @@ Stance Chassis::rigid(const Heights& z) const {
   return {.pitch_rad = pitch, .roll_rad = roll};
 }
 
-// The bogie's pivot lies half way between front and middle wheel, the body's a third of the way from there to
-// the rear: at the mean of the three wheels of its side. The body pitches by the mean of both rockers.
+// The bogie pivot lies midway between front and middle wheel, the body pivot a third of the way from the
+// bogie pivot to the rear wheel, at the mean of the three wheels of its side. The body's pitch is the mean of
+// both rockers' pitch.
 Stance Chassis::rockerBogie(const Heights& z) const {
   const double rocker_m = 0.75 * rover_.wheelbase_m;
   Stance stance;
@@ -170,8 +170,8 @@ Stance Chassis::rockerBogie(const Heights& z) const {
   return stance;
 }
 
-// The least that parts of the belly stand above the ground that they can be above; `under` tells the height
-// of the plane of contacts below a point of the body, at least.
+// Lower bound of the height of the belly's sections above the ground below them. `under(x, y)` returns a
+// lower bound of the height of the contact plane at a point of the body.
 template <typename Under>
 std::optional<double> Chassis::clearance(const Place& place, const Tilt& tilt, Under under) const {
   const double length_m = rover_.wheelbase_m / kBellyParts, width_m = rover_.track_m / kBellyParts;
@@ -203,7 +203,8 @@ std::optional<Stance> Chassis::stance(const Pose& pose, const Slack& slack) cons
   Tilt tilt{rover_.max_pitch_rad, rover_.max_roll_rad};
   std::optional<Heights> z;
   Stance stance;
-  // Every stance within a tilt lies within the bounds that the tilt gives, and so within their tilt.
+  // Every stance within a tilt limit lies within the bounds computed from that limit, so the limit can be
+  // tightened to the bounds.
   for (int round = 0; round < kTightenings; ++round) {
     z = heights(place, tilt);
     if (!z) return std::nullopt;
@@ -218,7 +219,8 @@ std::optional<Stance> Chassis::stance(const Pose& pose, const Slack& slack) cons
   return stance;
 }
 
-// No wheel is below the ground, and the plane at a point of the belly is a mean of its corners.
+// No wheel is below the ground, and the contact plane at a point of the belly is a weighted mean of its
+// corners.
 std::optional<double> Chassis::underRigid(const Place& place, const Tilt& tilt, const Heights& z) const {
   const std::size_t last = z.size() - 2;
   return clearance(place, tilt, [&](double x, double y) {
@@ -254,7 +256,7 @@ std::vector<Violation> Chassis::violations(const PosePath& drive) const {
   std::vector<Violation> found;
   Pose pose = drive.start;
   for (const PosePath::Leg& leg : drive.legs) {
-    // No wheel goes further than the body's middle and its own circle about it.
+    // No wheel moves farther than the body's centre plus its own rotation about the centre.
     const double shift_m = std::abs(leg.arc.length_m);
     const double turn_m = reach_m_ * std::abs(leg.turn_rad + leg.arc.length_m * leg.arc.curvature_1_m);
     const double swept_m = shift_m + turn_m;

@@ -9,75 +9,77 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
-/// How a rover may stand on the ground along a motion: bounds that hold whatever its wheels find under them.
+/// Bounds of the attitude and clearance of a rover along a motion.
 namespace talus::planner {
 
-/// How the wheels hang on the body.
+/// Connection of the wheels to the body.
 enum class Suspension {
-  Rigid,        ///< wheels fixed to the body: it rests on three of them
-  RockerBogie,  ///< three axles: a bogie joins front and middle, a rocker the bogie and the rear; all touch
+  Rigid,        ///< wheels fixed to the body; the body rests on three wheels
+  RockerBogie,  ///< three axles: a bogie connects front and middle, a rocker the bogie and the rear; all
+                ///< wheels touch the ground
 };
 
 /// "rigid", "rocker-bogie".
 std::string_view name(Suspension suspension) noexcept;
 
-/// Both ends included.
+/// Closed interval.
 struct Bounds {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// What holds of a rover standing at a pose.
+/// Bounds of a rover standing at a pose.
 struct Stance {
   Bounds pitch_rad;          ///< of the body's long axis, nose up > 0
-  Bounds roll_rad;           ///< of its cross axis, left side up > 0
-  double clearance_m = 0.0;  ///< belly above ground, at least; < 0: it may touch
+  Bounds roll_rad;           ///< of the body's cross axis, left side up > 0
+  double clearance_m = 0.0;  ///< lower bound of the belly's height above ground; < 0: contact possible
 };
 
-/// Conservative stance of a rover over an elevation raster taken as bilinear between the middles of cells,
-/// after ACE (otsu_2019): the heights that each wheel may find, from the least and greatest ground in the box
-/// that its contact cannot leave while the body tilts within its limits; from them bounds of pitch, roll and
-/// the body's height; the belly held against the highest ground that each part of it can be above. Wheels are
-/// evenly spaced on two rows and touch at a point below their middle (their radius smooths what they cross,
-/// which the bounds do not make use of). Pitch and roll are those of the axes, asin of their rise; they hold
-/// as long as the body tilts within the rover's limits, the range they are used in. Immutable; safe to
-/// share between threads.
+/// Conservative stance of a rover over an elevation raster, interpolated bilinearly between cell centres,
+/// after ACE (otsu_2019). Bounds of each wheel's height are the lowest and highest ground in the box that its
+/// contact point cannot leave while the body tilts within its limits. Bounds of pitch, roll and body height
+/// follow from the wheel heights; the belly is compared with the highest ground below each of its sections.
+/// Wheels are evenly spaced in two rows and touch the ground at a point below their centre (the smoothing
+/// effect of the wheel radius is neglected). Pitch and roll are asin(rise) of the long and cross axes. The
+/// bounds are valid for tilts within the rover's limits. Immutable; safe to share between threads.
 class Chassis {
  public:
-  /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps the raster by reference.
+  /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps a reference to the raster.
+  /// The raster holds elevations [m]; NaN: unknown.
   Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover& rover, Suspension suspension);
 
-  /// How far poses may lie from one that stands for them: a shift of the whole rover, and what a turn moves
-  /// its farthest wheel by.
+  /// Distance of the represented poses from a pose: a shift of the whole rover, and the displacement of its
+  /// farthest wheel by a turn.
   struct Slack {
-    double shift_m = 0.0;
-    double turn_m = 0.0;
+    double shift_m = 0.0;  ///< >= 0
+    double turn_m = 0.0;   ///< >= 0
   };
 
-  /// Bounds at every pose within the slack of this one; nothing where the ground under the rover is not
-  /// known.
+  /// Bounds that apply to every pose within the slack; empty if the ground under the rover is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
+  /// Bounds at the pose itself.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }
 
-  /// Why the rover may not stand there; empty when it may.
+  /// Reason why the rover may not stand at the pose; empty if allowed.
   std::string_view refusal(const Pose& pose, const Slack& slack) const;
+  /// Reason for the pose itself.
   std::string_view refusal(const Pose& pose) const { return refusal(pose, {0.0, 0.0}); }
 
-  /// Violations along a drive, arcs and turns in place included, and along a polyline that turns in place at
-  /// its corners. Nothing between the poses looked at is missed: each stands for its surroundings.
+  /// Violations along a drive, including arcs and turns in place, and along a polyline with turns in place at
+  /// its corners. The slack of the checked poses covers every pose between them.
   std::vector<Violation> violations(const PosePath& drive) const;
   std::vector<Violation> violations(const std::vector<maps::Point>& route) const;
 
  private:
   struct Wheel {
-    double x_m, y_m;  // of the body
+    double x_m, y_m;  // in the body frame
   };
-  using Heights = std::vector<Bounds>;  // rows left and right, front axle first, alternating
+  using Heights = std::vector<Bounds>;  // left and right alternating, front axle first
   struct Tilt {
-    double pitch_rad, roll_rad;  // at most, either way
+    double pitch_rad, roll_rad;  // largest magnitudes
   };
 
-  // A plane through height 0 at a place.
+  // Plane of height 0 at a place.
   struct Plane {
     maps::Point origin;
     double east, north;  // rise over run

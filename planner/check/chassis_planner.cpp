@@ -11,13 +11,13 @@ namespace {
 
 using maps::Cell;
 
-constexpr std::size_t kMostClosed = 2000;  // cells around one violation
+constexpr std::size_t kMostClosed = 2000;  // largest number of cells closed around one violation
 
 std::vector<Violation> along(const Chassis& chassis, const Plan& plan) {
   return plan.drive.legs.empty() ? chassis.violations(plan.points) : chassis.violations(plan.drive);
 }
 
-// The way the route goes at the place.
+// Heading of the route at the place.
 double headingAt(const Plan& plan, maps::Point place) {
   double nearest_m = INFINITY, heading = 0.0;
   for (std::size_t i = 1; i < plan.points.size(); ++i) {
@@ -35,7 +35,7 @@ double headingAt(const Plan& plan, maps::Point place) {
 
 using Cells = std::set<std::pair<int, int>>;  // row, column
 
-// The cell and those it touches, and theirs, whose middle refuses the heading too.
+// Closes the cell and all cells connected to it at whose centre the chassis refuses the heading.
 void close(const maps::Grid& grid, const Chassis& chassis, const Pose& at, Cells& closed) {
   const auto first = grid.cellAt(at.place);
   if (!first || !closed.insert({first->row, first->column}).second) return;

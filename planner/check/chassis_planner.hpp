@@ -7,10 +7,10 @@
 
 namespace talus::planner {
 
-/// Plans until the chassis may stand everywhere along the route: where it may not, the cell and those around
-/// it that refuse the same heading are closed and planning is repeated, `most_rounds` times at most. Closing
-/// a cell to all headings may cost a way that another heading would have kept. NoneFound with the reason when
-/// none is left; StartInvalid where the rover may not stand at the start.
+/// Plans a route along which the chassis may stand everywhere. The cell of each violation and the connected
+/// cells that refuse the same heading are closed, and planning is repeated, at most `most_rounds` times. A
+/// cell is closed for all headings, so a route on another heading may be lost. Returns NoneFound with the
+/// reason if no route is left, and StartInvalid if the rover may not stand at the start.
 Plan planOnChassis(const Problem& problem, const Chassis& chassis,
                    const std::function<Plan(const Problem&)>& planner, int most_rounds = 100);
 

@@ -18,15 +18,15 @@ using costmap::Direction;
 using maps::Cell;
 using maps::Point;
 
-// Nearer to a corner or an edge than this share of a cell counts as on it.
+// Points closer to a corner or side than this share of a cell are on it.
 constexpr double kOn = 1e-6;
-// Headings asked for along an arc lie no further apart.
+// Largest spacing of the headings checked along an arc.
 constexpr double kApart_rad = 0.01;
 
 class Checker {
  public:
   explicit Checker(const CostGrid& map) : map_(map), side_m_(map.grid().resolution_m) {}
-  /// Hears of soil that is weaker than required with more than this probability, too.
+  /// Also reports soil that is weaker than required with a probability above `quantile`.
   Checker(const CostGrid& map, double quantile) : Checker(map) { quantile_ = quantile; }
 
   void segment(Point from, Point to) {
@@ -44,7 +44,7 @@ class Checker {
     }
   }
 
-  // All cells that a point touches, in the present heading.
+  // Checks all cells that a point touches, for the present heading.
   void touch(Point p) {
     std::optional<Cell> before;
     for (const double dx : {-2 * kOn, 2 * kOn})
@@ -55,7 +55,7 @@ class Checker {
       }
   }
 
-  // The cell that an end of the route belongs to.
+  // Checks the cell of an end of the route.
   void end(Point p) {
     if (map_.grid().cellAt(p)) place(p);
   }
@@ -66,7 +66,7 @@ class Checker {
     if (map_.at(*cell).curve() >= map_.cost().curves().size()) enter(*cell, p);
   }
 
-  // An arc: straight when it does not bend.
+  // An arc; checked as a segment if its change of heading is negligible.
   void arc(const Pose& from, const Arc& arc) {
     const Pose end = after(from, arc);
     if (std::abs(arc.curvature_1_m * arc.length_m) < 1e-9) return segment(from.place, end.place);
@@ -99,7 +99,8 @@ class Checker {
     }
   }
 
-  // The headings between two legs, the shorter way round: the rover passes them without driving, so that it may not tip.
+  // Checks the headings between two legs, the shorter way round: the rover passes these headings without
+  // driving, so it must not tip.
   void pivot(Point at, Point before, Point next) {
     const double in_rad = std::atan2(at.y_m - before.y_m, at.x_m - before.x_m),
                  turn_rad = std::remainder(std::atan2(next.y_m - at.y_m, next.x_m - at.x_m) - in_rad,
@@ -122,7 +123,7 @@ class Checker {
     found.push_back({where, std::move(reason)});
   }
 
-  // From here on, places lie so far along the route and beyond this one.
+  // Sets the origin of the distances along the route.
   void goOn(Point from, double along_m) noexcept {
     from_ = from;
     along_m_ = along_m;
@@ -145,11 +146,11 @@ class Checker {
     return offLine((p.x_m - corner.x_m) / side_m_) < kOn && offLine((p.y_m - corner.y_m) / side_m_) < kOn;
   }
 
-  // Shares of the segment at which it crosses a line between columns or rows, with both ends, sorted.
+  // Sorted shares of the segment at which it crosses lines between columns or rows, including both ends.
   const std::vector<double>& crossings(Point from, Point to) {
     std::vector<double>& cuts = cuts_;
     cuts.assign({0.0, 1.0});
-    // Beyond the map's edge no line divides anything.
+    // Lines beyond the map's edge are ignored.
     const auto add = [&cuts](double a, double b, int lines) {
       const double last = std::min(std::max(a, b), static_cast<double>(lines));
       for (double line = std::max(std::ceil(std::min(a, b)), 0.0); line <= last; line += 1.0)
@@ -162,8 +163,8 @@ class Checker {
     return cuts;
   }
 
-  // Shares of an arc at which it crosses a line between columns or rows, with both ends, sorted. With the
-  // centre of its circle at c, x = c_x + r sin(heading) and y = c_y - r cos(heading).
+  // Sorted shares of an arc at which it crosses lines between columns or rows, including both ends. With the
+  // centre c of the circle, x = c_x + r sin(heading) and y = c_y - r cos(heading).
   std::vector<double> crossings(const Pose& from, const Arc& arc) const {
     const double r = 1.0 / arc.curvature_1_m, turn = arc.length_m * arc.curvature_1_m;
     const Point centre{from.place.x_m - r * std::sin(from.heading_rad),
@@ -197,7 +198,7 @@ class Checker {
     return cuts;
   }
 
-  // The inside of a cell, or the line between two cells, both of which then count.
+  // Checks the inside of a cell, or both cells if the section runs along their common side.
   void stretch(Point middle) {
     const Point left{-heading_.y * 2 * kOn * side_m_, heading_.x * 2 * kOn * side_m_};
     bool inside = false;
@@ -233,12 +234,12 @@ class Checker {
 
   const CostGrid& map_;
   double side_m_;
-  double quantile_ = 1.0;  // 1: soil is not asked
+  double quantile_ = 1.0;  // 1: no check of the soil's strength
   Point from_;
   double along_m_ = 0.0;
   Direction heading_;
   std::optional<Cell> last_;
-  std::vector<double> cuts_;  // of the segment in hand
+  std::vector<double> cuts_;  // of the present segment
 };
 
 }  // namespace

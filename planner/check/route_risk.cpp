@@ -13,18 +13,20 @@
 namespace talus::planner {
 namespace {
 
-// Ground with a reserve beyond this many deviations fails in no world that is drawn.
+// Largest magnitude of the reliability index; a stretch with this index fails in no simulated world.
 constexpr double kSafe = 8.0;
 
-// One stretch of the route, from a vertex to the next.
+// Stretch of the route between two vertices.
 struct Stretch {
-  std::size_t vertex;  // that it leads to
+  std::size_t vertex;  // vertex at the end of the stretch
   double metres;
-  double weak;         // probability that its soil is too weak
-  double beta;         // reliability index: P(u < -beta) = weak
-  double shared;       // share of the variance that its class has in common
-  std::size_t soil;    // its class, counted as the route meets them: what else is declared draws nothing
-  double correlation;  // of the rest with that of the stretch before
+  double weak;    // probability that the soil is too weak
+  double beta;    // reliability index: P(u < -beta) = weak
+  double shared;  // share of the variance common to the soil class
+  // Class number in order of first occurrence on the route, so that other declared classes do not change the
+  // draws.
+  std::size_t soil;
+  double correlation;  // of the remaining variance with that of the previous stretch
 };
 
 double reliabilityIndex(double weak) {
@@ -84,10 +86,10 @@ class Worlds {
     for (const Stretch& s : route) common_.resize(std::max(common_.size(), s.soil + 1));
   }
 
-  // Any world.
+  // Draws an unconditional world.
   const std::vector<double>& any() { return around(0, gauss_(random_)); }
 
-  // A world in which the soil of a stretch is too weak.
+  // Draws a world in which the soil of stretch i is too weak.
   const std::vector<double>& weakAt(std::size_t i) {
     const double share = std::uniform_real_distribution<double>(1e-9, 1.0)(random_);
     return around(i, terramech::normalQuantile(share * route_[i].weak));
@@ -96,7 +98,8 @@ class Worlds {
   double uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
 
  private:
-  // A world whose u at a stretch is given: its two parts first, the others from there both ways.
+  // Draws a world with a given u of stretch i: first its shared and local components, then the other stretches
+  // in both directions.
   const std::vector<double>& around(std::size_t i, double u) {
     const double shared = std::sqrt(route_[i].shared), own = std::sqrt(1.0 - route_[i].shared);
     for (double& common : common_) common = gauss_(random_);
@@ -123,33 +126,34 @@ class Worlds {
   const std::vector<Stretch>& route_;
   std::mt19937_64 random_;
   std::normal_distribution<double> gauss_;
-  std::vector<double> common_;  // of each class
+  std::vector<double> common_;  // by soil class
   std::vector<double> u_;
 };
 
-// What is held after so many metres of too weak soil.
+// Probability of immobilisation after a length of too weak soil.
 double heldAfter(double metres, const RouteRiskOptions& options) {
   if (options.entrapment >= 1.0) return metres > 0.0 ? 1.0 : 0.0;
   return -std::expm1(metres / options.correlation_length_m * std::log1p(-options.entrapment));
 }
 
-// The mean over worlds at each stretch, and the variance of that at the last.
+// Mean over worlds at each stretch, and the variance of the mean at the last stretch.
 struct Drawn {
   std::vector<double> risk;
   double variance = 0.0;
 };
 
-// Whether a stop holds after so many worlds: the first four million stretches of them are always drawn.
+// Returns true if a stop ends the simulation after this many worlds. The first four million stretches are
+// always simulated.
 bool endsAfter(int worlds, const std::vector<Stretch>& route, const ProgressMonitor& watch) {
   constexpr std::size_t kBrief = 4'000'000;
   return static_cast<std::size_t>(worlds) * route.size() > kBrief && watch.stopped();
 }
 
-// No stretch when stopped.
+// Empty when stopped.
 Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
             const ProgressMonitor& watch) {
   Drawn out{.risk = std::vector<double>(route.size(), 0.0)};
-  std::vector<double> share;  // of the weak metres to be expected, up to each stretch
+  std::vector<double> share;  // expected length of too weak soil up to each stretch
   for (const Stretch& s : route) share.push_back((share.empty() ? 0.0 : share.back()) + s.weak * s.metres);
   if (share.empty() || !(share.back() > 0.0)) return out;
   Worlds worlds(route, options.seed);
@@ -178,7 +182,7 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
   return out;
 }
 
-// From stretches to the vertices that they lead to; never falling.
+// Assigns the values of stretches to their end vertices; the result never decreases.
 std::vector<double> alongVertices(const Route& route, const std::vector<Stretch>& way,
                                   const std::vector<double>& risk) {
   std::vector<double> along(route.vertices.size(), 0.0);
@@ -199,7 +203,8 @@ Least leastReserve(const std::vector<Stretch>& route, const std::vector<double>&
   return least;
 }
 
-// Conditional value at risk, and the vertex before the stretch that most often has the least reserve. False when stopped.
+// Computes the conditional value at risk, and the vertex before the stretch that most often has the smallest
+// reserve. Returns false when stopped.
 bool drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRiskOptions& options,
               const ProgressMonitor& watch, RouteRisk& risk) {
   Worlds worlds(way, options.seed);
@@ -241,7 +246,7 @@ std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& option
   return alongVertices(route, way, risk.risk);
 }
 
-// 1 - prod(1 - h) <= sum(h), and the mean of a sum is the sum of the means whatever hangs together.
+// 1 - prod(1 - h) <= sum(h), and the mean of a sum is the sum of the means for any correlation.
 std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options) {
   validate(options);
   const std::vector<Stretch> way = stretches(route, options);

@@ -9,52 +9,54 @@
 
 namespace talus::planner {
 
-/// How the risk of a route is drawn.
+/// Parameters of the risk simulation of a route.
 struct RouteRiskOptions {
-  double correlation_length_m = 5.0;  ///< of the soil, as DrivePolicy's, > 0
-  double entrapment = 1.0;  ///< share of the places with too weak soil that hold the rover, [0, 1]: as its
-                            ///< hazard per metre counts it
-  double cell_m =
-      0.0;  ///< the soil of a cell of this size is one: stretches of different cells are at least so
-            ///< far apart, >= 0
-  double tail = 0.05;  ///< share of the worst worlds that cvar looks at, in (0, 1]
-  int worlds = 4000;   ///< drawn, > 0
+  double correlation_length_m = 5.0;  ///< of the soil, as in DrivePolicy, > 0
+  double entrapment = 1.0;  ///< share of the places with too weak soil that immobilise the rover, [0, 1], as
+                            ///< in the hazard per metre
+  /// Soil is uniform within a cell of this size: stretches are treated as at least this far apart, >= 0.
+  double cell_m = 0.0;
+  double tail = 0.05;  ///< share of the worst worlds averaged by cvar, in (0, 1]
+  int worlds = 4000;   ///< number of simulated worlds, > 0
   std::uint64_t seed = 1;
 };
 
-/// The options that a map's cost was made with, and the size of its cells.
+/// Options of the map's cost, and the size of the map's cells.
 RouteRiskOptions riskOptions(const costmap::CostGrid& map);
 
-/// The risk of a route over spatially correlated soil.
+/// Risk of a route on spatially correlated soil.
 struct RouteRisk {
-  double immobilisation = 0.0;  ///< probability that some place of the route holds the rover
-  double standard_error = 0.0;  ///< of that, from the number of worlds drawn
-  double cvar = 0.0;  ///< mean over the worst share of worlds of the least reserve on the route, in standard
-                      ///< deviations of the soil's pull; below 0: too weak on average in those worlds
-  double worst_x_m = 0.0;  ///< where most worlds have their least reserve
+  double immobilisation = 0.0;  ///< probability that the rover is immobilised on the route
+  double standard_error = 0.0;  ///< of `immobilisation`, from the number of worlds
+  double cvar = 0.0;  ///< mean, over the worst share of worlds, of the smallest reserve on the route, in
+                      ///< standard deviations of the soil's pull; < 0: too weak on average in those worlds
+  double worst_x_m = 0.0;  ///< place that most often has the smallest reserve
   double worst_y_m = 0.0;
 };
 
 /// Probability of immobilisation from the start to each vertex.
 ///
-/// A stretch between two vertices is too weak where beta + u < 0. beta, its reliability index, is what its hazard
-/// per metre says; u is Gaussian with variance 1: a part that all ground of its class shares (RouteVertex::
-/// shared_doubt), and for the rest a process along the route with correlation exp(-d / correlation_length) within
-/// a class, drawn anew where the class changes. A world in which the route is too weak for T metres holds the
-/// rover with 1 - (1 - entrapment)^(T / correlation_length). Worlds are drawn under the condition that a stretch
-/// fails, each stretch as often as it contributes, and divided by the metres that fail together with it: unbiased,
-/// and as exact for 1e-9 as for 0.1 (importance sampling of a union of events, adler_blanchet_liu_2012).
-/// Deterministic. Throws std::invalid_argument out of range. Empty when `watch` was stopped before all worlds of a long
-/// route were drawn; four million stretches of worlds, a quarter of a second, are always drawn.
+/// A stretch between two vertices is too weak if beta + u < 0. The reliability index beta follows from the
+/// stretch's hazard per metre. u is Gaussian with variance 1: the sum of a component shared by all ground of
+/// the class (RouteVertex::shared_doubt) and a process along the route with correlation exp(-d /
+/// correlation_length) within a class, independent across changes of the class. A world in which the soil is
+/// too weak over a length T immobilises the rover with probability 1 - (1 - entrapment)^(T /
+/// correlation_length). Worlds are drawn under the condition that one stretch fails, each stretch in
+/// proportion to its expected length of too weak soil, and weighted by the inverse of the total length that
+/// fails with it. The estimate is unbiased and equally accurate for 1e-9 and 0.1 (importance sampling of a
+/// union of events, adler_blanchet_liu_2012). Deterministic. Throws std::invalid_argument if an option is out
+/// of range. Empty if `watch` was stopped before all worlds of a long route were simulated; four million
+/// stretches (about 0.25 s) are always simulated.
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
                               const ProgressMonitor& watch = {});
 
-/// What riskAlong() is never above, however the soil is correlated: the stretches' own risks, added up, at most 1. It takes no
-/// draws. Throws as that does.
+/// Upper bound of riskAlong() for any correlation of the soil: the sum of the stretches' own risks, at most 1.
+/// Deterministic, without random draws. Throws std::invalid_argument if an option is out of range.
 std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options);
 
-/// The risk of the whole route as riskAlong() has it, and the tail of its reserve: conditional value at risk after Rockafellar & Uryasev
-/// 2000 [rockafellar_uryasev_2000]. Where `watch` was stopped before all worlds were drawn, which riskAlong() tells of, all is NaN.
+/// Risk of the whole route as in riskAlong(), and the tail of its reserve: the conditional value at risk
+/// after Rockafellar & Uryasev 2000 [rockafellar_uryasev_2000]. All values are NaN if `watch` was stopped
+/// before all worlds were simulated (see riskAlong()).
 RouteRisk routeRisk(const Route& route, const RouteRiskOptions& options = {},
                     const ProgressMonitor& watch = {});
 

@@ -8,19 +8,19 @@
 
 namespace talus::planner {
 
-/// Indices in the order of whole-number keys, bucket by bucket; within a bucket as they came. What lies
-/// farther ahead than the ring reaches is handed out too early, and what lies behind at once: whoever takes
-/// an index reads its key again.
+/// Bucket queue of indices with integer keys. Buckets are taken in increasing order, indices within a bucket
+/// in order of insertion. A key beyond the reach of the ring is taken too early and a key below the current
+/// bucket is taken next, so the caller must read the key of each index again.
 class BucketQueue {
  public:
-  /// Buckets of 2^shift keys, for keys that lie up to `reach` apart.
+  /// Buckets of 2^shift keys, for queued keys that differ by at most `reach`.
   BucketQueue(unsigned shift, std::uint64_t reach)
       : shift_(shift), ring_(std::bit_ceil((reach >> shift) + 2)) {}
 
-  /// The bucket that a key belongs to.
+  /// Bucket number of a key.
   std::uint64_t bucketOf(std::uint64_t key) const noexcept { return key >> shift_; }
 
-  /// The bucket whose turn it is.
+  /// Number of the current bucket.
   std::uint64_t current() const noexcept { return current_; }
 
   std::uint64_t queued() const noexcept { return queued_; }
@@ -33,8 +33,8 @@ class BucketQueue {
     ++queued_;
   }
 
-  /// Calls take(index) for everything queued, and for what take() queues, while more(first key of the bucket)
-  /// says so.
+  /// Calls take(index) for every queued index, including those queued by take(), while more(first key of the
+  /// bucket) returns true.
   template <typename Take, typename More>
   void run(Take take, More more) {
     for (; queued_ > 0 && more(current_ << shift_); ++current_) {

@@ -6,9 +6,9 @@
 
 namespace talus::planner {
 
-/// The cheapest and the dearest metre on any ground, of all gradients along and across that are allowed.
+/// Lowest and highest drive cost per metre over all curves and all allowed gradients along and across.
 struct CostRange {
-  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite where nothing is allowed
+  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite if no motion is allowed
   double most_J_per_m = 0.0;
 };
 CostRange costRange(const costmap::DriveCost& cost);

@@ -15,8 +15,8 @@ namespace talus::planner {
 namespace {
 
 constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kOverhang = 4;  // what a vector reads behind the last row
-constexpr std::size_t kAhead = 12;    // cells of a bucket that are fetched before their turn
+constexpr std::size_t kOverhang = 4;  // elements that a vector load reads beyond the last row
+constexpr std::size_t kAhead = 12;    // prefetch distance in cells of a bucket
 
 std::array<std::ptrdiff_t, 8> neighbourOffsets(const PaddedGrid& padded) noexcept {
   std::array<std::ptrdiff_t, 8> offsets{};
@@ -25,7 +25,7 @@ std::array<std::ptrdiff_t, 8> neighbourOffsets(const PaddedGrid& padded) noexcep
   return offsets;
 }
 
-// The headings, a bit each, whose neighbours come cheaper through the cell that `distance` points to.
+// Bit mask of the headings whose neighbour is cheaper to reach through the cell at `distance`.
 struct ImprovedByScalar {
   static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
                      std::ptrdiff_t stride) noexcept {
@@ -41,7 +41,7 @@ struct ImprovedByScalar {
 };
 
 #if defined(__x86_64__)
-// The same eight comparisons at once.
+// The same eight comparisons with AVX2.
 struct ImprovedByVector {
   __attribute__((target("avx2"))) static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
                                                      std::ptrdiff_t stride) noexcept {
@@ -68,7 +68,7 @@ struct ImprovedByVector {
 using ImprovedByVector = ImprovedByScalar;
 #endif
 
-// Where a cell's surroundings lie in memory.
+// Pointers to the distances and edges around a cell.
 struct Surroundings {
   std::uint32_t* distance;
   const std::uint16_t* edges;
@@ -92,8 +92,8 @@ CostToGo::CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<Fie
       distance_(makeLargeArray<std::uint32_t>(edges_->padded().size() + kOverhang)),
       vectors_(vectorsRun(kernels)) {
   std::fill_n(distance_.get(), edges_->padded().size() + kOverhang, kUnreached);
-  // A bucket no wider than the cheapest edge: its cells cannot improve each other, so they are final when its
-  // turn comes and need no order among themselves (Denardo & Fox 1979 [denardo_fox_1979]).
+  // A bucket is at most as wide as the cheapest edge. Its cells cannot improve each other, so they are final
+  // when the bucket is taken and need no order among themselves (Denardo & Fox 1979 [denardo_fox_1979]).
   shift_ = static_cast<unsigned>(std::bit_width(edges_->units().cheapestEdge()) - 1);
   const std::size_t ring = std::bit_ceil((std::size_t{EdgeLayer::kBlocked} >> shift_) + 2);
   buckets_.resize(ring);
@@ -128,7 +128,7 @@ bool CostToGo::settleAll(const StopCheck& stop) {
 }
 
 bool CostToGo::settleBucketsUntil(std::uint32_t index, const StopCheck& stop) {
-  // Farther than 32 bits tell: left unreached.
+  // Cells whose distance would exceed 32 bits are left unreached.
   const std::uint64_t last_bucket = (std::uint64_t{kUnreached} - 2 * EdgeLayer::kBlocked) >> shift_;
   for (; queued_ > 0 && current_ < last_bucket; ++current_) {
     if (index != kNoCell && (distance_[index] >> shift_) < current_) return true;
@@ -147,7 +147,7 @@ void CostToGo::settleCurrent() {
     settleBucket<ImprovedByScalar>(bucket);
 }
 
-// The loop compiled for vectors as a whole, so that the kernel is part of it and no call.
+// The whole loop is compiled for AVX2, so that the kernel is inlined.
 #if defined(__x86_64__)
 __attribute__((target("avx2"), flatten))
 #endif
@@ -155,8 +155,8 @@ void CostToGo::settleByVector(Bucket& bucket) {
   settleBucket<ImprovedByVector>(bucket);
 }
 
-// Settles cells one after the other. Both twins take the headings in the same order, so that even the queues
-// agree.
+// Settles the cells of a bucket in order. The scalar and the vector kernel process headings in the same
+// order, so that their queues are identical.
 template <typename Improved>
 void CostToGo::settleBucket(Bucket& bucket) {
   const Surroundings around{distance_.get(), edges_->into(0),
@@ -169,14 +169,14 @@ void CostToGo::settleBucket(Bucket& bucket) {
     const std::size_t cell = bucket[i];
     std::uint32_t* const distance = around.distance + cell;
     const std::uint32_t here = *distance;
-    if ((here >> shift_) != current_) continue;  // it was reached cheaper, and settled then
+    if ((here >> shift_) != current_) continue;  // settled earlier at a lower cost
     ++settled;
     const std::uint16_t* into = around.into(cell);
     for (unsigned better = Improved::of(distance, into, around.stride); better != 0; better &= better - 1) {
       const auto heading = static_cast<std::size_t>(std::countr_zero(better));
       const std::uint32_t through = here + into[heading], before = distance[offsets[heading]];
       distance[offsets[heading]] = through;
-      if (((through ^ before) >> shift_) == 0) continue;  // it waits in that bucket already
+      if (((through ^ before) >> shift_) == 0) continue;  // already queued in the same bucket
       buckets_[(through >> shift_) & wrap].push_back(
           static_cast<std::uint32_t>(cell + static_cast<std::size_t>(offsets[heading])));
       ++pushed;

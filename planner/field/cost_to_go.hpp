@@ -11,23 +11,23 @@
 
 namespace talus::planner {
 
-/// A cell where the field begins, and what is left to pay from its centre.
+/// Cell from which the field is computed, and the remaining cost from the cell's centre to the goal.
 struct FieldGoal {
   maps::Cell cell;
-  double cost_J = 0.0;  ///< >= 0; a few cells' worth at most
+  double cost_J = 0.0;  ///< >= 0; values above EdgeLayer::kBlocked units are clamped
 
   friend bool operator==(const FieldGoal&, const FieldGoal&) = default;
 };
 
-/// What the best way along the grid's eight headings costs from every cell to the nearest of the goals,
-/// climbing and descending distinguished. Settled from the goals outwards, only as far as needed; going
-/// further goes on from there. Exact in the units of EdgeUnits, so the same whatever the order of work. One
-/// object one thread at a time.
+/// Cost-to-go field: the minimum cost over the grid's eight headings from every cell to the nearest goal,
+/// with ascent and descent distinguished. Cells are settled from the goals outwards, only as far as needed; a
+/// later call continues from there. Exact in the units of EdgeUnits, so the result does not depend on the
+/// order of work. Not thread-safe.
 class CostToGo {
  public:
   static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
-  /// A goal by padded index, and what is left to pay there in units.
+  /// A goal's padded index and the remaining cost at the goal in units.
   struct Goal {
     std::uint32_t index;
     std::uint32_t units;
@@ -36,41 +36,42 @@ class CostToGo {
   CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals,
            Kernels kernels = Kernels::Best);
 
-  /// Settles until the cell has its final value or cannot be reached; false when stopped before.
+  /// Settles until the cell's value is final or the cell is known to be unreachable. Returns false when
+  /// stopped before.
   bool settle(maps::Cell until, const StopCheck& stop = {});
 
-  /// Settles every cell that can reach a goal; false when stopped before.
+  /// Settles every cell from which a goal can be reached. Returns false when stopped before.
   bool settleAll(const StopCheck& stop = {});
 
-  /// Takes in that the edge layer was updated for cells of this box: afterwards the field is the one that
-  /// would be found by a new search. What is nearer to the goal than anything in the box stays; the rest is
-  /// settled again when it is needed. PatchedField serves one start with less work.
+  /// Updates the field after the edge layer was updated for cells of this box. The result equals that of a
+  /// new search. Cells nearer to the goal than any cell of the box keep their values; the others are settled
+  /// again when needed. For a single start, PatchedField needs less work.
   void repair(CellBox changed);
 
-  /// Cost from the cell's centre to a goal's centre, in units; kUnreached when there is no way. Final for
+  /// Cost from the cell's centre to a goal's centre in units; kUnreached if there is no path. Final for
   /// settled cells.
   std::uint32_t units(maps::Cell cell) const noexcept { return distance_[edges_->padded().index(cell)]; }
 
-  /// The same in joules; nothing when there is no way.
+  /// The same cost in joules; empty if there is no path.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
 
-  /// No more than the cost of the best way from a padded index, in units, whether it is settled or not;
-  /// kUnreached where there is surely no way.
+  /// Lower bound of the minimum cost from a padded index in units, whether settled or not; kUnreached if no
+  /// path exists.
   std::uint32_t atLeast(std::size_t index) const noexcept {
     const std::uint64_t front = current_ << shift_;
     return distance_[index] < front || queued_ == 0 ? distance_[index] : static_cast<std::uint32_t>(front);
   }
 
-  /// The least left to pay at a goal in this cell, in units; kUnreached where no goal is.
+  /// Lowest remaining cost of the goals in this cell in units; kUnreached if the cell is no goal.
   std::uint32_t atGoal(std::size_t index) const noexcept;
 
-  /// Where the field begins; a cell may stand there more than once.
+  /// Goals of the field. A cell may occur more than once.
   const std::vector<Goal>& goals() const noexcept { return goals_; }
 
-  /// Cells of the best way from a settled cell to a goal, both included; empty when there is none.
+  /// Cells of the cheapest path from a settled cell to a goal, both included; empty if there is no path.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
-  /// Cells settled so far.
+  /// Number of settled cells.
   std::uint64_t settled() const noexcept { return settled_; }
 
   const EdgeLayer& edges() const noexcept { return *edges_; }
@@ -89,8 +90,8 @@ class CostToGo {
 
   std::shared_ptr<const EdgeLayer> edges_;
   LargeArray<std::uint32_t> distance_;  // padded, units
-  std::vector<Bucket> buckets_;         // a ring; each holds indices of cells of like distance
-  std::uint64_t current_ = 0;           // bucket whose turn it is, counted without wrapping
+  std::vector<Bucket> buckets_;         // ring; each bucket holds the indices of cells of similar distance
+  std::uint64_t current_ = 0;           // current bucket, counted without wrapping
   std::uint64_t queued_ = 0;            // entries in all buckets
   std::uint64_t settled_ = 0;
   std::vector<Goal> goals_;

@@ -1,12 +1,12 @@
-// Repair of a field after edges changed: back to where it stood when the first changed cell was reached.
+// Repairs a field after edges changed: resets the field to its state when the first changed cell was reached.
 #include <algorithm>
 
 #include <talus/planner/field/cost_to_go.hpp>
 
 namespace talus::planner {
 
-// The least distance of any cell with a step that changed. A cell nearer than that has no such step on its
-// way, neither before nor after: the last cell with one goes on by a step that did not change.
+// Smallest distance of any cell with a changed step. The paths of nearer cells contain no changed step,
+// neither before nor after the change, because the last cell with a changed step leaves by an unchanged step.
 std::uint32_t CostToGo::leastTouched(CellBox changed) const noexcept {
   const PaddedGrid& padded = edges_->padded();
   const CellBox box = grown(changed, 1, padded);
@@ -23,7 +23,7 @@ void CostToGo::repair(CellBox changed) {
   if (stays == kUnreached) return;
   for (Bucket& bucket : buckets_) bucket.clear();
   queued_ = settled_ = 0;
-  // Cells that stay and have steps to cells that do not take their turn again.
+  // Cells that keep their values but have steps to reset cells are processed again.
   const std::uint64_t again = stays - std::min<std::uint64_t>(stays, EdgeLayer::kBlocked);
   current_ = again >> shift_;
   for (std::size_t cell = 0; cell < edges_->padded().size(); ++cell) {

@@ -21,13 +21,13 @@ constexpr Halves allBlocked() noexcept {
   return halves;
 }
 
-// Where a cell lies in its tile; the rest of the tile's row follows.
+// First of the contiguous cells of a tile's row, beginning at cell c.
 const costmap::CellCode& cellAt(const costmap::CostGrid& map, maps::Cell c) noexcept {
   const auto tile = static_cast<std::size_t>((c.row >> 6) * map.tileColumns() + (c.column >> 6));
   return map.content().tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
 }
 
-// Halves of the cells of one row from column first - 1 to last + 1; blocked outside the map.
+// Half-step costs of one row, from column first - 1 to last + 1; blocked outside the map.
 void fillRow(const costmap::CostGrid& map, const EdgeUnits& units, int row, CellBox box, bool by_vectors,
              std::vector<Halves>& halves) {
   const int width = map.grid().width, first = box.first.column - 1, last = box.last.column + 1;
@@ -49,7 +49,7 @@ std::uint16_t sum(std::uint16_t a, std::uint16_t b) noexcept {
 
 using ThreeRows = std::array<const Halves*, 3>;
 
-// The eight steps into the middle cell of three rows of halves.
+// The eight steps into the middle cell of three rows of half-step costs.
 void stepsInto(const ThreeRows& rows, std::uint16_t* into) noexcept {
   const auto at = [&](maps::Cell step) -> const Halves& {
     return rows[static_cast<std::size_t>(step.row + 1)][step.column];
@@ -64,14 +64,14 @@ void stepsInto(const ThreeRows& rows, std::uint16_t* into) noexcept {
   }
 }
 
-// The steps into so many cells that follow each other.
+// The steps into `count` consecutive cells.
 void rowInto(ThreeRows rows, std::size_t count, std::uint16_t* into) noexcept {
   for (; count-- > 0; into += 8, ++rows[0], ++rows[1], ++rows[2]) stepsInto(rows, into);
 }
 
 #if defined(__x86_64__)
-// The steps into one cell with vectors: lane k holds the heading k until the end, when lanes turn from
-// headings to where they come from.
+// The steps into one cell with SSE4.1. Lane k holds heading k; the final shuffle reorders lanes from the
+// heading of the step to the direction of the neighbour.
 __attribute__((target("sse4.1"))) void stepsIntoByVector(const ThreeRows& rows,
                                                          std::uint16_t* into) noexcept {
   const auto at = [&rows](int row, int column) __attribute__((target("sse4.1"))) {
@@ -93,7 +93,7 @@ __attribute__((target("sse4.1"))) void stepsIntoByVector(const ThreeRows& rows,
   const __m128i cut = _mm_and_si128(
       diagonals, _mm_or_si128(_mm_cmpeq_epi16(beside_x, blocked), _mm_cmpeq_epi16(beside_y, blocked)));
   const __m128i steps =
-      _mm_or_si128(cut, _mm_adds_epu16(at(0, 0), from));  // blocked + anything stays blocked
+      _mm_or_si128(cut, _mm_adds_epu16(at(0, 0), from));  // saturating: blocked plus any cost stays blocked
   _mm_storeu_si128(reinterpret_cast<__m128i*>(into), _mm_shuffle_epi32(steps, _MM_SHUFFLE(1, 0, 3, 2)));
 }
 

@@ -13,19 +13,20 @@
 
 namespace talus::planner {
 
-/// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes a
-/// cell. A step is half a step in the cell it leaves and half in the one it enters, both in the heading of
-/// the step: MotionCost of the segment between the centres. A diagonal needs both cells beside it, too.
+/// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes per
+/// cell. A step consists of a half step in the cell it leaves and a half step in the cell it enters, both in
+/// the heading of the step: the MotionCost of the segment between the centres. A diagonal step is blocked
+/// unless both cells beside it allow the heading, too.
 class EdgeLayer {
  public:
   static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;
 
-  /// Builds with `threads` threads (the result is the same for any number). Ends early, incomplete, when a
-  /// stop is requested; see complete().
+  /// Builds the layer with `threads` threads; the result does not depend on their number. Ends early and
+  /// incomplete when a stop is requested; see complete().
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
-  /// Steps between other points than the map's cells, so many columns and rows of them, to be filled through
+  /// Creates a layer for a grid of points other than the map's cells. The caller fills the steps through
   /// into().
   struct Unfilled {
     int width;
@@ -35,7 +36,7 @@ class EdgeLayer {
 
   std::uint16_t* into(std::size_t index) noexcept { return edges_.get() + 8 * index; }
 
-  /// The eight steps INTO the cell at a padded index, by the heading in which the neighbour lies.
+  /// The eight steps into the cell at a padded index, indexed by the heading in which the neighbour lies.
   const std::uint16_t* into(std::size_t index) const noexcept { return edges_.get() + 8 * index; }
 
   const PaddedGrid& padded() const noexcept { return padded_; }
@@ -44,8 +45,8 @@ class EdgeLayer {
   const std::shared_ptr<const costmap::CostGrid>& mapPointer() const noexcept { return map_; }
   bool complete() const noexcept { return complete_; }
 
-  /// Moves on to a newer version of the same grid, priced by units that extend the present ones; cells
-  /// outside the box must not have changed.
+  /// Updates the layer to a newer version of the same grid. The new units must extend the present units, and
+  /// cells outside the box must be unchanged.
   void update(std::shared_ptr<const costmap::CostGrid> newer, const EdgeUnits& units, CellBox changed);
 
  private:

@@ -20,9 +20,9 @@ using costmap::DriveCurve;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// Joules of a unit: fine enough that the dearest diagonal half just fits, but the cheapest straight half is
-// kept between 32 and 2048 units: coarser would spoil the search, finer would overflow 32 bits along a
-// route.
+// Joules per unit. The unit is chosen such that the costliest diagonal half step just fits; the cheapest
+// straight half step is kept between 32 and 2048 units. A coarser unit would impair the search, a finer unit
+// would overflow 32 bits along a route.
 double unitFor(const CostRange& range, double resolution_m) {
   if (!(range.most_J_per_m > 0.0)) return 1.0;
   const double least = std::max(range.least_J_per_m, range.most_J_per_m * 1e-6);
@@ -37,8 +37,8 @@ std::uint16_t inUnits(float cost_J_per_m, double units_per_J_per_m) {
   return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(EdgeUnits::kDearest)));
 }
 
-// Most steps whose gradient stays within the limit. A diagonal's stays clear of it by more than rounding
-// does, so that what the grid allows is allowed to the exact segment too.
+// Largest number of gradient steps within the limit. A diagonal's gradient stays below the limit by more than
+// the rounding error, so that a step allowed on the grid is also allowed as an exact segment.
 int stepsWithin(double limit, double per_step) {
   const int most = 2 * 2048;
   const double clear = per_step == 1.0 ? limit : limit - 1e-9;
@@ -47,7 +47,7 @@ int stepsWithin(double limit, double per_step) {
   return steps;
 }
 
-// A place counted in nodes, >= 0, in an offset and a share of 16 bits.
+// Packs a node coordinate >= 0 as an offset and a 16-bit interpolation weight.
 std::uint64_t placed(double place, int stride, int shift) {
   const DriveCurve::Between at = DriveCurve::between(place);
   constexpr int kShares = 128;
@@ -59,7 +59,7 @@ std::uint64_t placed(double place, int stride, int shift) {
 }  // namespace
 
 EdgeUnits::Places EdgeUnits::places(const DriveCost::Limits& limits, double per_step, int shift) const {
-  const int most = per_step == 1.0 ? 2048 : 4096;  // of CellCode
+  const int most = per_step == 1.0 ? 2048 : 4096;  // range of CellCode's steps
   const int along = stepsWithin(limits.max_along, per_step),
             across = stepsWithin(limits.max_across, per_step);
   Places all{.along = {}, .across = {}, .middle = most};
@@ -88,7 +88,7 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
   for (const auto& curve : cost.curves()) {
     first_.push_back(static_cast<std::uint32_t>(pairs_.size()));
     for (int row = 0; row <= rows; ++row) {
-      if (row > curve.lastRow()) {  // as the last
+      if (row > curve.lastRow()) {  // equal to the last row
         const auto stride = static_cast<std::ptrdiff_t>(2 * width());
         pairs_.resize(pairs_.size() + static_cast<std::size_t>(stride));
         std::copy_n(pairs_.end() - 2 * stride, stride, pairs_.end() - stride);
@@ -119,12 +119,13 @@ void EdgeUnits::halves(const CellCode* cells, std::size_t count, Halves* out,
 }
 
 #if defined(__x86_64__)
-// Four lanes of 64 bits: the headings from east to north-west, each with its opposite; in each, numbers of 16 bits.
+// Four 64-bit lanes of 16-bit numbers: the headings from east to north-west, each with its opposite.
 __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* cells, std::size_t count,
                                                                Halves* out) const noexcept {
   const __m128i blocked = _mm_set1_epi32(-1);
   const __m128i headings_first = _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
-  // From (ahead, back) of a node and of the next one to both ahead, both back; the shares of bin and row four times.
+  // Shuffles (ahead, back) of a node and the next node to (ahead, ahead, back, back), and repeats the weights
+  // of bin and row four times.
   const __m256i by_direction = _mm256_broadcastsi128_si256(
                     _mm_setr_epi8(0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15)),
                 of_bin = _mm256_broadcastsi128_si256(
@@ -154,13 +155,13 @@ __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* c
       };
       const __m256i low = nodes(0), high = nodes(next_row);
       const auto two = [&](std::size_t k)
-          __attribute__((target("avx2"))) {  // not from memory: it waits for both
+          __attribute__((target("avx2"))) {  // built from registers: a load would wait for both stores
         return _mm_unpacklo_epi64(_mm_cvtsi64_si128(static_cast<long long>(places[k])),
                                   _mm_cvtsi64_si128(static_cast<long long>(places[k + 1])));
       };
       const __m256i place = _mm256_inserti128_si256(_mm256_castsi128_si256(two(0)), two(2), 1);
       const __m256i bin = _mm256_shuffle_epi8(place, of_bin), row = _mm256_shuffle_epi8(place, of_row);
-      // This node's share and the next one's, twice.
+      // Weights of this node and the next node, twice.
       const __m256i bins = _mm256_add_epi16(here, _mm256_sign_epi16(bin, to_next));
       const __m256i low_weights = _mm256_mullo_epi16(bins, _mm256_sub_epi16(all, row)),
                     high_weights = _mm256_mullo_epi16(bins, row);
@@ -169,7 +170,7 @@ __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* c
               _mm256_add_epi32(_mm256_madd_epi16(low, low_weights), _mm256_madd_epi16(high, high_weights)),
               half),
           2 * kShareBits);
-      // kBlocked is -1; of weight 0 it counts for nothing.
+      // kBlocked is -1 as a signed number; a blocked node of weight 0 is ignored.
       const __m256i stops = _mm256_or_si256(
           _mm256_and_si256(_mm256_cmpgt_epi16(none, low), _mm256_cmpgt_epi16(low_weights, none)),
           _mm256_and_si256(_mm256_cmpgt_epi16(none, high), _mm256_cmpgt_epi16(high_weights, none)));

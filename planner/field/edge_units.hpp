@@ -12,11 +12,11 @@
 
 namespace talus::planner {
 
-/// The cost of half a step, from a cell's centre to its edge or corner, for all eight headings: whole numbers
-/// of a unit of energy, so that sums do not depend on their order. 16 bits: an edge is the sum of two halves.
-/// kBlocked where the heading may not enter, as DriveCurve::price() says; any higher cost than kDearest is stored as kDearest.
-/// Between nodes of the curve shares are rounded to 1/128, so that a half step is off by a unit and by 1/256 of what nodes
-/// side by side differ.
+/// Costs of half steps, from a cell's centre to its edge or corner, for all eight headings, as integer
+/// multiples of an energy unit, so that sums do not depend on their order. An edge is the sum of two half
+/// steps and fits in 16 bits. Headings refused by DriveCurve::price() have kBlocked; costs above kDearest are
+/// stored as kDearest. Interpolation weights are rounded to 1/128, so a half step differs from the exact cost
+/// by at most one unit plus 1/256 of the difference of neighbouring nodes.
 class EdgeUnits {
  public:
   static constexpr std::uint16_t kBlocked = 0xffff;
@@ -24,44 +24,47 @@ class EdgeUnits {
 
   using Halves = std::array<std::uint16_t, 8>;  ///< by GridHeading
 
-  /// For cells of this side [m] under this cost. `coarsening` >= 1 makes the unit larger (for huge maps).
+  /// Units for cells of side resolution_m [m] and the given cost. `coarsening` >= 1 enlarges the unit (for
+  /// huge maps).
   EdgeUnits(const costmap::DriveCost& cost, double resolution_m, double coarsening = 1.0);
 
-  /// A unit alone, for edges that are priced in another way; halves() are all blocked.
+  /// Unit only, for edges whose costs are computed elsewhere; halves() returns blocked headings only.
   EdgeUnits(double unit_J, std::uint32_t cheapest_edge) : unit_J_(unit_J), cheapest_edge_(cheapest_edge) {}
 
-  /// Joules of one unit.
+  /// Joules per unit.
   double unit_J() const noexcept { return unit_J_; }
 
-  /// A lower bound of any edge that is allowed, in units; >= 1.
+  /// Lower bound of every allowed edge in units; >= 1.
   std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
 
-  /// Whether every cell that the older units can price is priced the same by these: curves were only added.
+  /// Returns true if these units assign the same cost to every cell that the older units cover (curves were
+  /// only added).
   bool extends(const EdgeUnits& older) const noexcept;
 
-  /// Halves of all headings in a cell.
+  /// Half-step costs of all headings in a cell.
   Halves halves(costmap::CellCode cell) const noexcept;
 
-  /// The same for cells that follow each other; by vectors (AVX2) the same bits.
+  /// Half-step costs of `count` consecutive cells. The AVX2 version returns identical values.
   void halves(const costmap::CellCode* cells, std::size_t count, Halves* out, bool by_vectors) const noexcept;
 
  private:
   void halvesByVector(const costmap::CellCode* cells, std::size_t count, Halves* out) const noexcept;
 
-  // Shares of a place between nodes, in 1/kShares; between nodes it is never on one.
+  // Interpolation weights in 1/kShares. A coordinate between two nodes never has a weight of 0 or kShares.
   static constexpr int kShareBits = 7, kShares = 1 << kShareBits;
-  // Where gradients lie among the nodes: an offset into pairs_ in the lower half; above it in 16 bits each the shares of the next bin
-  // and row. What the limits refuse has the highest bit of its share. Those of along and across add up.
+  // Position of a gradient among the nodes: the lower 32 bits are an offset into pairs_, the upper two 16-bit
+  // fields are the weights of the next bin and the next row. A gradient beyond the limit has the highest bit
+  // of its weight set. Positions along and across are added.
   using Place = std::uint64_t;
   static constexpr Place kRefusedAlong = Place{1} << 47, kRefusedAcross = Place{1} << 63;
   struct Places {
-    std::vector<Place> along, across;  // by steps of CellCode, the middle is none
+    std::vector<Place> along, across;  // by CellCode steps; `middle` is the index of zero
     int middle = 0;
   };
   Places places(const costmap::DriveCost::Limits& limits, double per_step, int shift) const;
   int width() const noexcept { return 2 * reach_ + 2; }
 
-  // The steps along and across of the headings from east to north-west.
+  // Positions along and across of the headings from east to north-west.
   std::array<Place, 4> placesOf(costmap::CellCode cell) const noexcept {
     const int x = cell.stepsX(), y = cell.stepsY();
     const Place* straight_along = straight_.along.data() + straight_.middle;
@@ -72,8 +75,9 @@ class EdgeUnits {
             straight_along[y] + straight_across[x], diagonal_along[y - x] + diagonal_across[x + y]};
   }
 
-  // Of each curve, by row: halves of a straight step by bin from -reach_ to reach_, each with its opposite in the
-  // upper half, and a blocked one; then those of a diagonal step. The last row of a curve is there once more.
+  // For each curve, by row: half costs of a straight step by bin from -reach_ to reach_, with the opposite
+  // heading in the upper 16 bits, and a blocked entry; then the same for a diagonal step. The last row of
+  // each curve is stored twice.
   std::vector<std::uint32_t> pairs_;
   std::vector<std::uint32_t> first_;  // by curve
   int reach_ = 0;

@@ -6,14 +6,14 @@
 
 namespace talus::planner {
 
-/// The eight headings of a grid, anticlockwise from east.
+/// The eight headings of a grid, counter-clockwise from east.
 enum GridHeading : int { kEast, kNorthEast, kNorth, kNorthWest, kWest, kSouthWest, kSouth, kSouthEast };
 
-/// Columns and rows that a step along each heading goes.
+/// Column and row offset of a step along each heading.
 inline constexpr std::array<maps::Cell, 8> kStep{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-/// The heading the other way.
+/// The opposite heading.
 constexpr int opposite(int heading) noexcept {
   return heading ^ 4;
 }

@@ -7,20 +7,21 @@
 
 namespace talus::planner {
 
-/// A cell whose centre a place is joined to by one allowed straight motion.
+/// Cell whose centre is connected to a place by one allowed straight motion.
 struct GridLink {
   maps::Cell cell;
   double cost_J = 0.0;
 };
 
-/// The cells around a place, its own among them, whose centres can be driven to from it.
+/// Links to the centres of the cell of a place and its eight neighbours that can be reached from the place.
 std::vector<GridLink> linksFrom(const MotionCost& cost, maps::Point place);
 
-/// The cells around a place, its own among them, from whose centres it can be driven to.
+/// Links from the centres of the cell of a place and its eight neighbours from which the place can be
+/// reached.
 std::vector<GridLink> linksTo(const MotionCost& cost, maps::Point place);
 
-/// Where a field to this goal begins: linksTo(), and at no cost every cell whose centre lies within the
-/// tolerance.
+/// Goals of a field for this goal: linksTo(), plus every allowed cell whose centre lies within the tolerance,
+/// at cost 0.
 std::vector<FieldGoal> fieldGoals(const MotionCost& cost, maps::Point goal, double tolerance_m);
 
 }  // namespace talus::planner

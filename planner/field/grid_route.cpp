@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace {
 
-// The link through which the goal is reached cheapest; nothing when none reaches it.
+// Link with the lowest total cost to the goal; null if no link reaches the goal.
 template <typename Field>
 const GridLink* bestLink(const std::vector<GridLink>& links, const Field& field) {
   const GridLink* best = nullptr;
@@ -22,7 +22,7 @@ const GridLink* bestLink(const std::vector<GridLink>& links, const Field& field)
   return best;
 }
 
-// From link to goal down a settled field.
+// Descends a settled field from the best link to the goal.
 template <typename Field>
 Polyline downField(const MotionCost& cost, const Field& field, const std::vector<GridLink>& links,
                    const Segment& places) {
@@ -34,7 +34,7 @@ Polyline downField(const MotionCost& cost, const Field& field, const std::vector
   return points;
 }
 
-// Looking at one cell in so many takes about as long as settling all.
+// Searching 1 of this many cells takes about as long as settling all cells.
 constexpr std::uint64_t kSettledPerLookedAt = 8;
 
 }  // namespace

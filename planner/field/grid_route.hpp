@@ -8,14 +8,14 @@
 
 namespace talus::planner {
 
-/// The cheapest way along the grid between two places: to the centre of a cell beside the first, from centre
-/// to centre down the field, on to the second where the field's goal requires it. Empty when there is none,
-/// or when stopped. The field's goals must be fieldGoals() of the second place.
+/// Cheapest grid route between two places: to the centre of a cell near the first place, from centre to
+/// centre along the field, and to the second place if a straight motion leads there. Empty if there is no
+/// route, or when stopped. The field's goals must be the fieldGoals() of the second place.
 Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
                    const StopCheck& stop = {});
 
-/// The same after the edges of a box of cells changed, from the field before the change. Nothing when that
-/// takes more work than to repair the field.
+/// Cheapest grid route after the edges of a box of cells changed, from the field before the change. Returns
+/// nullopt if repairing the field takes less work; an empty route if there is none or when stopped.
 std::optional<Polyline> gridRouteAfter(CellBox changed, const MotionCost& cost, const CostToGo& before,
                                        const Segment& places, const StopCheck& stop = {});
 

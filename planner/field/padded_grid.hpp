@@ -8,10 +8,10 @@
 
 namespace talus::planner {
 
-/// Position of a cell in arrays that have a border of one cell all around, so that every cell has eight
+/// Index of a cell in arrays with a border of one cell on every side, so that every cell has eight
 /// neighbours.
 struct PaddedGrid {
-  int width = 0;  ///< cells without the border
+  int width = 0;  ///< columns without the border
   int height = 0;
 
   std::size_t stride() const noexcept { return static_cast<std::size_t>(width) + 2; }
@@ -22,7 +22,7 @@ struct PaddedGrid {
   maps::Cell cell(std::size_t index) const noexcept {
     return {static_cast<int>(index % stride()) - 1, static_cast<int>(index / stride()) - 1};
   }
-  /// Distance in the array to the neighbour in a heading.
+  /// Index offset of the neighbour in a heading.
   std::ptrdiff_t offset(int heading) const noexcept {
     const maps::Cell step = kStep[static_cast<std::size_t>(heading)];
     return static_cast<std::ptrdiff_t>(step.row) * static_cast<std::ptrdiff_t>(stride()) + step.column;
@@ -31,7 +31,7 @@ struct PaddedGrid {
 
 using maps::CellBox;
 
-/// The box with so many cells more on every side, as far as the grid goes.
+/// The box extended by `cells` cells on every side, clipped to the grid.
 inline CellBox grown(CellBox box, int cells, const PaddedGrid& grid) noexcept {
   return {
       {std::max(box.first.column - cells, 0), std::max(box.first.row - cells, 0)},

@@ -10,8 +10,8 @@ namespace {
 
 using maps::Cell;
 
-// The least that ways outside the box cost between cells of its rim, over all others from one. Side by side in memory: each cell
-// that gains is held against each.
+// Lower bounds of paths outside the box between two cells of its rim. Stored as arrays: each improved rim
+// cell is compared with all rim cells.
 class Excursions {
  public:
   Excursions(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {
@@ -26,11 +26,12 @@ class Excursions {
     now_.push_back(CostToGo::kUnreached);
   }
 
-  // A cell of the rim has got cheaper.
+  // Sets the improved cost of rim cell k.
   void set(std::size_t k, std::uint32_t units) { now_[k] = units; }
 
-  // Calls reach(k, units) for the cells that an excursion makes cheaper which ends at `to`, `here` units from the goal. Where `exact`
-  // its cost before is known, and the old field drops no faster than a way costs.
+  // Calls reach(k, units) for each rim cell k whose cost decreases by a path outside the box to rim cell
+  // `to`, which lies `here` units from the goal. If `exact`, the old cost of `to` is known and the difference
+  // of the old costs is also a lower bound of the path.
   template <typename Reach>
   void to(std::size_t to, std::uint32_t here, bool exact, Reach reach) const {
     const int column = column_[to], row = row_[to];
@@ -93,9 +94,9 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
   BucketQueue queue(static_cast<unsigned>(std::bit_width(edges.units().cheapestEdge()) - 1),
                     EdgeLayer::kBlocked);
   constexpr std::uint32_t kInner = CostToGo::kUnreached;
-  std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // which of its cells
-  std::vector<std::uint32_t> taken(inside_.size(),
-                                   CostToGo::kUnreached);  // at which cost; it waits once for each
+  std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // index of the rim cell; kInner inside
+  // Cost at which a cell was taken last: each queued cost is processed once.
+  std::vector<std::uint32_t> taken(inside_.size(), CostToGo::kUnreached);
   Excursions excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {
     const std::size_t at = local(c);

@@ -7,30 +7,33 @@
 
 namespace talus::planner {
 
-/// What is at least left to pay from any cell after part of a map changed, from the field before the change:
-/// admissible, so a search that it leads finds the best way. Ours, not from the literature.
+/// Lower bound of the cost to go from any cell after an area of the map changed, computed from the field
+/// before the change. The bound is admissible, so A* with this bound finds the cheapest path. Ours, not from
+/// the literature.
 ///
-/// A box around the change holds every step that changed and is settled from its rim inwards. A cell of the
-/// rim has its old cost, or gains by a way through the box, or by one that leaves the box and enters it again
-/// elsewhere; such an excursion costs no less than what the old field drops by, nor than that many steps at
-/// the cheapest. A cell outside pays its old cost, or comes by the rim: then it gains no more than the rim's
-/// best gain, and pays no less than what is least on the rim where it gains.
+/// A box around the change contains every changed step and is settled from its rim inwards. A rim cell keeps
+/// its old cost, or improves by a path through the box, or improves by a path that leaves the box and enters
+/// again elsewhere. Such an excursion costs at least the drop of the old field and at least its number of
+/// steps times the cheapest edge. A cell outside the box keeps its old cost, or its path crosses the rim. In
+/// the second case the cell improves by at most the largest improvement on the rim, and its cost is at least
+/// the lowest cost of an improved rim cell.
 class PatchBound {
  public:
-  /// The field is the one before, its edge layer already updated. Both must outlive the bound.
+  /// `before` is the field before the change; its edge layer is already updated. The bound refers to
+  /// `before`, which must outlive the bound.
   PatchBound(const CostToGo& before, CellBox changed);
 
-  /// False where the change opens ground that had no way before: no bound is known then.
+  /// False if the change connects cells that had no path before; no bound exists then.
   bool holds() const noexcept { return holds_; }
 
-  /// Units, by padded index; kUnreached where there is surely no way.
+  /// Lower bound in units, by padded index; kUnreached if no path exists.
   std::uint32_t operator()(std::size_t index) const noexcept;
 
  private:
   struct RimCell {
     maps::Cell cell;
-    std::uint32_t before;  // no more than its cost before the change
-    bool exact;            // it is its cost
+    std::uint32_t before;  // lower bound of the cost before the change
+    bool exact;            // true if `before` is the cost itself
   };
 
   std::size_t local(maps::Cell c) const noexcept {
@@ -45,8 +48,8 @@ class PatchBound {
   std::size_t columns_;
   std::size_t first_index_, last_index_;        // padded
   std::vector<std::uint32_t> inside_;           // by local index
-  std::uint32_t gain_ = 0;                      // the best of the rim
-  std::uint32_t least_ = CostToGo::kUnreached;  // on the rim where it gains
+  std::uint32_t gain_ = 0;                      // largest improvement on the rim
+  std::uint32_t least_ = CostToGo::kUnreached;  // lowest cost of an improved rim cell
   bool holds_ = true;
 };
 

@@ -15,10 +15,10 @@
 namespace talus::planner {
 namespace {
 
-// Units. Links are priced in joules: rounding may make ways change places that are this much apart.
+// [units] Links have costs in joules; rounding may change the order of paths whose costs differ by this much.
 constexpr std::uint32_t kSlack = 1;
 
-// Costs of cells from the start, as many as the grid has; memory is taken where they are written only.
+// Costs of cells from the start. Memory pages are allocated only when written.
 class SparseCosts {
  public:
   explicit SparseCosts(std::size_t cells)
@@ -29,7 +29,7 @@ class SparseCosts {
   void set(std::size_t cell, std::uint32_t units) noexcept { below_.get()[cell] = ~units; }
 
  private:
-  std::unique_ptr<std::uint32_t[], decltype(&std::free)> below_;  // how far below CostToGo::kUnreached
+  std::unique_ptr<std::uint32_t[], decltype(&std::free)> below_;  // CostToGo::kUnreached minus the cost
 };
 
 // A* from the links to the goals.
@@ -51,7 +51,7 @@ class ForwardSearch {
   PatchedField::Outcome run(const std::vector<GridLink>& links, std::uint64_t most_cells,
                             const StopCheck& stop);
 
-  /// Settles, from the goals, the cells on ways that cost no more than the best and the slack.
+  /// Settles, from the goals, the cells on paths that cost at most the best path plus kSlack.
   std::unordered_map<std::uint32_t, std::uint32_t> bestWays() const;
 
  private:
@@ -63,10 +63,10 @@ class ForwardSearch {
   const PatchBound& bound_;
   std::unordered_map<std::uint32_t, std::uint32_t> at_goal_;
   SparseCosts cost_;
-  std::vector<bool> taken_;  // with the present cost
+  std::vector<bool> taken_;  // at the present cost
   BucketQueue queue_;
   std::uint64_t looked_at_ = 0;
-  std::uint32_t found_ = CostToGo::kUnreached;  // cost of the best way so far
+  std::uint32_t found_ = CostToGo::kUnreached;  // cost of the best path found
 };
 
 void ForwardSearch::begin(const std::vector<GridLink>& links) {
@@ -89,7 +89,7 @@ void ForwardSearch::reach(std::uint32_t cell, std::uint32_t units) {
   cost_.set(cell, units);
   taken_[cell] = false;
   queue_.push(std::uint64_t{units} + rest, cell);
-  if (rest > EdgeLayer::kBlocked) return;  // more than is left to pay at any goal
+  if (rest > EdgeLayer::kBlocked) return;  // more than the remaining cost at any goal
   if (const auto goal = at_goal_.find(cell); goal != at_goal_.end())
     found_ = std::min(found_, units + goal->second);
 }

@@ -10,24 +10,26 @@
 
 namespace talus::planner {
 
-/// The field of a goal after part of the map changed, for what lies on the best ways from one place only: the
-/// same distances, and so the same path, as a CostToGo that was repaired, without its work. A* from the place
-/// [hart_nilsson_raphael_1968], led by the field before the change (PatchBound), finds what must be seen;
-/// then the cells on best ways are settled from the goal.
+/// Field of a goal after an area of the map changed, restricted to the cheapest paths from one place.
+/// Distances and paths equal those of a repaired CostToGo, with less work. A* from the place
+/// [hart_nilsson_raphael_1968], guided by the field before the change (PatchBound), selects the cells; the
+/// cells on cheapest paths are then settled from the goal.
 class PatchedField {
  public:
-  /// The field is the one before the change, its edge layer already updated; it must outlive this object.
+  /// `before` is the field before the change, with its edge layer already updated; `before` must outlive the
+  /// object.
   PatchedField(const CostToGo& before, CellBox changed) : before_(before), changed_(changed) {}
 
   enum class Outcome { Settled, TooMuch, Stopped };
 
-  /// Settles what is needed to leave a place by the best of its links; looks at no more than so many cells.
+  /// Settles the cells needed to leave a place by its best link. Returns TooMuch if more than `most_cells`
+  /// cells would be processed.
   Outcome settle(const std::vector<GridLink>& links, std::uint64_t most_cells, const StopCheck& stop = {});
 
-  /// As of CostToGo, for the links on best ways; nothing for others.
+  /// As CostToGo::cost_J(), for links on cheapest paths; empty for other cells.
   std::optional<double> cost_J(maps::Cell cell) const;
 
-  /// As of CostToGo, from the link on the best way.
+  /// As CostToGo::path(), from the link on the cheapest path.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
  private:

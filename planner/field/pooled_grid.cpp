@@ -14,11 +14,11 @@ namespace {
 using costmap::CellCode;
 
 constexpr std::size_t kMostCurves = 254;
-constexpr double kSurchargeStep = 1.25;  // from level to level
-constexpr double kLeastShare = 1.0 / 3;  // of cells that may be entered
+constexpr double kSurchargeStep = 1.25;  // factor between levels
+constexpr double kLeastShare = 1.0 / 3;  // smallest share of traversable cells
 constexpr std::size_t kHeadings = 8;
 
-// Curves in levels, each dearer than the one before by the same factor.
+// Copies of all curves at several surcharge levels, each costlier than the previous by the same factor.
 class Levels {
  public:
   explicit Levels(const costmap::DriveCost& cost)
@@ -64,7 +64,7 @@ class Pooling {
   CellCode code(maps::Cell coarse) const;
 
  private:
-  double mean(CellCode cell) const noexcept;  // over headings; infinite where none is allowed
+  double mean(CellCode cell) const noexcept;  // mean over allowed headings; infinite if none is allowed
 
   const costmap::CostGrid& map_;
   int factor_;
@@ -87,7 +87,7 @@ CellCode Pooling::code(maps::Cell coarse) const {
   int cells = 0, entered = 0;
   const int last_row = std::min((coarse.row + 1) * factor_, grid.height),
             last_column = std::min((coarse.column + 1) * factor_, grid.width);
-  // Every other row, and in it every other cell, in turn the odd and the even ones.
+  // Samples every second row, and in each sampled row every second cell, alternately even and odd ones.
   for (int row = coarse.row * factor_; row < last_row; row += 2)
     for (int column = coarse.column * factor_ + (row >> 1 & 1); column < last_column; column += 2) {
       const CellCode cell = map_.at({column, row});

@@ -8,16 +8,15 @@
 
 namespace talus::planner {
 
-/// A coarse picture of a map to find the rough course of a route on: one cell for each factor x factor cells,
-/// with their mean gradient, the curve that most of them have, and a surcharge so that a metre over all
-/// headings costs what it costs on average in the cells (in every fourth of them), ground that is blocked in
-/// part more expensive by that part. Blocked where less than a third may be entered. Not a bound of anything.
-/// Null when stopped. factor >= 2.
+/// Coarse map for finding a rough route: each coarse cell represents factor x factor cells (factor >= 2). A
+/// coarse cell has the mean gradient and the most frequent curve of its cells, sampled at every fourth cell.
+/// A surcharge on the curve makes the mean cost over all headings equal to the mean of the traversable cells,
+/// divided by the share of traversable cells. The coarse cell is blocked if less than a third of the samples
+/// are traversable. The result is no bound of the cost. Returns null when stopped.
 std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, int factor, int threads = 1,
                                                 const StopCheck& stop = {});
 
-/// The pooled map of a newer version of the same map under the same cost, of which only a box of cells
-/// changed.
+/// Pooled map of a newer version of the same map with the same cost, of which only a box of cells changed.
 std::shared_ptr<const costmap::CostGrid> repooled(const costmap::CostGrid& older,
                                                   const costmap::CostGrid& map, int factor, CellBox changed);
 

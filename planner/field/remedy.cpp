@@ -25,7 +25,7 @@ double squared_m2(Point a, Point b) noexcept {
   return (a.x_m - b.x_m) * (a.x_m - b.x_m) + (a.y_m - b.y_m) * (a.y_m - b.y_m);
 }
 
-// The cell nearest to a place among those for which wanted(cell) holds.
+// The cell nearest to a place among the cells with wanted(cell).
 template <typename Wanted>
 std::optional<Cell> nearest(const maps::Grid& grid, Point place, Wanted wanted) {
   std::optional<Cell> best;
@@ -40,7 +40,7 @@ std::optional<Cell> nearest(const maps::Grid& grid, Point place, Wanted wanted) 
   return best;
 }
 
-// What stands in a cell; empty where nothing does but what it is kept clear of.
+// Description of the hazard in a cell; empty if the cell has no hazard of its own.
 const char* inWords(costmap::Hazard found) noexcept {
   using costmap::Hazard;
   if (has(found, Hazard::KeepOut)) return "a keep-out area, or where a layer refuses";
@@ -52,7 +52,7 @@ const char* inWords(costmap::Hazard found) noexcept {
   return has(found, Hazard::Unknown) ? "unobserved ground" : "";
 }
 
-// What the rover keeps clear of in a cell: the nearest cell in which something stands, or the rim of the map.
+// Reason for the clearance in a cell: the nearest cell with a hazard, or the map border if nearer.
 std::string clearOf(const maps::Grid& grid, Cell cell, const HazardsOf& hazards) {
   const int to_rim =
       std::min({cell.column, cell.row, grid.width - 1 - cell.column, grid.height - 1 - cell.row}) + 1;

@@ -8,18 +8,19 @@
 
 namespace talus::planner {
 
-/// What is known of the ground around a place that no route may begin or end at.
+/// Information about the cells around an invalid start or goal.
 struct PlaceHelp {
-  HazardsOf hazards{};                       ///< why cells are refused whole; none: they are blocked
-  std::function<bool(maps::Cell)> joined{};  ///< whether the other end and a cell are joined; none: not known
+  HazardsOf hazards{};                       ///< hazards of blocked cells; empty if not known
+  std::function<bool(maps::Cell)> joined{};  ///< whether a cell is connected to the other end; empty if not
+                                             ///< known
 };
 
-/// One line for a place that no route may begin or end at: why, and the nearest place that will do, from which the
-/// other end can be reached where there is one. `which` is "start" or "goal".
+/// One-line message for an invalid start or goal: the reason, and the nearest traversable cell, preferably a
+/// cell that is connected to the other end. `which` is "start" or "goal".
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, maps::Point place,
                          const PlaceHelp& help = {});
 
-/// Whether some heading may be driven at the place, or within the tolerance, >= 0, of it.
+/// Returns true if some heading is allowed at the place, or at a cell centre within the tolerance >= 0 [m].
 bool mayEnd(const MotionCost& cost, maps::Point place, double tolerance_m);
 
 }  // namespace talus::planner

@@ -47,7 +47,7 @@ bool FieldPlanner::prepareEdges(const Problem& problem, const StopCheck& stop) {
   return true;
 }
 
-// Moves edges and field on to a newer version of the map; false when it is another map altogether.
+// Updates edges and field to a newer version of the map. Returns false for an unrelated map.
 bool FieldPlanner::repairTo(const Problem& problem) {
   const costmap::CostGrid &old = edges_->map(), &newer = *problem.map;
   if (!(old.grid() == newer.grid())) return false;
@@ -73,8 +73,8 @@ bool FieldPlanner::prepareField(const MotionCost& cost, const Stage& stage) {
   return true;
 }
 
-// Down the field; where it is that of an older version of the map, by what the change touches, or by the
-// field repaired where that is less work, or other corridors are asked for.
+// Descends the field. A field of an older map version is either searched around the change only, or repaired
+// if a repair takes less work or other corridors are needed.
 Polyline FieldPlanner::roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop) {
   const MotionCost cost(problem.map);
   if (field_map_ != edges_->mapPointer()) {
@@ -115,7 +115,8 @@ HeadingSets& FieldPlanner::headingsOf(const Problem& problem) {
   return *headings_;
 }
 
-// A place that no route may begin or end at, and, where the other is one, the nearest that is joined to it.
+// Result for an invalid start or goal. If the other end is valid, the message names the nearest cell
+// connected to that end.
 Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
                              const StopCheck& stop) {
   PlaceHelp help{.hazards = problem.hazards};
@@ -133,7 +134,8 @@ Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool fr
   return failedPlan(RouteStatus::GoalInvalid, invalidPlace(*problem.map, "goal", stage.to, help));
 }
 
-// What any heading can do where the eight of the grid cannot: a rough route, a proof that there is none, or neither.
+// Plans with arbitrary headings if the eight grid headings find no route. Returns a rough route, a proof that
+// no route exists, or neither.
 Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop) {
   if (stop()) return cancelledPlan(stop);
   const MotionCost cost(problem.map);
@@ -162,7 +164,7 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
                         .cells_to_goal = to_goal.cells(),
                         .last = found.last,
                         .first = stage.to};
-    // Reach takes both sets for joined: what joins them is a way in many headings.
+    // Reach counts both sets as connected; tryLifting() tests the connection with a route in many headings.
     const auto opens = [&](const costmap::CostGrid& lifted) {
       const MotionCost free(std::shared_ptr<const costmap::CostGrid>(std::shared_ptr<const void>(), &lifted));
       return !manyHeadingsRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();
@@ -190,16 +192,17 @@ Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyl
   };
   Polyline points = cut(std::move(rough));
   if (!(stage.tolerance_m > 0.0)) return points;
-  // Refinement keeps ends; where the route enters the tolerance is chosen after it, and the rest for that end once
-  // more.
+  // Refinement keeps the ends. The entry into the tolerance is chosen afterwards, and the route to the new
+  // end is refined once more.
   Polyline ended = withSettledEnd(cost, points, stage.to, stage.tolerance_m);
   if (ended.back() == points.back()) return points;
   Polyline again = cut(ended);
   return cost.along(again) <= cost.along(ended) ? again : ended;
 }
 
-// Ways near the cheapest of all headings: that of the bound's search where it may be driven. Where it may not, as far
-// as it may and on in 32 headings, and the cheapest in these alone.
+// Near-optimal routes over all headings. The route of the bound's search is returned if drivable. Otherwise
+// its drivable beginning is continued in 32 headings, and the cheapest route in 32 headings is returned as
+// well.
 std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const Stage& stage, double most_J,
                                                  const StopCheck& stop) const {
   if (problem.map->grid().size() > kManyHeadingsCells) return {};

@@ -12,28 +12,29 @@
 
 namespace talus::planner {
 
-/// Plans by the whole cost-to-go field of the goal and any-angle refinement of the grid route under the exact
-/// cost. Where the eight headings of the grid join start and goal nowhere, any heading is tried: NoRoute is a proof
-/// (Reach), NoneFound is not.
+/// Plans with the complete cost-to-go field of the goal and any-angle refinement of the grid route under the
+/// exact cost. If the eight grid headings do not connect start and goal, arbitrary headings are tried:
+/// NoRoute is proven (Reach), NoneFound is not.
 ///
-/// Where a bound is requested and leaves room (Problem::prove), other corridors are refined as well and the cheapest
-/// route is taken (otherCorridors), on maps of up to kCorridorCells, and the cheapest way in 32 headings
-/// (manyHeadingsRoute) on those of up to kManyHeadingsCells. Where more than kLarge is left, the cheapest way over
-/// points of cells (pointRoute) is tried, too.
+/// If Problem::prove is set and a gap to the lower bound remains, further candidates are refined and the
+/// cheapest route is returned: routes through other corridors (otherCorridors) on maps of up to
+/// kCorridorCells, the cheapest route in 32 headings (manyHeadingsRoute) on maps of up to kManyHeadingsCells,
+/// and, for gaps above kLarge, the cheapest route over points of cells (pointRoute) on maps of up to
+/// kPointCells.
 ///
-/// What it worked out for a map and a goal is kept: another start to the same goal costs a walk down the
-/// field and the refinement only. Deterministic, for any number of threads, as long as no time limit cuts the
-/// work short. Not thread-safe: one object a thread; they may share a map.
+/// Intermediate results for a map and a goal are cached: another start to the same goal needs only a descent
+/// of the field and the refinement. Deterministic for any number of threads, unless a time limit ends the
+/// search. Not thread-safe: use one object per thread; objects may share a map.
 class FieldPlanner {
  public:
   explicit FieldPlanner(const RefineOptions& refine = {}) : refine_(refine) {}
 
-  /// A route through all via points in order, or why there is none. Throws std::invalid_argument without a
-  /// map.
+  /// Returns a route through all via points in order, or the reason why there is none. Throws
+  /// std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
  private:
-  // The route from one required place to the next.
+  // Section between two required places.
   struct Stage {
     maps::Point from;
     maps::Point to;
@@ -57,22 +58,21 @@ class FieldPlanner {
                                      const StopCheck& stop) const;
   Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
-  static constexpr std::size_t kCorridorCells = 4'000'000;      // larger maps are searched for one corridor
-  static constexpr std::size_t kManyHeadingsCells = 1'000'000;  // larger ones in eight headings only
-  static constexpr std::size_t kPointCells = 250'000;           // larger ones not over points of cells
-  static constexpr double kProven = 1e-3;  // of the cost: a gap that no corridor is sought for
-  static constexpr double kLarge =
-      0.05;  // of the cost: from this gap on a way over points of cells is sought
-  static constexpr double kSettled =
-      1.05;  // of the cost: what such a way may cost before its vertices are settled
+  static constexpr std::size_t kCorridorCells = 4'000'000;      // largest map searched for several corridors
+  static constexpr std::size_t kManyHeadingsCells = 1'000'000;  // largest map searched in 32 headings
+  static constexpr std::size_t kPointCells = 250'000;           // largest map searched over points of cells
+  static constexpr double kProven = 1e-3;  // smallest relative gap for which other corridors are searched
+  static constexpr double kLarge = 0.05;   // smallest relative gap for which points of cells are searched
+  // Cost limit of the point search relative to the best route, before its vertices are settled.
+  static constexpr double kSettled = 1.05;
 
   Refiner refine_;
   LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
-  std::shared_ptr<const costmap::CostGrid> field_map_;  // the version that the field is right for
+  std::shared_ptr<const costmap::CostGrid> field_map_;  // map version of the field
   std::vector<FieldGoal> field_goals_;
-  std::shared_ptr<const costmap::CostGrid> headings_map_;  // what headings_ are of
+  std::shared_ptr<const costmap::CostGrid> headings_map_;  // map of headings_
   std::unique_ptr<HeadingSets> headings_;
   maps::Point field_goal_;
   double field_tolerance_m_ = 0.0;

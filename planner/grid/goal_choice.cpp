@@ -11,7 +11,7 @@
 namespace talus::planner {
 namespace {
 
-// One of the goals, by its place among them, and what no route to it costs less than.
+// One of the goals: its index, its place, and a lower bound of the cost of any route to the goal.
 struct Candidate {
   std::size_t goal;
   maps::Point place;

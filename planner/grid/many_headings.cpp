@@ -18,20 +18,21 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-constexpr int kFar = 3;  // cells that a leg spans along an axis, at most
+constexpr int kFar = 3;  // largest number of cells that a leg spans along an axis
 
-// A leg from centre to centre: the cells that it crosses or touches, and the metres in each, in sides of a cell.
+// Leg between two cell centres, with the cells that it crosses or touches and its length in each cell [cell
+// sides].
 struct Leg {
   struct Crossed {
     Cell offset;
-    float length;  // 0: touched at a corner, which must allow the heading
+    float length;  // 0: touched at a corner; the cell must allow the heading
   };
   Cell offset;
   costmap::Direction heading;
   std::vector<Crossed> cells;
 };
 
-// Places on the leg are counted in cells from the first centre.
+// Positions on the leg are in cells from the first centre.
 Leg legTo(Cell offset) {
   const double dx = offset.column, dy = offset.row, length = std::hypot(dx, dy);
   Leg leg{offset, {dx / length, dy / length}, {}};
@@ -48,7 +49,8 @@ Leg legTo(Cell offset) {
       leg.cells.push_back({cellAt(middle * dx, middle * dy), static_cast<float>(share * length)});
       continue;
     }
-    for (const double side : {-0.25, 0.25})  // two cuts at once: a corner, whose other two cells lie aside
+    // Two cuts coincide at a corner: the other two cells at the corner.
+    for (const double side : {-0.25, 0.25})
       leg.cells.push_back(
           {cellAt(cuts[i] * dx - side * std::copysign(1.0, dx), cuts[i] * dy + side * std::copysign(1.0, dy)),
            0.0F});
@@ -112,7 +114,7 @@ class Search {
       reach(cell, cost_({start, grid_.centre(cell)}), kStart);
   }
 
-  // The last leg, to the goal or to where the way comes within the tolerance.
+  // The last leg, to the goal or to a cell within the tolerance.
   void end(Cell cell, Point goal, double tolerance_m) {
     const Point here = grid_.centre(cell);
     const double away_m = std::hypot(goal.x_m - here.x_m, goal.y_m - here.y_m);

@@ -6,9 +6,11 @@
 
 namespace talus::planner {
 
-/// The cheapest way between two places from centre to centre of cells in 32 headings, at most 18.4 degrees apart: where crossing a slope
-/// is priced, eight headings miss corridors that need another. To be refined. Dijkstra's search under the exact cost of each leg,
-/// turns left out; ways of `most_J` and more are not followed. Empty where there is none cheaper, or when stopped.
+/// Cheapest route between two places from cell centre to cell centre in 32 headings, at most 18.4 degrees
+/// apart. If cross-slope driving has a cost, eight headings miss corridors that need another heading. The
+/// route is meant to be refined. Dijkstra's algorithm with the exact cost of each leg; turn costs are not
+/// included. Routes of cost `most_J` [J] or more are not followed. Empty if no cheaper route exists, or when
+/// stopped.
 Polyline manyHeadingsRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
                            const StopCheck& stop = {});
 

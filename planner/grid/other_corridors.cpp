@@ -16,11 +16,11 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-constexpr int kSquare = 8;   // cells a side: twice what the refinement reaches to either side
-constexpr int kTries = 500;  // squares looked at
+constexpr int kSquare = 8;   // cells per side: twice the reach of the refinement to either side
+constexpr int kTries = 500;  // largest number of squares examined
 constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
 
-// The ground upside down.
+// The terrain with all gradients reversed.
 std::shared_ptr<const costmap::CostGrid> turned(const costmap::CostGrid& map) {
   const costmap::Revision upside_down{
       .ranges = {{{0, 0}, {map.grid().width - 1, map.grid().height - 1}}},
@@ -32,8 +32,8 @@ std::shared_ptr<const costmap::CostGrid> turned(const costmap::CostGrid& map) {
   return std::make_shared<const costmap::CostGrid>(costmap::revised(map, upside_down));
 }
 
-// How many cells of the best grid route through a cell no better route passes: a way there and back to a better one has
-// none but that cell.
+// Number of consecutive cells, on the cheapest grid route through a cell, that no cheaper route passes. A
+// detour from a cheaper route and back has only one such cell.
 std::size_t ownCells(const CostToGo& from_start, const CostToGo& to_goal, Cell through) {
   const auto sum = [&](Cell cell) { return std::uint64_t{from_start.units(cell)} + to_goal.units(cell); };
   const std::uint64_t least = sum(through);
@@ -46,7 +46,8 @@ std::size_t ownCells(const CostToGo& from_start, const CostToGo& to_goal, Cell t
   return count;
 }
 
-// The map in squares: the cheapest grid route through each, and where a route known already passes.
+// Map divided into squares, with the cheapest grid route through each square and whether a known route passes
+// near.
 class Squares {
  public:
   Squares(const maps::Grid& grid, const CostToGo& from_start, const CostToGo& to_goal)
@@ -63,7 +64,7 @@ class Squares {
       }
   }
 
-  // Squares that a route passes, and those around them.
+  // Marks the squares that a route passes and their neighbours.
   void pass(const Polyline& route) {
     for (const Point& p : subdivided(route, 0.5 * kSquare * grid_.resolution_m)) {
       const auto cell = grid_.cellAt(p);
@@ -78,7 +79,7 @@ class Squares {
     return least;
   }
 
-  // The cheapest cells of all squares that cost no more, cheapest first.
+  // The cheapest cell of each square with a cost of at most `most`, cheapest first.
   std::vector<Cell> upTo(double most) const {
     std::vector<Square> chosen;
     for (const Square& square : squares_)

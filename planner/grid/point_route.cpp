@@ -22,8 +22,8 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-// Points of a side, and of a row within a cell; fewer on maps of more than kFineCells, more on those of up to
-// kTinyCells, and where these find nothing on those of up to kFinestCells.
+// Points per side, and per row and column inside a cell. kCoarse above kFineCells cells, kFinest up to
+// kTinyCells, kFine between; if kFine finds no route on a map of up to kFinestCells, kFinest is tried.
 struct Fineness {
   int side, inner;
 };
@@ -33,7 +33,7 @@ constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'
 constexpr float kNotReached = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
-// A point of a cell: on one of its sides, or within (side -1).
+// A point of a cell: on a side (0 to 3) or inside (side -1).
 struct Spot {
   int side, number;
   double x, y;
@@ -54,10 +54,10 @@ std::vector<Spot> allSpots(Fineness fineness) {
   return spots;
 }
 
-// A straight leg from one spot of a cell to another.
+// A straight leg between two spots of a cell.
 struct SpotLeg {
   std::size_t to;
-  float length;  // sides of a cell
+  float length;  // cell sides
   costmap::Direction heading;
   HeadingCost cost;
 };
@@ -117,8 +117,9 @@ class PointSearch {
   float rest(Point at) const {
     return static_cast<float>(std::max(0.0, distance_m(at, places_.to) - tolerance_m_) * cheapest_J_ * 0.999);
   }
-  // Nodes of sides come twice: reached on a heading that both cells allow, and on one that only the cell that it
-  // crosses does, which may only be left on a heading of both.
+  // Each side point has two nodes: one reached on a heading that both adjacent cells allow, and a "loose"
+  // node reached on a heading that only the crossed cell allows. A loose node may only be left on a heading
+  // that both cells allow.
   std::uint32_t loose() const { return static_cast<std::uint32_t>(inner_ / 2); }
   std::size_t held(Cell cell) const {
     return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid_.width + 1) +
@@ -149,7 +150,7 @@ class PointSearch {
     return {grid_.south_west.x_m + (cell.column + spot.x) * grid_.resolution_m,
             grid_.south_west.y_m + (cell.row + spot.y) * grid_.resolution_m};
   }
-  // The cell and the spot in it; of a side, the cell in the east or north of it.
+  // Cell and spot of a node. For a side point, the cell east or north of the side.
   std::pair<Cell, std::size_t> whereIs(std::uint32_t node) const {
     if (node >= inner_) {
       const auto k = static_cast<int>(node - inner_), per = inner_points_;
@@ -232,7 +233,7 @@ class PointSearch {
     }
   }
 
-  // A turn on a side touches both its cells.
+  // A turn on a side touches both adjacent cells, so both must allow the heading.
   bool mayLeave(Cell cell, int side, const SpotLeg& leg) const {
     if (side < 0) return true;
     const Cell other = beyond(cell, side);
@@ -256,8 +257,8 @@ class PointSearch {
   int side_points_, inner_points_;
   std::vector<Spot> spots_;
   EdgeCrossings crossings_;
-  std::vector<std::vector<SpotLeg>> legs_;  // of a spot
-  std::size_t inner_;                       // the first node within a cell
+  std::vector<std::vector<SpotLeg>> legs_;  // by spot
+  std::size_t inner_;                       // first node inside a cell
   std::vector<float> labels_;
   std::vector<std::uint32_t> from_;
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,

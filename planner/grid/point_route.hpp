@@ -6,12 +6,13 @@
 
 namespace talus::planner {
 
-/// The cheapest way between two places over fixed points of cells: seven of each side, and nine within cells that
-/// refuse some heading, so that a way may tack there; three and one on maps of more than 20,000 cells; more where
-/// they find nothing on those of up to 5,000. A leg crosses one cell, or a part of it, under its exact cost; each
-/// turn is paid as the cheapest way to it came there. It finds corridors that grids of few headings miss, above all
-/// where cells allow few headings; to be refined. Dijkstra's search; ways of `most_J` and more are not followed.
-/// Empty where there is none cheaper, or when stopped.
+/// Cheapest route between two places over fixed points of cells: 7 points on each side, and 9 points inside
+/// cells that refuse some heading, so that a route can tack there. Maps of more than 20,000 cells use 3 and 1
+/// points; maps of up to 1,000 cells use 15 and 25, as do maps of up to 5,000 cells if no route was found. A
+/// leg crosses one cell or a section of a cell at its exact cost. The cost of a turn at a point depends on
+/// the cheapest leg that reaches the point. Finds corridors that grids of few headings miss, especially where
+/// cells allow few headings; the route is meant to be refined. A* search with a straight-line lower bound;
+/// routes of cost `most_J` [J] or more are not followed. Empty if no cheaper route exists, or when stopped.
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
                     const StopCheck& stop = {});
 

@@ -15,7 +15,7 @@
 namespace talus::planner {
 namespace {
 
-// The place itself, or the nearest centre of a cell that may be driven on within a few cells of it.
+// The place itself, or a nearby cell centre, at most kFar cells away, with an allowed heading.
 std::optional<maps::Point> standingPlace(const MotionCost& cost, maps::Point p) {
   constexpr int kFar = 8;
   if (cost.allowed(p)) return p;
@@ -32,7 +32,7 @@ std::optional<maps::Point> standingPlace(const MotionCost& cost, maps::Point p) 
 
 }  // namespace
 
-// The guide need not be good beyond the tube's width.
+// Refinement for the guide, which need not be more accurate than the tube's width.
 RefineOptions TubePlanner::roughly() {
   RefineOptions rough;
   rough.corridor.reach_cells = 0;
@@ -94,7 +94,7 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
   return withoutTipping(std::move(plan));
 }
 
-// Pools the map, or what changed of it since the last time.
+// Pools the map, or only the cells that changed since the previous call.
 bool TubePlanner::pool(const Problem& problem, const StopCheck& stop) {
   if (problem.map == map_) return true;
   const bool newer =

@@ -10,29 +10,31 @@
 namespace talus::planner {
 
 /// Plans on large maps from coarse to fine: a route on the pooled map, the grid route in a tube around it,
-/// any-angle refinement. Where the tube holds no way the whole field is settled, so that no route means no
-/// route. Takes a byte a cell of pooled map and a few tubes' boxes, where FieldPlanner takes twenty bytes a
-/// cell; routes may differ from its routes by the ways that are not seen on the pooled map.
+/// and any-angle refinement. If the tube contains no route, the whole field is settled, so NoRoute is
+/// reliable. Needs one byte per cell for the pooled map plus the boxes of a few tubes, while FieldPlanner
+/// needs twenty bytes per cell. The route may differ from FieldPlanner's if the best corridor is not visible
+/// on the pooled map.
 ///
-/// The pooled map is kept, and a newer version pooled only where it changed. Deterministic for any
+/// The pooled map is cached, and a newer version is pooled only where the map changed. Deterministic for any
 /// number of threads. Not thread-safe.
 class TubePlanner {
  public:
   explicit TubePlanner(const TubeOptions& tube = {}, const RefineOptions& refine = {})
       : options_(tube), coarse_(roughly()), refine_(refine) {}
 
-  /// As FieldPlanner::plan; the lower bound is the simple one. Throws std::invalid_argument without a map.
+  /// As FieldPlanner::plan(), but with a straight-line lower bound. Throws std::invalid_argument if the
+  /// problem has no map.
   Plan plan(const Problem& problem);
 
-  /// A way from start to goal by the route on a coarse map, to plan along; empty when that has none near
-  /// both.
+  /// Guide from start to goal: the route on a coarse map. Empty if the coarse map has no traversable cell
+  /// near both ends or no route between them.
   Polyline guideOver(const std::shared_ptr<const costmap::CostGrid>& coarse, const Problem& leg);
 
-  /// The route near a guide that is known already, as from an overview of a map that memory does not hold as
-  /// a whole; NoneFound where the tube holds none.
+  /// Plans near a known guide, for example a guide from an overview of a map that does not fit in memory.
+  /// Returns NoneFound if the tube contains no route.
   Plan planAlong(const Problem& problem, const Polyline& guide);
 
-  /// Cells to a side of a pooled cell.
+  /// Cells per side of a pooled cell.
   static constexpr int kFactor = 8;
 
  private:

@@ -24,7 +24,7 @@ const std::shared_ptr<const CostTile>& unknownTile() {
   return tile;
 }
 
-// Tiles of a map by column and row.
+// Range of tiles (column, row) within a margin around a line.
 CellBox tilesAround(const maps::Grid& grid, const Polyline& line, double margin_cells) {
   Point low = line.front(), high = low;
   for (const Point p : line) {
@@ -41,7 +41,7 @@ CellBox tilesAround(const maps::Grid& grid, const Polyline& line, double margin_
            tile(high.y_m, grid.south_west.y_m, margin_cells, grid.height)}};
 }
 
-// A box of tiles of the map around a section, those beside the tube left unknown.
+// Box of map tiles around a section; tiles outside the tube are unknown.
 class Window {
  public:
   Window(const CostGrid& map, const Polyline& guide, double margin_cells)
@@ -62,7 +62,7 @@ class Window {
 
   const MapPointer& map() const noexcept { return map_; }
 
-  // Whether a way passes close to where tiles were left out.
+  // Returns true if a route passes within 2.5 cells of a tile that was left out.
   bool touchesWall(const Polyline& way) const {
     const double clear_m = 2.5 * content_.grid.resolution_m;
     return std::any_of(way.begin(), way.end(), [&](Point p) {
@@ -87,7 +87,7 @@ class Window {
   }
 
   bool leftOut(Point p) const {
-    if (!whole_.grid().cellAt(p)) return false;  // the map's own border
+    if (!whole_.grid().cellAt(p)) return false;  // outside the whole map
     const auto cell = content_.grid.cellAt(p);
     if (!cell) return true;
     const auto tile =
@@ -104,7 +104,7 @@ class Window {
 struct TubeSection {
   Polyline guide;  // from place to place
   double tolerance_m = 0.0;
-  Polyline way{};  // empty: none found
+  Polyline way{};  // empty: no route found
 };
 
 class Tube {
@@ -127,7 +127,7 @@ class Tube {
   double cell_m_;
 };
 
-// The nearest cell centre, within the margin, that may be driven on.
+// Nearest traversable cell centre within the margin.
 std::optional<Point> Tube::placeNear(const MotionCost& cost, Point p) const {
   const maps::Grid& grid = cost.map().grid();
   const auto own = grid.cellAt(p);
@@ -142,7 +142,7 @@ std::optional<Point> Tube::placeNear(const MotionCost& cost, Point p) const {
   return std::nullopt;
 }
 
-// Legs between places on the guide; the last ends at the goal.
+// Sections between places on the guide. The last section ends at the goal.
 std::vector<TubeSection> Tube::cut(const Polyline& guide) const {
   const MotionCost cost(problem_.map);
   std::vector<TubeSection> sections;
@@ -154,7 +154,7 @@ std::vector<TubeSection> Tube::cut(const Polyline& guide) const {
     const auto place = last ? std::optional(guide.back()) : placeNear(cost, pieces[k].back());
     if (place) pieces[k].back() = *place;
     append(at, pieces[k]);
-    if (!place) continue;  // nothing to stand on: one longer section
+    if (!place) continue;  // no traversable cell: extends the section
     sections.push_back({at, last ? problem_.goal_tolerance_m : 0.0});
     at = {*place};
   }
@@ -184,8 +184,8 @@ Polyline Tube::search(const TubeSection& section) const {
   return way;
 }
 
-// Searches every section; one without a way is joined with its neighbour. False when a single section is left
-// and has none.
+// Searches every section. A section without a route is joined with a neighbour. Returns false if a single
+// section is left without a route, or when stopped.
 bool Tube::searchAll(std::vector<TubeSection>& sections) const {
   for (;;) {
     parallelFor(sections.size(), problem_.threads, [&](std::size_t k) {
@@ -203,7 +203,7 @@ bool Tube::searchAll(std::vector<TubeSection>& sections) const {
   }
 }
 
-// One way, searched again around the places where sections meet.
+// Joins the sections' routes and searches again around the joints.
 Polyline Tube::joined(const std::vector<TubeSection>& sections) const {
   const MotionCost cost(problem_.map);
   std::vector<Polyline> ways;

@@ -11,13 +11,13 @@ namespace {
 using costmap::CostTile;
 
 constexpr int kSide = CostTile::kSide;
-constexpr int kBlock = 8;  // tiles to a side of what is built at once
+constexpr int kBlock = 8;  // tiles per side of a block built at once
 
 int tilesAcross(int cells) {
   return (cells + kSide - 1) / kSide;
 }
 
-// The rectangle of cells first to last as a grid of its own.
+// Sub-grid of the cells from `first` to `last`.
 maps::Grid part(const maps::Grid& whole, maps::Cell first, maps::Cell last) {
   return {.width = last.column - first.column + 1,
           .height = last.row - first.row + 1,
@@ -74,7 +74,7 @@ std::set<WindowedMap::Tile> WindowedMap::missing(const Polyline& line, double ma
   return tiles;
 }
 
-// Takes the tiles over, and their elevation, out of a map whose first cell is `first` of the whole.
+// Copies tiles and their elevation from a map whose first cell is cell `first` of the whole map.
 void WindowedMap::take(const costmap::TraversabilityMap& built, maps::Cell first,
                        const std::set<Tile>& tiles) {
   const auto version = built.published();
@@ -100,8 +100,8 @@ void WindowedMap::take(const costmap::TraversabilityMap& built, maps::Cell first
   }
 }
 
-// Builds the box around some tiles of one block, with a tile more on every side for what slopes and
-// kept-clear distances look at, and takes those tiles over.
+// Builds the box around some tiles of one block, extended by one tile on every side (slopes and clearances
+// depend on neighbouring cells), and copies the tiles.
 void WindowedMap::build(const std::set<Tile>& tiles) {
   int row0 = tiles.begin()->first, row1 = row0, column0 = tiles.begin()->second, column1 = column0;
   for (const auto& [row, column] : tiles) {

@@ -16,39 +16,43 @@
 
 namespace talus::planner {
 
-/// A box of cells in map metres, its sides on cell borders.
+/// Box of cells in map coordinates [m], with sides on cell borders.
 struct MapBox {
-  maps::Point low;
-  maps::Point high;
+  maps::Point low;   ///< south-western corner
+  maps::Point high;  ///< north-eastern corner
 };
 
-/// A map too large to be held: an overview of all of it, and at full resolution the tiles around a route only,
-/// built box by box. Memory grows with the route's length, not with the map. Not thread-safe.
+/// Map that does not fit in memory: an overview of the whole map, and full-resolution tiles around a route,
+/// built box by box. Memory grows with the length of the route, not with the map. Not thread-safe.
 class WindowedMap {
  public:
+  /// Grid, overview and source of the full-resolution cells.
   struct Parts {
     maps::Grid grid;                                    ///< of the whole map at full resolution
     std::shared_ptr<const costmap::CostGrid> overview;  ///< of the whole map in larger cells
-    /// Builds the cells of a box at full resolution; none where the box holds no data. Called from one thread.
+    /// Builds the cells of a box at full resolution; empty if the box contains no data. Called from one
+    /// thread.
     std::function<std::optional<costmap::TraversabilityMap>(const MapBox&)> build;
   };
 
-  /// Throws std::invalid_argument without an overview or without build.
+  /// Throws std::invalid_argument if `overview` or `build` is missing.
   explicit WindowedMap(Parts parts);
 
+  /// Overview of the whole map.
   const std::shared_ptr<const costmap::CostGrid>& overview() const noexcept { return parts_.overview; }
 
-  /// The map with the tiles that lie within a margin [cells] of a line, and those that were built before; all
-  /// others unknown. The same tiles, to the bit, as of a map that is built as a whole. Ends early when asked
-  /// to stop. Throws std::invalid_argument where what was built is not the cells of the box.
+  /// Map with the tiles within a margin [cells] of a line and all tiles built before; other tiles are
+  /// unknown. The tiles are identical to those of a map built as a whole. Ends early when stopped. Throws
+  /// std::invalid_argument if the built map does not cover exactly the cells of the box.
   std::shared_ptr<const costmap::CostGrid> around(const std::vector<maps::Point>& line, double margin_cells,
                                                   const ProgressMonitor& watch = {});
 
-  /// Elevation [m] on tiles that were built.
+  /// Elevation [m] on tiles that were built; empty elsewhere.
   std::optional<double> elevation_m(maps::Point point) const;
 
-  /// Cells of the whole map; cells built at full resolution so far.
+  /// Grid of the whole map.
   const maps::Grid& grid() const noexcept { return parts_.grid; }
+  /// Number of cells built at full resolution so far, counted in whole tiles.
   std::size_t cellsBuilt() const noexcept;
 
  private:
@@ -59,7 +63,7 @@ class WindowedMap {
 
   Parts parts_;
   costmap::CostGrid::Content content_;
-  std::map<Tile, maps::Raster<float>> built_;  // elevation of tiles, one cell more to each side
+  std::map<Tile, maps::Raster<float>> built_;  // elevation of built tiles, with a border of one cell
 };
 
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace {
 
-// Cells of the overview may reach beyond the map.
+// Clamps the guide to the map: cells of the overview may extend beyond the map.
 Polyline onto(const maps::Grid& grid, Polyline guide) {
   const double half_m = 0.5 * grid.resolution_m;
   const maps::Point low{grid.south_west.x_m + half_m, grid.south_west.y_m + half_m};
@@ -19,7 +19,8 @@ Polyline onto(const maps::Grid& grid, Polyline guide) {
   return guide;
 }
 
-// One leg: along the overview's route, in windows; in wider ones where those hold no way.
+// Plans one leg along the overview's route in a window, then in a wider window if the first contains no
+// route.
 Plan planLeg(Problem& leg, WindowedMap& map, TubePlanner& tube) {
   const auto guide = onto(map.grid(), tube.guideOver(map.overview(), leg));
   if (guide.empty()) {

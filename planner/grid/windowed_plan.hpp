@@ -5,8 +5,8 @@
 
 namespace talus::planner {
 
-/// A route on a map that is not held in memory: the overview's route guides, and each leg is planned in the
-/// tiles beside it. The problem's map becomes that of the last leg.
+/// Plans a route on a map that does not fit in memory: the overview's route is the guide, and each leg is
+/// planned on the tiles beside the guide. Sets problem.map to the map of the last leg.
 Plan planInWindows(Problem& problem, WindowedMap& map);
 
 }  // namespace talus::planner

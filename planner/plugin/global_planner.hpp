@@ -14,9 +14,8 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 
-/// The one way to ask for a route: of Talus' own planners (plan/make_planner.hpp, plan/plan_route.hpp) and of those in a shared
-/// library, which exports one object named `talus_planner` (plugin/plugin_export.hpp) for
-/// plugin/plugin_loader.hpp to load. One page on purpose.
+/// The interface of all planners: Talus' own (plan/make_planner.hpp, plan/plan_route.hpp) and those in a shared library,
+/// which exports one object named `talus_planner` (plugin/plugin_export.hpp) that plugin/plugin_loader.hpp loads.
 namespace talus {
 
 /// Grows with every change below that an older plugin or program would misread.
@@ -66,8 +65,8 @@ struct PlanRequest {
       other_goals{};               ///< the route may end at any of these as well: the cheapest is taken
   double tolerance_m = 0.0;        ///< it may end this far from the goal, >= 0
   std::vector<maps::Point> via{};  ///< to be passed in this order
-  std::optional<double> start_heading_rad{};  ///< where the rover looks at the start; none: anywhere
-  std::optional<double> goal_heading_rad{};   ///< the same on arrival
+  std::optional<double> start_heading_rad{};  ///< heading at the start; none: any
+  std::optional<double> goal_heading_rad{};   ///< heading at the goal; none: any
   /// Turning radius, reversing and what turning takes, from planner::kinematicsOn(); none: turning is free.
   std::optional<planner::Kinematics> kinematics{};
   /// Clearance, pitch and roll are kept along the whole motion; none: the cost map's own judgement holds.

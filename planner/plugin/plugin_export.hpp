@@ -18,8 +18,8 @@ class CostSource {
  public:
   virtual ~CostSource() = default;
 
-  /// Joules that a metre costs more in each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be
-  /// entered; NaN: not known. The same place gives the same value on every grid: a large map is asked for window by window.
+  /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be entered;
+  /// NaN: unknown. A place has the same value on every grid: a large map is computed window by window.
   virtual std::vector<float> over(const maps::Grid& grid) const = 0;
 };
 

@@ -19,12 +19,12 @@
 namespace talus::planner {
 namespace {
 
-// Between poses that a curve is fitted to: cells at least, and radii.
+// Smallest spacing of the poses between which curves are fitted, in cells and in turning radii.
 constexpr double kPose_cells = 4.0;
 constexpr double kPose_radii = 2.0;
-// Radii that a rover which turns in place is offered beside.
+// Additional radii [cells] tried for a rover that can turn in place.
 constexpr std::array kBend_cells{1.5, 4.0};
-// Poses that the search may try while another drive is known.
+// Largest number of poses expanded by the search if a drive is already known.
 constexpr std::uint64_t kBeside = 50'000;
 
 Plan ended(PosePlan leg) {
@@ -45,7 +45,7 @@ void append(PosePath& whole, const PosePath& leg) {
   whole.legs.insert(whole.legs.end(), leg.legs.begin(), leg.legs.end());
 }
 
-// Poses along a polyline, looking along it: half way between the ways in and out where it bends.
+// Poses along a polyline; at a corner, the heading is midway between the adjacent legs.
 std::vector<Pose> posesAlong(const std::vector<maps::Point>& points, const PoseProblem& asked) {
   std::vector<Pose> poses;
   const auto heading = [&](std::size_t i) {
@@ -60,7 +60,7 @@ std::vector<Pose> posesAlong(const std::vector<maps::Point>& points, const PoseP
   return poses;
 }
 
-// Shortest curves from pose to pose, shortened as a whole. Where some may not be driven, others bridge them.
+// Shortest curves from pose to pose, shortened as a whole. Curves that are not allowed are bridged by others.
 PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const ShortenOptions& options) {
   PosePath path{.start = poses.front(), .legs = {}};
   for (std::size_t i = 1; i < poses.size(); ++i)
@@ -68,7 +68,7 @@ PosePath fitted(const std::vector<Pose>& poses, const PoseCost& cost, const Shor
   return shortened(path, cost, options);
 }
 
-// The drive along a polyline that keeps a radius; without one, of straight legs and turns in place.
+// Drive along a polyline with the cost's turning radius; for radius 0, straight legs and turns in place.
 PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked, const PoseCost& cost,
                const StopCheck& stop) {
   const double cell_m = asked.map->grid().resolution_m, radius_m = cost.kinematics().turning_radius_m;
@@ -79,7 +79,7 @@ PosePath along(const std::vector<maps::Point>& points, const PoseProblem& asked,
       {.joint_m = kPose_cells * cell_m, .cheapest_J_per_m = cheapestMetre_J(*asked.map), .stop = stop});
 }
 
-// A rover that turns in place may bend its way as well, and need not stop for it.
+// A rover that can turn in place may also follow arcs, which need no stop.
 PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem& asked,
                        const StopCheck& stop) {
   const MotionCost motion(asked.map);
@@ -106,9 +106,9 @@ PosePlan cheapestAlong(const std::vector<maps::Point>& points, const PoseProblem
 
 }  // namespace
 
-// Turning costs little where the radius is small against the bends of the route: then the any-angle route,
-// which the search's eight headings do not see, is the better seed; and it threads what motions of the
-// search's one length step over.
+// If the radius is small compared with the bends of the route, turning costs little, and the any-angle route
+// is a better start than the search with its discrete headings. The any-angle route also passes gaps that
+// motions of one fixed length miss.
 PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& problem) {
   const StopCheck stop(asked.watch, asked.time_limit_s);
   Problem free = problem;
@@ -119,7 +119,7 @@ PosePlan DrivePlanner::alongRoute(const PoseProblem& asked, const Problem& probl
   free.time_limit_s = asked.time_limit_s;
   free.prove = false;
   const Plan route = field_.plan(free);
-  if (route.status == RouteStatus::NoRoute) {  // whatever the headings: no drive either
+  if (route.status == RouteStatus::NoRoute) {  // proven for all headings: no drive exists either
     PosePlan none;
     none.status = route.status;
     none.reason = route.reason;
@@ -193,7 +193,7 @@ Plan DrivePlanner::plan(const Problem& problem) {
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const bool last = i + 1 == stops.size();
     const double tolerance_m = last ? problem.goal_tolerance_m : 0.0;
-    asked.time_limit_s = time.share_s(stops.size() - i);  // what earlier legs left over is shared
+    asked.time_limit_s = time.share_s(stops.size() - i);  // time left over by earlier legs is shared
     if (last) asked.goal_heading_rad = problem.goal_heading_rad;
     PosePlan leg = tolerance_m > 0.0 ? drivenWithin(asked, problem) : drivenTo(asked, problem, stops[i]);
     if (leg.status != RouteStatus::Found) return ended(std::move(leg));

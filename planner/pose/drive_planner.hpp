@@ -10,22 +10,24 @@
 
 namespace talus::planner {
 
-/// Drives that keep the problem's kinematics, through all via points in order: HybridSearch leg by leg, each
-/// setting out as the one before arrived, or a curve fitted to FieldPlanner's route where that is cheaper or
-/// the search finds none.
-/// Keeps what the search knows of map and goal. Not thread-safe: one object a thread.
+/// Plans drives that respect the problem's kinematics, through all via points in order. Each leg is the
+/// cheaper of a HybridSearch and a curve fitted to FieldPlanner's route, and starts with the heading at which
+/// the previous leg ended. The search data of the last map and goal are cached. Not thread-safe: use one
+/// object per thread.
 class DrivePlanner {
  public:
-  static constexpr std::string_view kName = "hybrid";          ///< among plannerNames()
-  static constexpr std::string_view kSampling = "RRTstarSE2";  ///< the same, then improved by RRT*
+  static constexpr std::string_view kName = "hybrid";          ///< in plannerNames()
+  static constexpr std::string_view kSampling = "RRTstarSE2";  ///< in plannerNames(): kName, then improved by
+                                                               ///< RRT*
 
   explicit DrivePlanner(const HybridOptions& options = {}) : search_(options) {}
 
-  /// Each leg is handed to improvedBySampling() too.
+  /// Enables improvement of each leg by improvedBySampling().
   void sample(const PoseSamplingSettings& settings) { sampling_ = settings; }
 
-  /// A drive, or why there is none. Within a goal tolerance it ends at the goal or where the any-angle route
-  /// does, whichever drive costs less. Throws std::invalid_argument without a map.
+  /// Returns a drive, or the reason why there is none. With a goal tolerance, the drive ends at the goal or
+  /// at the end of the any-angle route, whichever is cheaper. Throws std::invalid_argument if the problem has
+  /// no map or the turning radius is out of range.
   Plan plan(const Problem& problem);
 
  private:

@@ -20,8 +20,8 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kJoint_cells = 4.0;  // between the joints that shortening looks at
-constexpr double kBetter = 0.998;     // of the cost: worth to look on from there
+constexpr double kJoint_cells = 4.0;  // spacing of the joints for shortening
+constexpr double kBetter = 0.998;     // relative cost below which a better drive extends the search
 constexpr float kClosed = -std::numeric_limits<float>::infinity();
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint32_t kNone = 0xffffffff;
@@ -29,11 +29,11 @@ constexpr std::uint32_t kNone = 0xffffffff;
 struct Node {
   maps::Point place;
   float cost = 0.0F;
-  const MotionSet::Motion* motion = nullptr;  // that led here; null at the start
+  const MotionSet::Motion* motion = nullptr;  // motion that led to the node; null at the start
   std::uint32_t parent = kNone;
-  std::int16_t heading = 0;   // by its number
-  std::int8_t direction = 0;  // of travel: +1 forward, -1 reverse, 0 not moved yet
-  bool stands = false;        // what led here has passed the check
+  std::int16_t heading = 0;   // heading number
+  std::int8_t direction = 0;  // direction of travel: +1 forward, -1 reverse, 0 not moved yet
+  bool stands = false;        // the motion that led to the node has passed the check
 };
 
 struct Queued {
@@ -44,7 +44,7 @@ struct Queued {
   }
 };
 
-// One search; HybridSearch keeps what outlives it.
+// A single search; HybridSearch keeps the data reused by later searches.
 class HybridAStar {
  public:
   HybridAStar(const PoseProblem& problem, const HybridOptions& options, CostToGo& field,
@@ -69,7 +69,7 @@ class HybridAStar {
       if (last_ == kNever && best_cost_ <= options_.suboptimality_bound * next.estimate)
         last_ = expanded_ + options_.improve;
       open_.pop();
-      if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // a better one came later
+      if (best(nodes_[next.node]) != nodes_[next.node].cost) continue;  // replaced by a cheaper node
       if ((++expanded_ & 63) == 0 && stop_()) {
         if (stop_.cancelled()) return RouteStatus::Cancelled;
         return best_cost_ < kInfinity ? RouteStatus::Found : RouteStatus::TimedOut;
@@ -96,7 +96,7 @@ class HybridAStar {
   double cheapest_J_per_m() const noexcept { return cheapest_J_per_m_; }
 
  private:
-  // From one node to another that descends from it.
+  // Path from a node to one of its descendants.
   PosePath pathFrom(std::uint32_t first, std::uint32_t last) const {
     PosePath path{.start = poseOf(nodes_[first]), .legs = {}};
     for (; last != first; last = nodes_[last].parent) path.legs.push_back(nodes_[last].motion->leg);
@@ -111,7 +111,7 @@ class HybridAStar {
     for (int k = 0; k < ways; ++k) offer({.place = problem_.start, .heading = static_cast<std::int16_t>(k)});
   }
 
-  // The motion that led to a node was priced quickly; here it is held against the exact cost.
+  // The node's motion was priced approximately; the exact cost is checked at expansion.
   bool stands(const Node& node) const {
     return !node.motion || cost_(poseOf(nodes_[node.parent]), node.motion->leg) < kInfinity;
   }
@@ -138,7 +138,7 @@ class HybridAStar {
     }
   }
 
-  // Keeps the node when it is the best at its cell and heading.
+  // Keeps the node if it is the cheapest at its cell and heading.
   void offer(const Node& node) {
     const auto cell = problem_.map->grid().cellAt(node.place);
     if (!cell) return;
@@ -157,7 +157,7 @@ class HybridAStar {
     return field_.cost_J(cell).value_or(kInfinity);
   }
 
-  // The least cost at the node's cell and heading, by direction where changing it has a price.
+  // Lowest cost at the node's cell and heading; separately by direction of travel if a cusp has a cost.
   float& best(const Node& node) {
     const maps::Grid& grid = problem_.map->grid();
     const bool apart = problem_.kinematics.cusp.cost_J > 0.0 && node.direction < 0;
@@ -165,7 +165,7 @@ class HybridAStar {
                      static_cast<std::size_t>(node.heading + (apart ? options_.headings : 0)));
   }
 
-  // A direct curve is tried more often the nearer the goal is.
+  // A direct curve to the goal is tried more often near the goal.
   bool due(const Node& node) const {
     const double cells = std::hypot(node.place.x_m - problem_.goal.x_m, node.place.y_m - problem_.goal.y_m) /
                          problem_.map->grid().resolution_m;
@@ -196,8 +196,8 @@ class HybridAStar {
     best_finish_ = std::move(rest.legs);
   }
 
-  // Whether the drive through a node stands up to the check. Legs are checked apart, and each once: with the
-  // leg before it, since the check looks at the turn between them too.
+  // Returns true if the drive through a node passes the check. Each leg is checked once, together with the
+  // previous leg, because the check includes the turn between them.
   bool standsUp(std::uint32_t index, const std::vector<PosePath::Leg>& finish) {
     std::uint32_t from = index;
     while (nodes_[from].motion && !nodes_[from].stands) from = nodes_[from].parent;
@@ -234,7 +234,7 @@ PosePlan refused(RouteStatus status, const char* reason) {
   return plan;
 }
 
-// Where no motion of one length from one of the headings passes, shorter ones between more may.
+// If no motion of the given length passes from the given headings, shorter motions from more headings may.
 HybridOptions finerThan(HybridOptions options) {
   constexpr std::uint64_t kMostFine = 200'000;
   options.headings *= 2;

@@ -14,54 +14,54 @@
 
 namespace talus::planner {
 
-/// The input of a search for a drive.
+/// Input of a search for a drive.
 struct PoseProblem {
-  std::shared_ptr<const costmap::CostGrid> map;  ///< pinned while the search runs
+  std::shared_ptr<const costmap::CostGrid> map;  ///< kept alive during the search
   maps::Point start;
   maps::Point goal;
-  std::optional<double> start_heading_rad;  ///< nothing: the rover may look any way
-  std::optional<double> goal_heading_rad;   ///< nothing: it may arrive looking any way
+  std::optional<double> start_heading_rad;  ///< empty: any heading
+  std::optional<double> goal_heading_rad;   ///< empty: any heading
   Kinematics kinematics;
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   ProgressMonitor watch;
-  /// poses, where fewer than HybridOptions allow.
+  /// Limit on expanded poses in addition to HybridOptions::most_expanded; the smaller applies.
   std::uint64_t most_expanded = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Choices of the search.
+/// Parameters of the search.
 struct HybridOptions {
-  int headings = 72;        ///< discrete headings of a cell, >= 8
-  double step_cells = 1.5;  ///< length of a motion; more than sqrt 2 leaves the cell
-  /// Weight of the cost still to go, >= 1: more finds a drive sooner, and a dearer one.
+  int headings = 72;        ///< discrete headings per cell, >= 8
+  double step_cells = 1.5;  ///< length of a motion; more than sqrt(2) leaves the cell
+  /// Weight of the cost-to-go estimate, >= 1: larger weights find a drive earlier, but a costlier one.
   double heuristic_weight = 1.1;
-  /// A drive that costs at most so many times the estimate of the most promising pose left ends the search
-  /// soon, >= 1.
+  /// The search ends after `improve` more poses once the drive's cost is at most this multiple of the lowest
+  /// estimate in the queue, >= 1.
   double suboptimality_bound = 1.03;
-  std::uint64_t improve = 500;  ///< poses tried after that
-  std::uint64_t most_expanded =
-      150'000;  ///< poses, longer motions counting more: some 2 s; then it ends, NoneFound
+  std::uint64_t improve = 500;  ///< poses expanded after the bound is reached
+  /// Limit on expanded poses (long motions count more), about 2 s; NoneFound if no drive is known then.
+  std::uint64_t most_expanded = 150'000;
 };
 
-/// What the search answers.
+/// Result of a search.
 struct PosePlan {
   RouteStatus status = RouteStatus::NoneFound;
-  std::string reason;  ///< why there is no drive; empty when Found
+  std::string reason;  ///< reason if no drive was found; empty if Found
   PosePath path;
   double cost_J = 0.0;         ///< exact, by PoseCost
-  std::uint64_t expanded = 0;  ///< poses whose motions were tried
+  std::uint64_t expanded = 0;  ///< number of expanded poses
 };
 
-/// Whether violations() finds nothing, along the drive's arcs and along the chords that go into files.
+/// Returns true if violations() is empty for the drive's arcs and for the chords written to files.
 bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics);
 
-/// Hybrid A* (dolgov_2010) over position and heading under the one cost function: motions of constant
-/// curvature from continuous poses, one pose kept a cell and heading, led by the anisotropic cost-to-go field
-/// of the goal, and finished by shortest curves; then shortened wherever a direct curve is cheaper. Motions
-/// are priced by a few cells while they wait and held against the exact cost when their turn comes. The field
-/// sees slope, soil and hazards but not turning, so that little is searched in vain. Where it finds none it
-/// tries once more with twice the headings and shorter motions. Not optimal: a drivable answer, and a seed.
-/// What it answers stands up to violations() of route_check.hpp. Keeps the field of the last map and goal.
-/// Deterministic. One object one thread.
+/// Hybrid A* (dolgov_2010) over position and heading with the exact drive cost. Motions have constant
+/// curvature and start from continuous poses; one pose is kept per cell and heading. The heuristic is the
+/// anisotropic cost-to-go field of the goal, which includes slope, soil and hazards but not turning. The
+/// search is completed by shortest curves to the goal, and the drive is shortened wherever a direct curve is
+/// cheaper. Queued motions are priced by a few cells; the exact cost is checked at expansion. If no drive is
+/// found, a second search uses twice the headings and shorter motions. The result is drivable, has no
+/// violations() (route_check.hpp), but is not optimal. The field of the last map and goal is cached.
+/// Deterministic. Not thread-safe.
 class HybridSearch {
  public:
   explicit HybridSearch(const HybridOptions& options = {});

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kStretch_cells = 0.5;  // longest stretch priced by one cell
+constexpr double kStretch_cells = 0.5;  // longest stretch priced by a single cell
 
 }  // namespace
 
@@ -30,7 +30,7 @@ MotionSet::MotionSet(const costmap::CostGrid& map, const Kinematics& kinematics,
     }
 }
 
-// From the heading number 0; every change of heading is a whole number of bins.
+// Legs from heading number 0; every change of heading is an integer number of bins.
 std::vector<PosePath::Leg> MotionSet::legs() const {
   const double step_m = options_.step_cells * map_.grid().resolution_m;
   const double radius_m = kinematics_.turning_radius_m;
@@ -76,7 +76,7 @@ MotionSet::Motion MotionSet::made(const PosePath::Leg& leg, int heading, int tur
 }
 
 std::uint64_t MotionSet::work() const noexcept {
-  constexpr std::uint64_t kUsual = 80;  // stretches of a radius of five cells
+  constexpr std::uint64_t kUsual = 80;  // number of stretches for a radius of five cells
   std::uint64_t stretches = 0;
   for (const Motion& motion : from(0)) stretches += motion.stretches.size();
   return std::max<std::uint64_t>(1, stretches / kUsual);

@@ -8,9 +8,9 @@
 
 namespace talus::planner {
 
-/// The motions that a search tries from every pose, worked out once for each heading: arcs at two curvatures,
-/// straight, all of it in reverse where allowed, turns in place for a rover that can. Headings are
-/// `offset_rad` + k 2 pi / headings; every motion ends in one of them.
+/// Motions tried from every pose, computed once per heading: straight, arcs at two curvatures (1 / r and 1 /
+/// (3 r), r the turning radius), the same in reverse if allowed, and turns in place if r = 0. Headings are
+/// `offset_rad` + k 2 pi / headings; every motion ends at one of these headings.
 class MotionSet {
  public:
   struct Options {
@@ -19,20 +19,20 @@ class MotionSet {
     double offset_rad = 0.0;  ///< heading number 0
   };
 
-  /// A stretch of a motion, priced by the cell in its middle.
+  /// Stretch of a motion, priced by the cell at its centre.
   struct Stretch {
-    double dx_m, dy_m;  ///< its middle from the pose
+    double dx_m, dy_m;  ///< centre relative to the pose
     double length_m;
     HeadingCost cost;
   };
 
-  /// A motion from one heading.
+  /// Motion from one heading.
   struct Motion {
     PosePath::Leg leg;
-    double dx_m = 0.0, dy_m = 0.0;  ///< its end from the pose
-    int heading = 0;                ///< number of the heading at its end
-    int direction = 0;              ///< +1, -1; 0 in place
-    double turn_rad = 0.0;          ///< all changes of heading, >= 0
+    double dx_m = 0.0, dy_m = 0.0;  ///< end relative to the pose
+    int heading = 0;                ///< heading number at the end
+    int direction = 0;              ///< +1 forward, -1 reverse, 0 in place
+    double turn_rad = 0.0;          ///< sum of all changes of heading, >= 0
     std::vector<Stretch> stretches{};
   };
 
@@ -45,11 +45,11 @@ class MotionSet {
   double heading_rad(int heading) const noexcept { return options_.offset_rad + heading * bin_rad_; }
   int headings() const noexcept { return options_.headings; }
 
-  /// What it takes to follow all motions from one heading: 1 for those of a small turning radius, more as they get longer.
+  /// Relative effort of all motions from one heading: 1 for small turning radii, larger for longer motions.
   std::uint64_t work() const noexcept;
 
-  /// Joules of a motion from a place, by its stretches' middles: quick, not exact. Infinite where one is not
-  /// allowed or the motion leaves the map.
+  /// Approximate cost [J] of a motion from a place, from the cells at its stretches' centres. Infinite if a
+  /// stretch is not allowed or leaves the map.
   double quickCost(const Motion& motion, maps::Point from) const noexcept;
 
  private:

@@ -24,9 +24,9 @@ namespace {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-constexpr double kBeside_rad = 0.3;  // of headings drawn about the known drive's
+constexpr double kBeside_rad = 0.3;  // largest deviation of sampled headings from the known drive
 constexpr double kBeside_cells = 6.0;
-constexpr std::uint64_t kIteration = 100;  // cells that one iteration counts for
+constexpr std::uint64_t kIteration = 100;  // work of one iteration [cells]
 
 PosePath joined(const std::vector<Pose>& poses, const PoseCost& cost) {
   PosePath path{.start = poses.front(), .legs = {}};
@@ -39,7 +39,7 @@ PosePath joined(const std::vector<Pose>& poses, const PoseCost& cost) {
   return path;
 }
 
-// Prices drives and counts the work.
+// Computes costs of drives and counts the work.
 class MeteredPoseCost {
  public:
   explicit MeteredPoseCost(const PoseCost& cost) : cost_(cost) {}
@@ -95,7 +95,8 @@ class Validator : public ob::MotionValidator {
   const MeteredPoseCost& cost_;
 };
 
-// Half beside the known drive, half anywhere that a better drive can pass, looking any way.
+// Draws half of the samples near the known drive, the others anywhere in the improvable region with any
+// heading.
 class Sampler : public ob::StateSampler {
  public:
   struct Parts {
@@ -132,12 +133,12 @@ class Sampler : public ob::StateSampler {
   ImprovableRegion::Engine engine_;
 };
 
-// RRT* whose tree begins with a drive.
+// RRT* with a tree that initially contains a drive.
 class Planted : public og::RRTstar {
  public:
   Planted(const ob::SpaceInformationPtr& space, std::vector<Pose> drive)
       : RRTstar(space), drive_(std::move(drive)) {
-    setKNearest(true);  // curves are no metric: a radius would ask for all of them
+    setKNearest(true);  // curves are no metric: a radius search would return all nodes
     setAdmissibleCostToCome(false);
     setInformedSampling(false);
   }

@@ -10,9 +10,11 @@ namespace talus::planner {
 namespace {
 
 constexpr std::array<std::size_t, 8> kSpans{2, 3, 4, 6, 8, 12, 16, 24};
-constexpr std::array kSpacings{1.0, 0.35, 0.35};  // of the joints, a round: first far, then fine
-constexpr double kWorthwhile = 2e-3;  // share of the price below which another fine round is not tried
-constexpr double kStraight = 1.1;  // forward curves no longer than so many times the straight line are taken
+// Joint spacing per round, relative to joint_m: first coarse, then fine.
+constexpr std::array kSpacings{1.0, 0.35, 0.35};
+constexpr double kWorthwhile = 2e-3;  // relative gain below which no further fine round is tried
+// A forward curve of at most this multiple of the straight distance is accepted.
+constexpr double kStraight = 1.1;
 
 double apart_m(const Pose& a, const Pose& b) noexcept {
   return std::hypot(b.place.x_m - a.place.x_m, b.place.y_m - a.place.y_m);
@@ -25,7 +27,7 @@ bool goesOn(const PosePath::Leg& leg, const PosePath::Leg& next) noexcept {
          leg.arc.curvature_1_m == next.arc.curvature_1_m;
 }
 
-// The same drive, what goes on alike as one leg.
+// The same drive with consecutive legs of equal curvature merged.
 Legs joined(const Legs& legs) {
   Legs long_legs;
   for (const auto& leg : legs)
@@ -36,10 +38,10 @@ Legs joined(const Legs& legs) {
   return long_legs;
 }
 
-// The same drive in stretches of about so many metres; none goes on through a cusp or a turn in place.
+// The drive divided into stretches of about `apart_m` metres, also divided at cusps and turns in place.
 std::vector<Legs> divided(const PosePath& path, double apart_m) {
   std::vector<Legs> stretches;
-  double room_m = 0.0;  // of the last stretch
+  double room_m = 0.0;  // remaining length of the last stretch
   int way = 0;
   for (const auto& leg : joined(path.legs)) {
     if (direction(leg) != way || leg.turn_rad != 0.0) room_m = 0.0;
@@ -64,17 +66,17 @@ Pose after(Pose pose, const Legs& legs) noexcept {
   return pose;
 }
 
-// The best way found to a joint of the drive.
+// Cheapest path found to a joint of the drive.
 struct Joint {
   Pose pose;
   double price = kInfinity;
-  std::size_t from = 0;  // joint before
-  Legs legs;             // from there to here
-  int direction = 0;     // of travel on arrival
+  std::size_t from = 0;  // previous joint
+  Legs legs;             // legs from the previous joint
+  int direction = 0;     // direction of travel on arrival
 };
 
-// Dynamic programming over the joints of a drive: each is reached from the one before by the drive's own leg,
-// or by the direct curve from a joint further back.
+// Dynamic programming over the joints of a drive: each joint is reached from the previous joint by the
+// drive's own legs, or from an earlier joint by a direct curve.
 class Shortening {
  public:
   Shortening(const Pose& start, const std::vector<Legs>& path, const PoseCost& cost,
@@ -95,7 +97,7 @@ class Shortening {
     }
   }
 
-  // The drive itself where its end cannot be reached.
+  // The drive itself if its end cannot be reached.
   PosePath result(const PosePath& given) const {
     if (joints_.back().price == kInfinity) return given;
     std::vector<std::size_t> chain;
@@ -112,8 +114,8 @@ class Shortening {
            joints_[to].price;
   }
 
-  // Where the drive goes forward at both ends, a forward curve is found sooner than one that may reverse. It
-  // is taken far apart, where reversing would not pay, and where hardly anything can be shorter.
+  // If the drive goes forward at both ends, a forward-only curve is computed faster. Such a curve is accepted
+  // over long distances, where reversing does not pay, and if hardly any curve can be shorter.
   Legs direct(const std::vector<Legs>& path, std::size_t from, std::size_t to) const {
     const Pose &a = joints_[from].pose, &b = joints_[to].pose;
     if (direction(path[from].front()) > 0 && direction(path[to - 1].back()) > 0) {

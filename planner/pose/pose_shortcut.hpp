@@ -6,14 +6,15 @@
 namespace talus::planner {
 
 struct ShortenOptions {
-  double joint_m = 1.0;           ///< between joints of the drive in the first round, > 0; then finer
-  double cheapest_J_per_m = 0.0;  ///< no metre costs less; excludes curves before pricing
-  StopCheck stop{};               ///< from then on the drive stays as it is
+  double joint_m = 1.0;           ///< spacing of joints in the first round, > 0; later rounds are finer
+  double cheapest_J_per_m = 0.0;  ///< lower bound of the cost per metre; excludes curves before their exact
+                                  ///< cost is computed
+  StopCheck stop{};               ///< a stop keeps the rest of the drive as it is
 };
 
-/// The same drive with stretches replaced by the direct curve between their ends where that is cheaper under
-/// the exact cost: dynamic programming over joints along it, repeated while it gains. Never above the cost of
-/// what came in.
+/// Replaces stretches of a drive by the direct curve between their ends if the curve is cheaper under the
+/// exact cost. Dynamic programming over joints along the drive, repeated while the cost decreases. The result
+/// never costs more than `path`.
 PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options);
 
 }  // namespace talus::planner

@@ -18,7 +18,7 @@ double lastInside(double edge) {
   return std::nextafter(edge, -std::numeric_limits<double>::infinity());
 }
 
-// Where a pose is, for planners that spread over a grid.
+// Projection of a pose to its position, for planners that use a grid.
 class PlaceProjection : public ob::ProjectionEvaluator {
  public:
   PlaceProjection(const ob::StateSpace* space, double side_m) : ProjectionEvaluator(space) {

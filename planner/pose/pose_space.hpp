@@ -8,13 +8,13 @@
 
 namespace talus::planner {
 
-/// Position and heading over a map as a space of OMPL's, joined by the rover's own shortest curves:
-/// Reeds-Shepp, Dubins, or turns in place. Distance is their length, a turn in place as long as half a cell a
-/// radian. OMPL 1.5.2's own Dubins space aborts the process on long ways (dubins.hpp). Immutable but for what
-/// OMPL sets up.
+/// OMPL state space of position and heading over a map, connected by the rover's shortest curves:
+/// Reeds-Shepp, Dubins, or turns in place. The distance is the length of the curve; a turn in place counts
+/// half a cell per radian. OMPL 1.5.2's own Dubins space aborts the process for long paths (dubins.hpp).
+/// Immutable except for OMPL's setup.
 class PoseSpace : public ompl::base::SE2StateSpace {
  public:
-  /// Keeps the cost by reference.
+  /// Keeps a reference to the cost.
   explicit PoseSpace(const PoseCost& cost);
 
   static Pose pose(const ompl::base::State* state) noexcept;

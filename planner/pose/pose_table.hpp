@@ -7,15 +7,15 @@
 
 namespace talus::planner {
 
-/// The least cost found so far at every cell and heading of a lattice; headings of a cell lie side by side,
-/// since a search reads neighbours. Cells cost four bytes until they are reached.
+/// Lowest cost found at every cell and heading of a lattice. The headings of a cell are contiguous, because a
+/// search reads neighbouring headings. A cell that was not reached needs four bytes.
 class PoseTable {
  public:
   PoseTable(std::size_t cells, std::size_t headings) : block_(cells, 0), headings_(headings) {
-    costs_.resize(headings);  // block 0: of no cell
+    costs_.resize(headings);  // block 0 belongs to no cell
   }
 
-  /// Infinite until set; the reference is valid until the next call.
+  /// Infinite until set. The reference is valid until the next call.
   float& at(std::size_t cell, std::size_t heading) {
     std::uint32_t& block = block_[cell];
     if (block == 0) {
@@ -26,7 +26,7 @@ class PoseTable {
   }
 
  private:
-  std::vector<std::uint32_t> block_;  // of each cell, 0: none yet
+  std::vector<std::uint32_t> block_;  // block of each cell; 0: none yet
   std::size_t headings_;
   std::vector<float> costs_;
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::size_t, 12> kTurnSpans{1, 2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 48};
 constexpr double kNoTurn_rad = 1e-9;
 
-// A straight leg into a point: from the point `span` before, and which way the rover faces on it.
+// Straight leg into a point, from the point `from`, with the rover's heading on the leg.
 struct Arrival {
   std::size_t from = 0;
   double heading_rad = 0.0;
@@ -64,8 +64,8 @@ class Turning {
     return std::abs(by) > kNoTurn_rad ? cost_({at, from_rad}, PosePath::Leg{{}, by}) : 0.0;
   }
 
-  // The points of a route lie on edges of cells, and a leg between two of them goes another way than the
-  // route.
+  // Points of a route lie on cell sides, and a leg between two of them may leave the route, so the turns at
+  // its ends must be checked.
   bool mayTurnAtEnds(std::size_t from, std::size_t to) const {
     const Segment leg{points_[from], points_[to]};
     return (from == 0 || cost_.motion().turnAllowed(leg, leg.from)) &&
@@ -102,7 +102,7 @@ class Turning {
   const std::vector<maps::Point>& points_;
   const EndHeadings& ends_;
   const PoseCost& cost_;
-  std::vector<std::vector<Arrival>> arrivals_;  // of a point; complete before another point looks at them
+  std::vector<std::vector<Arrival>> arrivals_;  // by point; complete before another point reads the entry
 };
 
 }  // namespace

@@ -9,35 +9,35 @@
 #include <talus/maps/grid/grid.hpp>
 #include <talus/maps/grid/point_heights.hpp>
 
-/// Between NumPy's arrays and rasters. What comes in is copied once, from any strides; what goes out is a view that keeps
-/// its owner alive and cannot be written through.
+/// Conversion between NumPy arrays and rasters. Input is copied once, from any strides; output is a read-only
+/// view that keeps its owner alive.
 namespace talus::planner {
 
-/// The grid that an array of two dimensions covers: rows south to north, columns west to east.
+/// Placement of a two-dimensional array: rows south to north, columns west to east.
 struct Placed {
   double resolution_m = 1.0;
   maps::Point south_west{};
 };
 
-/// Throws a ValueError, one line, unless it is an array of two dimensions that is not empty.
+/// Grid of the array. Throws ValueError unless the array is two-dimensional and not empty.
 maps::Grid gridOf(const pybind11::object& array, const std::string& name, const Placed& placed);
 
-/// Float32 or float64. Throws a TypeError for another dtype, a ValueError for another shape or an infinite value where
-/// `finite`; NaN stays. None: an empty raster.
+/// Raster from float32 or float64. Throws TypeError for another dtype, and ValueError for another shape or,
+/// if `finite`, an infinite value; NaN is kept. None gives an empty raster.
 maps::Raster<float> floatsOf(const pybind11::object& array, const std::string& name, const maps::Grid& grid,
                              bool finite = true);
 
-/// Uint8 or bool, likewise.
+/// Raster from uint8 or bool; otherwise as floatsOf().
 maps::Raster<std::uint8_t> bytesOf(const pybind11::object& array, const std::string& name,
                                    const maps::Grid& grid);
 
-/// Places: float64 or float32 of shape (n, 2), finite.
+/// Places from float64 or float32 of shape (n, 2); must be finite.
 std::vector<maps::Point> pointsOf(const pybind11::object& array, const std::string& name);
 
-/// The points of a cloud: float64 or float32 of shape (n, 3), whatever they hold.
+/// Points of a cloud from float64 or float32 of shape (n, 3), any values.
 std::vector<maps::CloudPoint> cloudOf(const pybind11::object& array, const std::string& name);
 
-/// A view of numbers that lie `stride` bytes apart in memory of `owner`, read-only.
+/// Read-only view of numbers at the given strides [bytes] in memory of `owner`.
 template <typename T>
 pybind11::array viewOf(const T* first, std::vector<pybind11::ssize_t> shape,
                        std::vector<pybind11::ssize_t> strides, pybind11::handle owner) {

@@ -38,7 +38,7 @@ void inBackground(const std::function<void(const ProgressMonitor&)>& work, const
   if (raised) {
     try {
       running.get();
-    } catch (const std::exception&) {  // what was raised first counts
+    } catch (const std::exception&) {  // the first exception is rethrown below
     }
     throw std::move(*raised);
   }

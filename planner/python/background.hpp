@@ -8,9 +8,9 @@
 
 namespace talus::planner {
 
-/// Runs work in a thread of its own without the GIL. The calling thread looks meanwhile, 20 times a second, for Ctrl-C and
-/// calls `progress` (may be None) with the share done, 0 to 1: what either raises stops the work and is raised once that
-/// has ended. What the work throws is thrown on.
+/// Runs `work` in a separate thread without the GIL. Meanwhile the calling thread checks for Ctrl-C 20 times
+/// a second and calls `progress` (may be None) with the completed share, 0 to 1. An exception of either stops
+/// the work and is raised after the work has ended. Exceptions of the work are rethrown.
 void inBackground(const std::function<void(const ProgressMonitor&)>& work, const pybind11::object& progress);
 
 }  // namespace talus::planner

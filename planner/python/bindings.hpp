@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-/// What the Python package is made of; each adds its classes and functions to the module.
+/// Each function adds the classes and functions of one section of the Python package to the module.
 namespace talus::planner {
 
 void bindRoute(pybind11::module_& module);

@@ -33,7 +33,7 @@ terramech::Rover roverOf(const py::object& given) {
   throw py::type_error("rover must be a name or a talus.Rover");
 }
 
-// Every cell's belief, asked once; the columns are views of that one piece of memory.
+// Properties of all cells, computed once; the columns are views of one block of memory.
 py::dict beliefs(const py::object& self) {
   const costmap::TraversabilityMap& map = mapOf(self);
   const maps::Grid& grid = map.grid();
@@ -146,7 +146,7 @@ void bindViews(py::class_<PythonMap>& map) {
            "Where a path of shape (n, 2) is not safe: (x_m, y_m, along_m, probability, reason) each.");
 }
 
-// Map and routes as files.
+// Adds methods that read and write map and route files.
 void addFiles(py::class_<PythonMap>& map) {
   using Path = std::filesystem::path;
   map.def_static(
@@ -171,7 +171,7 @@ void addFiles(py::class_<PythonMap>& map) {
           py::arg("path"));
 }
 
-// Routes over it.
+// Adds plan().
 void addPlan(py::class_<PythonMap>& map) {
   map.def(
       "plan",

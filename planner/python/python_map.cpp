@@ -29,7 +29,7 @@ namespace py = pybind11;
 namespace talus::planner {
 namespace {
 
-// A session for one call alone; never waits, since the GIL is held.
+// Exclusive access to a session for one call; does not wait, because the GIL is held.
 std::unique_lock<std::mutex> held(Session& session) {
   std::unique_lock lock(session.work, std::try_to_lock);
   if (!lock.owns_lock())
@@ -92,7 +92,7 @@ costmap::TraversabilityMap built(const PythonMap::Layers& layers, const PythonMa
           {.threads = ground.threads}};
 }
 
-// Columns as a file has them, so that a row is judged in the same way wherever it comes from.
+// Writes columns to a temporary file, so that rows are checked in the same way as rows of a telemetry file.
 class ColumnFile {
  public:
   explicit ColumnFile(const py::dict& columns) {
@@ -103,7 +103,7 @@ class ColumnFile {
     path_ = pattern;
     try {
       write(columns);
-    } catch (...) {  // the destructor of what was not made does not run
+    } catch (...) {  // a throwing constructor runs no destructor
       std::filesystem::remove(path_);
       throw;
     }

@@ -13,17 +13,17 @@
 
 namespace talus::planner {
 
-/// A map as Python holds it: the session of the C interface. One thread at a time works on it.
+/// Map of the Python package, based on the session of the C interface. Used by one thread at a time.
 class PythonMap {
  public:
-  /// What it is made from, as Python gives it.
+  /// Input of the map as Python objects.
   struct Layers {
-    pybind11::object heights, classes, rocks, keep_out;  ///< arrays of one shape, or None
-    pybind11::dict costs;                                ///< name: joules a metre
+    pybind11::object heights, classes, rocks, keep_out;  ///< arrays of equal shape, or None
+    pybind11::dict costs;                                ///< name: joules per metre
   };
   struct Ground {
     terramech::Rover rover;
-    pybind11::object soils;  ///< a name or Soil, or a dict of class numbers to them
+    pybind11::object soils;  ///< a name or Soil, or a dict of class numbers to names or Soils
     costmap::DrivePolicy policy{};
     double resolution_m = 1.0;
     maps::Point south_west{};
@@ -31,19 +31,19 @@ class PythonMap {
   };
   PythonMap(const Layers& layers, const Ground& ground);
   explicit PythonMap(costmap::TraversabilityMap map) : session_(std::make_shared<Session>(std::move(map))) {}
-  /// A map file.
+  /// Reads a map file.
   static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
 
   const costmap::TraversabilityMap& map() const noexcept { return session_->map; }
 
-  /// New ground in a window; heights may be None.
+  /// Updates the map in a window; heights may be None.
   void patch(const Layers& layers, maps::Point south_west);
-  /// Columns of telemetry, or the path of a file. Rows that taught something.
+  /// Adds telemetry, as columns or as the path of a file. Returns the number of rows used.
   std::size_t learn(const pybind11::object& telemetry);
-  /// What all rows since the map was made or read say of the sensors (DriveIntake::settle()).
+  /// Re-evaluates all rows since the map was made or read (DriveIntake::settle()).
   void settle();
   void save(const std::string& path) const;
-  /// The GeoJSON of `talus plan`.
+  /// Writes the route as GeoJSON, as `talus plan` does.
   void writeRoute(const Route& route, const std::string& path) const;
   Route plan(const PlannerSettings& settings, const PlanRequest& request, const pybind11::object& progress);
   PythonMap moved(maps::Cell tiles) const;
@@ -51,7 +51,7 @@ class PythonMap {
  private:
   std::shared_ptr<Session> session_;
   PlannerSettings settings_{};
-  std::vector<RouteInput> files_;  // that the map was read from
+  std::vector<RouteInput> files_;  // files from which the map was read
 };
 
 }  // namespace talus::planner

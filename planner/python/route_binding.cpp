@@ -36,7 +36,7 @@ const Route& routeOf(const py::object& self) {
   return self.cast<const Route&>();
 }
 
-// A column is every 200th byte or so of the vertices: a view with strides.
+// View of one member of all vertices, with the size of a vertex as stride.
 py::array column(const py::object& self, const std::string& name) {
   const auto& vertices = routeOf(self).vertices;
   for (const auto& [known, field] : kColumns)

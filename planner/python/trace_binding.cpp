@@ -41,7 +41,7 @@ TableTrace trace(const Asked& asked, const py::object& progress) {
   return found;
 }
 
-// By the names of channels that are measured.
+// Errors of the measured channels, by channel name.
 py::dict byChannel(const ChannelErrors& errors) {
   py::dict out;
   for (const Channel c : {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce})
@@ -53,7 +53,7 @@ const Effect& formOf(const TracedEffect& effect) {
   return effect.chosen.candidate.parts.front();
 }
 
-// Of a known form by name; of a curve none.
+// Parameters of a known form, by name; empty for an empirical curve.
 py::dict parametersOf(const TracedEffect& effect) {
   py::dict out;
   const Effect& part = formOf(effect);

@@ -10,15 +10,15 @@
 namespace talus::planner {
 namespace {
 
-// Stretches between two marks are worked on, and remembered, as wholes; then what lies around the marks. In
-// cells, the first at least.
+// [cells] Stretches between two marks are refined and cached as a whole, then the surroundings of the marks:
+// smallest distance of marks, and overlap at each mark.
 constexpr double kMarks = 96.0, kAround = 20.0;
 
-// A search looks at windows of a stretch no longer than this, in cells, since it takes memory for a window's
-// bounding box: marks are turns, and long straight legs have none.
+// [cells] Longest window of a search, because a search needs memory for a window's bounding box. Marks are
+// turns, and long straight legs have none.
 constexpr double kWindow = 256.0;
 
-// The search crosses edges at a few points only; sliding them wins back more than this share.
+// Relative gain expected from sliding the turns, because the search crosses edges at a few points only.
 constexpr double kSlidingGains = 0.03;
 
 }  // namespace

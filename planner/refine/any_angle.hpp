@@ -9,33 +9,34 @@
 
 namespace talus::planner {
 
-/// How hard a route is refined. Distances in cells.
+/// Parameters of the refinement; distances in cells.
 struct RefineOptions {
-  double short_cut_cells = 8.0;  ///< how far apart the ends of short cuts lie along the route
-  double coarsest_cells = 16.0;  ///< of the first stations along the route; halves from round to round
-  double finest_cells = 8.0;     ///< the last
-  ShiftOptions shift{};          ///< places beside the stations
-  CorridorOptions corridor{};    ///< search over cell edges beside what the stations found
+  double short_cut_cells = 8.0;  ///< spacing of the ends of short cuts along the route
+  double coarsest_cells = 16.0;  ///< spacing of the stations in the first round; halved from round to round
+  double finest_cells = 8.0;     ///< smallest spacing of the stations
+  ShiftOptions shift{};          ///< positions beside the stations
+  CorridorOptions corridor{};    ///< search over cell edges near the shifted route
   int slides = 12;               ///< rounds of moving turns along cell edges
 };
 
-/// Makes routes of fewer, better turns: never more expensive than the given one, the first and last points
-/// kept, every motion allowed.
+/// Refines routes to fewer and better turns. The result never costs more than the given route, keeps its
+/// first and last point, and consists of allowed motions only.
 ///
-/// First the parts that a straight motion does cheaper are cut short. Then, from coarse to fine, places
-/// beside stations are chosen; then the cheapest way over points of the cells' edges near the route is
-/// searched and its turns are slid along those edges. All by dynamic programming, costs exact by MotionCost.
-/// After the short cuts the work is done stretch by stretch between marks that the route itself sets
-/// (cutAtMarks): on several threads, and only once on the same stretch of the same ground, so a route that
-/// changed in part is worked on in part. The answer depends on neither. Ours, not from the literature.
+/// First, stretches are replaced by straight motions where cheaper. Then, from coarse to fine, positions
+/// beside stations along the route are chosen. Then the cheapest path over points of the cell edges near the
+/// route is searched, and its turns are slid along the edges. Each step uses dynamic programming or
+/// Dijkstra's algorithm with exact costs (MotionCost). After the short cuts, the stretches between marks on
+/// the route (cutAtMarks) are refined separately, on several threads. Results are cached by stretch and
+/// ground, so a partly changed route is refined only where it changed. The result depends neither on the
+/// threads nor on the cache. Ours, not from the literature.
 class Refiner {
  public:
   explicit Refiner(const RefineOptions& options = {}) : options_(options) {}
 
-  /// The route given must be allowed. Ends early, with the best so far, at a stop request.
+  /// Refines an allowed route. When stopped, returns the best route so far.
   Polyline operator()(const MotionCost& cost, Polyline route, int threads = 1, const StopCheck& stop = {});
 
-  /// The ground changed between two opposite corners / altogether.
+  /// Discards cached results that depend on the ground between two opposite corners.
   void forget(const Segment& corners) { memo_.forget(corners); }
   void clear() { memo_.clear(); }
 
@@ -48,7 +49,7 @@ class Refiner {
   RefinementCache memo_;
 };
 
-/// One route, once.
+/// Refines one route without a cache.
 Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options = {},
                  const StopCheck& stop = {});
 

@@ -14,7 +14,7 @@ Polyline withoutCloseVertices(const MotionCost& cost, Polyline points) {
       ++i;
       continue;
     }
-    // The stretch around the pair, with turns at both its ends judged: one vertex more on each side.
+    // The stretch around the pair, extended by one vertex on each side to include the turns at its ends.
     const std::size_t from = i >= 2 ? i - 2 : 0, to = std::min(i + 4, points.size());
     std::vector<maps::Point> meeting;
     if (first || last)

@@ -5,9 +5,9 @@
 
 namespace talus::planner {
 
-/// The polyline with no two vertices nearer than a hundredth of a cell, whose heading would mean nothing: of such a pair one
-/// is dropped or both become the point between them, whichever is cheapest and allowed; ends stay. A pair of which none of
-/// this is allowed stays. The polyline given must be allowed.
+/// Merges adjacent vertices closer than a hundredth of a cell, whose heading is meaningless: one of the pair
+/// is removed, or both are replaced by their midpoint, whichever is cheapest and allowed. The ends of the
+/// polyline are kept. A pair stays if no replacement is allowed. `points` must be allowed.
 Polyline withoutCloseVertices(const MotionCost& cost, Polyline points);
 
 }  // namespace talus::planner

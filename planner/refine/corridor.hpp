@@ -10,14 +10,14 @@
 
 namespace talus::planner {
 
-/// The cells within reach of a way, copied from the map into a box with a margin of two cells (a way that
-/// ends on an edge touches the next cell). Other cells of the box are unknown, which nothing may enter. Cells
-/// are numbered row by row within the box.
+/// The cells within reach of a path, copied from the map into a box with a margin of two cells (a path that
+/// ends on an edge touches the next cell). Other cells of the box are unknown and not drivable. Cells are
+/// numbered row by row within the box.
 class Corridor {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  /// The way must lie inside the map.
+  /// The path must lie inside the map.
   Corridor(const costmap::CostGrid& map, const EdgeCrossings& crossings,
            const std::vector<maps::Point>& along, int reach_cells);
 
@@ -40,16 +40,17 @@ class Corridor {
 
   costmap::CellCode code(std::size_t cell) const noexcept { return codes_[cell]; }
 
-  /// Whether every heading may be had in a cell.
+  /// Returns true if every heading is allowed in the cell.
   bool free(std::size_t cell) const noexcept { return free_[cell] != 0; }
 
-  /// West and south edges are held by their cell; holders, the cells of the corridor and their neighbours in
-  /// the east and north, are numbered from 0 on.
+  /// Each edge belongs to one holder cell: the west and south edges of a cell belong to that cell. Holders
+  /// (the cells of the corridor and their neighbours to the east and north) are numbered from 0.
   std::uint32_t holder(std::size_t cell) const noexcept { return holder_[cell]; }
   std::size_t held(std::uint32_t holder) const noexcept { return held_[holder]; }
   std::size_t holders() const noexcept { return held_.size(); }
 
-  /// Makes holders of a cell and its neighbours in the east and north, one row from the margin at least.
+  /// Makes a cell and its eastern and northern neighbours holders. The cell must be at least one row inside
+  /// the box.
   void hold(std::size_t cell);
 
  private:

@@ -17,10 +17,10 @@ using maps::Point;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = Corridor::kNone;
 
-// Numbers in the order of labels, bucket by bucket; within a bucket as they came.
+// Bucket queue of numbers ordered by labels; within a bucket in order of insertion.
 class LabelQueue {
  public:
-  // Labels that are queued at once lie within `reach` of each other.
+  // `reach` is the largest difference of labels queued at the same time.
   LabelQueue(float width, float reach)
       : per_bucket_(1.0F / width), ring_(std::bit_ceil(static_cast<std::size_t>(reach * per_bucket_) + 2)) {}
 
@@ -34,13 +34,13 @@ class LabelQueue {
     entries_.push_back({number, kNone});
   }
 
-  // Whether what waits with one label waits in the right place for another, too.
+  // Returns true if both labels belong to the same bucket and that bucket was not taken yet.
   bool together(float label, float other) const noexcept {
     return bucketOf(label) == bucketOf(other) && bucketOf(label) > current_;
   }
 
-  // Calls take(number) for everything queued, and for what take() queues; numbers whose turn was earlier or
-  // comes later, by label(number), are left out.
+  // Calls take(number) for every queued number, including those queued by take(). Entries whose current
+  // label(number) belongs to another bucket are skipped.
   template <typename Label, typename Take>
   void run(Label label, Take take) {
     for (std::size_t taken = 0; taken < entries_.size(); ++current_) {
@@ -65,7 +65,7 @@ class LabelQueue {
   std::vector<Entry> entries_;
 };
 
-// A bucket no wider than the cheapest motion between two points, but not more than a thousand.
+// Bucket width: at most the cheapest motion between two points, but at least a thousandth of the reach.
 LabelQueue queueFor(const CostRange& range, int points) {
   const auto dearest = static_cast<float>(range.most_J_per_m * 1.5);  // across a cell
   const auto cheapest = static_cast<float>(range.least_J_per_m * 0.7 / points);
@@ -88,7 +88,7 @@ class EdgePointSearch {
   EdgePath run(const Segment& ends, double below_J);
 
  private:
-  // A point of a local cell's edge, where it is, and the price of the first or last motion to it.
+  // Point on an edge of a local cell, its place, and the cost of the first or last motion to the point.
   struct EdgePoint {
     std::uint32_t node;
     std::size_t cell, beyond;
@@ -96,7 +96,7 @@ class EdgePointSearch {
     float price = kFar;
   };
 
-  // The points of a cell's side follow each other from this node on.
+  // First node of a cell's side; the nodes of a side are consecutive.
   std::uint32_t firstNode(std::size_t cell, int side) const noexcept {
     const std::size_t holder = side == kEastSide || side == kNorthSide ? corridor_.beyond(cell, side) : cell;
     return (corridor_.holder(holder) << shift_) +
@@ -114,13 +114,13 @@ class EdgePointSearch {
   const MotionCost& cost_;
   const maps::Grid& grid_;
   int points_;
-  int shift_;  // nodes are numbered by holder, 2^shift_ of each, twice points_ of them used
+  int shift_;  // nodes are numbered by holder: 2^shift_ per holder, of which 2 * points_ are used
   const EdgeCrossings& crossings_;
   Corridor& corridor_;
   std::vector<float> paid_;
   LabelQueue queue_;
-  std::vector<float> label_, last_;       // by node: cost from the start; on to the end
-  std::vector<std::uint32_t> from_, in_;  // node before (kNone: the start); local cell crossed
+  std::vector<float> label_, last_;       // by node: cost from the start; cost to the end
+  std::vector<std::uint32_t> from_, in_;  // previous node (kNone: the start); local cell crossed
   float below_ = kFar;
 };
 
@@ -163,7 +163,7 @@ EdgePath::Turn EdgePointSearch::turnAt(std::uint32_t node) const noexcept {
   return {c.column + in.x, c.row + in.y, vertical};
 }
 
-// Price of the first or the last motion; infinite where the cell beyond the edge does not allow its heading.
+// Cost of the first or last motion; infinite if the cell beyond the edge does not allow the heading.
 float EdgePointSearch::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept {
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);
@@ -186,7 +186,7 @@ void EdgePointSearch::cross(std::uint32_t node, std::size_t cell, int side, int 
   const CellCode code = corridor_.code(cell);
   if (code.curve() >= cost_.map().cost().curves().size()) return;
   crossings_.prices(side, k, code, label_[node], paid_.data());
-  // A turn on an edge touches both its cells: the heading must be had beyond both ends, too.
+  // A turn on an edge touches both adjacent cells, so the cells beyond both ends must allow the heading, too.
   const std::size_t before = corridor_.beyond(cell, side);
   const bool before_free = corridor_.free(before);
   for (int to = 0, i = 0; to < 4; ++to) {

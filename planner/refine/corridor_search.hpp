@@ -11,20 +11,20 @@
 namespace talus::planner {
 
 struct CorridorOptions {
-  int reach_cells = 4;      ///< how far from the given way the search may go
-  int points_per_edge = 3;  ///< where a cell's edge may be crossed
+  int reach_cells = 4;      ///< largest distance of the search from the given path
+  int points_per_edge = 3;  ///< number of crossing points of a cell's edge
   Kernels kernels = Kernels::Best;
 };
 
-/// Searches for the cheapest way between the ends of a polyline that crosses cells' edges at a few fixed
-/// points and stays near the polyline: Dijkstra's search over those points. It leaves a point into the other
-/// cell only, so it does not look for ways that turn back off an edge, and every turn is one that both cells
-/// beside it allow. Immutable, safe to share between threads; the MotionCost must outlive it.
+/// Searches the cheapest path between the ends of a polyline that stays near the polyline and crosses cell
+/// edges at a few fixed points, with Dijkstra's algorithm over these points. The path leaves a point only
+/// into the other cell, so paths that turn back at an edge are not considered, and every turn is allowed by
+/// both adjacent cells. Immutable and safe to share between threads; the MotionCost must outlive the object.
 class CorridorSearch {
  public:
   explicit CorridorSearch(const MotionCost& cost, const CorridorOptions& options = {});
 
-  /// Empty when there is no way cheaper than `below_J`. The polyline must lie inside the map.
+  /// Empty if no path costs less than `below_J`. The polyline must lie inside the map.
   EdgePath operator()(const std::vector<maps::Point>& along, double below_J) const;
 
  private:
@@ -34,7 +34,7 @@ class CorridorSearch {
   CostRange range_;
 };
 
-/// One search, once.
+/// Runs a single search.
 EdgePath searchCorridor(const MotionCost& cost, const std::vector<maps::Point>& along, double below_J,
                         const CorridorOptions& options = {});
 

@@ -22,7 +22,7 @@ constexpr float kNoCost = std::numeric_limits<float>::infinity();
 constexpr int kBinBits = 9;
 static_assert(DriveCurve::kBins == 1 << kBinBits);
 
-// Headings of motions and their lengths, from the first on.
+// Headings and lengths of consecutive motions.
 struct Motions {
   const double *x, *y;
   const float* length;
@@ -35,13 +35,14 @@ void pricesByScalar(const DriveCost& cost, CellCode cell, float here, const Moti
 }
 
 #if defined(__x86_64__)
-// 32 bits of each mask of 64.
+// The lower 32 bits of each 64-bit mask.
 __attribute__((target("avx2"))) inline __m128i lanes(__m256d mask) noexcept {
   const __m256i evens = _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
   return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
 }
 
-// DriveCurve::between(): the node before, whether the place is off it (-1), and the share of the next.
+// DriveCurve::between(): the previous node, whether the coordinate differs from the node (-1), and the weight
+// of the next node.
 struct Betweens {
   __m128i whole, off;
   __m128 share;
@@ -58,7 +59,8 @@ struct Prices {
   __m128 here, next;
 };
 
-// Prices at four nodes and the ones after them; of a place that is on its node the next is the node itself.
+// Costs at four nodes and at their next nodes; if a coordinate lies on its node, the next node is the node
+// itself.
 __attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m128i at, __m128i off) noexcept {
   alignas(16) std::array<std::int32_t, 4> lane;
   _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);
@@ -70,7 +72,7 @@ __attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m12
   return {here, _mm_blendv_ps(here, next, _mm_castsi128_ps(off))};
 }
 
-// The same four at a time: the operations of HeadingCost, lane by lane.
+// The operations of HeadingCost for four motions at a time.
 __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellCode cell, float here,
                                                     const Motions& motions, int count, float* paid) noexcept {
   const __m256d steps_x = _mm256_set1_pd(cell.stepsX()), steps_y = _mm256_set1_pd(cell.stepsY());
@@ -119,14 +121,14 @@ __attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellC
 constexpr auto pricesByVector = pricesByScalar;
 #endif
 
-// The steepest gradient up to which the curve and the limits allow every heading.
+// Largest steepness up to which the curve and the limits allow every heading.
 double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {
   double reach = std::min(
       {cost.limits().max_along, cost.limits().max_across, DriveCurve::gradient(DriveCurve::kBins - 1)});
   for (int row = 0; row <= curve.lastRow(); ++row)
     for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
       if (curve.rows()[row * DriveCurve::kBins + bin] < kNoCost) continue;
-      // The gentlest gradient that is read there, or one a little gentler.
+      // The smallest gradient that reads this node, or slightly less.
       const double along = (std::abs(bin - DriveCurve::kBins / 2) - 1) / 256.0;
       const double across = (row - 1.0) / DriveCurve::kRowsPerUnit;
       reach = std::min(reach, row > 0 ? std::hypot(std::max(along, 0.0), across) : along);

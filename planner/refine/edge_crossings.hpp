@@ -17,15 +17,15 @@ struct EdgeSpot {
   double y = 0.0;
 };
 
-/// The point number k of `points` on a side.
+/// Point number k of `points` on a side.
 EdgeSpot edgeSpot(int side, int k, int points) noexcept;
 
 /// All straight motions across a cell from a point of its edge to the points of the other three sides, and
-/// what they cost: DriveCost in the heading of each, in joules for cells of a metre. It points into the
-/// DriveCost, which must outlive it. Immutable.
+/// their DriveCost by heading, in joules for cells of 1 m. Refers to the DriveCost, which must outlive the
+/// object. Immutable.
 class EdgeCrossings {
  public:
-  /// Where a motion ends.
+  /// End point of a motion.
   struct End {
     int side;
     int k;
@@ -33,25 +33,25 @@ class EdgeCrossings {
 
   EdgeCrossings(const costmap::DriveCost& cost, int points, Kernels kernels = Kernels::Best);
 
-  /// Points of a side.
+  /// Points per side.
   int points() const noexcept { return points_; }
 
   /// Motions from one point.
   int count() const noexcept { return 3 * points_; }
 
-  /// Where the motions from a point of a side end, in the order of prices().
+  /// End points of the motions from a point of a side, in the order of prices().
   const End* ends(int side, int k) const noexcept { return &ends_[first(side, k)]; }
 
-  /// What is paid after each motion from a point of a side, `here` having been paid before; infinite where
-  /// the heading may not enter. Room for count() rounded up to whole vectors of kVector.
+  /// Writes to `paid` the cost of each motion from a point of a side plus `here`; infinite if the heading is not
+  /// allowed. `paid` needs space for count() values rounded up to a multiple of kVector.
   void prices(int side, int k, costmap::CellCode cell, float here, float* paid) const noexcept;
 
   static constexpr int kVector = 4;
 
-  /// Whether a cell may be entered in the heading of motion number i from a point of a side.
+  /// Returns true if the cell allows the heading of motion i from a point of a side.
   bool allowed(int side, int k, int i, costmap::CellCode cell) const noexcept;
 
-  /// Whether a cell may be entered in any heading.
+  /// Returns true if the cell allows every heading.
   bool free(costmap::CellCode cell) const noexcept;
 
  private:
@@ -61,12 +61,12 @@ class EdgeCrossings {
 
   const costmap::DriveCost& cost_;
   int points_;
-  int padded_;  // count() in whole vectors
+  int padded_;  // count() rounded up to whole vectors
   bool vectors_;
   std::vector<End> ends_;
   std::vector<double> x_, y_;  // headings times the gradient step
   std::vector<float> length_;
-  std::vector<double> free_up_to_;  // by curve: gradients no steeper are allowed in every heading
+  std::vector<double> free_up_to_;  // by curve: steepness up to which every heading is allowed
 };
 
 }  // namespace talus::planner

@@ -9,16 +9,16 @@
 namespace talus::planner {
 namespace {
 
-constexpr int kReach = 1;       // places to each side of a turn
-constexpr double kFiner = 0.7;  // of the distance of places, from round to round
+constexpr int kReach = 1;       // positions to each side of a turn
+constexpr double kFiner = 0.7;  // factor of the spacing of positions from round to round
 constexpr int kPlaces = 2 * kReach + 1;
-constexpr double kClear = 1.0 / 64;  // cells: turns keep this far from corners
+constexpr double kClear = 1.0 / 64;  // [cells] smallest distance of turns from corners
 
-constexpr double kEnd = 2.0;  // cells: a step so wide that the ends of a way have no place but theirs
+constexpr double kEnd = 2.0;  // [cells] a step that leaves the ends of a path only their own position
 
 using Turn = EdgePath::Turn;
 
-// The places that a turn may move to; the first is where it is.
+// Positions to which a turn may move; the first is its present position.
 struct Choice {
   std::array<Turn, kPlaces> places;
   std::array<double, kPlaces> best{};
@@ -40,13 +40,13 @@ Choice choiceAround(Turn turn, double step) {
   return choice;
 }
 
-// The cell of a motion, and the cells before and after it: a turn on an edge touches both its cells, so they
-// must allow the heading, too.
+// The cell of a motion, and the cells before and after it. A turn on an edge touches both adjacent cells, so
+// these must allow the heading, too.
 struct Passage {
   costmap::CellCode cell, before, after;
 };
 
-// One motion from place to place within its cell.
+// Straight motion between two positions within a cell.
 struct Straight {
   HeadingCost cost;
   double length;

@@ -9,13 +9,14 @@ namespace talus::planner {
 namespace {
 
 constexpr std::array<std::size_t, 5> kSpans{1, 2, 3, 5, 8};
-constexpr double kApart_rad = 0.1;  // headings looked at in a turn
-constexpr double kVertex = 1e-12;   // of a route's cost: what a vertex less is worth where turns are free
+constexpr double kApart_rad = 0.1;  // spacing of the headings checked in a turn
+// Cost of a vertex relative to the route's cost; prefers fewer vertices if turns cost nothing.
+constexpr double kVertex = 1e-12;
 
-// A leg into a point from the point `from`, and the cheapest way to its end.
+// Leg from the point `from` into a point, and the cheapest path up to the end of the leg.
 struct Arrival {
   std::size_t from;
-  bool merged;  // it leaves out points
+  bool merged;  // the leg skips points
   costmap::Direction heading;
   double cost_J;
   const Arrival* before;  // null at the start
@@ -59,7 +60,8 @@ class FewerTurns {
     if (made.cost_J < kInfinity) arrivals_[to].push_back(made);
   }
 
-  // A turn that the route did not have passes allowed headings only, so that what drives may turn as the route does.
+  // A turn that the given route does not have must pass allowed headings only, so that the rover can turn as
+  // before.
   bool mayTurn(maps::Point at, const Arrival& before, const Arrival& next) const {
     if (!before.merged && !next.merged) return true;
     return holdsBetween(before.heading, next.heading, kApart_rad,
@@ -69,7 +71,7 @@ class FewerTurns {
   const MotionCost& cost_;
   const Polyline& route_;
   double vertex_J_;
-  std::vector<std::vector<Arrival>> arrivals_;  // of a point; complete before another looks at them
+  std::vector<std::vector<Arrival>> arrivals_;  // by point; complete before another point reads the entry
 };
 
 }  // namespace

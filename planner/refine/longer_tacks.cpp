@@ -10,17 +10,18 @@ namespace {
 
 using maps::Point;
 
-constexpr std::size_t kShortest = 3;  // legs that two are worth trying for
+constexpr std::size_t kShortest = 3;  // smallest number of legs that is replaced by two
 constexpr int kMostRounds = 6;
-constexpr double kGain = 1e-9;  // of a stretch's cost
+constexpr double kGain = 1e-9;  // smallest gain relative to the stretch's cost
 
-// A stretch from one point of a route to another, with the legs beside it, whose turns change too.
+// Stretch between two points of a route, with the adjacent legs, whose turns change, too.
 class Stretch {
  public:
   Stretch(const MotionCost& cost, const Polyline& route, std::size_t first, std::size_t last)
       : cost_(cost), route_(route), first_(first), last_(last) {}
 
-  /// The corner of the cheaper of both ways in two legs, where that is cheaper than the stretch.
+  /// Sets the corner of the cheaper of the two paths of two legs. Returns false if neither is cheaper than
+  /// the stretch.
   bool gather(Point& corner) const {
     double best_J = cost_.along(with(route_.begin() + offset(first_ + 1), route_.begin() + offset(last_)));
     best_J *= 1.0 - kGain;
@@ -49,7 +50,7 @@ class Stretch {
     return points;
   }
 
-  // All that leads to the left of the line between the ends first, or last.
+  // Corners of both orders: all displacement to the left of the line between the ends first, or last.
   std::array<Point, 2> corners() const {
     const Point from = route_[first_], to = route_[last_];
     const double x_m = to.x_m - from.x_m, y_m = to.y_m - from.y_m;
@@ -68,7 +69,7 @@ class Stretch {
   std::size_t first_, last_;
 };
 
-// One round over stretches of so many legs, half of them apart.
+// One round over stretches of `legs` legs, starting half a stretch apart.
 bool gatherAll(const MotionCost& cost, Polyline& route, std::size_t legs) {
   bool any = false;
   for (std::size_t first = 0; first + kShortest < route.size();) {

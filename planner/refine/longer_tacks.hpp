@@ -5,9 +5,10 @@
 
 namespace talus::planner {
 
-/// The route with zigzags gathered: where a stretch tacks, all that leads to the left of the straight line between its ends
-/// becomes one leg and all that leads to the right another, in the cheaper order, as far as that is allowed and cheaper, turns
-/// priced. From long stretches to short ones, until nothing gets cheaper; the first and last points stay. Ours.
+/// Merges zigzags: within a stretch, all legs to the left of the straight line between its ends become one
+/// leg and all other legs another, in the cheaper order, if allowed and cheaper including turns. From long
+/// stretches to short ones, repeated until the cost no longer decreases or six rounds are done; first and
+/// last point are kept. Ours, not from the literature.
 Polyline withLongerTacks(const MotionCost& cost, Polyline route);
 
 }  // namespace talus::planner

@@ -10,22 +10,21 @@
 
 namespace talus::planner {
 
-/// What work on windows of a route gave, by the window: the same window on the same ground need not be worked
-/// on twice. Results of the last two rounds are kept. Safe to share between threads, but for newRound() and
-/// forget().
+/// Cache of refined windows of a route, so that an identical window on unchanged ground is not refined again.
+/// Results of the last two rounds are kept. Thread-safe except for newRound(), forget() and clear().
 class RefinementCache {
  public:
   std::optional<Polyline> find(const Polyline& window);
 
-  /// Remembers a result that depends on the ground within reach_m of the window's bounding box.
+  /// Stores a result that depends on the ground within reach_m of the window's bounding box.
   void keep(const Polyline& window, const Polyline& result, double reach_m);
 
-  /// Forgets what depends on the ground between two opposite corners.
+  /// Removes results that depend on the ground between two opposite corners.
   void forget(const Segment& corners);
 
   void clear() { known_.clear(); }
 
-  /// A new route begins: entries not used since the last call are dropped.
+  /// Begins a new route: removes entries not used since the previous call.
   void newRound();
 
  private:
@@ -34,8 +33,8 @@ class RefinementCache {
   };
   struct Entry {
     Polyline result;
-    maps::Point low, high;  // ground that it depends on
-    std::uint64_t round;    // in which it was used last
+    maps::Point low, high;  // bounding box of the ground that the result depends on
+    std::uint64_t round;    // round of the latest use
   };
 
   std::mutex mutex_;

@@ -29,7 +29,7 @@ void workOnAll(std::vector<Polyline>& windows, const Job& job) {
   parallelFor(windows.size(), job.threads, [&](std::size_t k) { workOn(windows[k], job); });
 }
 
-// A window's head and tail of at most that length, and what is left between them.
+// Head and tail of a window, at most end_m long, and the stretch between them.
 struct Parts {
   Polyline head, middle, tail;
 };

@@ -7,27 +7,27 @@
 
 namespace talus::planner {
 
-/// How a route is cut for work on its parts.
+/// Division of a route into windows.
 struct WindowCut {
-  double length_m = 0.0;   ///< of a window
-  double overlap_m = 0.0;  ///< to each side of where two windows meet, worked on once more
-  double reach_m = 0.0;    ///< farthest ground from a window's bounding box that the work looks at
+  double length_m = 0.0;   ///< length of a window
+  double overlap_m = 0.0;  ///< to each side of a joint of two windows, refined once more
+  double reach_m = 0.0;    ///< largest distance from a window's bounding box of the ground used by the work
 };
 
-/// Gives a way between the same ends, and the same one for the same window on the same ground.
+/// Returns a path between the same ends; must be a function of the window and the ground only.
 using WindowWork = std::function<Polyline(const Polyline&)>;
 
-/// Works on the windows of a route, then on what lies around the places where two meet, side by side on
-/// `threads` threads; the answer does not depend on their number. What the memo holds is not worked on.
-/// Windows not begun when stopped stay as they are.
+/// Applies `work` to the windows of a route, then to the surroundings of the joints, with `threads` threads;
+/// the result does not depend on their number. Windows in the cache are not processed again. Windows not
+/// started when stopped are left unchanged.
 Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, RefinementCache& memo,
                    int threads = 1, const StopCheck& stop = {});
 
-/// The same over windows that are cut already, each beginning where the one before ends.
+/// byWindows() for windows already cut, each beginning at the end of the previous one.
 Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
                      RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
 
-/// The second half of it: of windows that were worked on, each beginning where the one before ends.
+/// Second step of overWindows(): joins processed windows, each beginning at the end of the previous one.
 Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
                      RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
 

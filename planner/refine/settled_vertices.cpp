@@ -10,19 +10,20 @@ namespace talus::planner {
 namespace {
 
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
-constexpr int kSweeps = 4;                                   // with each step, at most
-constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // cells from a side
-constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // of the tolerance
-constexpr double kLeastGain = 1e-9;                          // of the cost around: less is rounding
+constexpr int kSweeps = 4;                                   // largest number of sweeps per step
+constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // distance from a side [cells]
+constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // relative to the tolerance
+// Smallest gain relative to the local cost; smaller gains are rounding.
+constexpr double kLeastGain = 1e-9;
 
-// What a vertex changes: its legs, and the turns at both ends of them.
+// Cost of the part of the route that depends on vertex i: its legs and the turns at both ends of them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
   const std::size_t first = i > 1 ? i - 2 : 0, last = std::min(i + 2, points.size() - 1);
   return cost.along({points.begin() + static_cast<std::ptrdiff_t>(first),
                      points.begin() + static_cast<std::ptrdiff_t>(last) + 1});
 }
 
-// Whether some place a step away is cheaper; the vertex is there then.
+// Moves vertex i by one step in the cheapest of eight directions. Returns false if no direction is cheaper.
 bool moved(const MotionCost& cost, Polyline& points, std::size_t i, double step_m) {
   const double before_J = around_J(cost, points, i);
   const maps::Point here = points[i];
@@ -85,7 +86,7 @@ Polyline withSettledEnd(const MotionCost& cost, Polyline points, maps::Point goa
 Polyline offSides(const MotionCost& cost, Polyline points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const maps::Point here = points[i];
-    // Turns before it are allowed and must remain so; those behind it come next.
+    // Turns before the vertex are allowed and must remain allowed; later turns are processed next.
     const auto until = points.begin() + static_cast<std::ptrdiff_t>(i) + 2;
     const auto with_J = [&](maps::Point place) {
       points[i] = place;

@@ -6,17 +6,17 @@
 
 namespace talus::planner {
 
-/// The polyline with every vertex between its ends moved, in ever shorter steps, to where the route costs less, turns
-/// included: never more expensive. It finds what a search over fixed points only comes near to; a route must be
-/// allowed for it to do anything.
+/// Moves every inner vertex, in decreasing steps, to positions where the route costs less, including turns.
+/// Never increases the cost. Improves routes of searches over fixed points. A route that is not allowed is
+/// returned unchanged.
 Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop = {});
 
-/// The polyline with its end moved along the circle of the tolerance, > 0, around the goal to where the route costs
-/// less; never more expensive. One that ends elsewhere stays as it is.
+/// Moves the end along the circle of the tolerance, > 0, around the goal to where the route costs less. Never
+/// increases the cost. A route that does not end on the circle is returned unchanged.
 Polyline withSettledEnd(const MotionCost& cost, Polyline points, maps::Point goal, double tolerance_m);
 
-/// The polyline with the vertices on sides of cells whose turn both cells do not allow moved just off them, along one
-/// of their legs, where that is allowed.
+/// Moves vertices on cell sides at which the adjacent cells do not allow the turn slightly off the side,
+/// along one of their legs, if allowed there.
 Polyline offSides(const MotionCost& cost, Polyline points);
 
 }  // namespace talus::planner

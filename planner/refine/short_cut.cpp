@@ -6,18 +6,18 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::size_t kBeginnings = 8;  // of motions of one length, within that length
-constexpr double kMarkPieces = 8.0;     // pieces: how far apart marks lie at least
+constexpr std::size_t kBeginnings = 8;  // starting points of motions of one length, per that length
+constexpr double kMarkPieces = 8.0;     // smallest distance of marks [pieces]
 
-// What is best from the beginning of a piece to the end of the route.
+// Best choice from the beginning of a piece to the end of the route.
 struct ShortCutChoice {
   double cost_J = 0.0;
-  std::size_t next = 0;   // piece to go on with
-  bool straight = false;  // there, else along the route
+  std::size_t next = 0;   // next piece
+  bool straight = false;  // straight to the next piece, else along the route
 };
 
-// The pieces of a route, and how many of them are left from each to the next mark: what changes elsewhere on
-// the route moves neither.
+// Pieces of a route, and the number of pieces from each to the next mark. A change elsewhere on the route
+// affects neither.
 struct Pieces {
   std::vector<Polyline> all{};
   std::vector<std::size_t> to_mark{};
@@ -35,7 +35,7 @@ Pieces piecesOf(const Polyline& route, double piece_m) {
   return pieces;
 }
 
-// Chooses at the beginning of piece i; choices behind it are made already.
+// Chooses at the beginning of piece i; all later choices are known.
 ShortCutChoice chooseAt(const MotionCost& cost, const std::vector<Polyline>& pieces, std::size_t to_mark,
                         const std::vector<ShortCutChoice>& choices, std::size_t i) {
   const std::size_t to_end = pieces.size() - i;

@@ -6,13 +6,13 @@
 
 namespace talus::planner {
 
-/// The route with stretches replaced by straight motions wherever that is cheaper. Ends of motions lie
-/// piece_m apart along the route; tried are motions over 1, 2, 3, 4, 6, 8, 12... pieces that begin at every
-/// eighth of their length, so that the work grows as n log n; the best sequence of them by dynamic
-/// programming. Ours. The route itself when stopped.
+/// Replaces stretches of a route by straight motions where cheaper. The ends of motions are piece_m apart
+/// along the route; motions over 1, 2, 3, 4, 6, 8, 12... pieces are tried, starting at every eighth of their
+/// length, so the work grows as n log n. The best sequence is found by dynamic programming. Ours, not from
+/// the literature. Returns the route unchanged when stopped.
 Polyline shortCut(const MotionCost& cost, const Polyline& route, double piece_m, const StopCheck& stop = {});
 
-/// The same route without the points that a straight motion can leave out at no cost.
+/// Removes points that a straight motion can skip without additional cost.
 Polyline withoutIdleTurns(const MotionCost& cost, const Polyline& route);
 
 }  // namespace talus::planner

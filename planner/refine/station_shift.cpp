@@ -9,15 +9,15 @@ namespace {
 
 using maps::Point;
 
-// Places to choose from at one station; the first is the station itself.
+// Candidate positions at one station; the first is the station itself.
 struct Station {
   Polyline places{};
   std::vector<int> offsets{};         // steps to the left of the route
-  std::vector<double> best{};         // from the place to the end
-  std::vector<std::size_t> choice{};  // the place at the next station
+  std::vector<double> best{};         // cost from the position to the end
+  std::vector<std::size_t> choice{};  // position at the next station
 };
 
-// Whether the place has a drive curve at all; headings are left to the motions.
+// Returns true if the place has a drive curve; headings are checked with the motions.
 bool enterable(const costmap::CostGrid& map, Point place) noexcept {
   const auto cell = map.grid().cellAt(place);
   return cell && map.at(*cell).curve() < map.cost().curves().size();
@@ -38,8 +38,8 @@ Station stationAt(const MotionCost& cost, const Segment& chord, Point here, doub
   return station;
 }
 
-// Chooses the next place for every place of `from`, none farther than `swing` steps sideways; keeping the
-// present piece is one of the choices of the first place.
+// Chooses the next position for every position of `from`, at most `swing` steps sideways. The first position
+// may also keep the present piece.
 void choose(const MotionCost& cost, Station& from, const Station& to, double kept_J, int swing) {
   from.best.assign(from.places.size(), kInfinity);
   from.choice.assign(from.places.size(), 0);
@@ -61,7 +61,7 @@ Polyline shifted(const MotionCost& cost, const Polyline& route, double piece_m, 
                  const StopCheck& stop) {
   const auto pieces = cutFromEnd(route, piece_m, piece_m);
   const std::size_t n = pieces.size();
-  // A little less than the power of two that would put places on the cells' edges.
+  // Slightly less than a power of two, which would put positions on cell edges.
   const double apart_m = 0.98 * piece_m / options.candidates;
   std::vector<Station> stations(n + 1);
   stations[n] = {{route.back()}, {0}, {0.0}, {0}};

@@ -6,15 +6,16 @@
 
 namespace talus::planner {
 
-/// Where a station of a route may move to.
+/// Positions to which a station of a route may move.
 struct ShiftOptions {
-  int candidates = 8;  ///< places to each side, the stations' distance over this apart
-  int swing = 3;       ///< most steps sideways from one station to the next
+  int candidates = 8;  ///< positions to each side; their spacing is the stations' spacing divided by this
+                       ///< number
+  int swing = 3;       ///< largest sideways change [steps] between consecutive stations
 };
 
-/// One round: stations are set piece_m apart along the route, with places to both sides of each, and dynamic
-/// programming picks a place at every station; between two stations the present way may be kept. Ours, not
-/// from the literature. The route itself when stopped.
+/// One round of shifting: stations are set piece_m apart along the route, with candidate positions on both
+/// sides, and dynamic programming selects a position at every station. Between two stations the present path
+/// may be kept. Ours, not from the literature. Returns the route unchanged when stopped.
 Polyline shifted(const MotionCost& cost, const Polyline& route, double piece_m,
                  const ShiftOptions& options = {}, const StopCheck& stop = {});
 

@@ -13,7 +13,7 @@ struct Pose {
 /// A stretch of constant curvature.
 struct Arc {
   double length_m = 0.0;       ///< > 0 forward, < 0 in reverse
-  double curvature_1_m = 0.0;  ///< left > 0 as the rover looks
+  double curvature_1_m = 0.0;  ///< > 0 to the left of the heading
 };
 
 /// The pose at the end of an arc that starts at a pose.

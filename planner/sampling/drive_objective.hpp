@@ -10,36 +10,36 @@
 
 namespace talus::planner {
 
-/// Cost of a motion OMPL must not take. Finite: with infinities OMPL's sums and comparisons go wrong. It
-/// exceeds the cost of any real route, and in double precision still leaves 0.1 J of the rest of the sum.
+/// Cost [J] of a motion that is not allowed. Finite, because OMPL's sums and comparisons fail with
+/// infinities. Exceeds the cost of any real route; sums with this cost keep a resolution of about 0.1 J.
 inline constexpr double kBlockedMotionCost_J = 1e15;
 
-/// The one cost function as an OMPL objective: minimise joules, by MotionCost. Not symmetric: there and back
-/// differ. States of MapSpace.
+/// The drive cost (MotionCost) as an OMPL optimization objective: minimises joules. Not symmetric, because
+/// ascent and descent differ. For states of MapSpace.
 class DriveObjective : public ompl::base::OptimizationObjective {
  public:
-  /// What it stands on.
+  /// Cost, region and seed of the objective.
   struct Parts {
     std::shared_ptr<const MeteredCost> cost;
     std::shared_ptr<const ImprovableRegion> region;
-    std::uint64_t seed = 1;  ///< of the informed samplers it hands out
+    std::uint64_t seed = 1;  ///< of the informed samplers
   };
 
   DriveObjective(const ompl::base::SpaceInformationPtr& space, Parts parts);
 
   bool isSymmetric() const override { return false; }
 
-  /// Places cost nothing; motions do.
+  /// Zero: only motions have a cost.
   ompl::base::Cost stateCost(const ompl::base::State* state) const override;
 
-  /// Exact cost in joules; kBlockedMotionCost_J when not allowed.
+  /// Exact cost [J]; kBlockedMotionCost_J if the motion is not allowed.
   ompl::base::Cost motionCost(const ompl::base::State* from, const ompl::base::State* to) const override;
 
-  /// Admissible: never above the cost of the best way from one to the other.
+  /// Admissible lower bound of the cheapest path between the states [J].
   ompl::base::Cost motionCostHeuristic(const ompl::base::State* from,
                                        const ompl::base::State* to) const override;
 
-  /// Samples where a route better than the best one known can still pass.
+  /// Sampler of the region through which a route better than the best known one can pass.
   ompl::base::InformedSamplerPtr allocInformedStateSampler(const ompl::base::ProblemDefinitionPtr& problem,
                                                            unsigned int max_calls) const override;
 

@@ -14,7 +14,7 @@ namespace {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-// Requests a stop once OMPL's condition holds, which can only be asked, not waited for.
+// Requests a stop when OMPL's termination condition is met. The condition can only be polled.
 class StopWhen {
  public:
   explicit StopWhen(const ob::PlannerTerminationCondition& done)

@@ -8,10 +8,10 @@
 
 namespace talus::planner {
 
-/// FieldPlanner as a planner of OMPL, over states of MapSpace: for SimpleSetup, ompl::tools::Benchmark and
-/// whatever else takes a planner. It reads the first start state and the goal (a single state, or one with a
-/// threshold, which becomes the tolerance), and adds one solution path, exact and with its cost; further
-/// starts and goals are left out. The field of a goal is kept until clear().
+/// FieldPlanner as an OMPL planner over states of MapSpace, for SimpleSetup, ompl::tools::Benchmark and
+/// similar tools. Uses the first start state and the goal (a single state; its threshold is the goal
+/// tolerance), and adds one exact solution path with its cost. Further start states are ignored; other goal
+/// types return UNRECOGNIZED_GOAL_TYPE. The field of a goal is cached until clear().
 class FieldOmplPlanner : public ompl::base::Planner {
  public:
   FieldOmplPlanner(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const costmap::CostGrid> map,

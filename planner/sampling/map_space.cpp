@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace {
 
-// The map's east and north edges belong to no cell, so the largest allowed coordinate lies just inside.
+// The map's east and north edges belong to no cell, so the largest coordinate lies just inside.
 double lastInside(double edge) {
   return std::nextafter(edge, -std::numeric_limits<double>::infinity());
 }

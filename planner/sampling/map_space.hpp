@@ -7,21 +7,21 @@
 
 namespace talus::planner {
 
-/// The map plane as an OMPL state space: R^2 in map metres, bounded by the map's outer edge, with a
-/// projection of 16x16 cells set (OMPL's own default projection aborts in R^2).
+/// The map plane as an OMPL state space: R^2 in map coordinates [m], bounded by the map's edges, with a
+/// projection of 16 x 16 cells (OMPL's default projection aborts in R^2).
 class MapSpace : public ompl::base::RealVectorStateSpace {
  public:
   explicit MapSpace(const maps::Grid& grid);
 
   const maps::Grid& grid() const noexcept { return grid_; }
 
-  /// The place a state of this space stands for.
+  /// Place of a state of this space.
   static maps::Point place(const ompl::base::State* state) noexcept {
     const double* values = state->as<StateType>()->values;
     return {values[0], values[1]};
   }
 
-  /// Moves a state of this space to a place.
+  /// Sets a state of this space to a place.
   static void setPlace(ompl::base::State* state, maps::Point place) noexcept {
     double* values = state->as<StateType>()->values;
     values[0] = place.x_m;

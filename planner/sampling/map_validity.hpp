@@ -9,7 +9,7 @@
 
 namespace talus::planner {
 
-/// A state is valid where some heading may enter its cell. States of MapSpace.
+/// A state is valid if its cell allows some heading. For states of MapSpace.
 class MapValidityChecker : public ompl::base::StateValidityChecker {
  public:
   MapValidityChecker(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const MeteredCost> cost);
@@ -20,15 +20,15 @@ class MapValidityChecker : public ompl::base::StateValidityChecker {
   std::shared_ptr<const MeteredCost> cost_;
 };
 
-/// A straight motion is valid where its heading may enter every cell it crosses; there and back are two
-/// questions. Exact: no sampling along the motion. States of MapSpace.
+/// A straight motion is valid if every crossed cell allows its heading; the reverse motion may differ. Exact:
+/// the motion is not sampled. For states of MapSpace.
 class MapMotionValidator : public ompl::base::MotionValidator {
  public:
   MapMotionValidator(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const MeteredCost> cost);
 
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to) const override;
 
-  /// The last valid state is found by bisection, to 1/256 of the motion.
+  /// Finds the last valid state by bisection, to 1/256 of the motion.
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to,
                    std::pair<ompl::base::State*, double>& last_valid) const override;
 

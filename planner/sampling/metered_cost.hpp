@@ -8,11 +8,11 @@
 
 namespace talus::planner {
 
-/// MotionCost that counts its work, so that a planner can be stopped after the same work on every machine,
-/// and that stores its last result, since OMPL requests the cost of a motion and then its validity.
-/// Any place but start and goal may become a turn, so a motion must be one that a route may turn into and out
-/// of (MotionCost::turnAllowed): else the routes that a planner joins from motions are refused in the end.
-/// One object a planning run: not thread-safe.
+/// MotionCost that counts its work, so that a planner stops after the same work on every machine. Caches the
+/// latest result, because OMPL requests the cost of a motion and then its validity. Every place except start
+/// and goal may become a turn, so a motion is allowed only if a route may turn at its ends
+/// (MotionCost::turnAllowed()); otherwise routes composed of motions would be refused later. One object per
+/// planning run; not thread-safe.
 class MeteredCost {
  public:
   MeteredCost(std::shared_ptr<const costmap::CostGrid> map, const Segment& ends)
@@ -20,13 +20,13 @@ class MeteredCost {
 
   const MotionCost& motion() const noexcept { return motion_; }
 
-  /// Exact cost in joules, infinite when the motion is not allowed.
+  /// Exact cost [J]; infinite if the motion is not allowed.
   double operator()(const Segment& motion) const noexcept;
 
-  /// Counts one iteration of a planner as a hundred cells.
+  /// Adds the work of one planner iteration: 100 cells.
   void iterated() const noexcept { work_ += 100; }
 
-  /// Work done so far, in cells' lengths evaluated [-].
+  /// Work so far [evaluated cell lengths].
   std::uint64_t work() const noexcept { return work_; }
 
  private:

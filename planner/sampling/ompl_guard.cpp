@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace {
 
-// OMPL's log handler and seed generator are process-wide, hence so are these.
+// OMPL's log handler and seed generator are process-wide, so this state is, too.
 struct Shared {
   std::mutex mutex;
   int quiet = 0;
@@ -32,7 +32,7 @@ QuietOmpl::~QuietOmpl() {
 }
 
 void withOmplSeed(std::uint64_t seed, const std::function<void()>& make) {
-  const QuietOmpl quiet;  // it complains about a second seed and yet obeys
+  const QuietOmpl quiet;  // suppresses OMPL's warning about a second seed, which OMPL accepts
   const std::lock_guard lock(shared().mutex);
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed % 0xffffffffu) + 1);
   make();

@@ -5,8 +5,8 @@
 
 namespace talus::planner {
 
-/// Keeps OMPL's log silent while at least one of these lives, in whatever thread; then the host's own handler
-/// is back.
+/// Suppresses OMPL's log output while at least one object exists in any thread; then restores the host's
+/// handler.
 class QuietOmpl {
  public:
   QuietOmpl();
@@ -15,8 +15,8 @@ class QuietOmpl {
   QuietOmpl& operator=(const QuietOmpl&) = delete;
 };
 
-/// Runs `make` while OMPL's process-wide seed generator starts from `seed` and no other thread draws from it
-/// through here: what is made gets the same random numbers whatever ran before.
+/// Runs `make` with OMPL's process-wide seed generator set to `seed`, exclusive of other callers of this
+/// function. Objects created by `make` get the same random numbers regardless of previous runs.
 void withOmplSeed(std::uint64_t seed, const std::function<void()>& make);
 
 }  // namespace talus::planner

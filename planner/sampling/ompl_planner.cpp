@@ -29,8 +29,7 @@ ob::PlannerPtr bitStar(const PlannerParts& parts) {
   auto planner = std::make_shared<Bit>(parts.space);
   planner->setUseKNearest(true);
   planner->setSamplesPerBatch(500);
-  planner->setPruning(
-      false);  // its pruning asks for a measure of the informed set, which has no closed form here
+  planner->setPruning(false);  // pruning needs a measure of the informed set, which has no closed form here
   return planner;
 }
 
@@ -42,9 +41,9 @@ ob::PlannerPtr sst(const PlannerParts& parts) {
   return planner;
 }
 
-// FMT* [janson_2015], begun anew with twice the samples until it is stopped. OMPL's measures nearness
-// by the cost of motions, which here is no metric; and its own way to go on ("extended") reads past the end
-// of empty neighbourhoods.
+// FMT* [janson_2015], restarted with twice the samples until stopped. OMPL's FMT measures distance by the
+// cost of motions, which is no metric here; its own continuation ("extended") reads past the end of empty
+// neighbourhoods.
 class RestartedFMT : public og::FMT {
  public:
   explicit RestartedFMT(const ob::SpaceInformationPtr& space) : FMT(space) {
@@ -94,7 +93,7 @@ void setParameters(ob::Planner& planner, const std::string& name,
     bool taken = false;
     try {
       taken = planner.params().setParam(key, value);
-    } catch (const std::exception&) {  // what is no number
+    } catch (const std::exception&) {  // not a number
     }
     if (!taken)
       throw std::invalid_argument("planner '" + name + "': parameter " + key + " does not take '" + value +
@@ -102,7 +101,7 @@ void setParameters(ob::Planner& planner, const std::string& name,
   }
 }
 
-// On a plane of its own.
+// Planner on a unit plane without a problem.
 ob::PlannerPtr unbound(const std::string& name) {
   const auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
   plane->setBounds(0.0, 1.0);

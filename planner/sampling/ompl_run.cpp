@@ -32,7 +32,7 @@ std::shared_ptr<const ImprovableRegion> regionOf(const Problem& leg, const Plan&
       .goal_tolerance_m = leg.goal_tolerance_m,
       .known_route = seeded ? subdivided(known.points, spacing_m) : std::vector<maps::Point>{},
       .known_cost_J = known.cost_J,
-      .hand_out_route = !settings.planner.ends_with("RRTstar")});  // RRT* plants it instead
+      .hand_out_route = !settings.planner.ends_with("RRTstar")});  // RRT* inserts the route into its tree
 }
 
 ob::SpaceInformationPtr spaceOf(const Problem& leg, const std::shared_ptr<const MeteredCost>& cost,
@@ -55,19 +55,20 @@ ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInforma
   ob::ScopedState<MapSpace> goal(space);
   MapSpace::setPlace(start.get(), leg.start);
   MapSpace::setPlace(goal.get(), leg.goal);
-  // A threshold of 0 would never be met: OMPL asks for a distance below it.
+  // OMPL requires a distance below the threshold, so 0 would never be reached.
   const double threshold_m = std::max(leg.goal_tolerance_m, 1e-9 * leg.map->grid().resolution_m);
   definition->setStartAndGoalStates(start, goal, threshold_m);
   definition->setOptimizationObjective(std::make_shared<DriveObjective>(space, parts));
   return definition;
 }
 
-// Whoever sets a time limit wants that time used; else the work ends it, alike on every machine.
+// A time limit is used up completely; without a time limit the work limit ends the run, equally on every
+// machine.
 bool spent(const Problem& leg, const SamplingSettings& settings, const MeteredCost& cost) {
   return std::isinf(leg.time_limit_s) && cost.work() >= settings.work;
 }
 
-// Of the time, or of the work where no time is set.
+// Completed share of the time limit, or of the work limit if there is no time limit.
 double shareDone(const Problem& leg, const SamplingSettings& settings, const MeteredCost& cost,
                  double elapsed_s) {
   const double share = std::isinf(leg.time_limit_s)
@@ -76,7 +77,7 @@ double shareDone(const Problem& leg, const SamplingSettings& settings, const Met
   return std::clamp(share, 0.0, 1.0);
 }
 
-// Stops after the allotted work or at the time limit, and when asked to; tells ten times a second how far it is.
+// Ends at the work or time limit or when stopped; reports progress ten times a second.
 ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
                                          const std::shared_ptr<const MeteredCost>& cost) {
   const auto begin = Clock::now();
@@ -92,7 +93,7 @@ ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSetti
   });
 }
 
-// The best of what the planner found, priced anew: OMPL's own sums may hold blocked motions.
+// Best of the planner's solutions by exact cost; OMPL's sums may include blocked motions.
 Plan priced(const ob::ProblemDefinition& definition, const MotionCost& cost) {
   Plan best;
   for (const ob::PlannerSolution& solution : definition.getSolutions()) {

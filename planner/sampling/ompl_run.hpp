@@ -5,8 +5,8 @@
 
 namespace talus::planner {
 
-/// One run of one of OMPL's planners over a problem without via points; its ends are known to be on allowed
-/// ground. The plan is Found only when it is allowed along its whole length.
+/// Runs one OMPL planner for a problem without via points whose ends are known to be allowed. Found only if
+/// the whole route is allowed.
 Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& known);
 
 }  // namespace talus::planner

@@ -11,14 +11,15 @@
 
 namespace talus::planner {
 
-/// Random places of an ImprovableRegion from a seed of its own; where the region requires it, the known
-/// route's points first.
+/// Random places of an ImprovableRegion with its own seed; if the region's hand_out_route is set, the known
+/// route's points come first.
 class RegionSource {
  public:
   RegionSource(std::shared_ptr<const ImprovableRegion> region, std::uint64_t seed)
       : region_(std::move(region)), engine_(seed) {}
 
-  /// Moves place to the next one; false when none was found that can cost less than max_cost_J.
+  /// Sets `place` to the next place. Returns false if no place with a lower bound of at most max_cost_J was
+  /// found.
   bool next(double max_cost_J, maps::Point& place);
 
   const ImprovableRegion& region() const noexcept { return *region_; }
@@ -30,7 +31,7 @@ class RegionSource {
   std::size_t handed_out_ = 0;
 };
 
-/// Samples MapSpace inside an ImprovableRegion, from a seed of its own. For planners that request plain
+/// Samples MapSpace inside an ImprovableRegion with its own seed, for planners that use OMPL's uniform
 /// samples.
 class RegionSampler : public ompl::base::StateSampler {
  public:
@@ -45,11 +46,11 @@ class RegionSampler : public ompl::base::StateSampler {
   RegionSource source_;
 };
 
-/// The same for planners that request samples below a cost. Its measure of the region is the map's area: an
-/// upper bound.
+/// Samples MapSpace inside an ImprovableRegion for planners that request samples below a cost. The reported
+/// measure is the map's area, an upper bound.
 class RegionInformedSampler : public ompl::base::InformedSampler {
  public:
-  /// Arguments of OMPL's allocation call and the seed.
+  /// Arguments of OMPL's allocation call, the region and the seed.
   struct Parts {
     ompl::base::ProblemDefinitionPtr problem;
     unsigned int max_calls = 100;

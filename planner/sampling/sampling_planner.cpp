@@ -46,7 +46,7 @@ Plan planLeg(Problem leg, const SamplingSettings& settings, const InitialPathPro
   const double apart_m = std::hypot(leg.goal.x_m - leg.start.x_m, leg.goal.y_m - leg.start.y_m);
   if (apart_m <= leg.goal_tolerance_m) return arrived(leg);
   Problem scouted = leg;
-  scouted.watch.progress = {};  // the sampling planner alone reports progress
+  scouted.watch.progress = {};  // only the sampling planner reports progress
   Plan known = scout ? scout(scouted) : Plan{};
   if (known.status == RouteStatus::Cancelled || known.status == RouteStatus::NoRoute) return known;
   if (settings.better && known.status == RouteStatus::Found) settings.better(known.cost_J);
@@ -71,7 +71,7 @@ Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
   const TimeLeft clock(problem.time_limit_s);
   std::size_t legs = problem.via.size() + 1;
   return planByLegs(problem, [&](Problem leg) {
-    leg.time_limit_s = clock.share_s(legs--);  // what earlier legs left over is shared
+    leg.time_limit_s = clock.share_s(legs--);  // time left over by earlier legs is shared
     return planLeg(std::move(leg), checked, scout);
   });
 }

@@ -7,14 +7,15 @@
 
 namespace talus::planner {
 
-/// Finds a route to improve on for a problem without via points; not Found: none is known.
+/// Provides an initial route for a problem without via points; a status other than Found means that none is
+/// known.
 using InitialPathProvider = std::function<Plan(const Problem& leg)>;
 
-/// Plans with OMPL's sampling planners under the exact cost, leg by leg through the via points; never returns
-/// a worse route than the scout knew, nor one that is not allowed along its whole length. The same bytes for
-/// the same problem and seed where there is no time limit; with one, what the machine finds in that time. An
-/// empty scout: the planners start from nothing. Throws std::invalid_argument for a planner that is not on
-/// offer or a setting out of range.
+/// Plans with OMPL's sampling planners under the exact cost, leg by leg through the via points. Never returns
+/// a costlier route than the initial route of `scout`, nor a route with a motion that is not allowed. Without
+/// a time limit, equal problems and seeds give identical results; with a time limit, the result depends on
+/// the machine. If `scout` is empty, planners start without a route. Throws std::invalid_argument for an
+/// unknown planner or a setting out of range.
 Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
                     const InitialPathProvider& scout = {});
 

@@ -8,26 +8,27 @@
 
 namespace talus::planner {
 
-/// How OMPL's planners are run. Defaults are what did best on maps of 1000x1000 cells.
+/// Settings of OMPL's planners. The defaults performed best on maps of 1000 x 1000 cells.
 struct SamplingSettings {
-  std::string planner = "RRTstar";  ///< a name of plannerNames(), not "field"
-  std::uint64_t work =
-      4'000'000;              ///< cells' lengths evaluated before it stops, > 0: the same on every machine;
-                              ///< only where the problem has no time limit, which is used up else
+  std::string planner = "RRTstar";  ///< a name of plannerNames() except "field"
+  /// Limit on the work [evaluated cell lengths], > 0, equal on every machine; applies only to problems
+  /// without a time limit.
+  std::uint64_t work = 4'000'000;
   double range_cells = 40.0;  ///< longest motion added to a tree, > 0
-  bool cold = false;          ///< begins with nothing; else with the route that the field knows
-  std::map<std::string, std::string> parameters{};  ///< of OMPL's planner, by its own names and in its units
-  std::function<void(double)> better{};  ///< called with each better cost of the leg in work, in joules
+  bool cold = false;          ///< true: no initial route; false: starts from the field planner's route
+  std::map<std::string, std::string> parameters{};  ///< of OMPL's planner, with its own names and units
+  std::function<void(double)> better{};             ///< called with each lower cost of the present leg [J]
 };
 
-/// "NAME", "NAME:cold", "NAME:range=20:cold": a planner of plannerNames() and how it is run. Throws std::invalid_argument for a name
-/// that is not on offer, and for cold or a parameter where the planner has none such or does not take the value.
+/// Parses "NAME", "NAME:cold", "NAME:range=20:cold": a planner of plannerNames() and its settings. Throws
+/// std::invalid_argument for an unknown name, for cold or a parameter of a planner that is not OMPL's, for an
+/// unknown parameter and for an invalid value.
 SamplingSettings samplingSettings(const std::string& words);
 
-/// All planners on offer, OMPL's from the field's route and cold.
+/// All planner names, and OMPL's planners with ":cold".
 std::vector<std::string> warmAndCold();
 
-/// The words that give these settings, the offered name first.
+/// The text from which samplingSettings() gives these settings.
 std::string wordsOf(const SamplingSettings& settings);
 
 }  // namespace talus::planner

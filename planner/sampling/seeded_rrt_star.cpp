@@ -9,10 +9,9 @@ namespace talus::planner {
 SeededRRTstar::SeededRRTstar(const ompl::base::SpaceInformationPtr& space, Seed seed)
     : RRTstar(space), seed_(std::move(seed)) {
   setName(seed_.informed ? "InformedRRTstar" : "RRTstar");
-  setKNearest(false);  // a fixed radius: far faster than k nearest here
-  setAdmissibleCostToCome(
-      false);                 // OMPL's bound is the straight motion's cost, which is no bound on this ground
-  setInformedSampling(true);  // through the objective's own sampler
+  setKNearest(false);              // fixed radius: much faster here than k nearest
+  setAdmissibleCostToCome(false);  // OMPL's bound, the straight motion's cost, is no lower bound here
+  setInformedSampling(true);       // through the objective's sampler
   if (seed_.informed) {
     setTreePruning(true);
     setNewStateRejection(true);

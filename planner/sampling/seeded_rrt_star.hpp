@@ -8,15 +8,15 @@
 
 namespace talus::planner {
 
-/// RRT* [karaman_frazzoli_2011] whose tree begins with a route known already, so that it has a solution from
-/// the first moment and spends its samples on improving it. States of MapSpace.
+/// RRT* [karaman_frazzoli_2011] whose tree initially contains a known route, so that all samples improve an
+/// existing solution. For states of MapSpace.
 class SeededRRTstar : public ompl::geometric::RRTstar {
  public:
-  /// What differs from RRT*.
+  /// Additions to RRT*.
   struct Seed {
     std::vector<maps::Point> route;  ///< start to goal; empty: plain RRT*
-    double spacing_m = 1.0;          ///< the route's legs are cut to this length, > 0
-    bool informed = false;           ///< sample only where the best cost can be beaten [gammell_2014]
+    double spacing_m = 1.0;          ///< the route's legs are divided to this length, > 0
+    bool informed = false;           ///< sample only where the best cost can be improved [gammell_2014]
   };
 
   SeededRRTstar(const ompl::base::SpaceInformationPtr& space, Seed seed);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Entry header of talus::simulation: traverse simulations over soil that the planner does not know.
+/// Entry header of talus::simulation: traverse simulations on soil that differs from the planner's map.
 
 #include <talus/planner/planner.hpp>
 #include <talus/planner/simulation/drive/drive_log.hpp>

@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto kRule = gaussLegendre<10>();
 
-// Everything of the contact that does not depend on the point of the rim.
+// Quantities of the contact that are the same at every point of the rim.
 struct Contact {
   Contact(const ContactSoil& s, const Wheel& w, const ContactState& at)
       : soil(s),
@@ -26,8 +26,8 @@ struct Contact {
   double radius, slip, theta_1, sin_1, cos_1, peak, tan_friction;
 };
 
-// Normal stress at fraction s of the way from the ends of contact to the peak; the front half's point and its
-// mirror.
+// Normal stress at fraction s of the arc from an end of contact (s = 0) to the stress peak (s = 1). The point
+// theta in front of the peak and its mirror point behind share depth and sigma.
 struct Normal {
   Normal(const Contact& c, double fraction) : s(fraction), theta(c.theta_1 * (1.0 - (1.0 - c.peak) * s)) {
     depth = 2.0 * c.radius * std::sin(0.5 * (c.theta_1 + theta)) * std::sin(0.5 * (c.theta_1 - theta));
@@ -38,7 +38,7 @@ struct Normal {
   double s, theta, depth, log_depth, sigma;
 };
 
-// One point of the rim: stresses, and the weight of its strip [rad].
+// One point of the rim: stresses, and the arc d theta [rad] that the point represents.
 struct Point {
   Point(const Contact& c, const Normal& n, double angle, double strip)
       : theta(angle), weight(strip), sine(std::sin(angle)), cosine(std::cos(angle)) {
@@ -55,7 +55,7 @@ struct Point {
   double theta, weight, sine, cosine, j, left, strength, tau;
 };
 
-// How one variable moves a point: its weight relatively, its angle, and the stresses there.
+// Derivatives at one rim point by one variable: of the arc (relative), of theta and of the stresses.
 struct Motion {
   double weight = 0.0;
   double theta = 0.0;
@@ -72,7 +72,7 @@ void addMotion(const Point& p, double sigma, const Motion& m, Eigen::Ref<Eigen::
   if (m.weight != 0.0) column += p.weight * m.weight * p.forces(sigma);
 }
 
-// Derivatives of one point by the five soil parameters.
+// Adds the derivatives at one point by the five soil parameters.
 void addSoilMotions(const Contact& c, const Normal& n, const Point& p, ContactDerivative& d) {
   const double shared = 1.0 - p.left;
   const auto throughSigma = [&](double sigma) {
@@ -87,8 +87,8 @@ void addSoilMotions(const Contact& c, const Normal& n, const Point& p, ContactDe
   addMotion(p, n.sigma, {.tau = -p.strength * p.left * p.j / (k * k)}, d.col(kShear));
 }
 
-// A change of entry angle or slip moves the point (theta, weight), the depth below it and the shear
-// displacement.
+// Derivatives by theta_1 or slip: of the arc (relative), of theta, of the depth and of the shear displacement
+// j.
 struct StateMotion {
   double weight, theta, depth, j;
 };
@@ -166,7 +166,7 @@ ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const Con
     addSoilMotions(c, n, p, derivative);
     addStateMotions(c, n, p, peak_share, derivative);
   });
-  derivative.col(kSinkage) /= wheel.radius_m * c.sin_1;  // theta_1 to z
+  derivative.col(kSinkage) /= wheel.radius_m * c.sin_1;  // d/d theta_1 to d/dz: dz = r sin theta_1 d theta_1
   derivative = scale(wheel).asDiagonal() * derivative;
   return sum.cwiseProduct(scale(wheel));
 }

@@ -5,12 +5,13 @@
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/contact/wheel.hpp>
 
-/// The Wong-Reece contact as an estimator wants it: forces of a driven wheel at a given sinkage and slip,
-/// with their derivatives by soil, sinkage and slip in the same pass. No root is sought, nothing is checked
-/// or thrown.
+/// Wong-Reece contact for estimators: forces of a driven wheel at a given sinkage and slip, and their
+/// derivatives by soil parameters, sinkage and slip in the same pass. The functions solve no equilibrium,
+/// check no argument and throw nothing.
 namespace talus::terramech {
 
-/// The soil under one wheel: k = k_c/b + k_phi is all that one width can see.
+/// Soil parameters under one wheel. Readings of a single wheel width determine only the sum k = k_c/b +
+/// k_phi.
 struct ContactSoil {
   double cohesion_Pa = 0.0;
   double friction_angle_rad = 0.0;
@@ -21,31 +22,32 @@ struct ContactSoil {
   double c2 = 0.32;
 };
 
-/// The same for a wheel of width_m [m].
+/// Returns the parameters of `soil` under a wheel of width_m > 0 [m].
 ContactSoil contactSoil(const Soil& soil, double width_m);
 
-/// Where a driven wheel stands: 0 < z < r, 0 <= i <= 1.
+/// State of a driven wheel: sinkage 0 < z < r, slip 0 <= i <= 1.
 struct ContactState {
   double sinkage_m = 0.0;
   double slip = 0.0;
 };
 
-/// Rows of a response, columns of its derivative.
+/// ContactRow indexes the rows of ForceVector and ContactDerivative, ContactColumn the columns of
+/// ContactDerivative.
 enum ContactRow { kLoad, kTorque, kPull };
 enum ContactColumn { kCohesion, kFriction, kExponent, kModulus, kShear, kSinkage, kSlip, kContactColumns };
 
-/// W [N], T [Nm], DP [N].
+/// Load W [N], torque T [N m], drawbar pull DP [N].
 using ForceVector = Eigen::Vector3d;
 
-/// d(W, T, DP) / d(c, phi, n, k, K, z, i), each in SI.
+/// d(W, T, DP) / d(c, phi, n, k, K, z, i), in SI units.
 using ContactDerivative = Eigen::Matrix<double, 3, kContactColumns>;
 
-/// Thesis C.8 to C.10 with theta_2 = 0, by Gauss-Legendre of 10 points a half in t, s = t^3: within 1e-4 of
-/// the integral over Table 2.1 and n from 0.3 to 1.6, far below any sensor; rim_contact.hpp has the exact
-/// one.
+/// Returns W, T, DP of thesis Eqs. C.8 to C.10 with theta_2 = 0. Each half of the contact is integrated by
+/// 10-point Gauss-Legendre quadrature in t, s = t^3. The quadrature error is below 1e-4 over Table 2.1 and n
+/// in [0.3, 1.6], less than any sensor error; rim_contact.hpp has the accurate quadrature.
 ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const ContactState& state);
 
-/// The forces, and their exact derivative (of the quadrature) in `derivative`.
+/// Returns the forces as above and writes the exact derivative of the quadrature to `derivative`.
 ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const ContactState& state,
                           ContactDerivative& derivative);
 

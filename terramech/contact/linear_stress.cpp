@@ -7,8 +7,8 @@
 namespace talus::terramech {
 namespace {
 
-// 1 - sin(h)/h; its series below h = 0.1, where the difference would cancel (next term h^8/362880, below
-// 1e-13 relative).
+// 1 - sin(h)/h. Below h = 0.1 the difference cancels, so the series is used; the first omitted term
+// h^8/362880 is below 1e-13 relative.
 double oneMinusSinc(double h) {
   if (h > 0.1) return 1.0 - std::sin(h) / h;
   const double q = h * h;

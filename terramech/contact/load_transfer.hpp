@@ -6,12 +6,14 @@
 
 namespace talus::terramech {
 
-/// Loads [N] of equal wheels on a plane of this gradient along the heading (rise over run), for wheels that
-/// stand `along_m` ahead of their middle. On a slope weight moves back by the moment of the weight's part
-/// along it about the ground:
+/// Returns the normal load [N] on each of n equal wheels on a plane with the slope tan(alpha) = gradient
+/// (rise over run) along the heading. Wheel k stands a_k = along_m[k] ahead of the middle of the wheels. The
+/// moment of the downhill weight component, at the height h of the centre of mass, transfers load to the
+/// rear:
 ///   N_k = m g cos(alpha) (1/n - tan(alpha) h a_k / sum a^2)
-/// which for two axles is the textbook's m g sin(alpha) h / L. No wheel carries less than a tenth of its even
-/// share: an axle that lifts off is no longer driving. Empty without wheels.
+/// For two axles at distance L the transferred load is the textbook's m g sin(alpha) h / L. No load falls
+/// below 0.1 m g cos(alpha) / n: a wheel that lifts off would drive no more. The other loads are not reduced
+/// for the limit. Returns an empty vector if along_m is empty.
 std::vector<double> wheelLoads_N(const Rover& rover, double gradient, const std::vector<double>& along_m);
 
 }  // namespace talus::terramech

@@ -32,7 +32,7 @@ double pressureOf(const Tyre& tyre) {
   return tyre.inflation_Pa + tyre.carcass_Pa;
 }
 
-/// int_a^b f by Gauss-Legendre.
+/// Integral of f from a to b by Gauss-Legendre quadrature.
 template <class Function>
 double integral(double a, double b, const Function& f) {
   double sum = 0.0;
@@ -41,7 +41,8 @@ double integral(double a, double b, const Function& f) {
   return sum * (b - a);
 }
 
-/// A tyre that is flat from -flat/2 to flat/2 at depth z_0 and round in front, up to the surface.
+/// Tyre flattened over flat_length_m at depth z_0; in front of the flat the tyre is a circular arc up to the
+/// surface.
 class FlattenedTyre {
  public:
   FlattenedTyre(const Tyre& tyre, const Soil& soil, double slip, double deflection_m)
@@ -76,7 +77,8 @@ class FlattenedTyre {
   }
 
  private:
-  /// int over the round part in front, in s = t^3 from the entry for the power of the depth.
+  /// Integral over the arc in front of the flat. The substitution s = t^3 from the entry smooths sigma ~
+  /// depth^n.
   template <class Density>
   double front(const Density& density) const {
     return integral(0.0, 1.0, [&](double t) {
@@ -100,10 +102,12 @@ class FlattenedTyre {
   ShearDisplacement displacement_;
 };
 
-/// The deflection at which the tyre carries the load; the flat grows with it, and the load it carries.
+/// Returns the smallest deflection [m] at which the tyre carries the load, by bisection. Flat length and
+/// carried load increase with deflection. Throws std::domain_error when the load exceeds that of the largest
+/// deflection.
 double carryingDeflection_m(const Tyre& tyre, const Soil& soil, const TyreOperation& operation) {
   const double depth = bekkerDepth_m(soil, tyre.wheel.width_m, pressureOf(tyre));
-  double low = 0.0, high = tyre.wheel.radius_m - depth;  // where its axle meets the ground
+  double low = 0.0, high = tyre.wheel.radius_m - depth;  // high: the axle is at the surface
   const auto carries = [&](double deflection) {
     return FlattenedTyre{tyre, soil, operation.slip, deflection}.load_N() >= operation.load_N;
   };
@@ -153,7 +157,7 @@ TyreForces tyreOnRigidGround(const Tyre& tyre, const TyreOperation& operation) {
                length = operation.load_N / (p * tyre.wheel.width_m);
   if (length >= 2.0 * r) throw std::domain_error("the tyre flattens over its whole diameter");
   const double deflection = r - std::sqrt(r * r - 0.25 * length * length);
-  // Brush: stress grows by stiffness x slip per metre up to mu p at x_full.
+  // Brush model: the shear stress increases at rate stiffness x slip per metre, up to mu p at x_full.
   const double rate = tyre.tread_stiffness * operation.slip, strength = tyre.friction * p;
   const double x_full = rate > 0.0 ? std::min(length, strength / rate) : length;
   const double shear_N = tyre.wheel.width_m * (0.5 * rate * x_full * x_full + strength * (length - x_full));

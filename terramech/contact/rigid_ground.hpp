@@ -5,20 +5,21 @@
 /// A rigid wheel on rigid flat ground (thesis C.2.1).
 namespace talus::terramech {
 
-/// Dry friction between a wheel and hard ground.
+/// Coulomb friction between a wheel and rigid ground.
 struct GroundFriction {
   double static_coefficient = 0.7;   ///< mu_s >= mu_k [-]
   double kinetic_coefficient = 0.6;  ///< mu_k >= 0 [-]
 };
 
-/// What a torque does on hard ground.
+/// Forces of a wheel on rigid ground at a given torque.
 struct RigidGroundForces {
-  double drawbar_pull_N = 0.0;  ///< signed as the torque
+  double drawbar_pull_N = 0.0;  ///< same sign as the torque
   bool slips = false;
 };
 
-/// Thesis C.11: DP = T/r while |T|/r <= mu_s W, else mu_k W (signed as T) and the wheel slips. Throws
-/// std::invalid_argument when the wheel, the load [N] > 0 or the friction leaves its range.
+/// Returns the drawbar pull (thesis Eq. C.11): DP = T/r if |T|/r <= mu_s W; otherwise the wheel slips and DP
+/// = mu_k W with the sign of T. Throws std::invalid_argument if the wheel, the load [N] > 0 or a friction
+/// coefficient is outside its range.
 RigidGroundForces rigidGroundForces(const Wheel& wheel, const GroundFriction& friction, double load_N,
                                     double torque_Nm);
 

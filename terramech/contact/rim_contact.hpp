@@ -9,35 +9,35 @@
 #include <talus/terramech/contact/wheel.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 
-/// Forces on a rigid rim from any stress laws, and the entry angle at which they carry a load. wong_reece.hpp
-/// is the law of the literature, wheel_contact.hpp the one with the effects that it lacks; both are
-/// integrated here. Angles are measured from the downward vertical through the axle, positive towards the
+/// Integration of stresses along a rigid rim for any contact law, and the entry angle at which the rim
+/// carries a given load. wong_reece.hpp has the law of the literature, wheel_contact.hpp the law with
+/// additional effects. Angles are measured from the downward vertical through the axle, positive in the
 /// direction of travel.
 namespace talus::terramech {
 
-/// What the integral needs to know of a soil under a wheel at a given slip.
+/// Stress law of a soil under a wheel at a given slip, as rimForces() requires it.
 template <class Law>
 concept ContactLaw = requires(const Law& law, double x) {
-  /// Normal stress [Pa] in front of the stress peak at a depth below the undisturbed surface [m].
+  /// Normal stress [Pa] in front of the stress peak, at a depth [m] below the undisturbed surface.
   { law.pressure_Pa(x) } -> std::convertible_to<double>;
-  /// Shear stress [Pa], signed as the displacement, at normal stress [Pa] and shear displacement [m].
+  /// Shear stress [Pa] at normal stress [Pa] and shear displacement [m]; same sign as the displacement.
   { law.shear_Pa(x, x) } -> std::convertible_to<double>;
-  /// Angle of the normal stress peak theta_m [rad] at entry angle theta_1 [rad].
+  /// Angle theta_m [rad] of the normal stress peak at entry angle theta_1 [rad].
   { law.peak_rad(x) } -> std::convertible_to<double>;
-  /// Angle where contact ends, theta_2 [rad], at entry angle theta_1 [rad]; negative behind the axle.
+  /// Exit angle theta_2 [rad] at entry angle theta_1 [rad]; negative behind the axle.
   { law.exit_rad(x) } -> std::convertible_to<double>;
 };
 
-/// What the soil does to a rim in contact from theta_1 down to theta_2.
+/// Forces of the soil on a rim in contact from theta_1 to theta_2.
 struct RimForces {
   double load_N = 0.0;          ///< upward
-  double torque_Nm = 0.0;       ///< about the axle that the motor must give; negative when braking
+  double torque_Nm = 0.0;       ///< drive torque about the axle; negative when braking
   double drawbar_pull_N = 0.0;  ///< forward
-  double side_force_N = 0.0;    ///< against the sideways motion < 0; 0 for a wheel that rolls straight
+  double side_force_N = 0.0;  ///< across the wheel plane, negative for slip_angle_rad > 0; 0 at slip angle 0
 };
 
-/// Gauss-Legendre in t, s = t^Power being the way from an end of contact to the stress peak: the power makes
-/// sigma ~ s^n smooth where contact begins.
+/// Gauss-Legendre rule in t with s = t^Power, where s is the fraction of the arc from an end of contact to
+/// the stress peak. The power makes sigma ~ s^n smooth at the end of contact.
 template <std::size_t N, int Power>
 struct RimRule {
   static constexpr auto kPoints = gaussLegendre<N>();
@@ -46,9 +46,10 @@ struct RimRule {
   static double inverse(double s) { return Power == 3 ? std::cbrt(s) : std::sqrt(s); }
   static_assert(Power == 2 || Power == 3);
 };
-using FineRimRule = RimRule<24, 3>;    ///< relative accuracy 1e-9 or better for any n that occurs
-using QuickRimRule = RimRule<8, 2>;    ///< 1e-6 of a driven wheel: fits solve the contact millions of times
-using BrakedRimRule = RimRule<20, 2>;  ///< 1e-6 to slip -0.9
+using FineRimRule = RimRule<24, 3>;  ///< relative error <= 1e-9 for any n in use
+/// Relative error 1e-6 for driven wheels; for fits, which solve the contact millions of times.
+using QuickRimRule = RimRule<8, 2>;
+using BrakedRimRule = RimRule<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
 
 namespace detail {
 
@@ -59,22 +60,22 @@ inline double along(const Tangent& tangent) {
   return tangent.along;
 }
 
-/// Break points of the integral in s in [0, 1]: its ends and where the shear displacement changes sign.
+/// Break points of the integral in s, in [0, 1]: both ends and the sign change of the shear displacement.
 struct Breaks {
   std::array<double, 3> s{0.0, 1.0, 1.0};
   int count = 2;
 };
 
-/// What the integral is split by: the ends of the halves, and where the displacement along the wheel plane
-/// changes sign, where a resultant turns quickly at a small slip angle.
+/// End angles of the two halves of the contact. The integral is split at the sign change of the displacement
+/// along the wheel plane, because there the resultant displacement turns quickly at a small slip angle.
 struct Halves {
   double entry_rad, peak_rad, exit_rad;
 };
 
 Breaks breaksAt(double sign_change_rad, const Halves& halves);
 
-/// Sum of the forces of one point of the front half and its mirror point in the rear half, which share sigma
-/// (C.3).
+/// Adds the forces at a point of the front half and at the mirror point of the rear half; both have the same
+/// sigma (C.3).
 template <class Law, class Displacement>
 class RimIntegrand {
  public:
@@ -89,11 +90,11 @@ class RimIntegrand {
   double peak_rad() const { return peak_; }
   double exit_rad() const { return exit_; }
 
-  /// Adds both points at fraction s of the way from the ends of contact (s = 0) to the peak (s = 1).
+  /// Adds both points at fraction s of the arc from the ends of contact (s = 0) to the peak (s = 1).
   void add(double s, double ds, RimForces& sum) const {
     const double front = entry_ - (entry_ - peak_) * s;
     const double rear = exit_ + (peak_ - exit_) * s;
-    // cos theta - cos theta_1 without cancellation.
+    // r (cos theta - cos theta_1) without cancellation.
     const double depth_m =
         2.0 * radius_m_ * std::sin(0.5 * (entry_ + front)) * std::sin(0.5 * (entry_ - front));
     const double sigma = law_.pressure_Pa(depth_m);
@@ -118,13 +119,14 @@ class RimIntegrand {
 
 }  // namespace detail
 
-/// Forces on the rim at a given entry angle theta_1 (thesis C.8 to C.10 with C.3's mirrored rear half):
+/// Returns the forces on the rim at a given entry angle theta_1 (thesis Eqs. C.8 to C.10, rear half mirrored
+/// as in C.3):
 ///   W  = r b     int_theta_2^theta_1 (sigma cos theta + tau sin theta) d theta
 ///   T  = r_s r b int tau d theta
 ///   DP = r b     int (tau cos theta - sigma sin theta) d theta
 ///   F  = -r b    int tau_y d theta
-/// r_s is the displacement's radius, r unless lugs shear the soil further out. Each half runs from its end of
-/// contact to the peak and is split where the shear displacement changes sign.
+/// r_s is the radius of the displacement: r, or a larger shear radius for a wheel with lugs. Each half is
+/// integrated from the end of contact to the peak and split at the sign change of the shear displacement.
 template <class Rule = FineRimRule, class Law, class Displacement>
 RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& displacement) {
   const detail::RimIntegrand integrand{law, displacement, wheel.radius_m};
@@ -145,39 +147,39 @@ RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& disp
           sum.side_force_N * area};
 }
 
-/// A rim that carries its load.
+/// Entry angle and forces of a rim that carries a given load.
 struct RimEquilibrium {
   double entry_angle_rad = 0.0;
   RimForces forces;
-  double growth = 0.0;  ///< d log W / d log theta_1 as the search saw it last [-]
+  double growth = 0.0;  ///< d log W / d log theta_1 at the last step of the search [-]
 };
 
-/// What to solve for.
+/// Load and slip to solve for, and settings of the search.
 struct RimLoad {
   double load_N = 0.0;       ///< > 0
-  double slip = 0.0;         ///< [-1, 1], see shear_displacement.hpp
-  double first_guess = 0.1;  ///< entry angle to start from [rad]
-  double growth = 3.0;       ///< d log W / d log theta_1 to start from [-]
-  double tolerance = 1e-13;  ///< of log W at which the search ends [-]
+  double slip = 0.0;         ///< [-1, 1], defined in shear_displacement.hpp
+  double first_guess = 0.1;  ///< initial entry angle [rad]
+  double growth = 3.0;       ///< initial d log W / d log theta_1 [-]
+  double tolerance = 1e-13;  ///< tolerance of log W at which the search ends [-]
 };
 
 namespace detail {
 
-/// Search for the entry angle. The load grows almost as a power of it, so the secant method runs on
-/// logarithms, inside a bracket that catches a step too far; four to six trials.
+/// Root search for the entry angle. The load is almost a power of the entry angle, so the secant method runs
+/// on logarithms, inside a bracket that rejects overlong steps. Typical cost: 4 to 6 evaluations.
 class EntrySearch {
  public:
-  enum class Status { Searching, Found, Sunk };  ///< Sunk: not even the axle on the ground carries the load
+  enum class Status { Searching, Found, Sunk };  ///< Sunk: the load is not carried even at entry angle pi/2
 
   explicit EntrySearch(const RimLoad& wanted);
 
-  /// The angle to try next [rad], in (0, pi/2].
+  /// Next trial entry angle [rad], in (0, pi/2].
   double entry_rad() const { return entry_; }
 
-  /// Takes the load [N] found there; while it searches on, entry_rad() has moved.
+  /// Accepts the load [N] at entry_rad(). If the search continues, entry_rad() is the next trial angle.
   Status take(double load_N);
 
-  /// d log W / d log theta_1 between the last two trials, or as it was given.
+  /// d log W / d log theta_1 between the last two trials; the initial value before two trials.
   double growth() const { return growth_; }
 
  private:
@@ -185,7 +187,7 @@ class EntrySearch {
   double next(double log_ratio) const;
 
   double wanted_N_, entry_, growth_, tolerance_;
-  double low_ = 0.0, high_ = 0.0;  // high 0: not met yet
+  double low_ = 0.0, high_ = 0.0;  // high 0: no upper bound yet
   double last_log_entry_ = 0.0, last_log_ratio_ = 0.0;
   int trials_ = 0;
 };
@@ -194,8 +196,8 @@ class EntrySearch {
 
 }  // namespace detail
 
-/// The smallest entry angle in (0, pi/2] at which the rim carries the load; empty when the wheel would sink
-/// to its axle before it carried the load. `displacement_at(entry_rad)` gives the shear displacement.
+/// Returns the smallest entry angle in (0, pi/2] at which the rim carries the load; empty if the load is not
+/// carried at pi/2. `displacement_at(entry_rad)` returns the shear displacement for an entry angle.
 template <class Rule, class Law, class DisplacementAt>
 std::optional<RimEquilibrium> findEquilibrium(const Law& law, const Wheel& wheel, const RimLoad& wanted,
                                               const DisplacementAt& displacement_at) {
@@ -210,7 +212,8 @@ std::optional<RimEquilibrium> findEquilibrium(const Law& law, const Wheel& wheel
   }
 }
 
-/// The same for a wheel that rolls straight. Throws std::domain_error when it would sink to its axle.
+/// Returns the equilibrium of a wheel at slip angle 0. Throws std::domain_error if the load is not carried at
+/// entry angle pi/2.
 template <ContactLaw Law>
 RimEquilibrium rimEquilibrium(const Law& law, const Wheel& wheel, const RimLoad& wanted) {
   const auto found = findEquilibrium<FineRimRule>(law, wheel, wanted, [&](double entry) {

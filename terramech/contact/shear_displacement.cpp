@@ -7,8 +7,8 @@ namespace talus::terramech {
 
 double ShearDisplacement::signChange_rad(double lowest_rad) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  // j grows from 0 at the entry only if q cos theta_1 < 1, is largest where q cos theta = 1, and falls below
-  // that.
+  // j exceeds 0 below the entry only if q cos theta_1 < 1. The maximum of j is at q cos theta = 1; below that
+  // angle j falls.
   if (p_.slip >= 0.0 || !(travel_ * std::cos(p_.entry_angle_rad) < 1.0)) return kNone;
   double positive = std::acos(1.0 / travel_), negative = lowest_rad;
   if (at_m(negative) >= 0.0) return kNone;
@@ -22,9 +22,9 @@ double ShearDisplacement::signChange_rad(double lowest_rad) const {
 double resultantSlip(double slip, double slip_angle_rad) {
   const double beta = std::min(std::abs(slip_angle_rad), kSteepestSlipAngle_rad);
   const double c = std::cos(beta), s = std::sin(beta);
-  if (slip < 0.0) return std::hypot(slip * c, s);  // over v; r omega = (1 + slip) v cos beta
+  if (slip < 0.0) return std::hypot(slip * c, s);  // divided by v, where r omega = (1 + slip) v cos beta
   return std::hypot(slip * c, (1.0 - slip) * s) /
-         std::max(c, 1.0 - slip);  // over r omega, both times cos beta
+         std::max(c, 1.0 - slip);  // divided by r omega; both times cos beta
 }
 
 SideSlipDisplacement::SideSlipDisplacement(const Parameters& p)

@@ -5,43 +5,45 @@
 
 namespace talus::terramech {
 
-/// Wheel travel per rolled arc, v / (r omega) [-], at a slip in [-1, 1]:
-///   driven (slip >= 0): slip = 1 - v/(r omega), so 1 - slip; 0 for a wheel that spins in place;
-///   braked (slip < 0):  slip = r omega/v - 1,   so 1/(1 + slip); infinite for a locked wheel.
-/// Both agree at slip 0. (wong_2001, driven slip and skid)
+/// Travel per rolled arc, v / (r omega) [-], at a slip in [-1, 1] (driven slip and skid of wong_2001):
+///   driven (slip >= 0): slip = 1 - v/(r omega), ratio 1 - slip; 0 for a wheel that spins in place;
+///   braked (slip < 0):  slip = r omega/v - 1,   ratio 1/(1 + slip); infinite for a locked wheel.
+/// Both definitions agree at slip 0.
 inline double travelRatio(double slip) {
   if (slip >= 0.0) return 1.0 - slip;
   return slip > -1.0 ? 1.0 / (1.0 + slip) : std::numeric_limits<double>::infinity();
 }
 
-/// Slip angles beyond it, 89.94 deg, count as it: at 90 deg the travel along the wheel plane is nothing and
-/// its tangent infinite, while their product, the travel across, is what shears the soil.
+/// Largest slip angle in use, 89.94 deg; larger angles are clamped. At 90 deg the travel along the wheel
+/// plane is 0 and tan(beta) infinite, while their product, the travel across the plane, shears the soil.
 inline constexpr double kSteepestSlipAngle_rad = 1.5698;
 
-/// How fast the rim slides over the ground in any direction, over the greater of rim and travel speed [-]:
+/// Returns the sliding speed of the rim over the ground divided by the greater of rim and travel speed [-]:
 ///   s_R = |(r omega - v cos beta, v sin beta)| / max(r omega, v)
-/// at a slip in [-1, 1] along the wheel plane and a slip angle beta [rad]: |slip| straight on, 1 locked, sqrt
-/// 2 of a wheel that rolls at 90 deg. Ours; ding_2010 counts the part along the wheel plane.
+/// The slip in [-1, 1] is along the wheel plane; beta is the slip angle [rad]. s_R is |slip| at beta = 0, 1
+/// for a locked wheel, and sqrt 2 for r omega = v at beta = 90 deg. Ours; ding_2010 uses the component along
+/// the wheel plane only.
 double resultantSlip(double slip, double slip_angle_rad);
 
-/// Shear traction or displacement of a wheel that also slides sideways.
+/// Shear stress or shear displacement of a wheel with a slip angle, in components.
 struct Tangent {
-  double along = 0.0;   ///< the wheel plane
-  double across = 0.0;  ///< towards the side that the wheel slides to
+  double along = 0.0;   ///< along the wheel plane
+  double across = 0.0;  ///< across the wheel plane, positive in the direction of sideways motion
 };
 
-/// The traction of a size along a displacement, which is the friction circle of an isotropic soil.
+/// Returns the shear stress of magnitude `size` in the direction of `displacement`, whose length is `path`
+/// (friction circle of an isotropic soil).
 inline Tangent alongDisplacement(double size, const Tangent& displacement, double path) {
   const double unit = size / (path + 1e-300);
   return {unit * displacement.along, unit * displacement.across};
 }
 
-/// Shear displacement of the soil along a rim (thesis C.6, with travelRatio() in place of 1 - i so that it
-/// holds for braked wheels too): j(theta) = r [(theta_1 - theta) - q (sin theta_1 - sin theta)], the path of
-/// a rim point over the soil since it entered at theta_1. Positive where the rim drags the soil backwards.
+/// Shear displacement of the soil along a rim, j(theta) = r [(theta_1 - theta) - q (sin theta_1 - sin theta)]
+/// (thesis Eq. C.6, with q = travelRatio() in place of 1 - i for braked wheels). j is the path of a rim point
+/// over the soil since its entry at theta_1, positive if the rim drags the soil backwards.
 class ShearDisplacement {
  public:
-  /// What it depends on.
+  /// Parameters of the displacement.
   struct Parameters {
     double radius_m;         ///< > 0
     double slip;             ///< [-1, 1]
@@ -54,13 +56,13 @@ class ShearDisplacement {
   double radius_m() const { return p_.radius_m; }
   double entryAngle_rad() const { return p_.entry_angle_rad; }
 
-  /// j [m] at theta < theta_1; minus infinity everywhere behind the entry of a locked wheel.
+  /// Returns j [m] at theta < theta_1; minus infinity for a locked wheel.
   double at_m(double theta_rad) const {
     return p_.radius_m * ((p_.entry_angle_rad - theta_rad) - travel_ * (sin_entry_ - std::sin(theta_rad)));
   }
 
-  /// The angle in (lowest_rad, theta_1) where j passes zero, or NaN where it keeps its sign. Only a braked or
-  /// towed wheel has one: its rim runs ahead of the soil at the entry and lags behind it below.
+  /// Returns the angle in (lowest_rad, theta_1) at which j changes sign, or NaN if j does not. A sign change
+  /// occurs only for braked or towed wheels: the rim moves ahead of the soil at the entry and lags below.
   double signChange_rad(double lowest_rad) const;
 
  private:
@@ -69,15 +71,15 @@ class ShearDisplacement {
   double sin_entry_;
 };
 
-/// Shear displacement of a wheel that also slides sideways at slip angle beta: along the wheel plane as
-/// above, across it j_y = r q tan(beta) (theta_1 - theta), the same for every rim (ishigami_2007).
+/// Shear displacement of a wheel at slip angle beta. The component along the wheel plane is that of
+/// ShearDisplacement, the component across is j_y = r q tan(beta) (theta_1 - theta) (ishigami_2007).
 class SideSlipDisplacement {
  public:
   struct Parameters {
-    double shear_radius_m;  ///< of the displacement along, > 0
-    double radius_m;        ///< of the rim, > 0
+    double shear_radius_m;  ///< radius for the component along the plane, > 0
+    double radius_m;        ///< radius of the rim, > 0
     double slip;            ///< [-1, 1]
-    double slip_angle_rad;  ///< beta, [-pi/2, pi/2], see kSteepestSlipAngle_rad
+    double slip_angle_rad;  ///< beta, [-pi/2, pi/2], clamped to kSteepestSlipAngle_rad
     double entry_angle_rad;
   };
 
@@ -85,7 +87,8 @@ class SideSlipDisplacement {
 
   double radius_m() const { return p_.shear_radius_m; }
   double entryAngle_rad() const { return p_.entry_angle_rad; }
-  /// The angle in (lowest_rad, theta_1) where the part along the wheel plane passes zero, or NaN.
+  /// Returns the angle in (lowest_rad, theta_1) at which the component along the wheel plane changes sign, or
+  /// NaN.
   double signChange_rad(double lowest_rad) const;
   Tangent at_m(double theta_rad) const {
     const double arc = p_.entry_angle_rad - theta_rad;

@@ -5,15 +5,16 @@
 /// Shear stress of a soil under a plate or a rim.
 namespace talus::terramech {
 
-/// Mohr-Coulomb strength (thesis A.2): tau_max = c + sigma tan phi [Pa] at normal stress sigma [Pa] >= 0.
+/// Returns the Mohr-Coulomb strength tau_max = c + sigma tan phi [Pa] (thesis Eq. A.2) at normal stress sigma
+/// >= 0 [Pa].
 double shearStrength_Pa(const Soil& soil, double normal_Pa);
 
-/// Janosi and Hanamoto (thesis A.4; janosi_hanamoto_1961): tau = tau_max (1 - e^{-|j|/K}) [Pa], signed as the
-/// shear displacement j [m].
+/// Returns the shear stress of Janosi and Hanamoto, tau = tau_max (1 - e^{-|j|/K}) [Pa] (thesis Eq. A.4;
+/// janosi_hanamoto_1961), with the sign of the shear displacement j [m].
 double janosiHanamoto_Pa(const Soil& soil, double normal_Pa, double displacement_m);
 
-/// Idealised elasto-plastic law (thesis A.3, whose "strain" is the shear displacement): tau = tau_max
-/// min(|j|/K, 1) [Pa], signed as j.
+/// Returns the shear stress of the idealised elasto-plastic law, tau = tau_max min(|j|/K, 1) [Pa], with the
+/// sign of j (thesis Eq. A.3, whose "strain" is the shear displacement).
 double elastoPlastic_Pa(const Soil& soil, double normal_Pa, double displacement_m);
 
 }  // namespace talus::terramech

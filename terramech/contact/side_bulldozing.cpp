@@ -16,7 +16,7 @@ Hegedus hegedus(const PushedSoil& soil) {
 double faceResistance_N(const Hegedus& soil, const WheelFace& face) {
   const double theta = face.entry_angle_rad, r = face.radius_m;
   const double s = std::sin(theta), c = std::cos(theta);
-  // Below 0.1 rad the differences lose their digits and their series are right to 1e-8.
+  // Below 0.1 rad the closed forms cancel; the series have relative errors below 1e-8.
   const double t2 = theta * theta, t3 = t2 * theta;
   const bool small = theta < 0.1;
   const double area = small ? t3 * (2.0 / 3.0 - t2 * (2.0 / 15.0 - t2 * (4.0 / 315.0))) : theta - s * c;

@@ -34,7 +34,7 @@ void validate(const Soil& soil) {
   check.within("digging_exponent", soil.digging_exponent, {0.0, 2.0});
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
   check.within("test_gravity_m_s2", soil.test_gravity_m_s2, {0.0, 1e3});
-  // Beyond these no ground is known, by a factor of a hundred or more.
+  // Upper bounds are at least a hundred times the values of any known soil.
   check.within("cohesion_Pa", soil.cohesion_Pa, {0.0, 1e9});
   check.within("sinkage_exponent", soil.sinkage_exponent, {1e-3, 100.0});
   check.within("shear_modulus_m", soil.shear_modulus_m, {1e-9, 1e3});

@@ -2,7 +2,7 @@
 
 namespace talus::terramech {
 
-/// What a rover can read of one driven wheel in steady motion: one row of telemetry. Plain data, SI.
+/// Readings of one driven wheel in steady motion: one row of telemetry. Plain data, SI.
 struct WheelSample {
   double load_N = 0.0;     ///< W > 0
   double torque_Nm = 0.0;  ///< T, positive when driving

@@ -47,7 +47,7 @@ double digging(const Soil& soil, const WheelOperation& operation) {
   return grown + soil.digging_exponent * (resultantSlip(operation.slip, operation.slip_angle_rad) - along);
 }
 
-/// What the soil beside the wheel adds to the side force [N].
+/// Returns the bulldozing force of the soil beside the wheel, a component of the side force [N].
 double bulldozing_N(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry_rad) {
   const Hegedus push = hegedus({.cohesion_Pa = soil.cohesion_Pa,
                                 .tan_friction = std::tan(soil.friction_angle_rad),
@@ -107,8 +107,7 @@ double WongReece::exit_rad(double entry_rad) const {
 }
 
 double WongReece::smallAngleEntry_rad(double load_N) const {
-  // W ~ r b k (r/2)^n theta_1^(2n+1) int_0^1 (1 - (1 - (1 - m) s)^2)^n ds, the integral by the midpoint
-  // value.
+  // W ~ r b k (r/2)^n theta_1^(2n+1) int_0^1 (1 - (1 - (1 - m) s)^2)^n ds; the integrand is evaluated at s = 1/2.
   const double a = 1.0 - 0.5 * (1.0 - peak_fraction_);
   const double shape = std::pow(1.0 - a * a, exponent_);
   const double unit = radius_m_ * width_m_ * modulus_ * std::pow(0.5 * radius_m_, exponent_) * shape;
@@ -154,7 +153,7 @@ std::vector<RimStress> stressDistribution(const Soil& soil, const Wheel& wheel,
   std::vector<RimStress> stresses;
   for (int k = 0; k < count; ++k) {
     const double theta = exit + (entry - exit) * k / (count - 1.0);
-    // In the rear half the angle in front with the same stress (C.3).
+    // In the rear half: the angle in front of the peak with the same stress (C.3).
     const double mirrored = theta >= peak ? theta : entry - (entry - peak) * (theta - exit) / (peak - exit);
     const double depth = wheel.radius_m * (std::cos(mirrored) - std::cos(entry));
     const double sigma = law.pressure_Pa(depth > 0.0 ? depth : 0.0);

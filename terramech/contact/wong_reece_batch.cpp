@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLanes = 4;
-// Of wheels that slide sideways: a braked one at a small angle turns its shear within a small part of the
-// rim.
+// Limits of the kernel at a slip angle. The shear direction of a braked wheel at a small slip angle turns
+// within a short arc, which the quadrature does not resolve.
 constexpr double kMostBraked = -0.9, kSmallestAngle_rad = 1e-4, kSmallestAngleBraked_rad = 0.3;
 
 using Group = void (*)(const WheelCase*, WheelForces*, bool*);
 
-/// The code of a batch, for wheels that roll straight and for those that slide sideways.
+/// Kernels of a batch: without and with a slip angle.
 struct Groups {
   Group straight, sideways;
 };
@@ -64,10 +64,11 @@ WheelForces general(const WheelCase& c, Leftover leftover) {
   }
 }
 
-/// Which of up to four cases a group takes.
+/// Flags of the up to four cases that a group solves.
 using Taken = std::array<bool, kLanes>;
 
-/// Solves the cases that are taken; the others' lanes hold copies of the first of them.
+/// Solves the flagged cases and clears the flag of each case left unsolved. Unused lanes hold copies of the
+/// first flagged case.
 void solveTaken(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group, Taken& taken) {
   const auto first = std::find(taken.begin(), taken.end(), true);
   if (first == taken.end()) return;
@@ -84,7 +85,7 @@ void solveTaken(std::span<const WheelCase> cases, std::span<WheelForces> forces,
   }
 }
 
-/// Up to four cases.
+/// Solves up to four cases.
 void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, const Groups& groups,
                Leftover leftover) {
   Taken straight{}, sideways{};
@@ -96,8 +97,9 @@ void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, 
     if (!straight[k] && !sideways[k]) forces[k] = general(cases[k], leftover);
 }
 
-/// Near no slip the shear displacement is a small difference, which lane_math.hpp does not resolve; sideways
-/// it is added to a large one.
+/// Returns whether the kernel resolves slip and slip angle. Near slip 0 at slip angle 0 the shear
+/// displacement is a small difference, which lane_math.hpp does not resolve; at a slip angle the displacement
+/// across dominates.
 bool takesMotion(const WheelCase& c) {
   if (c.slip_angle_rad == 0.0) return c.slip >= 0.01 && c.slip <= 1.0;
   const double angle = std::abs(c.slip_angle_rad);

@@ -9,11 +9,11 @@
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/lane_math.hpp>
 
-/// The equilibrium of wong_reece.hpp for driven wheels with theta_2 = 0, written once for one lane or four.
-/// Private.
+/// Kernel of wong_reece_batch.hpp: equilibrium with theta_2 = 0, written once for one lane and for four
+/// lanes. Private.
 namespace talus::terramech::lanes {
 
-/// A rule for int_0^1 f(s) ds with s = t^2 or t^3, which smooths sigma ~ s^n.
+/// Quadrature rule for int_0^1 f(s) ds with s = t^2 or t^3, which smooths sigma ~ s^n.
 template <std::size_t N>
 struct PowerRule {
   std::array<double, N> s{}, ds{};
@@ -31,22 +31,22 @@ constexpr PowerRule<N> powerRule(int power) {
   return out;
 }
 
-inline constexpr auto kCoarse = powerRule<4>(2);  // to start the search
-inline constexpr auto kFine = powerRule<12>(3);   // 1e-7 up to r theta_1 / K = 12
+inline constexpr auto kCoarse = powerRule<4>(2);  // first trials of the search
+inline constexpr auto kFine = powerRule<12>(3);   // relative error 1e-7 up to r theta_1 / K = 12
 
-/// r times the way over K up to which the fine rule is right to its stated accuracy; a resultant has no
-/// steep change of sign.
+/// Largest ratio of rim-point path to K at which kFine has the stated accuracy. The limit is higher at a slip
+/// angle, because the resultant displacement has no steep sign change.
 template <bool Sideways>
 inline constexpr double kStiffest = Sideways ? 40.0 : 12.0;
 
-/// Forces over r b (torque: over r^2 b).
+/// Forces divided by r b; torque divided by r^2 b.
 template <class T>
 struct Sums {
   T load, torque, pull;
-  T side{};  // 0 of a wheel that rolls straight
+  T side{};  // 0 at slip angle 0
 };
 
-/// Constants of the lanes' cases.
+/// Constants of the cases, one per lane.
 template <class T>
 struct Constants {
   T exponent, log_modulus;   // n, ln(k r^n)
@@ -54,10 +54,10 @@ struct Constants {
   T radius_over_k, travel;   // r/K, 1 - i
   T peak;                    // theta_m / theta_1
   T log_load;                // ln(W / (r b))
-  T across{};                // (1 - i) tan beta: way across over the rolled arc
+  T across{};                // (1 - i) tan beta: lateral travel per rolled arc
 };
 
-/// Angle of a rim point below the entry, as the terms that its stresses need.
+/// Geometry and displacement of one rim point.
 template <class T>
 struct RimPoint {
   T sine, cosine;  // of theta
@@ -66,7 +66,7 @@ struct RimPoint {
   T arc;  // theta_1 - theta
 };
 
-/// Shear along the resultant displacement.
+/// Adds a point with shear along the resultant displacement.
 template <class T>
 TALUS_LANES void addSlidingPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, double ds,
                                  Sums<T>& sums) {
@@ -74,7 +74,7 @@ TALUS_LANES void addSlidingPoint(const Constants<T>& c, const RimPoint<T>& p, T 
   const T square = jx * jx + jy * jy + 1e-200;
   const T inverse = inverseRoot(square);
   const T mobilised = 1.0 - exponential(-c.radius_over_k * (square * inverse));
-  const T tau = (c.cohesion + sigma * c.tan_friction) * mobilised * inverse;  // over the displacement
+  const T tau = (c.cohesion + sigma * c.tan_friction) * mobilised * inverse;  // tau / displacement
   const T w = p.weight * ds, along = tau * jx;
   sums.load = sums.load + w * (sigma * p.cosine + along * p.sine);
   sums.torque = sums.torque + w * along;
@@ -93,15 +93,15 @@ TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, 
   sums.pull = sums.pull + w * (tau * p.cosine - sigma * p.sine);
 }
 
-/// C.8 to C.10 at entry angle x: each s gives a point in front and its mirror behind, which share sigma
-/// (C.3).
+/// Thesis Eqs. C.8 to C.10 at entry angle x. Each s gives one point in front of the peak and its mirror point
+/// behind, with the same sigma (C.3).
 template <bool Sideways, std::size_t N, class T>
 TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule) {
   const T sin_x = sine(x), cos_x = 1.0 - versine(x);
   const T front = x * (1.0 - c.peak), rear = x * c.peak;
   Sums<T> sums{T{}, T{}, T{}, T{}};
   for (std::size_t k = 0; k < N; ++k) {
-    const T delta = front * rule.s[k];  // theta_1 - theta in front
+    const T delta = front * rule.s[k];  // theta_1 - theta in front of the peak
     const T sin_d = sine(delta), vers_d = versine(delta);
     const T cos_difference = sin_x * sin_d - cos_x * vers_d;  // cos theta - cos theta_1 > 0
     const T sin_difference = sin_x * vers_d + cos_x * sin_d;  // sin theta_1 - sin theta
@@ -118,7 +118,7 @@ TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule)
   return sums;
 }
 
-/// A point of the search: ln theta_1, how far ln W is off, and the forces there.
+/// One trial of the search: u = ln theta_1, excess = ln(load / wanted load), and the forces.
 template <class T>
 struct Trial {
   T u, excess;
@@ -131,7 +131,7 @@ TALUS_LANES Trial<T> trialAt(const Constants<T>& c, T u, const PowerRule<N>& rul
   return {u, logarithm(sums.load) - c.log_load, sums};
 }
 
-/// Secant slope of excess over u, kept physical.
+/// Secant slope d excess / d u; the fallback if outside (0.3, 20).
 template <class T>
 TALUS_LANES T slopeOf(const Trial<T>& a, const Trial<T>& b, T fallback) {
   const T slope = (b.excess - a.excess) / (b.u - a.u);
@@ -139,7 +139,7 @@ TALUS_LANES T slopeOf(const Trial<T>& a, const Trial<T>& b, T fallback) {
   return pick(low < spread<T>(20.0), low, fallback);
 }
 
-/// ln theta_1 after a secant step, within pi/2 and a factor e^2.
+/// ln theta_1 after a secant step in [-2, 1], with theta_1 <= pi/2.
 template <class T>
 TALUS_LANES T stepped(const Trial<T>& trial, T slope) {
   constexpr double kDeepest = 0.45158270528945486;  // ln(pi/2)
@@ -150,7 +150,7 @@ TALUS_LANES T stepped(const Trial<T>& trial, T slope) {
   return pick(u > spread<T>(kDeepest), spread<T>(kDeepest), u);
 }
 
-/// What a lane found; sums are those at u.
+/// Result of the search per lane; `sums` are the forces at u.
 template <class T>
 struct Found {
   T u;
@@ -158,7 +158,7 @@ struct Found {
   T converged;  // 1 or 0
 };
 
-/// Last step on straight lines through two trials: its error is second order in their excesses.
+/// Linear extrapolation through two trials to excess 0; the error is of second order in the excesses.
 template <class T>
 TALUS_LANES Found<T> extrapolated(const Trial<T>& a, const Trial<T>& b) {
   const T run = b.u - a.u;
@@ -181,10 +181,11 @@ TALUS_LANES bool allConverged(const Found<T>& found) {
   }
 }
 
-/// Finds theta_1 in every lane; a lane that is done keeps its result, so that lanes do not see each other.
+/// Finds theta_1 in every lane. A converged lane keeps its result, so that the result is independent of the
+/// other lanes.
 template <bool Sideways, class T>
 TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
-  constexpr double kGood = 1e-8;  // product of the last two excesses
+  constexpr double kGood = 1e-8;  // limit of the product of the last two excesses
   const T growth = 2.0 * c.exponent + 1.0;
   Trial<T> last = trialAt<Sideways>(c, u, kCoarse);
   Trial<T> trial = trialAt<Sideways>(c, stepped(last, growth), kCoarse);
@@ -214,7 +215,7 @@ TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
   return found;
 }
 
-/// The same field of the lanes' cases.
+/// One field of the cases, one value per lane.
 template <class T>
 TALUS_LANES T gather(const WheelCase* cases, double WheelCase::*field) {
   if constexpr (Traits<T>::kLanes == 1) {
@@ -224,7 +225,7 @@ TALUS_LANES T gather(const WheelCase* cases, double WheelCase::*field) {
   }
 }
 
-/// shearGain() of the lanes' wheels.
+/// shearGain() of the wheels, one value per lane.
 template <class T>
 TALUS_LANES T gatherGain(const WheelCase* cases) {
   const auto of = [](const WheelCase& c) {
@@ -251,11 +252,11 @@ TALUS_LANES double laneOf(const T& value, int lane) {
     return value[lane];
 }
 
-/// The angle across the travel, kept off 90 deg as everywhere, and what follows from it.
+/// Slip angle, at most kSteepestSlipAngle_rad, and derived quantities.
 template <class T>
 struct SideMotion {
   T sine, cosine;  // of |beta|
-  T across;        // (travel over rolled arc) tan beta, signed
+  T across;        // v / (r omega) tan beta, signed
   T slip;          // resultantSlip()
 };
 
@@ -264,7 +265,8 @@ TALUS_LANES SideMotion<T> sideMotion(T slip, T travel, T beta) {
   const T size = pick(beta < T{}, -beta, beta);
   const T s = sine(size), c = 1.0 - versine(size);
   const T rolled =
-      pick(slip < T{}, spread<T>(1.0), 1.0 - slip);  // times cos beta: the speed along over the scale
+      // v in units of r omega / cos beta (driven) or of v (braked)
+      pick(slip < T{}, spread<T>(1.0), 1.0 - slip);
   const T scale = pick(slip < T{}, spread<T>(1.0), pick(c > rolled, c, rolled));
   const T x = slip * c, y = rolled * s;
   const T square = x * x + y * y + 1e-200;
@@ -272,7 +274,7 @@ TALUS_LANES SideMotion<T> sideMotion(T slip, T travel, T beta) {
   return {s, c, pick(beta < T{}, -across, across), square * inverseRoot(square) / scale};
 }
 
-/// faceResistance_N() / (r^2), of the soil's Hegedus numbers times r.
+/// faceResistance_N() / r^2, from the Hegedus coefficients; the second coefficient is multiplied by r.
 template <class T>
 TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
   const T s = sine(theta), c = 1.0 - versine(theta), t2 = theta * theta, t3 = t2 * theta;
@@ -285,8 +287,8 @@ TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
   return per_depth * area + 2.0 * per_depth_squared_r * square;
 }
 
-/// What the soil beside the wheel adds to the side force [N]; hegedus() in lanes, with tan X = cos phi / (1 +
-/// sin phi) and tan(X + phi) = cot X.
+/// Bulldozing component of the side force [N]: hegedus() in lanes, with tan X = cos phi / (1 + sin phi) and
+/// tan(X + phi) = cot X.
 template <class T>
 TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {
   const T phi = gather<T>(cases, &WheelCase::friction_angle_rad),
@@ -299,15 +301,14 @@ TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {
                            entry);
 }
 
-/// Travel over rolled arc, travelRatio() in lanes; the straight kernel knows driven wheels only.
+/// travelRatio() in lanes; without a slip angle for driven wheels only.
 template <bool Sideways, class T>
 TALUS_LANES T travelOf(T slip) {
   if constexpr (Sideways) return pick(slip < T{}, 1.0 / (1.0 + slip), 1.0 - slip);
   return 1.0 - slip;
 }
 
-/// Solves the next one or four cases, which isFastCase() takes; `left` marks lanes left to the general
-/// solver.
+/// Solves one or four cases for which isFastCase() is true. `left` marks lanes that need the general solver.
 template <bool Sideways, class T>
 TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
   const T r = gather<T>(cases, &WheelCase::wheel_radius_m), b = gather<T>(cases, &WheelCase::wheel_width_m);
@@ -336,7 +337,8 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
                        peak,
                        log_load,
                        across};
-  // Small-angle load without shear, at the midpoint of s: W ~ r b k (r theta_1^2 (1 - a^2) / 2)^n theta_1.
+  // Initial entry angle, small-angle load without shear at the midpoint of s: W ~ r b k (r theta_1^2 (1 -
+  // a^2) / 2)^n theta_1.
   const T a = 0.5 + 0.5 * peak;
   const T shape = logarithm(0.5 * (1.0 - a * a) + 1e-9);
   const Found<T> found = solve<Sideways>(c, (log_load - log_modulus - n * shape) / (2.0 * n + 1.0));
@@ -344,7 +346,7 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
   const T z = r * versine(entry), torque = found.sums.torque * (r * r * b), pull = found.sums.pull * (r * b);
   T side{};
   if constexpr (Sideways) side = found.sums.side * (r * b) + bulldozing(cases, entry, beta);
-  T way = spread<T>(1.0);  // that a rim point goes over the soil, over its arc
+  T way = spread<T>(1.0);  // path of a rim point over the soil / arc
   if constexpr (Sideways) way = pick(slip < T{}, travel, way) + pick(across < T{}, -across, across);
   for (int lane = 0; lane < Traits<T>::kLanes; ++lane) {
     forces[lane] = {laneOf(z, lane), laneOf(entry, lane), laneOf(torque, lane), laneOf(pull, lane),

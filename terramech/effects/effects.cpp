@@ -32,7 +32,7 @@ const EffectForm* findEffect(std::string_view name) {
     for (const EffectForm& form : effectLibrary()) all.emplace(form.name, &form);
     return all;
   }();
-  for (const std::string_view word : {"moisture_", "temperature_"})  // of model files of version 0.1
+  for (const std::string_view word : {"moisture_", "temperature_"})  // prefixes in model files of version 0.1
     if (name.starts_with(word)) name.remove_prefix(word.size());
   const auto found = by_name.find(name);
   return found == by_name.end() ? nullptr : found->second;

@@ -9,72 +9,79 @@
 #include <talus/terramech/effects/wheel_contact.hpp>
 #include <talus/terramech/effects/wheel_state.hpp>
 
-/// Effects that the Wong-Reece wheel lacks, as parts that compose: each changes the contact before it is
-/// solved or what is read afterwards, and each has bounds, formula, source and signature.
+/// Effects missing in the Wong-Reece model, as composable corrections. Each effect changes the contact before
+/// the equilibrium is solved, or the readings afterwards. Each effect has bounds, formula, source and
+/// signature.
 namespace talus::terramech {
 
-/// A number of an effect.
+/// Parameter of an effect.
 struct EffectParameter {
   const char* name;
-  const char* unit;    ///< "-" for none
-  double low, high;    ///< physical bounds, where a fit stays
-  double typical;      ///< where a fit starts, and the size by which an effect is tried
-  bool fitted = true;  ///< false: set from the data's design (a first pass, a start of time), never fitted
+  const char* unit;    ///< "-" if dimensionless
+  double low, high;    ///< physical bounds, also of a fit
+  double typical;      ///< initial value of a fit, and size in trials of the effect
+  bool fitted = true;  ///< false: set from the data (a first pass, a start time), never fitted
 };
 
-/// What one effect sees when it acts.
+/// Arguments of an effect.
 struct EffectInput {
-  const double* parameter;
-  const WheelState& state;
-  double x;  ///< its covariate's value, finite
+  const double* parameter;  ///< parameter values in the order of the form
+  const WheelState& state;  ///< operating state of the wheel
+  double x;                 ///< value of the covariate, finite
 };
 
-/// An entry of the library. Plain data with static lifetime.
+/// Entry of the effect library. Plain data with static lifetime.
 struct EffectForm {
   const char* name;
-  const char* family;     ///< forms of one cause share it
-  const char* covariate;  ///< column that carries its signature
-  Channel channel;        ///< where it shows most
+  const char* family;     ///< common to all forms of one cause
+  const char* covariate;  ///< column with which the residual correlates
+  Channel channel;        ///< channel with the largest residual
   const char* formula;
   const char* source;     ///< keys of REFERENCES.bib, or "ours"
-  const char* signature;  ///< what a residual looks like
+  const char* signature;  ///< description of the residual that indicates the effect
   std::vector<EffectParameter> parameters;
+  /// Changes the contact before it is solved; null: no change.
   void (*act)(const EffectInput&, WheelContact&) = nullptr;
+  /// Changes the readings after the contact is solved; null: no change.
   void (*read)(const EffectInput&, const WheelContact&, Reading&) = nullptr;
-  bool of_sensor = false;  ///< what the sensors err, not what the ground does: no route depends on it
+  bool of_sensor = false;  ///< true: sensor error, without influence on the ground or on routes
 };
 
-/// The library.
+/// Returns the library of all effect forms.
 const std::vector<EffectForm>& effectLibrary();
 
-/// The entry of that name, or nullptr.
+/// Returns the entry with this name, or nullptr. Accepts the prefixes "moisture_" and "temperature_" of model
+/// files of version 0.1.
 const EffectForm* findEffect(std::string_view name);
 
-/// A form at work in a model, or, with form name "empirical", a curve of a measured residual: a natural cubic
-/// spline through (knots, parameters) added to one scaled channel, constant beyond its ends; to F/W times sin beta, since
-/// a wheel and its mirror image are pushed to opposite sides and one that rolls straight to none.
+/// Effect of a model: a library form with parameters, or a curve of a measured residual. The curve (name
+/// "empirical") is a natural cubic spline through (knots, parameters), added to one scaled channel and
+/// constant beyond its ends. In channel F/W the curve is multiplied by sin beta, because a mirrored wheel has
+/// the opposite side force and a straight wheel none.
 struct Effect {
-  std::string name{};
-  std::string covariate{};
+  std::string name{};       ///< of a library form, or with the prefix "empirical"
+  std::string covariate{};  ///< column on which the effect depends
   Channel channel = Channel::DrawbarPull;
-  std::vector<double> parameters{};  ///< as in the form; of an empirical curve the values at its knots [-]
-  std::vector<double> knots{};  ///< ascending [covariate]; of a known form none or the 2 ends it acts between
-  std::string only_column{};    ///< acts only where this grouping column ...
-  std::string only_value{};     ///< ... has this text; empty: everywhere
+  std::vector<double> parameters{};  ///< library form: its parameters; curve: values at the knots [-]
+  /// Ascending [covariate]; library form: none, or the 2 limits to which the covariate is clamped.
+  std::vector<double> knots{};
+  std::string only_column{};  ///< name of a grouping column that restricts the effect ...
+  std::string only_value{};   ///< ... to rows with this text; empty: all rows
 
-  /// Whether it is a curve: "empirical" adds to one scaled channel; "empirical_stiffness" and
-  /// "empirical_strength" multiply k, or c and tan phi, by the exponential of the curve, and so move every
-  /// channel.
+  /// Returns whether the effect is a curve. "empirical" adds to one scaled channel. "empirical_stiffness"
+  /// multiplies k, and any other name with the prefix multiplies c and tan phi, by the exponential of the
+  /// curve; both change every channel.
   bool empirical() const { return name.starts_with("empirical"); }
 
-  /// What a curve in one channel is multiplied by at this slip angle: sin beta in F/W, otherwise 1.
+  /// Returns the factor on a curve in one channel at this slip angle: sin beta for F/W, otherwise 1.
   double sense(double slip_angle_rad) const;
 };
 
-/// Whether one of them depends on how often a track was driven (pass_index).
+/// Returns whether any effect has the covariate pass_index, the number of passes over a track.
 bool knowsPasses(std::span<const Effect> effects);
 
 namespace detail {
+/// Parts of the library by kind: contact, digging, forces, sensors, drifts.
 std::vector<EffectForm> contactEffects();
 std::vector<EffectForm> diggingEffects();
 std::vector<EffectForm> forceEffects();

@@ -8,11 +8,11 @@ namespace {
 
 using Input = const EffectInput&;
 
-double grown(double start, double scale, double x) {  // 0 at the start, towards 1
+double grown(double start, double scale, double x) {  // 0 up to start, then rises to 1
   return x <= start ? 0.0 : 1.0 - std::exp(-(x - start) / scale);
 }
 
-/// Factor on shear strength of lugs' side faces, H' = H (1 + 0.64 (h/b) atan(b/h)).
+/// Relative increase of the shear strength by the side faces of the lugs, 0.64 (h/b) atan(b/h).
 double lugSides(const Wheel& wheel) {
   return shearGain(
              {.width_m = wheel.width_m, .grouser_height_m = wheel.grouser_height_m, .lug_thrust = 1.0}) -
@@ -260,7 +260,7 @@ std::vector<EffectForm> ground() {
   };
 }
 
-/// Sinkage of a wheel at a slip angle by a law that stands in place of the base's.
+/// Replaces the digging law of the base model by n = n0 + exponent |sin beta|.
 void dig(WheelContact& c, double exponent, double slip_angle_rad) {
   c.digging_exponent = 0.0;
   c.sinkage_exponent += exponent * std::abs(std::sin(slip_angle_rad));

@@ -3,14 +3,13 @@
 
 #include <talus/terramech/effects/effects.hpp>
 
-/// Forms in which a wheel digs itself deeper than its load presses it: z0 is the sinkage under the load
-/// alone.
+/// Effects by which a wheel sinks deeper than under its load alone; z0 is the sinkage under the load alone.
 namespace talus::terramech::detail {
 namespace {
 
 using Input = const EffectInput&;
 
-/// Square of the share of the travel that a braked wheel does not roll.
+/// (1 - r omega/v)^2, squared share of the travel over which a braked wheel slides; 0 if r omega >= v.
 double dragged(const WheelContact& c) {
   const double share = std::max(0.0, 1.0 - c.rolling);
   return share * share;

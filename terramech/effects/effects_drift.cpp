@@ -9,7 +9,7 @@ namespace {
 
 using Input = const EffectInput&;
 
-// Every drift has parameters a, start, span, then those of its shape; u = (x - start) / span.
+// Parameters of every drift: a, start, span, then those of the shape; u = (x - start) / span.
 double phase(Input in) {
   return (in.x - in.parameter[1]) / in.parameter[2];
 }

@@ -14,7 +14,7 @@ double passive(const WheelContact& c) {  // Kp = tan^2(45 deg + phi/2)
   return t * t;
 }
 
-/// Passive wedge in front of a blade of height z: frictional and cohesive part [N].
+/// Passive wedge in front of a blade at depth z: frictional and cohesive force [N].
 struct Wedge {
   double friction, cohesion;
 };
@@ -24,7 +24,7 @@ Wedge wedge(const WheelContact& c, double z, double width) {
   return {width * 0.5 * weight * z * z * kp, width * 2.0 * c.cohesion_Pa * z * std::sqrt(kp)};
 }
 
-/// Hegedus' resistance of the wheel's front to a height z [N].
+/// Hegedus' resistance [N] of the front of the wheel, width b, at soil height z.
 double hegedusAhead_N(const WheelContact& c, double z) {
   const PushedSoil soil{.cohesion_Pa = c.cohesion_Pa,
                         .tan_friction = c.tan_friction,
@@ -32,8 +32,9 @@ double hegedusAhead_N(const WheelContact& c, double z) {
   return c.width_m * hegedus(soil).resistance_N_m(z);
 }
 
-/// Share of the passive pressure ahead that a wheel mobilises while it goes its own width sideways, by Janosi
-/// and Hanamoto's law: 1 - e^{-b cot beta / K} (ours); 1 straight on, 0 at 90 deg.
+/// Share of the passive pressure in front of the wheel that is mobilised, 1 - e^{-b cot beta / K} (ours):
+/// Janosi and Hanamoto's law over the forward travel per wheel width of lateral travel. 1 at beta = 0, 0 at
+/// 90 deg.
 double mobilised(const WheelState& state, const WheelContact& c) {
   const double ahead = std::max(std::cos(state.slip_angle_rad), 0.0);
   const double across = std::abs(std::sin(state.slip_angle_rad));
@@ -48,15 +49,16 @@ double passiveRough(double tan_friction, double tan_wall) {
   return ratio * ratio / std::cos(delta);
 }
 
-/// What the soil beside a wheel that slides sideways does to its face.
+/// Forces of the soil on the side face of a wheel that slides sideways.
 struct FaceForces {
-  double push_N;  ///< against the sideways motion
-  double pull_N;  ///< forward, by friction
+  double push_N;  ///< magnitude, opposite to the sideways motion
+  double pull_N;  ///< forward, by wall friction
 };
 
-/// The soil pushed aside rises along the face as its wedge does, at tan(45 deg - phi/2) of the sideways
-/// speed, while the face turns by at its mean height; wall friction acts against the resultant of the two.
-/// Its part upwards raises the passive pressure, its part along the wheel plane pulls or brakes.
+/// Passive pressure and wall friction on the side face. The pushed soil rises along the face as its wedge
+/// does, at tan(45 deg - phi/2) times the lateral speed, while the face rotates past at its mean height. Wall
+/// friction acts against the resultant of both sliding speeds. Its vertical component increases the passive
+/// pressure, its component along the wheel plane is pull_N.
 FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, double tan_wall) {
   const double along = std::cos(slip_angle_rad) - c.rolling * (1.0 - 0.5 * z / c.radius_m);
   const double up = std::abs(std::sin(slip_angle_rad)) / std::sqrt(passive(c));
@@ -69,7 +71,7 @@ FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, do
   return {push, -tan_wall * push * along / slide};
 }
 
-/// A law of the soil beside the wheel stands in place of the base's.
+/// Switches off the base model's side bulldozing, because the effect has a law of its own.
 void noBaseBulldozing(Input, WheelContact& c) {
   c.side_bulldozing = 0.0;
 }
@@ -120,7 +122,7 @@ std::vector<EffectForm> bulldozing() {
   };
 }
 
-/// Of a wheel that may also dig, brake or slide sideways.
+/// Bulldozing of a wheel that may also dig, brake or slide sideways.
 std::vector<EffectForm> pushing() {
   return {
       {.name = "bulldozing_ahead",

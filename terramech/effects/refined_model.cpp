@@ -9,7 +9,7 @@
 namespace talus::terramech {
 namespace {
 
-/// The effects of a model with their forms looked up.
+/// Effects of a model with their forms looked up.
 class Bound {
  public:
   explicit Bound(const RefinedModel& model) : model_(model) {
@@ -24,7 +24,7 @@ class Bound {
  private:
   struct BoundEffect {
     const Effect* effect;
-    const EffectForm* form;  ///< null: a curve
+    const EffectForm* form;  ///< null for a curve
     NaturalSpline curve;
   };
 
@@ -32,12 +32,13 @@ class Bound {
     return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
   }
 
-  /// The covariate of an effect; the sinkage is the model's own, never the measured one.
+  /// Returns the covariate of an effect. For sinkage_m this is the sinkage of the model, not the measured
+  /// one.
   static double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
     return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
   }
 
-  /// The state that an effect sees: beyond the ends of its range as at the nearer one.
+  /// Returns the state with the effect's covariate clamped to the effect's range.
   static WheelState atEdge(const BoundEffect& e, WheelState state) {
     const auto& ends = e.effect->knots;
     const std::string& column = e.effect->covariate;
@@ -59,13 +60,13 @@ double cosineOf(double slip_angle_rad) {
   return std::cos(std::min(std::abs(slip_angle_rad), kSteepestSlipAngle_rad));
 }
 
-/// r omega over the full speed; a wheel that spins in place counts as 1e3.
+/// r omega / v with the full speed v; at most 1e3, for a wheel that spins in place.
 double rolling(const WheelState& state, bool slip_along_travel) {
   const double share = slip_along_travel ? 1.0 : cosineOf(state.slip_angle_rad);
   return std::min(share / std::max(travelRatio(std::clamp(state.slip, -1.0, 1.0)), 1e-9), 1e3);
 }
 
-/// Curves that act through the soil.
+/// Applies a curve that changes stiffness or strength of the soil.
 void Bound::bend(const BoundEffect& curve, double x, WheelContact& contact) {
   if (curve.effect->name == "empirical") return;
   const double factor = std::exp(std::clamp(curve.curve(x), -3.0, 3.0));
@@ -86,7 +87,8 @@ WheelContact Bound::contact(const WheelState& state) const {
   contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {
     if (!applies(*e.effect, state)) continue;
-    // The sinkage is not known yet: an effect that acts here never asks for it.
+    // The sinkage is not solved yet: sinkage_m counts as 0 here. Effects that change the contact must not
+    // depend on it.
     const double x = covariateOf(*e.effect, state, 0.0);
     if (!std::isfinite(x)) continue;
     if (!e.form) {
@@ -146,7 +148,7 @@ Reading Bound::reading(const WheelState& state, const WheelContact& contact,
 }  // namespace
 
 double slipInWheelPlane(double slip_along_travel, double slip_angle_rad) {
-  if (slip_along_travel <= -1.0) return -1.0;  // locked, whatever the angle
+  if (slip_along_travel <= -1.0) return -1.0;  // locked at any slip angle
   const double q = travelRatio(slip_along_travel) * cosineOf(slip_angle_rad);
   return q <= 1.0 ? 1.0 - q : 1.0 / q - 1.0;
 }
@@ -178,7 +180,7 @@ RefinedModel withoutSensors(RefinedModel model) {
     const EffectForm* form = findEffect(e.name);
     return form && form->of_sensor;
   });
-  model.fitted.clear();  // numbers effects that are gone
+  model.fitted.clear();  // holds indices of the removed effects
   model.covariance.clear();
   return model;
 }
@@ -192,7 +194,7 @@ const std::vector<SoilParameter>& soilParameters() {
       {"sinkage_exponent", 0.1, 3.0, 0.1, [](const Soil& s) { return s.sinkage_exponent; },
        [](Soil& s, double v) { s.sinkage_exponent = v; }},
       {"log_stiffness", -8.0, 8.0, 0.2, [](const Soil&) { return 0.0; },
-       [](Soil& s, double v) {  // a step, as get() always says 0
+       [](Soil& s, double v) {  // v is a step, as get() always returns 0
          s.cohesive_modulus *= std::exp(v);
          s.frictional_modulus *= std::exp(v);
        }},
@@ -234,7 +236,7 @@ double step(const RefinedModel& model, const FittedParameter& p) {
   return form ? 0.02 * std::abs(form->parameters[index].typical) + 1e-9 : 1e-3;
 }
 
-/// Central difference of one scaled channel set by two readings.
+/// Central difference of each scaled channel between two readings.
 using Slope = std::array<double, kChannels>;
 Slope slope(const Reading& high, const Reading& low, double width) {
   Slope s{};
@@ -252,7 +254,7 @@ Slope slipSlope(const RefinedModel& model, const WheelState& state) {
 }
 
 Slope loadSlope(const RefinedModel& model,
-                const WheelState& state) {  // per relative load, forces over fixed load
+                const WheelState& state) {  // by relative load, forces divided by the unchanged load
   WheelState high = state, low = state;
   high.load_N *= 1.01;
   low.load_N /= 1.01;

@@ -14,96 +14,104 @@
 
 namespace talus::terramech {
 
-/// Standard deviations of what the sensors read: absolute + relative parts add in squares.
+/// Standard deviations of the sensor readings; absolute and relative components add in squares.
 struct SensorNoise {
   std::array<double, kChannels> absolute{};  ///< of DP [N], z [m], T [N m], F [N]
-  std::array<double, kChannels> relative{};  ///< of the value read [-]
+  std::array<double, kChannels> relative{};  ///< relative to the reading [-]
   double slip_absolute = 0.0;                ///< [-]
-  double slip_relative = 0.0;                ///< of the slip
-  double load_relative = 0.0;                ///< of the load
+  double slip_relative = 0.0;                ///< relative to the slip [-]
+  double load_relative = 0.0;                ///< relative to the load [-]
 
-  /// Standard deviation of a measured slip in [-1, 1] [-]. The relative part ends at the locked wheel, i = -1: r omega = 0
-  /// is read without error.
+  /// Standard deviation of a measured slip i in [-1, 1] [-]: absolute component and min(slip_relative |i|, 1
+  /// + i), added in squares. The relative component is 0 for a locked wheel, whose r omega = 0 is measured
+  /// exactly.
   double slipStd(double slip) const;
 };
 
-/// Standard deviations as a base file states them, in the unit of the column; empty where it states none.
+/// Standard deviations given in a model's base file, in the unit of the column; empty if not given.
 struct StatedSensors {
   std::optional<double> load_N, slip, torque_Nm, sinkage_m, drawbar_pull_N, side_force_N;
 };
 
-/// A number of a model that was fitted, and how well it is known.
+/// Index of a fitted parameter of a model.
 struct FittedParameter {
-  int effect = -1;  ///< index into effects; -1: of the soil
-  int index = 0;    ///< of the effect's parameters, or of soilParameters()
+  int effect = -1;  ///< index into effects; -1: parameter of the soil
+  int index = 0;    ///< index into the parameters of the effect, or into soilParameters()
 };
 
-/// How the drawbar pull follows from the solved contact.
+/// Computation of the drawbar pull from the solved contact.
 enum class BaseModel {
-  WongReece,     ///< integral of the stresses
-  LinearFormula  ///< DP/W = T/(rW) - z/r - 0.1 (kang_2003, Eq. 3.21) of the measured torque and sinkage; of
-                 ///< the solved ones where a state has none
+  WongReece,  ///< integral of the stresses along the rim
+  /// DP/W = T/(rW) - z/r - 0.1 (kang_2003, Eq. 3.21) with measured torque and sinkage, or solved ones if not
+  /// measured
+  LinearFormula
 };
 
-/// Wong-Reece and the effects that data have shown: what estimate, assess, costmap, plan and drive take as a
-/// model. Plain data; a model without effects is the base model.
+/// Wong-Reece model of a wheel with the effects found in data. The commands estimate, assess, costmap, plan
+/// and drive accept this model. Plain data; without effects the model is the base model.
 struct RefinedModel {
   BaseModel base = BaseModel::WongReece;
   Soil soil;
-  std::map<std::string, double> soil_prior_mean;  ///< by field name, of those below
-  std::map<std::string, double> soil_prior_std;   ///< by field name; fields that are not in it are exact
-  std::vector<Effect> effects;                    ///< act in this order
+  /// Prior means of soilParameters() by field name.
+  std::map<std::string, double> soil_prior_mean;
+  /// Prior standard deviations by field name; fields without an entry are exact.
+  std::map<std::string, double> soil_prior_std;
+  std::vector<Effect> effects;  ///< applied in this order
   bool slip_along_travel =
-      false;                   ///< slip was measured with the full speed, not its part along the wheel plane
-  std::optional<Wheel> wheel;  ///< for rows that do not say which wheel they are of
-  double gravity_m_s2 = 9.80665;  ///< where those rows were measured
+      false;  ///< true: slip was measured with the full speed instead of its component along the wheel plane
+  std::optional<Wheel> wheel;     ///< default for rows without wheel dimensions
+  double gravity_m_s2 = 9.80665;  ///< default for rows without gravity
   StatedSensors stated;
-  SensorNoise noise;                    ///< for standard deviations of predictions
-  std::vector<FittedParameter> fitted;  ///< order of covariance
-  std::vector<double> covariance;       ///< row-major, of fitted, in their own units; empty: not known
+  SensorNoise noise;                    ///< sensor errors, for standard deviations of predictions
+  std::vector<FittedParameter> fitted;  ///< in the order of covariance
+  std::vector<double> covariance;       ///< row-major, of `fitted`, in the parameters' units; empty: unknown
 
-  /// Rows that do not say otherwise are of this rover's wheel, in the gravity where it drives.
+  /// Sets the default wheel and gravity to those of the rover.
   void takeRover(const Rover& rover) {
     wheel = rover.wheel;
     gravity_m_s2 = rover.gravity_m_s2;
   }
 };
 
-/// The readings of the sensors that the model predicts. Never throws on a state that validate()s;
-/// `entry_guess_rad`, where given, starts the search for the sinkage and receives its result. Thread-safe.
+/// Returns the predicted sensor readings. Never throws for a valid state. If given, `entry_guess_rad` is the
+/// initial value of the sinkage search and receives its result. Thread-safe.
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad = nullptr);
 
-/// The same for many states, several times faster where no effect leaves the plain wheel, and where `solved`
-/// holds a state's contact already: nothing is solved again for what only the readings show.
+/// Returns the predicted sensor readings of many states. The computation is several times faster than single
+/// calls if no effect changes the plain wheel, or if `solved` already contains the contact of a state:
+/// effects on readings alone need no new solution.
 std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
                              SolvedContacts& solved);
 
-/// A prediction and the standard deviation of what would be measured: parameters, slip, load and the sensor
-/// itself.
+/// Prediction and standard deviation of a measurement, including the uncertainty of parameters, slip, load
+/// and sensor.
 struct Prediction {
   Reading mean;
   std::array<double, kChannels> scaled_std{};  ///< of DP/W, z/r, T/(rW), F/W
 };
+/// Returns the prediction with its standard deviation, by linear propagation of all errors. Never throws for
+/// a valid state.
 Prediction predictWithStd(const RefinedModel& model, const WheelState& state);
 
-/// The model without what its sensors err: what the ground does.
+/// Returns the model without effects that are sensor errors. `fitted` and `covariance` are cleared.
 RefinedModel withoutSensors(RefinedModel model);
 
-/// Fields of a soil that a fit may move.
+/// Soil parameter that a fit may change.
 struct SoilParameter {
   const char* name;
-  double low, high, scale;  ///< bounds and a typical step, in its own unit
-  double (*get)(const Soil&);
-  void (*set)(Soil&, double);
+  double low, high, scale;     ///< bounds and typical step, in the unit of the parameter
+  double (*get)(const Soil&);  ///< returns the value in a soil; 0 for log_stiffness
+  void (*set)(Soil&, double);  ///< sets the value; log_stiffness v multiplies k_c and k_phi by e^v
 };
+/// Returns all soil parameters that a fit may change.
 const std::vector<SoilParameter>& soilParameters();
 
-/// Value of a fitted number, and changing it.
+/// Value of a fitted parameter, and its assignment.
 double value(const RefinedModel& model, const FittedParameter& parameter);
 void setValue(RefinedModel& model, const FittedParameter& parameter, double value);
 
-/// Slip along the wheel plane from slip along the travel at slip angle beta: both with travelRatio(), whose
-/// travel per rolled arc shrinks by cos beta.
+/// Returns the slip along the wheel plane for a slip along the travel direction at slip angle beta. The ratio
+/// v/(r omega) of travelRatio() is multiplied by cos beta.
 double slipInWheelPlane(double slip_along_travel, double slip_angle_rad);
 
 }  // namespace talus::terramech

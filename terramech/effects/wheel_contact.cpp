@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDeepest = 0.5 * std::numbers::pi;
 
-/// The law of wong_reece.hpp with what effects change; `pressure_scale` lowers the pressure of a wheel that
-/// dug deeper than its load asks for.
+/// ContactLaw of wong_reece.hpp with the changes by effects. `pressure_scale` reduces the pressure under a
+/// wheel that dug deeper than its load requires.
 class EffectLaw {
  public:
   explicit EffectLaw(const WheelContact& c, double pressure_scale = 1.0)
@@ -31,7 +31,7 @@ class EffectLaw {
   }
 
   Tangent shear_Pa(double normal_Pa, const Tangent& displacement_m) const {
-    // Metres: nothing that std::hypot guards against.
+    // Displacements are in metres: the overflow guards of std::hypot are unnecessary.
     const double path = std::sqrt(displacement_m.along * displacement_m.along +
                                   displacement_m.across * displacement_m.across);
     return alongDisplacement(strength_Pa(normal_Pa, path), displacement_m, path);
@@ -88,7 +88,8 @@ std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess, doubl
   return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return sideways(c, entry); });
 }
 
-/// A braked rim slides far, so that its shear stress rises steeply where contact begins.
+/// Forces at an entry angle. A braked rim slides far, so that its shear stress rises steeply at the entry and
+/// needs the finer rule.
 RimForces forcesAt(const WheelContact& c, double entry, double pressure_scale) {
   return c.slip < 0.0 ? forcesBy<BrakedRimRule>(c, entry, pressure_scale)
                       : forcesBy<QuickRimRule>(c, entry, pressure_scale);
@@ -107,8 +108,8 @@ double entryOf(double radius_m, double sinkage_m) {
   return sinkage_m >= radius_m ? kDeepest : 2.0 * std::asin(std::sqrt(0.5 * sinkage_m / radius_m));
 }
 
-/// At an imposed entry angle with the pressure scaled so that it still carries the load: every force is
-/// linear in that scale.
+/// Forces at an imposed entry angle. The pressure is scaled so that it still carries the load; every force is
+/// linear in the scale.
 RimForces imposed(const WheelContact& c, double entry) {
   const RimForces full = forcesAt(c, entry, 1.0), none = forcesAt(c, entry, 0.0);
   const double scale = std::max(0.0, c.load_N - none.load_N) / std::max(full.load_N - none.load_N, 1e-300);
@@ -154,7 +155,7 @@ WheelCase caseOf(const WheelContact& c) {
           .slip_sinkage_exponent = c.slip_sinkage_exponent};
 }
 
-/// The contact with the sinkage exponent of its slip.
+/// Returns the contact with the sinkage exponent increased by slip and slip angle.
 WheelContact dug(WheelContact c) {
   c.sinkage_exponent += c.slip_sinkage_exponent * std::abs(c.slip);
   if (c.slip_angle_rad != 0.0)

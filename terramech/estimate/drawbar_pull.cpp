@@ -12,7 +12,8 @@
 namespace talus::terramech {
 namespace {
 
-// Below this ratio of eigenvalues of the features' correlation the samples lie on a line (ours).
+// Smallest ratio of extreme eigenvalues of the features' correlation matrix; below, the samples lie on a line
+// (ours).
 constexpr double kLeastSpread = 1e-10;
 
 double entryOf(const Wheel& wheel, const WheelSample& sample) {
@@ -20,7 +21,7 @@ double entryOf(const Wheel& wheel, const WheelSample& sample) {
   return entryAngle_rad(wheel, sample.sinkage_m);
 }
 
-// Change of the estimate when one reading moves by its standard deviation, from both sides.
+// Standard deviation of the estimate due to one reading: central difference quotient times std.
 double effect(const Wheel& wheel, const WheelSample& sample, double WheelSample::*field, double std,
               const PullAngleModel& model) {
   if (!(std > 0.0)) return 0.0;

@@ -12,14 +12,14 @@
 namespace talus::terramech {
 namespace {
 
-constexpr std::size_t kFirst = 512;    // samples that the search begins with
-constexpr std::size_t kGrowth = 16;    // of their number, from stage to stage
-constexpr std::size_t kWeighed = 300;  // up to so many samples each draw is weighed by all of them
-constexpr std::size_t kCurved = 1024;  // samples that the curvature's correction is taken from
-constexpr double kHopeless = 25.0;     // a class whose log probability lies so far below the best is dropped
-constexpr double kEnough = 1e-2;       // gain of log probability that is worth no further pass
+constexpr std::size_t kFirst = 512;    // samples of the first search
+constexpr std::size_t kGrowth = 16;    // growth factor of the number of samples per stage
+constexpr std::size_t kWeighed = 300;  // up to this number of samples each draw is weighted with all of them
+constexpr std::size_t kCurved = 1024;  // samples for the correction of the curvature
+constexpr double kHopeless = 25.0;  // classes with a log probability lower than the best by more are dropped
+constexpr double kEnough = 1e-2;    // gain of log probability below which the search ends
 
-// Follows a search of unknown length: each pass over the samples takes half of what is left of its share.
+// Progress of a search with an unknown number of passes: each pass takes half of the remaining fraction.
 class PassWatch {
  public:
   PassWatch(const ProgressMonitor& outer, double from, double to)
@@ -42,7 +42,7 @@ class PassWatch {
 
 struct Candidate {
   SoilObjective objective;
-  SoilQuadratic likelihood = {};  // about the mode
+  SoilQuadratic likelihood = {};  // expanded about the mode
   double log_probability = -std::numeric_limits<double>::infinity();
   bool alive = true;
 };
@@ -59,7 +59,7 @@ bool bounded(const SoilObjective& objective, int k) {
   return objective.soilClass().parameters[static_cast<std::size_t>(k)].bounded();
 }
 
-// The likelihood with the prior where that is Gaussian.
+// Adds the Gaussian priors to the likelihood.
 SoilQuadratic withPrior(const SoilObjective& objective, SoilQuadratic q) {
   for (int k = 0; k < kSoilParameters; ++k) {
     if (bounded(objective, k)) continue;
@@ -70,7 +70,7 @@ SoilQuadratic withPrior(const SoilObjective& objective, SoilQuadratic q) {
   return q;
 }
 
-// The lowest point of a quadratic in the prior's box, coordinate by coordinate.
+// Minimum of a quadratic in the box of the prior, by coordinate descent.
 SoilVector lowest(const SoilObjective& objective, const SoilQuadratic& q) {
   constexpr int kMostSweeps = 10000;
   SoilVector y = q.at;
@@ -80,7 +80,7 @@ SoilVector lowest(const SoilObjective& objective, const SoilQuadratic& q) {
       const double slope = q.gradient[k] + q.information.row(k).dot(y - q.at);
       double next = y[k] - slope / q.information(k, k);
       if (bounded(objective, k)) next = std::clamp(next, 0.0, 1.0);
-      if (!std::isfinite(next)) continue;  // a parameter that no sample shows
+      if (!std::isfinite(next)) continue;  // parameter without influence on any sample
       moved = std::max(moved, std::abs(next - y[k]));
       y[k] = next;
     }
@@ -89,8 +89,9 @@ SoilVector lowest(const SoilObjective& objective, const SoilQuadratic& q) {
   return y;
 }
 
-// What the curvature of the whole cost has over Gauss-Newton's, which leaves out how the errors of z and i
-// take part in explaining a residual: over a part of the samples, for all of them.
+// Difference between the curvature of the full cost and that of Gauss-Newton, which neglects that the
+// covariance of a residual depends on the soil through the errors of z and i. The difference is computed from
+// a subset and scaled to all samples.
 SoilMatrix curvatureCorrection(const SoilObjective& objective, const SoilVector& y,
                                std::span<const WheelReading> samples) {
   constexpr double kStep = 1e-3;
@@ -112,8 +113,9 @@ SoilQuadratic curved(SoilQuadratic q, const SoilMatrix& correction) {
   return q;
 }
 
-// The most likely soil of a class, from a start, by Newton's method in the prior's box: there, other than in
-// the coordinates x of findMode(), k z^n leaves a straight valley.
+// Finds the most likely soil of a class from `start`, by Newton's method in the box of the prior. In the
+// coordinates x of findMode() the minimum over k and n of k z^n is a curved valley; here the valley is
+// straight.
 SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReading> samples,
                       const SoilVector& start) {
   constexpr int kMostPasses = 20;
@@ -134,7 +136,8 @@ SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReadi
   return here;
 }
 
-// The middle of the soils that a class' likelihood allows: where its bounds cut that off, far from the mode.
+// Mean of the truncated Gaussian approximation of a class' posterior. If the bounds of the class cut the
+// likelihood, the mean is far from the mode.
 SoilVector middle(const SoilObjective& objective, const SoilQuadratic& likelihood) {
   constexpr int kDraws = 64;
   const TruncatedGaussian allowed = proposal(objective.soilClass(), likelihood);
@@ -173,7 +176,7 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
   if (samples.size() <= count) return {samples.begin(), samples.end()};
   std::vector<WheelReading> chosen;
   const double stretch = static_cast<double>(samples.size()) / static_cast<double>(count);
-  for (std::size_t k = 0; k < count; ++k) {  // one at an uneven place in each stretch: no beat with a pattern
+  for (std::size_t k = 0; k < count; ++k) {  // irregular places, against aliasing
     const double place = std::fmod(std::numbers::phi * static_cast<double>(k), 1.0);
     chosen.push_back(samples[static_cast<std::size_t>((static_cast<double>(k) + place) * stretch)]);
   }
@@ -182,8 +185,9 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
 
 namespace {
 
-// Carrying the errors of z and i to first order leaves up to 2 % of phi and K, however many samples there
-// are: beyond kTrusted they tell where the soil lies, but not more surely (ours; see README.md).
+// The first-order propagation of the errors of z and i leaves an error of up to 2 % of phi and K at any
+// number of samples. Above kTrusted samples the likelihood is therefore not sharpened further (ours; see
+// docs/measurements/terramech.md).
 SoilQuadratic noSurerThanTheModel(SoilQuadratic q, std::size_t samples) {
   constexpr double kTrusted = 4000.0;
   const double share = std::min(1.0, kTrusted / static_cast<double>(samples));

@@ -5,17 +5,17 @@
 
 #include <talus/terramech/estimate/soil_objective.hpp>
 
-/// The inner workings of soil_posterior.hpp where samples are many (ours).
+/// Posterior for many samples; implementation of soil_posterior.hpp (ours).
 namespace talus::terramech {
 
-/// The posterior of more samples than each draw can be weighed by. Every class' mode is found on 512 samples
-/// spread evenly over all, then on sixteen times as many and so on, in the classes that are still in
-/// question; the cost of all samples is then the quadratic of their cost about that mode. Time grows with the
-/// number of samples, some 50 us each, memory does not.
+/// Returns the posterior for more samples than can be used to weight each draw. The mode of every class is
+/// searched on 512 samples spread evenly over all, then on sixteen times as many and so on, in the classes
+/// not yet excluded. The likelihood of all samples is then approximated by a quadratic about the mode. Time
+/// is some 50 us per sample; memory does not depend on the number of samples.
 SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::span<const WheelReading> samples,
                              const SoilFitOptions& options);
 
-/// So many samples spread evenly over all, in their order; all of them when there are no more.
+/// Returns `count` samples spread evenly over all, in their order, or all if there are no more than `count`.
 std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, std::size_t count);
 
 }  // namespace talus::terramech

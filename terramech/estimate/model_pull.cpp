@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace {
 
-// Keeps the fitted numbers that `keep` marks, with their rows and columns of the covariance.
+// Keeps the fitted parameters marked in `keep`, with their rows and columns of the covariance.
 void keepFitted(RefinedModel& model, const std::vector<char>& keep) {
   const std::size_t n = model.fitted.size();
   std::vector<FittedParameter> fitted;
@@ -23,7 +23,7 @@ void keepFitted(RefinedModel& model, const std::vector<char>& keep) {
 }
 
 void dropSensorFaults(RefinedModel& model) {
-  std::vector<int> place;  // of each effect after the others are gone, -1: gone
+  std::vector<int> place;  // new index of each effect; -1: removed
   std::vector<Effect> left;
   for (const Effect& effect : model.effects) {
     const bool fault = isSensorFault(effect);

@@ -3,30 +3,32 @@
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 
-/// The true drawbar pull of a base or refined model (ours); predict() gives the readings of the sensors.
+/// True drawbar pull of a base or refined model, without sensor errors (ours). In contrast, predict() returns
+/// the sensor readings.
 namespace talus::terramech {
 
-/// Whether an effect changes what a sensor reads and nothing of the contact.
+/// Returns whether an effect changes a sensor reading and leaves the contact unchanged.
 bool isSensorFault(const Effect& effect);
 
-/// The model without the faults of its sensors: no offset or drift of a reading, no scatter of the answers.
-/// What the readings of slip and load leave open stays, and so does the covariance of what was fitted. Where
-/// nothing was fitted, the soil's prior takes the place of that covariance.
+/// Returns the model without sensor errors: no offset or drift of a reading, no noise of the channels. The
+/// errors of slip and load and the covariance of the fitted parameters remain. If no parameter was fitted,
+/// the soil's prior is used as covariance.
 RefinedModel groundTruthOf(const RefinedModel& model);
 
-/// DP/W and z/r of a wheel.
+/// DP/W, z/r and T/(rW) of a wheel.
 struct ModelPull {
   Estimate pull_over_load;
   Estimate sinkage_over_radius;
   double torque_over_load_radius = 0.0;
 };
 
-/// Of a model from groundTruthOf(), at the state's own load and slip. Never throws on a state that
-/// validate()s.
+/// Returns the pull of a model from groundTruthOf() at the load and slip of the state. Never throws for a
+/// valid state.
 ModelPull pullOf(const RefinedModel& truth, const WheelState& state);
 
-/// The same carried to the reference slip, in (0, 1], and to the slip of greatest pull, where the slip is
-/// chosen and not read. Throws std::invalid_argument for a reference slip out of range.
+/// Returns the pull at the reference slip, in (0, 1], and at the slip of maximum pull among kForecastSlips.
+/// Slip is an exact input here, without reading error. Throws std::invalid_argument for a reference slip
+/// outside (0, 1].
 PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, double reference_slip = 0.5);
 
 }  // namespace talus::terramech

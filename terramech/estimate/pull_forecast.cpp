@@ -12,10 +12,10 @@
 namespace talus::terramech {
 namespace {
 
-// Draws lighter than this part of an even share are left out; together they cannot matter.
+// Draws with a weight below this fraction of the mean weight are neglected.
 constexpr double kLightest = 1e-3;
 
-// Weighted mean and variance, one value at a time.
+// Recursive weighted mean and variance.
 class Spread {
  public:
   void add(double value, double weight) {
@@ -46,7 +46,7 @@ Reply reply(const Wheel& wheel, const Soil& soil, const WheelOperation& operatio
   }
 }
 
-// Every k-th soil of the cumulated weight: an even sample of the posterior.
+// Systematic resampling: soils at equal steps of the cumulative weight.
 std::vector<const ContactSoil*> evenly(const std::vector<SoilDraw>& draws, int count) {
   std::vector<const ContactSoil*> chosen;
   double sum = 0.0;

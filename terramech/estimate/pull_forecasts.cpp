@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kStep = 0.01;  // of ln W
+constexpr double kStep = 0.01;  // step of ln W
 
 Estimate between(const Estimate& a, const Estimate& b, double share) {
   return {.value = std::lerp(a.value, b.value, share), .std = std::lerp(a.std, b.std, share)};

@@ -7,15 +7,15 @@
 
 namespace talus::terramech {
 
-/// Forecasts at many loads on one soil, each by a straight line between two loads 1 % apart that were solved
-/// and are kept: a table of any length costs as many solutions as it has distinct loads, at most 140 a wheel
-/// size where they differ by a factor of two.
+/// Cache of forecasts on one soil at many loads. Each forecast is interpolated linearly between two cached
+/// loads 1 % apart. The number of solutions depends on the number of distinct loads: at most 140 per wheel
+/// size for loads within a factor of two.
 class PullForecasts {
  public:
   PullForecasts(SoilPosterior soil, double reference_slip)
       : soil_(std::move(soil)), reference_slip_(reference_slip) {}
 
-  /// At a load [N] > 0 on a wheel.
+  /// Returns the forecast for a wheel at load_N > 0.
   PullForecast at(const Wheel& wheel, double load_N);
 
  private:
@@ -23,7 +23,7 @@ class PullForecasts {
 
   SoilPosterior soil_;
   double reference_slip_;
-  std::map<std::tuple<double, double, int>, PullForecast> kept_;  // by radius, width, step of load
+  std::map<std::tuple<double, double, int>, PullForecast> kept_;  // key: radius, width, index of the load
 };
 
 }  // namespace talus::terramech

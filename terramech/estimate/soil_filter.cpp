@@ -9,13 +9,13 @@
 namespace talus::terramech {
 namespace {
 
-// So many samples are fitted afresh, until the modes stand where later samples only nudge them.
+// Up to this number of samples the modes are searched without an initial value, because they still move far.
 constexpr std::size_t kFresh = 4;
 
 }  // namespace
 
 struct SoilFilter::State {
-  struct Track {  // of one class
+  struct Track {  // state of one class
     SoilQuadratic before;
     SoilMode mode;
   };
@@ -68,7 +68,7 @@ void SoilFilter::add(const WheelReading& reading) {
   const bool full = s.window.size() > s.options.window;
   for (std::size_t k = 0; k < s.tracks.size(); ++k) {
     State::Track& track = s.tracks[k];
-    if (full) {  // the oldest sample leaves: its quadratic about the mode stays
+    if (full) {  // remove the oldest sample, keep its quadratic about the mode
       track.before =
           s.objective(k).expandWhole(track.mode.likelihood.at, std::span(s.window).first(1), track.before);
     }

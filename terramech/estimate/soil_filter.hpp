@@ -8,40 +8,42 @@
 
 namespace talus::terramech {
 
-/// The soil's posterior as samples come in, one at a time, in constant memory (ours).
+/// Recursive posterior of the soil: one sample at a time, in constant memory (ours).
 ///
-/// The latest samples are kept as they are, and each update finds every class' mode again from its last
-/// value; a sample that leaves the window is replaced by its quadratic about the mode of that moment. With as
-/// many samples as the window holds the result is fitSoil()'s. An update costs about a tenth of a millisecond
-/// a class. Not thread-safe; copyable.
+/// The latest samples are stored. Each update finds the mode of every class from its previous value. A sample
+/// that leaves the window is replaced by its quadratic about the current mode. Up to `window` samples the
+/// result is that of fitSoil(). An update takes about 0.1 ms per class. Not thread-safe; copyable.
 class SoilFilter {
  public:
-  /// How much is kept and how it is fitted.
+  /// Options of the filter.
   struct Options {
     SoilFitOptions fit;
-    std::size_t window = 12;  ///< samples kept as they are, >= 1
+    std::size_t window = 12;  ///< number of stored samples, >= 1
   };
 
-  /// Throws as fitSoil() does for a prior or options out of range.
+  /// Throws as fitSoil() for options outside their range, std::invalid_argument for an empty prior, window =
+  /// 0 or an invalid wheel.
   SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options);
   SoilFilter(const SoilFilter& other);
   SoilFilter(SoilFilter&&) noexcept;
   SoilFilter& operator=(SoilFilter other) noexcept;
   ~SoilFilter();
 
-  /// Takes one sample in. Throws std::invalid_argument for a sample that is not of a driven wheel; the filter
-  /// is unchanged.
+  /// Adds one sample. Throws std::invalid_argument for a sample not of a driven wheel and leaves the filter
+  /// unchanged.
   void add(const WheelSample& sample);
-  void add(const WheelReading& reading);  ///< on a wheel of its own
+  void add(const WheelReading& reading);  ///< with a wheel of its own
 
-  /// The current posterior in full: importance samples over the window and what went before it. Slower than
-  /// add().
+  /// Returns the current posterior by importance sampling over the window and the removed samples. Slower
+  /// than add(). Throws std::domain_error before the first sample.
   SoilPosterior posterior() const;
 
-  /// The most likely soil of the most likely class and the probabilities of the classes, at no further cost.
+  /// Return the most likely soil of the most likely class, and the class probabilities, without further
+  /// computation.
   ContactSoil mode() const;
   std::vector<double> classProbabilities() const;
 
+  /// Returns the number of samples added.
   std::size_t samples() const;
 
  private:

@@ -10,48 +10,49 @@
 #include <talus/terramech/estimate/soil_mixture.hpp>
 #include <talus/terramech/estimate/wheel_reading.hpp>
 
-/// How a soil is fitted to readings, and what is believed after it: the types of soil_posterior.hpp.
+/// Options and result of a soil fit: the types of soil_posterior.hpp.
 namespace talus::terramech {
 
-/// How to fit.
+/// Options of a soil fit.
 struct SoilFitOptions {
-  ReadingErrors noise = {};
-  double outlier_share = 0.01;  ///< of samples that err ten times as much, [0, 0.5)
-  int draws = 256;              ///< importance samples a class, >= 16
-  ProgressMonitor watch = {};   ///< followed and stopped by it where samples are many
+  ReadingErrors noise = {};     ///< errors of the readings
+  double outlier_share = 0.01;  ///< expected fraction of samples with ten times the error, [0, 0.5]
+  int draws = 256;              ///< importance samples per class, >= 16
+  ProgressMonitor watch = {};   ///< progress and cancellation for many samples
 };
 
-/// One soil out of the posterior.
+/// One soil drawn from the posterior.
 struct SoilDraw {
   ContactSoil soil;
-  double weight = 0.0;  ///< those of all draws add up to 1
+  double weight = 0.0;  ///< the weights of all draws have sum 1
   int soil_class = 0;   ///< index into the prior
 };
 
-/// A range that holds the truth with 95 % probability.
+/// Interval that contains the true value with 95 % probability.
 struct CredibleInterval {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// What is believed after the samples.
+/// Posterior of the soil: summary and weighted draws.
 struct SoilPosterior {
-  ContactSoil mean;
+  ContactSoil mean;  ///< mean of c, phi, n, k, K; c1 and c2 of the draw with the largest weight
   SoilMatrix covariance = SoilMatrix::Zero();                     ///< of (c, phi, n, k, K), SI
   double tan_friction = 0.0;                                      ///< mean of tan(phi) [-]
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi)
-  /// (x - mean)' strength_covariance^-1 (x - mean) <= this, x = (c, tan phi), holds 95 % of the
-  /// posterior. 5.99 were it Gaussian; less where the bounds of a class cut it off.
+  /// 95 % of the posterior lie where (x - mean)' strength_covariance^-1 (x - mean) <= ellipse_95, x = (c, tan
+  /// phi). 5.99 for a Gaussian; less if the bounds of a class cut the posterior.
   double ellipse_95 = 0.0;
   CredibleInterval cohesion_Pa;
   CredibleInterval friction_angle_rad;
   CredibleInterval shear_modulus_m;
   std::vector<double> class_probabilities;  ///< in the order of the prior
   std::vector<SoilDraw> draws;
-  double effective_draws = 0.0;  ///< of the weighted draws; below about 20 the figures are rough
-  /// Mean square of the whitened residuals of the best class; about 1 when model and noise hold.
+  /// Effective number of weighted draws; below about 20 the results are inaccurate.
+  double effective_draws = 0.0;
+  /// Mean square of the whitened residuals of the best class; about 1 if model and noise are right.
   double misfit = 0.0;
-  std::vector<std::string> unseen;  ///< parameters that the samples said little about, each with the reason
+  std::vector<std::string> unseen;  ///< parameters that the samples hardly constrain, each with the reason
 };
 
 }  // namespace talus::terramech

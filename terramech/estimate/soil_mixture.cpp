@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace {
 
-// Table 2.1: what one class differs in.
+// Row of thesis Table 2.1: parameters that differ between the classes.
 struct TableRow {
   const char* name;
   Interval cohesion_kPa;

@@ -12,11 +12,12 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kOutlierScale = 10.0;  // an outlier errs ten times as much
-constexpr int kMostPasses = 40;         // of Gauss-Newton; five to ten are usual
-constexpr double kWiden = 1.2;          // draws a little wider than the quadratic, so that no tail is missed
+constexpr double kOutlierScale = 10.0;  // standard deviation of an outlier, in units of the error
+constexpr int kMostPasses = 40;         // Gauss-Newton steps; 5 to 10 are usual
+// Factor on the standard deviations of the proposal, so that its tails cover the posterior's.
+constexpr double kWiden = 1.2;
 
-// The four readings with their errors, load and slip with what the others say of them.
+// The four readings with their errors; load and slip are combined with the population of all rows.
 struct Readings {
   Readings(const SoilObjective::Setting& setting, const WheelSample& s)
       : load(setting.population.load(s, setting.noise)),
@@ -41,19 +42,20 @@ Eigen::Matrix2d residualCovariance(const Readings& r, const ContactDerivative& d
   return carried + Eigen::Matrix2d(reading.cwiseAbs2().asDiagonal());
 }
 
-// -log of (1 - e) N(r; 1) + e N(r; 10), relative to N(0; 1), and twice its slope in |r|^2.
+// Robust loss -log[(1 - e) N(r; 1) + e N(r; 10)] relative to N(0; 1), and as weight twice its derivative by
+// |r|^2.
 void applyRobustLoss(double outlier_share, SampleMisfit& m) {
   const double square = m.residual.squaredNorm();
   const double scale2 = kOutlierScale * kOutlierScale;
   const double log_ratio =
       std::log(outlier_share / (1.0 - outlier_share) / scale2) + 0.5 * square * (1.0 - 1.0 / scale2);
-  const double outlier = 1.0 / (1.0 + std::exp(-log_ratio));  // probability that this is one
+  const double outlier = 1.0 / (1.0 + std::exp(-log_ratio));  // probability that the sample is an outlier
   m.weight = 1.0 - outlier * (1.0 - 1.0 / scale2);
   m.cost = 0.5 * square - std::log1p(-outlier_share) -
            (log_ratio > 30.0 ? log_ratio : std::log1p(std::exp(log_ratio)));
 }
 
-// y(x) and its slope: the standard normal distribution function where bounded.
+// Prior coordinate y(x) and its derivative: the standard normal distribution function for bounded parameters.
 SoilVector coordinates(const SoilClass& soil, const SoilVector& x) {
   SoilVector y = x;
   for (int k = 0; k < kSoilParameters; ++k) {
@@ -180,8 +182,8 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> 
     const Local there = at(x + step);
     const double gain = here.cost - there.cost;
     damping *= gain > 0.0 ? 0.1 : 10.0;
-    // The cost's slowly varying normalisation is not in the downhill direction: a promise this small is not
-    // worth a retry.
+    // The downhill direction neglects the slowly varying normalisation of the cost, so that a step with a
+    // small expected gain is not retried.
     const double promise = 0.5 * step.dot(here.downhill);
     if (std::abs(gain) < 1e-3 || (gain < 0.0 && promise < 1e-2)) break;
     if (gain > 0.0) x += step, here = there;
@@ -204,7 +206,7 @@ TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihoo
   SoilVector gradient = likelihood.gradient;
   for (int k = 0; k < kSoilParameters; ++k) {
     information(k, k) +=
-        1.0;  // the prior where Gaussian; one side of the box where bounded, so that it can be inverted
+        1.0;  // Gaussian prior; for bounded parameters a regularisation, so that the matrix is invertible
     if (soil.parameters[static_cast<std::size_t>(k)].bounded()) {
       box.low[k] = 0.0;
       box.high[k] = 1.0;

@@ -10,20 +10,20 @@
 #include <talus/terramech/estimate/truncated_gaussian.hpp>
 #include <talus/terramech/estimate/wheel_reading.hpp>
 
-/// The inner workings of soil_posterior.hpp and soil_filter.hpp: the likelihood of samples under one class of
-/// soil, in the coordinates y of its prior.
+/// Likelihood of samples under one soil class, in the coordinates y of its prior. Implementation of
+/// soil_posterior.hpp and soil_filter.hpp.
 namespace talus::terramech {
 
-/// A sample seen through a soil.
+/// Misfit of one sample under a soil.
 struct SampleMisfit {
   Eigen::Vector2d residual;                              ///< S^-1/2 ((W, T) - f)
-  Eigen::Matrix<double, 2, kSoilParameters> derivative;  ///< of -residual, by y
+  Eigen::Matrix<double, 2, kSoilParameters> derivative;  ///< of -residual by y
   double cost = 0.0;                                     ///< -log p, up to a constant
-  double weight = 1.0;                                   ///< in Gauss-Newton: the slope of the robust loss
+  double weight = 1.0;  ///< weight in Gauss-Newton: derivative of the robust loss
 };
 
-/// -log likelihood about a point: cost + gradient (y - at) + (y - at)' information (y - at) / 2. All zero: no
-/// sample.
+/// Quadratic expansion of -log likelihood about a point: cost + gradient (y - at) + (y - at)' information (y
+/// - at) / 2. All zero without samples.
 struct SoilQuadratic {
   SoilVector at = SoilVector::Zero();
   double cost = 0.0;
@@ -33,52 +33,52 @@ struct SoilQuadratic {
   double costAt(const SoilVector& y) const;
   SoilVector gradientAt(const SoilVector& y) const { return gradient + information * (y - at); }
 
-  /// The same about another point.
+  /// Returns the same quadratic expanded about another point.
   SoilQuadratic movedTo(const SoilVector& y) const;
 };
 
-/// The log-posterior cost of one class of soil given samples.
+/// -log posterior of one soil class given samples.
 class SoilObjective {
  public:
-  /// What is the same for all classes.
+  /// Settings common to all classes.
   struct Setting {
     ReadingErrors noise = {};
     double outlier_share = 0.01;
-    StatePopulation population = {};  ///< of all samples; none: readings are taken as they are
-    ProgressMonitor watch = {};       ///< notified of each pass over many samples; stopping ends passes early
+    StatePopulation population = {};  ///< population of all samples; empty: readings are used unchanged
+    ProgressMonitor watch = {};       ///< progress of each pass over many samples; a stop ends a pass early
   };
 
-  /// Refers to `soil`, which must outlive it.
+  /// Stores a reference to `soil`, which must outlive the object.
   SoilObjective(const SoilClass& soil, const Setting& setting) : soil_(&soil), setting_(setting) {}
 
   SampleMisfit misfit(const SoilVector& y, const WheelReading& reading) const;
 
-  /// The samples' likelihood to second order (Gauss-Newton) about y, on top of `before`.
+  /// Returns the second-order expansion (Gauss-Newton) of the samples' likelihood about y, added to `before`.
   SoilQuadratic expand(const SoilVector& y, std::span<const WheelReading> samples,
                        const SoilQuadratic& before) const;
 
-  /// As expand(), with the slope of the whole cost. Gauss-Newton leaves out that of the normalisation, which
-  /// is small for a few samples and adds up over many. Six times the work.
+  /// As expand(), with the gradient of the full cost. Gauss-Newton neglects the gradient of the
+  /// normalisation, which is small for a few samples and adds up over many. Six times the cost of expand().
   SoilQuadratic expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
                             const SoilQuadratic& before) const;
 
-  /// -log likelihood of the samples at y, and of `before`.
+  /// Returns -log likelihood of the samples at y, plus `before`.
   double cost(const SoilVector& y, std::span<const WheelReading> samples, const SoilQuadratic& before) const;
 
-  /// Mean square of the whitened residuals; about 1 where soil and noise hold.
+  /// Returns the mean square of the whitened residuals; about 1 if soil and noise are right.
   double meanSquare(const SoilVector& y, std::span<const WheelReading> samples) const;
 
-  /// The true (z, i) of a sample given the soil, to first order: the readings moved by what W and T say of
-  /// them.
+  /// Returns the most likely (z, i) of a sample given the soil, to first order: the readings of z and i
+  /// corrected by those of W and T.
   ContactState likelyState(const ContactSoil& soil, const WheelReading& reading) const;
 
-  /// The same with every sample taken at its word, to find a start from far away: where nothing fits yet, all
-  /// samples look like outliers, and the robust loss is flat.
+  /// Returns the objective without outliers, to search an initial value far from the mode: there every sample
+  /// looks like an outlier and the robust loss is flat.
   SoilObjective trusting() const {
     return {*soil_, {setting_.noise, 0.0, setting_.population, setting_.watch}};
   }
 
-  /// The same, its passes over many samples followed and stopped.
+  /// Returns the objective with progress and cancellation of its passes over many samples.
   SoilObjective watchedBy(const ProgressMonitor& watch) const {
     SoilObjective watched = *this;
     watched.setting_.watch = watch;
@@ -92,40 +92,42 @@ class SoilObjective {
   Setting setting_;
 };
 
-/// Centre of one class, in standard normal coordinates x (y = Phi(x) where bounded), where the prior needs no
+/// Mode of one class in standard normal coordinates x (y = Phi(x) if bounded), in which the prior needs no
 /// bounds.
 struct SoilMode {
   SoilVector x = SoilVector::Zero();
-  SoilQuadratic likelihood;   ///< about y(x)
-  double log_evidence = 0.0;  ///< by Laplace's approximation in x
+  SoilQuadratic likelihood;   ///< expanded about y(x)
+  double log_evidence = 0.0;  ///< Laplace approximation in x
 };
 
-/// Most likely x of samples on top of `before` by damped Gauss-Newton, from `start`.
+/// Returns the most likely x of the samples and `before` by damped Gauss-Newton from `start`.
 SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
                   const SoilQuadratic& before, const SoilVector& start);
 
-/// findMode() from the middle of the prior and from where the samples lead when all are trusted; the likelier
-/// of the two.
+/// Runs findMode() from the centre of the prior, and from the mode without outliers; returns the result with
+/// the higher evidence.
 SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples);
 
-/// Samples the posterior of one class: the likelihood's quadratic, cut to the prior's box.
+/// Returns the importance distribution of one class: the quadratic of the likelihood, truncated to the box of
+/// the prior.
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood);
 
-/// A class with its mode, and the information of samples no longer stored.
+/// Class with its mode, and the information of samples no longer stored.
 struct ClassFit {
   SoilObjective objective;
   SoilQuadratic before;
   SoilMode mode;
 };
 
-/// Importance samples of every class, weighed against each other, and their summary.
+/// Draws importance samples of every class, weights them jointly and returns their summary. Throws
+/// std::domain_error if no draw has a finite weight.
 SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelReading> samples,
                               int draws);
 
 /// Throws as fitSoil() does.
 void checkFit(std::span<const WheelReading> samples, const SoilFitOptions& options);
 
-/// -log of the prior density of a class at y, inside its box.
+/// Returns -log of the prior density of a class at y inside its box.
 double priorCost(const SoilClass& soil, const SoilVector& y);
 
 }  // namespace talus::terramech

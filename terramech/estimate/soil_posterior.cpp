@@ -13,13 +13,14 @@
 namespace talus::terramech {
 namespace {
 
-// Classes less likely than this are not sampled.
+// Classes with a lower probability are not sampled.
 constexpr double kNegligible = 1e-6;
 
-// Up to so many samples Gauss-Newton's mode serves, which leaves out the slope of the normalisation.
+// Largest number of samples for which the mode of Gauss-Newton suffices, which neglects the gradient of the
+// normalisation.
 constexpr std::size_t kFew = 20;
 
-// Normalises exp(log_weights) to a sum of one.
+// Replaces log weights by weights with sum 1.
 void normalise(std::vector<double>& log_weights) {
   const double most = *std::ranges::max_element(log_weights);
   double sum = 0.0;
@@ -43,10 +44,10 @@ SoilVector vectorOf(const ContactSoil& s) {
   return {s.cohesion_Pa, s.friction_angle_rad, s.sinkage_exponent, s.sinkage_modulus, s.shear_modulus_m};
 }
 
-// A value of each draw, with its weight.
+// Pairs (value, weight) of the draws.
 using Weighted = std::vector<std::pair<double, double>>;
 
-// The value below which the share lies; `sorted` ascending.
+// Weighted quantile; `sorted` ascending.
 double quantile(const Weighted& sorted, double share) {
   double below = 0.0;
   for (const auto& [value, weight] : sorted) {
@@ -93,7 +94,7 @@ void summarise(SoilPosterior& p) {
   p.shear_modulus_m = interval(p.draws, &ContactSoil::shear_modulus_m);
 }
 
-// Variance of each parameter before any sample.
+// Prior variance of each parameter.
 SoilVector priorVariance(const std::vector<ClassFit>& classes) {
   constexpr Eigen::Index kPoints = 256;
   const Eigen::MatrixXd points = evenPoints(kSoilParameters, kPoints);
@@ -114,7 +115,7 @@ SoilVector priorVariance(const std::vector<ClassFit>& classes) {
   return squares - sum.cwiseAbs2();
 }
 
-// A parameter whose standard deviation the samples have brought down by less than a tenth was not seen.
+// Lists the parameters whose standard deviation the samples reduced by less than 10 %.
 void sayUnseen(const SoilVector& before, SoilPosterior& p) {
   constexpr double kSeen = 0.9;
   const std::pair<ContactColumn, const char*> names[] = {

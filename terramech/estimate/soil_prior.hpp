@@ -4,7 +4,7 @@
 
 namespace talus::terramech {
 
-/// Standard deviation of each soil parameter, in its unit; 0 where it is taken as known.
+/// Standard deviation of each soil parameter, in the parameter's unit; 0: exactly known.
 struct SoilDeviation {
   double cohesion_Pa = 0.0;
   double friction_angle_rad = 0.0;
@@ -20,7 +20,7 @@ struct SoilDeviation {
   double side_bulldozing = 0.0;
 };
 
-/// The prior of a soil: independent Gaussians.
+/// Prior of a soil: independent Gaussians.
 struct SoilPrior {
   Soil mean;
   SoilDeviation deviation;

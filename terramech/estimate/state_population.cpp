@@ -20,7 +20,8 @@ void StatePopulation::Spread::add(const Estimate& reading) {
   error_variance += (reading.std * reading.std - error_variance) / count;
 }
 
-// The variance of a further reading, by Student's t of the ones seen, less that of its error.
+// Combines a reading with the population. V, the variance of the true values, is the variance of Student's
+// predictive distribution of the readings minus the mean error variance.
 Estimate StatePopulation::Spread::combine(const Estimate& reading) const {
   if (count <= 3.0) return reading;
   const double of_readings = squares / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);

@@ -3,20 +3,20 @@
 #include <talus/terramech/estimate/reading_errors.hpp>
 #include <talus/terramech/numerics/estimate.hpp>
 
-/// Where the loads and slips of a drive lie, learned from their readings (ours: empirical Bayes). A reading
-/// far from all others is more likely far by error than in truth; an estimator that does not know this
-/// mistakes the errors' scatter for the drive's and answers wrongly, the more surely the more rows it has.
+/// Distribution of the true loads and slips of a drive, estimated from the readings (ours: empirical Bayes).
+/// A reading far from all others is probably a large error. Without the distribution the scatter of the
+/// errors is mistaken for that of the true values, and the estimate is biased, the more confidently the more
+/// rows there are.
 namespace talus::terramech {
 
-/// Mean and spread of the true ln W and of the true slip, taken as Gaussian; one reading at a time, in
-/// constant memory. Without readings, or too few to tell a spread, it knows nothing and leaves readings as
-/// they are.
+/// Gaussian distribution of the true ln W and of the true slip, updated by one reading at a time in constant
+/// memory. With three readings or fewer, readings are returned unchanged.
 class StatePopulation {
  public:
   void add(const WheelSample& sample, const ReadingErrors& errors);
 
-  /// The reading of the load [N] or slip [-] combined with what the others say of it: W* = mean + s (W -
-  /// mean), s = V/(V + std^2), of standard deviation sqrt(s) std.
+  /// Returns the load [N] or slip [-] combined with the population: x* = mean + s (x - mean), s = V/(V +
+  /// std^2), standard deviation sqrt(s) std, with x = ln W or x = slip. The slip is clamped to [0, 1].
   Estimate load(const WheelSample& sample, const ReadingErrors& errors) const;
   Estimate slip(const WheelSample& sample, const ReadingErrors& errors) const;
 

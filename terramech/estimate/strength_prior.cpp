@@ -10,8 +10,8 @@
 namespace talus::terramech {
 namespace {
 
-// A line through readings without any scatter claims more than any reading can: no c is known better than to
-// 1 Pa, no tan(phi) than to 1e-4.
+// Lower bounds of the variances: a line through readings without scatter would have none. 1 Pa for c, 1e-4
+// for tan(phi), as standard deviations.
 const Eigen::Vector2d kLeastVariance(1.0, 1e-8);
 
 struct Component {
@@ -20,7 +20,7 @@ struct Component {
   double log_weight;
 };
 
-// Kalman's update of a prior by the fit, and log N(fit; prior mean, both covariances).
+// Kalman update of a prior by the fit, and log N(fit; prior mean, sum of both covariances).
 Component update(const StrengthPrior& prior, const Eigen::Vector2d& fit, const Eigen::Matrix2d& scatter) {
   const Eigen::Matrix2d sum = prior.covariance + scatter;
   const Eigen::Matrix2d gain = prior.covariance * sum.inverse();
@@ -57,7 +57,7 @@ ShearStrength withPrior(const ShearStrength& fit, std::span<const StrengthPrior>
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   for (const Component& part : parts) {
     const double weight = std::exp(part.log_weight - most);
-    const Eigen::Vector2d away = part.mean - reading;  // about the fit, so that nothing cancels
+    const Eigen::Vector2d away = part.mean - reading;  // relative to the fit, against cancellation
     sum += weight;
     mean += weight * away;
     squares += weight * (part.covariance + away * away.transpose());

@@ -9,20 +9,21 @@
 
 namespace talus::terramech {
 
-/// A kind of soil as the linear methods see it: c and tan(phi), Gaussian.
+/// Gaussian prior of c and tan(phi) for the linear methods.
 struct StrengthPrior {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();        ///< c [Pa], tan phi [-]
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< zero where a value is taken as known
-  double probability = 1.0;                              ///< those of several are scaled to add up to 1
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< zero for an exactly known value
+  double probability = 1.0;  ///< the probabilities of several priors are scaled to sum 1
 };
 
-/// The same of a soil's prior: std(tan phi) = std(phi)/cos(phi)^2.
+/// Returns the prior of (c, tan phi) from a soil's prior: std(tan phi) = std(phi)/cos(phi)^2.
 StrengthPrior strengthPrior(const SoilPrior& soil);
 
-/// A fitted line and a prior, combined by Bayes' rule (ours): the fit with its covariance as one
-/// reading of (c, tan phi), each kind of soil weighed by how well it foretold the fit. Mean and covariance of
-/// the mixture; the rest of `fit` is kept, `unseen` too: it tells of the data. Throws std::domain_error where
-/// the fit has no covariance, that is with fewer than three samples, std::invalid_argument without a prior.
+/// Returns a fitted line combined with a mixture of priors by Bayes' rule (ours). The fit with its covariance
+/// is one reading of (c, tan phi), and each prior is weighted by its likelihood of the fit. The result has
+/// mean and covariance of the mixture; the remaining fields of `fit`, `unseen` included, are copied. Throws
+/// std::domain_error if the fit has no covariance (fewer than three samples), std::invalid_argument without a
+/// prior.
 ShearStrength withPrior(const ShearStrength& fit, std::span<const StrengthPrior> priors);
 
 }  // namespace talus::terramech

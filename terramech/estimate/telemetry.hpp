@@ -9,18 +9,19 @@
 #include <utility>
 #include <vector>
 
-/// Measured wheel data, as columns. Reading it from a file: telemetry_reader.hpp.
+/// Measured wheel data, as columns. File reader: telemetry_reader.hpp.
 namespace talus::terramech {
 
-/// A column of a table under another name than Talus knows.
+/// Maps a column of a file to a known column of another name.
 struct MappedColumn {
-  std::string known;  ///< "load_N"
-  std::string name;   ///< in the file: "Fz"
+  std::string known;  ///< name in Talus: "load_N"
+  std::string name;   ///< name in the file: "Fz"
   std::string
-      unit{};  ///< of the file: "kN", "percent"; empty: that of a suffix of the name, else that of `known`
+      /// Unit in the file: "kN", "percent"; empty: the suffix of the name, otherwise the unit of `known`.
+      unit{};
 };
 
-/// A CSV file and how its columns are read; converts from the path alone.
+/// CSV file with options for its columns; converts implicitly from a path.
 struct TableFile {
   TableFile() = default;
   template <typename Name>
@@ -28,59 +29,59 @@ struct TableFile {
       : path(std::filesystem::path(file).string()) {}  // NOLINT(google-explicit-constructor)
 
   std::string path;
-  std::vector<MappedColumn> columns{};
+  std::vector<MappedColumn> columns{};  ///< columns with another name or unit in the file
   std::vector<std::pair<std::string, double>>
-      constants{};                  ///< columns that the file lacks, the same in each row
-  std::vector<std::string> also{};  ///< columns that the caller knows besides those of telemetry
-  /// Is told what was done to columns, a sentence each. With it, a known column in another unit (`sinkage_mm`) is
-  /// converted; without, it is refused.
+      constants{};                  ///< columns missing in the file, with the same value in each row
+  std::vector<std::string> also{};  ///< columns known to the caller in addition to those of telemetry
+  /// Receives one sentence for each change to a column. If set, a known column in another unit (`sinkage_mm`)
+  /// is converted; if empty, such a column is an error.
   std::function<void(const std::string&)> note{};
 };
 
-/// A row that was left out, and why.
+/// Rejected row, with the reason.
 struct RejectedRow {
-  std::size_t line = 0;  ///< in the file, the header being line 1
+  std::size_t line = 0;  ///< line in the file; the header is line 1
   std::string reason;    ///< "load_N = -3, must be > 0"
 };
 
-/// Rows of wheel telemetry that passed the checks, column by column. Numbers are SI; a missing one is NaN.
-/// Columns that Talus does not know are kept: numeric ones are candidate causes when a residual is traced,
-/// text ones are groupings.
+/// Rows of wheel telemetry that passed the checks, stored by column. Numbers are SI; missing ones are NaN.
+/// Unknown columns are kept: numeric ones as candidate causes of residuals, text ones as groupings.
 struct Telemetry {
-  /// A column of numbers.
+  /// Numeric column.
   struct Numbers {
     std::string name;
     std::vector<double> values;
   };
-  /// A column of words.
+  /// Text column.
   struct Words {
     std::string name;
     std::vector<std::string> values;
   };
 
-  std::string source;                 ///< the file, for messages
-  std::vector<Numbers> numbers;       ///< in the file's order
-  std::vector<Words> words;           ///< in the file's order; `run` and `wheel` are always words
+  std::string source;                 ///< file name, for messages
+  std::vector<Numbers> numbers;       ///< in the order of the file
+  std::vector<Words> words;           ///< in the order of the file; `run` and `wheel` are always text
   std::vector<std::size_t> lines;     ///< line of each row in the file
-  std::vector<RejectedRow> rejected;  ///< in the file's order
-  std::size_t repeated = 0;  ///< rows left out since they are earlier ones again (TelemetryOptions::once)
-  /// Known columns of rejected rows where they hold numbers, infinite or beyond double (the greatest); else NaN.
+  std::vector<RejectedRow> rejected;  ///< in the order of the file
+  std::size_t repeated = 0;  ///< rows left out as repetitions of earlier rows (TelemetryOptions::once)
+  /// Known columns in rejected rows, as read: infinite values are kept, values beyond double are the largest
+  /// double, other text is NaN.
   std::vector<Numbers> rejected_numbers;
 
-  /// Rows that can be used.
+  /// Returns the number of usable rows.
   std::size_t size() const noexcept { return lines.size(); }
 
-  /// The column of numbers of that name, or null.
+  /// Returns the numeric column of this name, or null.
   const std::vector<double>* find(std::string_view name) const noexcept;
 
-  /// The column of words of that name, or null.
+  /// Returns the text column of this name, or null.
   const std::vector<std::string>* findWords(std::string_view name) const noexcept;
 
-  /// The column of numbers of that name. Throws InputError naming the file and the column when there is none.
+  /// Returns the numeric column of this name. Throws InputError with file and column if there is none.
   const std::vector<double>& at(std::string_view name) const;
 };
 
-/// The columns of numbers that Talus knows, with their unit as suffix (docs of the interface).
+/// Returns the names of the known numeric columns, with their unit as suffix.
 const std::vector<std::string>& knownTelemetryColumns();
 
 }  // namespace talus::terramech

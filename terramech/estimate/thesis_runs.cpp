@@ -6,7 +6,8 @@
 
 namespace talus::terramech {
 
-// The top 53 bits, shifted off zero: the library's distributions differ between implementations.
+// Uniform in (0, 1) from the top 53 bits, never 0. Distributions of the standard library differ between
+// implementations.
 double ThesisRuns::even() {
   return (static_cast<double>(random_() >> 11U) + 0.5) * 0x1p-53;
 }

@@ -9,32 +9,32 @@
 #include <talus/terramech/contact/wheel_sample.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
 
-/// The thesis' simulations (its section 2.3): soils out of Table 2.1 and a wheel driven over them in its slip
-/// pattern.
+/// Simulations of the thesis (section 2.3): soils drawn from Table 2.1, and a wheel driven over them with the
+/// slip pattern of the thesis.
 namespace talus::terramech {
 
-/// Its wheel: radius and width 0.1 m.
+/// Wheel of the thesis: radius and width 0.1 m.
 inline constexpr Wheel kThesisWheel{.radius_m = 0.1, .width_m = 0.1};
 
-/// A soil, and what a wheel read on it.
+/// Soil and simulated readings of a wheel.
 struct ThesisRun {
   ContactSoil soil;
   int soil_class = 0;                  ///< index into thesisSoils()
-  std::vector<WheelSample> samples;    ///< with errors
-  std::vector<WheelSample> truth;      ///< without
-  std::vector<double> pull_over_load;  ///< true DP/W of each
+  std::vector<WheelSample> samples;    ///< readings with errors
+  std::vector<WheelSample> truth;      ///< readings without errors
+  std::vector<double> pull_over_load;  ///< true DP/W of each sample
 };
 
-/// How a run is made.
+/// Options of a run.
 struct ThesisRunOptions {
   double noise = 0.05;  ///< relative Gaussian error of each reading of W, T, z and i
   int samples = 10;
   Wheel wheel = kThesisWheel;
-  double load_scale = 1.0;  ///< of the loads of 60 to 100 N
+  double load_scale = 1.0;  ///< factor on the loads of 60 to 100 N
 };
 
-/// Runs from a seed: the same numbers on any machine. Slip goes 0.2 to 0.8 and back in steps of 0.1; loads
-/// are even between 60 and 100 N; class and parameters are even over Table 2.1.
+/// Generator of runs from a seed, with the same numbers on any machine. Slip runs from 0.2 to 0.8 and back in
+/// steps of 0.1; loads are uniform in 60 to 100 N; class and parameters are uniform over Table 2.1.
 class ThesisRuns {
  public:
   explicit ThesisRuns(std::uint64_t seed) : random_(seed) {}
@@ -48,7 +48,7 @@ class ThesisRuns {
   std::mt19937_64 random_;
 };
 
-/// The soil of a contact as a Soil, all of its modulus in k_phi.
+/// Returns a Soil with the parameters of a contact: k_c = 0, k_phi = k.
 Soil soilOf(const ContactSoil& contact);
 
 }  // namespace talus::terramech

@@ -8,10 +8,10 @@
 namespace talus::terramech {
 namespace {
 
-// Below this mass only the far tail is left, which falls like an exponential.
+// Below this probability mass only the far tail remains, which is approximated by an exponential.
 constexpr double kLeastMass = 1e-280;
 
-// A standard normal between two bounds, at fraction u of its mass there; and the logarithm of its density.
+// Truncated standard normal at fraction u of its probability mass, and the logarithm of its density.
 struct Cut {
   double at;
   double log_density;
@@ -24,7 +24,7 @@ Cut tail(double low, double high, double u) {
 }
 
 Cut cut(double low, double high, double u) {
-  if (low > 0.0) {  // work in the lower tail, where the distribution function keeps its digits
+  if (low > 0.0) {  // mirror to the lower tail, where the distribution function is accurate
     const Cut mirrored = cut(-high, -low, 1.0 - u);
     return {-mirrored.at, mirrored.log_density};
   }
@@ -39,7 +39,7 @@ Cut cut(double low, double high, double u) {
 
 TruncatedGaussian::TruncatedGaussian(const SoilVector& mean, const SoilMatrix& covariance, const SoilBox& box)
     : mean_(mean), box_(box) {
-  SoilMatrix left = covariance;  // given the coordinates drawn so far
+  SoilMatrix left = covariance;  // conditional covariance given the coordinates drawn so far
   for (int turn = 0; turn < kSoilParameters; ++turn) {
     int widest = 0;
     left.diagonal().maxCoeff(&widest);
@@ -56,7 +56,7 @@ TruncatedGaussian::Draw TruncatedGaussian::draw(const SoilVector& even) const {
   Draw draw{.at = mean_, .log_density = 0.0};
   for (int turn = 0; turn < kSoilParameters; ++turn) {
     const int k = order_[static_cast<std::size_t>(turn)];
-    const double centre = draw.at[k];  // moved by the turns before
+    const double centre = draw.at[k];  // shifted by the coordinates drawn before
     const double scale = root_(k, turn);
     const auto [e, log_density] =
         cut((box_.low[k] - centre) / scale, (box_.high[k] - centre) / scale, even[turn]);

@@ -8,35 +8,36 @@
 
 namespace talus::terramech {
 
-/// Sides of a box; infinite where there is none.
+/// Box; infinite sides are unbounded.
 struct SoilBox {
   SoilVector low;
   SoilVector high;
 };
 
-/// A Gaussian cut to a box, sampled side by side (Geweke, Hajivassiliou and Keane; geweke_1991): each
-/// coordinate is drawn inside its sides given those before it, so no draw is lost, and the density of a draw
-/// is known. The widest coordinate goes first (a pivoted Cholesky factor): what the box cuts most is drawn
-/// before what hangs on it.
+/// Gaussian truncated to a box, with the sampler of Geweke, Hajivassiliou and Keane (geweke_1991). Each
+/// coordinate is drawn inside its bounds given the coordinates before, so that no draw is rejected and the
+/// density of a draw is known. The coordinate with the largest conditional variance is drawn first (pivoted
+/// Cholesky factor), because the box truncates it most.
 class TruncatedGaussian {
  public:
-  /// `covariance` positive definite, `box` with low < high.
+  /// Requires a positive definite `covariance` and a `box` with low < high.
   TruncatedGaussian(const SoilVector& mean, const SoilMatrix& covariance, const SoilBox& box);
 
-  /// A draw and the logarithm of the density it was drawn with.
+  /// Draw and the logarithm of its sampling density.
   struct Draw {
     SoilVector at;
     double log_density;
   };
 
-  /// The draw that belongs to a point of the unit cube.
+  /// Returns the draw for a point of the unit cube.
   Draw draw(const SoilVector& even) const;
 
  private:
   SoilVector mean_;
   SoilBox box_;
   std::array<int, kSoilParameters> order_;
-  SoilMatrix root_ = SoilMatrix::Zero();  // rows by coordinate, columns by turn: covariance = root root'
+  // Rows: coordinates, columns: order of drawing; covariance = root root'.
+  SoilMatrix root_ = SoilMatrix::Zero();
 };
 
 }  // namespace talus::terramech

@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// A sample and the wheel it was read on, where a table holds wheels of several sizes.
+/// Sample with its wheel, for tables with several wheel sizes.
 struct WheelReading {
   Wheel wheel;
   WheelSample sample;

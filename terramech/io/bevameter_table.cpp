@@ -17,7 +17,8 @@ const std::vector<double>* either(const Telemetry& table, const char* name, cons
   return column != nullptr ? column : table.find(other);
 }
 
-// What tells one test from another, row by row: words that rows have in common, and the number of the trial.
+// Returns a key of the test of each row: text columns with at most half as many distinct values as rows, and
+// the columns `trial` and `test`.
 std::vector<std::string> testsOf(const Telemetry& table) {
   std::vector<std::string> keys(table.size());
   for (const auto& column : table.words) {
@@ -37,8 +38,8 @@ std::string soilOf(const Telemetry& table, std::size_t row) {
   return {};
 }
 
-// The diameter of the round plate whose area is F/p, to 0.1 mm: the median of the test. NaN where the area of
-// a test spreads by more than a hundredth.
+// Returns the diameter of the round plate with area F/p of each row, rounded to 0.1 mm, from the median of
+// the test. NaN if the area varies within a test by more than 1 % (5 % to 95 % quantile).
 std::vector<double> widthsOfRoundPlates(const Telemetry& table, const std::vector<double>& force,
                                         const std::vector<double>& pressure) {
   constexpr double kSpread = 0.01;

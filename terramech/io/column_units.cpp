@@ -15,13 +15,13 @@ namespace {
 
 enum class Kind { Length, Force, Torque, Pressure, Angle, Time, Speed, Rate, Share };
 
-/// A unit as a suffix states it.
+/// Unit as written in a suffix.
 struct SuffixUnit {
   std::string_view name;
   Kind kind;
 };
 
-// With an SI prefix each is a unit, too. A load in kilograms is a force to whoever writes it.
+// Units that also occur with an SI prefix. A load in kilograms counts as a force.
 constexpr SuffixUnit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"g", Kind::Force},
                                 {"Nm", Kind::Torque}, {"N_m", Kind::Torque},  {"s", Kind::Time},
                                 {"rad", Kind::Angle}, {"Pa", Kind::Pressure}, {"mps", Kind::Speed},
@@ -55,7 +55,7 @@ std::string lower(std::string_view text) {
   return small;
 }
 
-/// The kind of a unit, in whatever letters; none where the text names no unit.
+/// Returns the kind of a unit, ignoring case; empty if the text is not a unit.
 std::optional<Kind> kindOf(std::string_view text) {
   const std::string small = lower(text);
   for (const SuffixUnit& unit : kOther)
@@ -66,7 +66,8 @@ std::optional<Kind> kindOf(std::string_view text) {
   return std::nullopt;
 }
 
-/// The name with `_` for all that parts words, and words for the signs of percent and degree: "load [N]" is "load_N".
+/// Returns the name with separators replaced by `_` and the signs % and degree by words: "load [N]" becomes
+/// "load_N".
 std::string plain(std::string_view name) {
   constexpr std::string_view kDegreeSign = "\xC2\xB0", kParting = " -.,:;/()[]{}\t";
   std::string text;
@@ -87,7 +88,7 @@ std::string plain(std::string_view name) {
   return once;
 }
 
-/// A known column, by the parts of its name.
+/// Known column, split into stem and unit.
 struct KnownColumn {
   explicit KnownColumn(const std::string& whole)
       : name(whole),
@@ -96,34 +97,35 @@ struct KnownColumn {
 
   std::string name, unit, stem;
 
-  /// Whether a unit, of that kind, states this quantity, not another of a like name.
+  /// Returns whether a column with another unit of this kind has the quantity of this column.
   bool takes(std::string_view other, std::optional<Kind> kind) const {
     const auto own = unit.empty() ? Kind::Share : kindOf(unit);
     return (kind && kind == own) || conversion(other, unit) ||
-           (kind == Kind::Share && own == Kind::Angle);  // the percent of a slope
+           (kind == Kind::Share && own == Kind::Angle);  // slope in percent
   }
 };
 
-// Letters that are indices and words, too: slip_t, speed_min.
+// Suffixes that are also indices or words: slip_t, speed_min.
 bool mayBeNoUnit(std::string_view suffix) {
   return suffix.size() < 2 || suffix == "min";
 }
 
-/// Why a name that is not known is no name of one's own in a file that lacks that known column; empty where it is.
+/// Returns why an unknown name is probably this known column, which the file lacks; empty if the name is the
+/// user's own.
 std::string faultOf(const std::string& name, const KnownColumn& column) {
   const std::string text = plain(name);
   const std::string small = lower(text), stem = lower(column.stem);
   if (small == lower(column.name)) return "is not spelled as it is read";
-  // A time may be a date, and a letter an axis or anything.
+  // `time` without unit may be a date, a single letter an axis.
   const bool of_time = kindOf(column.unit) == Kind::Time;
   if (small == stem) return of_time || stem.size() < 2 ? "" : "names no unit";
-  if (!small.starts_with(stem + '_'))  // one letter in eight: drawbar_pul_N
+  if (!small.starts_with(stem + '_'))  // one typing error per 8 letters: drawbar_pul_N
     return 8 * editDistance(small, lower(column.name)) <= small.size() + 1 ? "is not spelled as it is read"
                                                                            : "";
   const std::string_view suffix = std::string_view(text).substr(stem.size() + 1);
   const auto kind = kindOf(suffix);
   if (column.takes(suffix, kind)) return "is in another unit than it is read in";
-  // The letter of an axis stands before any quantity along it.
+  // A single letter may be an axis in front of any quantity.
   if (!kind || mayBeNoUnit(suffix) || stem.size() < 2) return {};
   return "has a unit of another kind than it is read in";
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostColumns = 1000;
 
-// What parts the fields of the first line that has any.
+// Returns the field separator, from the first line that is not empty.
 char separatorOf(std::string_view text) {
   text.remove_prefix(std::min(text.size(), text.find_first_not_of("\r\n ")));
   const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
@@ -30,7 +30,7 @@ char separatorOf(std::string_view text) {
 
 }  // namespace
 
-/// libcsv hands out fields and record ends through callbacks; finished records wait in a queue.
+/// State of libcsv, which returns fields and record ends by callbacks; complete records wait in a queue.
 struct CsvReader::Parser {
   explicit Parser(const TableFile& table);
   ~Parser() { csv_free(&csv); }
@@ -55,9 +55,9 @@ struct CsvReader::Parser {
   std::vector<std::string> header;
   std::deque<CsvRow> ready;
   CsvRow current;
-  std::size_t line = 1;       // of the record that is being read
-  std::size_t swallowed = 0;  // line of a record whose quotes hold other rows; 0: none
-  bool after_return = false;  // the last record ended with CR: a LF that follows belongs to it
+  std::size_t line = 1;       // first line of the current record
+  std::size_t swallowed = 0;  // line of a record whose quotes enclose other rows; 0: none
+  bool after_return = false;  // the last record ended with CR: a following LF belongs to it
   bool done = false;
 };
 
@@ -111,7 +111,7 @@ void CsvReader::Parser::feed() {
   const auto count = static_cast<std::size_t>(file.gcount());
   if (read == 0 && std::memchr(buffer.data(), 0, count))
     refuse("is not text", "save it as UTF-8 text with commas");
-  std::size_t skip = 0;  // byte order marks: one that is left would belong to the first column's name
+  std::size_t skip = 0;  // skip byte order marks, which would become part of the first column's name
   while (read == 0 && std::string_view(buffer.data() + skip, count - skip).starts_with("\xEF\xBB\xBF"))
     skip += 3;
   if (read == 0) {
@@ -129,7 +129,7 @@ void CsvReader::Parser::feed() {
     refuse(csv_strerror(csv_error(&csv)), "");
   if (swallowed == 0 && file) return;
   done = true;
-  constexpr int kFieldBegun = 2;  // libcsv's state inside a field
+  constexpr int kFieldBegun = 2;  // state of libcsv inside a field
   const bool open_quote = csv.pstate == kFieldBegun && csv.quoted;
   if (open_quote && swallowed == 0) swallowed = line;
   if (swallowed > 0)

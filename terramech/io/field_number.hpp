@@ -4,8 +4,8 @@
 
 namespace talus::terramech {
 
-/// The number that a whole field states ("1", "-2.5e3", "+4", "nan", "inf"), or false. `.` decimals whatever
-/// the locale.
+/// Parses a whole field as a number ("1", "-2.5e3", "+4", "nan", "inf") with `.` as decimal point in any
+/// locale. Returns false if the field is not a number.
 bool parseNumber(std::string_view field, double& value) noexcept;
 
 }  // namespace talus::terramech

@@ -4,28 +4,29 @@
 #include <string>
 #include <vector>
 
-/// The names that files of Talus may use. The readers take them from here, and so do `talus help formats` and docs/formats.md.
+/// Names of keys and columns in files of Talus, used by the readers, by `talus help formats` and by
+/// docs/formats.md.
 namespace talus::terramech {
 
-/// A key of a YAML file or a column of a table, with its unit as suffix.
+/// Key of a YAML file or column of a table, with its unit as suffix.
 struct FileKey {
   const char* name = "";
-  const char* meaning = "";  ///< and range, default or "required"
+  const char* meaning = "";  ///< meaning, and range, default or "required"
 };
 
-/// Of one soil.
+/// Keys of a soil.
 std::span<const FileKey> soilKeys();
-/// Of a rover, and of its `wheels`.
+/// Keys of a rover and of its `wheels`.
 std::span<const FileKey> roverKeys();
 std::span<const FileKey> wheelKeys();
 /// Columns of telemetry and of other tables of wheels.
 std::span<const FileKey> telemetryKeys();
 
-/// Their names, in order.
+/// Returns the names of the keys in order.
 std::vector<std::string> namesOf(std::span<const FileKey> keys);
 
-/// The known key that an unknown one means: the same without its unit or with one of another kind (`cohesion`, `mass_N`), else the
-/// nearest in spelling; empty where none is near.
+/// Returns the known key that an unknown key probably means: the same key without unit or with a unit of
+/// another kind (`cohesion`, `mass_N`), otherwise the nearest spelling; empty if there is no similar key.
 std::string meantKey(const std::string& key, const std::vector<std::string>& known);
 
 }  // namespace talus::terramech

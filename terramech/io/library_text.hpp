@@ -5,8 +5,7 @@
 
 namespace talus::terramech {
 
-/// YAML texts of the built-in soils and rovers by name, made from terramech/library/ when the build is
-/// configured.
+/// YAML texts of the built-in soils and rovers by name, generated from terramech/library/ at configuration.
 const std::map<std::string, std::string>& librarySoilTexts();
 const std::map<std::string, std::string>& libraryRoverTexts();
 

@@ -45,7 +45,7 @@ void readSoilInto(const YamlFields& root, RefinedModel& model) {
   setDeviation(model, prior);
 }
 
-/// Where a fit starts when nobody names a soil.
+/// Returns the initial soil of a fit if none is given.
 Soil startingSoil() {
   return {.name = "fitted",
           .cohesion_Pa = 1000.0,
@@ -152,7 +152,7 @@ Effect readEffect(const YamlFields& f) {
   return effect;
 }
 
-/// One number >= 0 for each channel.
+/// Reads one number >= 0 per channel.
 std::array<double, kChannels> readChannels(const YamlFields& f, const char* name) {
   const std::vector<double> values = f.numbers(name);
   if (values.size() != kChannels ||
@@ -184,7 +184,7 @@ std::vector<TrainedRange> readTrained(const YamlFields& root) {
   return all;
 }
 
-/// The model without its corrections, and the channels in which they count.
+/// Reads the model without corrections, and the channels to which corrections apply.
 void readUncorrected(const YamlFields& f, ModelFile& file) {
   f.only({"soil", "effects", "kept"});
   RefinedModel base = file.model;
@@ -263,7 +263,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// The number, or 0 where it is less in magnitude than a file may hold.
+/// Returns the number, or 0 if its magnitude is too small for a file.
 double readable(double value) {
   return std::abs(value) < 1.0 && !plausible(value) ? 0.0 : value;
 }
@@ -291,7 +291,7 @@ class Writer {
   std::ostringstream out_;
 };
 
-/// A variance below what a file may hold is that of a number that is exact, and shares nothing with others.
+/// Sets variances too small for a file to 0, with their covariances; the parameter is then exact.
 std::vector<double> readableCovariance(std::vector<double> covariance, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k)
     if (readable(covariance[k * count + k]) == 0.0)

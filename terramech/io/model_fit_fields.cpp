@@ -9,13 +9,13 @@
 namespace talus::terramech {
 namespace {
 
-/// What keeps numbers, row by row, from being the covariance of anything; empty: nothing. A variance below 0 would be
-/// read as certainty.
+/// Returns why a row-major matrix is not a covariance; empty if it is one. A negative variance would be read
+/// as certainty.
 std::string faultOfCovariance(const std::vector<double>& values, std::size_t size) {
   const auto n = static_cast<Eigen::Index>(size);
   const Eigen::MatrixXd given = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
   constexpr double kRounding =
-      1e-6;  // of a correlation: an inverse of condition 1e10 and 17 digits in the file
+      1e-6;  // of a correlation: allows an inverse of condition number 1e10 and 17 digits in the file
   Eigen::MatrixXd correlation = given;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (given(i, i) < 0.0)

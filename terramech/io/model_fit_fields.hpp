@@ -5,8 +5,8 @@
 
 namespace talus::terramech {
 
-/// Reads `fitted` and `covariance` of a model file into a model whose effects are known. Throws InputError when a parameter is
-/// unknown or named twice, or the numbers are no covariance.
+/// Reads `fitted` and `covariance` of a model file into a model with known effects. Throws InputError if a
+/// parameter is unknown or listed twice, or if the matrix is not a covariance.
 void readFit(const YamlFields& root, RefinedModel& model);
 
 }  // namespace talus::terramech

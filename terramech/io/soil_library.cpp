@@ -13,8 +13,8 @@
 namespace talus::terramech {
 namespace {
 
-constexpr int kGreatestClass = 254;        // a class raster has 255 where there is no class
-constexpr std::size_t kMostClasses = 254;  // numbers of cost curves
+constexpr int kGreatestClass = 254;        // class rasters use 255 for no class
+constexpr std::size_t kMostClasses = 254;  // limit of the cost-curve table
 
 bool isFile(const std::filesystem::path& path) {
   std::error_code error;
@@ -33,8 +33,8 @@ std::vector<std::string> libraryNames(const std::map<std::string, std::string>& 
   return names;
 }
 
-/// The root mapping of a library entry or of a file; throws naming the nearest library entry when it is
-/// neither.
+/// Returns the root mapping of a library entry or file. Throws InputError with the nearest library entry if
+/// there is neither.
 YamlFields open(const std::string& name, const std::map<std::string, std::string>& texts,
                 const std::string& what) {
   if (const auto* text = findText(texts, name)) return YamlFields::text(*text, "talus library, " + name);
@@ -45,7 +45,7 @@ YamlFields open(const std::string& name, const std::map<std::string, std::string
                     .remedy = nearest.empty() ? "name a YAML file" : "did you mean " + nearest + "?"});
 }
 
-/// The mapping under a wrapper key, or the root itself where there is no such key.
+/// Returns the mapping under a wrapper key, or the root itself without such a key.
 YamlFields unwrapped(const YamlFields& root, const std::string& wrapper) {
   return root.has(wrapper) ? root.fields(wrapper) : root;
 }
@@ -92,7 +92,7 @@ SoilPrior soilOfClass(const YamlFields& classes, const std::string& key, const s
   }
 }
 
-// One spelling for each number: two lines of a class would part which soil counts.
+// Each number has one spelling, because two entries for one class would be ambiguous.
 int classNumber(const YamlFields& classes, const std::string& key) {
   const bool digits = !key.empty() && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; });
   if (!digits || (key.size() > 1 && key.front() == '0'))
@@ -104,7 +104,7 @@ int classNumber(const YamlFields& classes, const std::string& key) {
   return std::stoi(key);
 }
 
-// Before any soil is read, which may take milliseconds each.
+// Class numbers are checked before any soil is read, which may take milliseconds each.
 std::vector<std::pair<int, std::string>> numberedClasses(const YamlFields& classes, bool wrapped) {
   std::vector<std::pair<int, std::string>> numbered;
   for (const std::string& key : classes.names())
@@ -140,7 +140,7 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 
 SoilPrior readSoil(const YamlFields& fields) {
   const std::vector<std::string> known = namesOf(soilKeys());
-  // What another file holds is none of the message's, but for a misspelt field.
+  // The names in a file of another kind are not listed in the message, but a misspelt field is.
   const auto foreign = [&](const std::string& key) { return meantKey(key, known).empty(); };
   if (std::ranges::none_of(known, [&](const std::string& name) { return fields.has(name); }) &&
       std::ranges::all_of(fields.names(), foreign))
@@ -162,7 +162,7 @@ SoilPrior readSoil(const YamlFields& fields) {
   take(&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m, fields.stated("shear_modulus_m"));
   take(&Soil::c1, &SoilDeviation::c1, fields.stated("c1", defaults.c1));
   take(&Soil::c2, &SoilDeviation::c2, fields.stated("c2", defaults.c2));
-  // theta_m / theta_1 = c1 + c2 slip lies in [0, 1], without slip as well as at all slip.
+  // theta_m / theta_1 = c1 + c2 slip must be in [0, 1].
   if (soil.mean.c1 < 0.0 || soil.mean.c1 > 1.0)
     fields.refuse("c1", "c1 must be 0 to 1: the peak of the stress lies in the contact", "check it");
   if (std::abs(soil.mean.c2) > 1.0)

@@ -6,19 +6,19 @@
 #include <talus/terramech/estimate/soil_mixture.hpp>
 #include <talus/terramech/estimate/strength_prior.hpp>
 
-/// What --prior names, as each method takes it.
+/// Conversion of option --prior to the priors of each method.
 namespace talus::terramech {
 
-/// A soil of the library, or the soils of a file; none where the option is empty. Throws InputError.
+/// Returns a soil of the library, or the soils of a file; empty for an empty option. Throws InputError.
 std::vector<SoilPrior> soilPriors(const std::string& name_or_path);
 
-/// As classes of soil under a wheel of that width [m], each as likely.
+/// Returns the soils as equally likely classes for a wheel of width_m > 0 [m].
 SoilMixture mixtureOf(const std::vector<SoilPrior>& soils, double width_m);
 
-/// As (c, tan phi) alone, each as likely.
+/// Returns the soils as equally likely priors of (c, tan phi).
 std::vector<StrengthPrior> strengthPriors(const std::vector<SoilPrior>& soils);
 
-/// Mean shear modulus K over the soils [m]; there must be one.
+/// Returns the mean shear modulus K [m] of the soils, of which there must be at least one.
 double meanModulus(const std::vector<SoilPrior>& soils);
 
 }  // namespace talus::terramech

@@ -19,12 +19,12 @@ namespace {
 constexpr std::pair<std::string_view, double> kShares[] = {
     {"percent", 0.01}, {"pct", 0.01}, {"%", 0.01}, {"permille", 0.001}};
 
-// Symbols of the field that stand for known columns.
+// Common symbols of known columns.
 constexpr std::pair<std::string_view, const char*> kSymbols[] = {
     {"Fz", "load_N"},       {"Fn", "load_N"},    {"Fx", "drawbar_pull_N"}, {"DP", "drawbar_pull_N"},
     {"Fy", "side_force_N"}, {"Mx", "torque_Nm"}, {"My", "torque_Nm"},      {"Mt", "torque_Nm"}};
 
-// The unit at the end of a name, percent among them; empty where it has none.
+// Returns the unit at the end of a name, including percent; empty if there is none.
 std::string suffixOf(const std::string& name) {
   for (const auto& [share, factor] : kShares)
     if (name.ends_with("_" + std::string(share))) return std::string(share);
@@ -41,7 +41,7 @@ std::string shortest(double value) {
   return {digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr};
 }
 
-// "1,5" is 1.5 where commas part no fields.
+// Decimal comma: "1,5" becomes "1.5" if commas are not separators.
 void withPoint(std::string& field) {
   const std::size_t comma = field.find(',');
   if (comma == std::string::npos || field.find(',', comma + 1) != std::string::npos) return;
@@ -112,12 +112,12 @@ void TableColumns::map(const MappedColumn& mapped, const TableFile& table) {
                            *factor == 1.0 ? "" : fmt::format(", times {:g}", *factor)));
 }
 
-// `sinkage_mm`: the unit is stated, so that nothing is guessed.
+// Converts columns such as `sinkage_mm`, whose unit is explicit.
 void TableColumns::convertUnits(const TableFile& table) {
   std::vector<std::string> all = knownTelemetryColumns();
   all.insert(all.end(), table.also.begin(), table.also.end());
   for (const std::string& known : all) {
-    if (has(known) || stemOf(known).size() < 2) continue;  // z_mm may be anything
+    if (has(known) || stemOf(known).size() < 2) continue;  // z_mm may be any quantity
     for (const std::string& name : std::vector<std::string>(header_)) {
       if (name.empty() || has(known) || stemOf(name) != stemOf(known) || suffixOf(name).empty()) continue;
       if (columnFactor(suffixOf(name), known)) map({.known = known, .name = name}, table);

@@ -9,16 +9,18 @@
 
 namespace talus::terramech {
 
-/// The columns of a file by the names and in the units that Talus reads, from its own header and what is asked for.
+/// Columns of a file with the names and units of Talus, from the header of the file and the options of the
+/// TableFile.
 class TableColumns {
  public:
-  /// `decimal_commas`: whether numbers may have them. Throws InputError where a column that is asked for is not there, is
-  /// mapped twice or beside the known one, or its unit is of another kind.
+  /// `decimal_commas`: numbers may have decimal commas. Throws InputError if a mapped column is missing or
+  /// mapped twice, the known column also exists, or the unit is of another kind.
   TableColumns(std::vector<std::string> header, const TableFile& table, bool decimal_commas);
 
   const std::vector<std::string>& header() const noexcept { return header_; }
 
-  /// Converts the numbers of a row and adds the constants; a row that is `whole` has nothing but blanks beyond the header.
+  /// Converts the numbers of a row and appends the constants. If `whole`, fields beyond the header are blank
+  /// and are removed first.
   void apply(std::vector<std::string>& fields, bool whole) const;
 
  private:
@@ -35,12 +37,12 @@ class TableColumns {
   std::vector<std::string> header_;
   std::vector<Conversion> conversions_;
   std::vector<std::string> constants_;
-  std::size_t own_ = 0;  ///< columns of the file
+  std::size_t own_ = 0;  ///< number of columns in the file
   bool decimal_commas_;
 };
 
-/// Factor from a unit, as a name or an option has it, to that of a known column; percent of what has none.
-/// None where they are of different kinds.
+/// Returns the factor from a unit to that of a known column; percent and permille if the column has no unit.
+/// Empty for units of different kinds.
 std::optional<double> columnFactor(const std::string& unit, const std::string& known);
 
 }  // namespace talus::terramech

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// A range that a known column must keep.
+/// Valid range of a known column.
 struct Rule {
   const char* column;
   bool (*holds)(double);
@@ -35,7 +35,7 @@ constexpr Rule kRules[] = {
     {"load_N", [](double x) { return x > 0.0 && x <= 1e7; }, "> 0 and at most 1e7"},
     {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
     {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
-    // A right angle, and what reads one: tables of wheels pulled across their travel have up to 1.577.
+    // A right angle with measurement error: tables of wheels pulled across their travel reach 1.577.
     {"slip_angle_rad", [](double x) { return std::abs(x) <= 1.6; }, "in [-1.6, 1.6]"},
     {"slope_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
     {"roll_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
@@ -51,7 +51,8 @@ constexpr Rule kRules[] = {
     {"shear_modulus_m", [](double x) { return x >= 1e-9 && x <= 1e3; }, "in [1e-9, 1000]"},
 };
 
-// Less is what rounding leaves of nothing, as an angle's tangent does; plausible() asks for as much.
+// Smaller magnitudes are rounding errors of 0, for example of tan(0), and count as 0; plausible() has the
+// same limit.
 constexpr double kDust = 1e-15;
 
 std::string shown(double value) {
@@ -64,15 +65,15 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What becomes of one column of the file.
+/// One column of the file while it is read.
 struct Column {
   std::string name;
-  bool known = false;     // numbers only; a fault refuses the row
-  bool required = false;  // never empty
+  bool known = false;     // numeric; a fault rejects the row
+  bool required = false;  // must not be empty
   const Rule* rule = nullptr;
   std::vector<double> numbers;
-  std::vector<double> rejected;    // of rows that were
-  std::vector<std::string> words;  // of unknown columns, until it is clear whether they are numbers
+  std::vector<double> rejected;    // values of rejected rows
+  std::vector<std::string> words;  // unknown column, until all values are read
 };
 
 Column columnNamed(const std::string& name, const TelemetryOptions& options) {
@@ -85,7 +86,8 @@ Column columnNamed(const std::string& name, const TelemetryOptions& options) {
   return column;
 }
 
-/// The greatest double, or 0, for a decimal beyond the range of double: "1e999" still says that it is large.
+/// Parses a decimal beyond the range of double as the largest double, or as 0: "1e999" is at least known to
+/// be large.
 bool beyondDouble(const std::string& field, double& value) {
   std::istringstream in(field);
   in.imbue(std::locale::classic());
@@ -93,7 +95,7 @@ bool beyondDouble(const std::string& field, double& value) {
   return in.fail() ? std::abs(value) == std::numeric_limits<double>::max() : in.peek() == EOF;
 }
 
-/// The number in a field of a known column; sets `fault` when the row must go.
+/// Returns the number in a field of a known column; sets `fault` if the row must be rejected.
 double checkedNumber(const Column& column, const std::string& field, std::string& fault) {
   if (field.empty()) {
     if (column.required) fault = column.name + " is empty";
@@ -128,7 +130,7 @@ class Table {
     values_.resize(columns_.size());
   }
 
-  /// Takes the row, or says why not.
+  /// Adds the row, or returns why the row is rejected.
   std::string add(const CsvRow& row) {
     std::string fault = row.fault;
     for (std::size_t k = 0; k < columns_.size() && fault.empty(); ++k)
@@ -177,7 +179,7 @@ class Table {
            shown(2.0 * radius);
   }
 
-  /// Fills `numbers` from `words` where every filled field is a number and there is one.
+  /// Fills `numbers` from `words` if every non-empty field is a number and there is at least one.
   static bool allNumbers(Column& column) {
     if (column.name == "run" || column.name == "wheel") return false;
     bool any = false;
@@ -198,7 +200,7 @@ class Table {
   double radius_m_;
 };
 
-/// Tells rows that are earlier ones again: of a log that was copied together from parts.
+/// Detects rows that repeat earlier ones, as in a log that was assembled from overlapping files.
 class RepeatedRows {
  public:
   explicit RepeatedRows(const std::vector<std::string>& header) {
@@ -225,7 +227,7 @@ class RepeatedRows {
   std::size_t time_ = kNone, wheel_ = kNone;
   std::string last_time_;
   std::size_t moments_ = 0;
-  std::unordered_map<std::size_t, std::size_t> moment_;  // in which a row was, by a hash of it
+  std::unordered_map<std::size_t, std::size_t> moment_;  // moment of each row, by the hash of the row
 };
 
 void checkColumns(const std::vector<std::string>& header, const std::vector<std::string>& required,

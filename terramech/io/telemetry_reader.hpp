@@ -9,24 +9,23 @@
 
 namespace talus::terramech {
 
-/// How telemetry is read.
+/// Options of readTelemetry().
 struct TelemetryOptions {
-  /// Columns of numbers that must be there, and filled in every row that is used.
+  /// Numeric columns that must exist and have a value in every used row.
   std::vector<std::string> required;
-  double wheel_radius_m = 0.0;  ///< for the sinkage check where the file has no wheel_radius_m; 0: not known
-  /// Whether a row that equals an earlier one in every field, time_s among them, is left out and counted in
-  /// Telemetry::repeated; of the same moment only where column `wheel` names both.
+  double wheel_radius_m = 0.0;  ///< for the sinkage check if the file has no wheel_radius_m; 0: unknown
+  /// True: a row that equals an earlier one in every field, including time_s, is left out and counted in
+  /// Telemetry::repeated. Rows of the same moment are compared only if column `wheel` is given.
   bool once = false;
 };
 
-/// Reads a telemetry CSV: header row, columns in any order, decimal points, UTF-8 with or without a byte order
-/// mark, LF or CRLF, quoted fields, empty field = missing. A row is left out, with line and reason in
-/// Telemetry::rejected, when a known column holds NaN, infinity or words, when a required field is empty, the
-/// load is not above 0, the sinkage is outside [0, 2r), the slip outside [-1, 1], a wheel dimension out of
-/// range, or the row is cut short. In unknown columns NaN counts as missing. Read in pieces: memory holds the
-/// columns, never the file. Throws InputError when the file cannot be read, has no header or one with a name
-/// twice or with a known column in another unit than it is read in (column_units.hpp), lacks a required column,
-/// or no row can be used.
+/// Reads a telemetry CSV with a header row, columns in any order; format: CsvReader. Empty fields are missing
+/// values. A row is left out, with line and reason in Telemetry::rejected, if a known column holds text, NaN,
+/// infinity or a value outside its range (load <= 0, sinkage outside [0, 2r), slip outside [-1, 1], ...), if
+/// a required field is empty, or if the row has a wrong number of fields. In unknown columns NaN is a missing
+/// value. Memory holds the columns, never the whole file. Throws InputError if the file cannot be read, has
+/// no header, has a column twice or in another unit or spelling (column_units.hpp), lacks a required column,
+/// or has no usable row.
 Telemetry readTelemetry(const TableFile& table, const TelemetryOptions& options = {},
                         const ProgressMonitor& watch = {});
 

@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace {
 
-/// A unit, its kind, and the factor to the kind's SI unit.
+/// Unit, its kind, and the factor to the SI unit of the kind.
 struct Unit {
   std::string_view name;
   char kind;

@@ -14,7 +14,7 @@
 namespace talus::terramech {
 namespace {
 
-// The wheel of each row: the rover's, or the file's own.
+// Returns the wheel of each row: that of the option `rover`, otherwise that of the file's columns.
 std::vector<Wheel> wheelsOf(const Telemetry& table, const WheelRowOptions& options) {
   if (!options.rover.empty()) return {table.size(), loadRover(options.rover).wheel};
   const auto* radius = table.find("wheel_radius_m");
@@ -57,7 +57,8 @@ std::optional<std::string> unusable(const WheelSample& s, const Wheel& wheel, do
   return std::nullopt;
 }
 
-// What a row with a side force lacks; 0 says that the wheel ran straight.
+// Returns why a row with a side force but without a slip angle is rejected; slip angle 0 marks a straight
+// wheel.
 std::string angleFault(const Telemetry& table, std::size_t row) {
   const auto* force = table.find("side_force_N");
   const auto* angle = table.find("slip_angle_rad");
@@ -70,7 +71,7 @@ std::string angleFault(const Telemetry& table, std::size_t row) {
       (*force)[row]);
 }
 
-// Moves each row with a fault, of as many as there are rows, to the rejected ones.
+// Moves each row with a fault to the rejected rows; `faults` has one text per row.
 void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   for (std::size_t row = 0; row < faults.size(); ++row) {
     if (faults[row].empty()) continue;
@@ -88,7 +89,7 @@ void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   keep(t.lines);
 }
 
-// Of a reader of load, torque, sinkage and slip of straight wheels; a shear modulus is the caller's.
+// Numeric columns not used by an estimator of straight wheels. The shear modulus is used by the caller.
 std::vector<std::string> ignoredOf(const Telemetry& table) {
   constexpr std::string_view kRead[] = {"load_N",         "torque_Nm",      "sinkage_m",
                                         "slip",           "slip_angle_rad", "side_force_N",

@@ -26,7 +26,7 @@ std::string shortened(const std::string& word) {
 struct YamlFields::State {
   YAML::Node node;
   std::string origin;
-  std::string what;  // "" at the root, else the name it stands under
+  std::string what;  // "" at the root, otherwise the name of the mapping
 
   std::string where(int line) const { return line < 0 ? origin : origin + ":" + std::to_string(line + 1); }
 };
@@ -37,7 +37,7 @@ namespace {
   throw InputError({.where = where, .reason = reason, .remedy = remedy});
 }
 
-/// A value of the mapping and the factor from the unit that it is stated in.
+/// Value of a field, and the factor from the unit in the file.
 struct Found {  // NOLINT(bugprone-exception-escape): of YAML::Node
   YAML::Node value;
   double factor = 1.0;
@@ -50,7 +50,7 @@ double moduliFactor(std::string_view suffix) {
   return 0.0;
 }
 
-/// Factor by which a key of the file states a field, 0 when it is another field.
+/// Returns the factor from the unit of a key in the file to that of a field; 0 if the key is another field.
 double factorOf(const std::string& key, const std::string& name) {
   if (key == name) return 1.0;
   if (name.ends_with("_modulus"))
@@ -64,7 +64,7 @@ double factorOf(const std::string& key, const std::string& name) {
   return conversion(given, unit).value_or(0.0);
 }
 
-// A tree of yaml-cpp takes up to 360 bytes for each byte of text ("{a},{a}"): 94 MB.
+// A yaml-cpp tree takes up to 360 bytes per byte of text ("{a},{a}"): 94 MB.
 constexpr std::size_t kMostBytes = std::size_t{256} << 10U;
 
 std::string kindOf(const YAML::Node& node) {
@@ -73,7 +73,7 @@ std::string kindOf(const YAML::Node& node) {
   return node.IsNull() ? "empty" : "'" + shortened(node.Scalar()) + "'";
 }
 
-/// Length of the UTF-8 letter that a text begins with; 0 where it begins with none, or with NUL.
+/// Returns the length of the UTF-8 character at the start of a text; 0 if there is none, or a NUL.
 std::size_t letterBytes(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -96,7 +96,7 @@ bool isText(std::string_view text) {
   return true;
 }
 
-/// A word of the file; one that is empty or no text has no meaning anywhere.
+/// Returns a text value of the file. Throws InputError if it is empty or not UTF-8.
 std::string wordOf(const YAML::Node& node, const std::string& where, const std::string& name) {
   const std::string& word = node.Scalar();
   if (!isText(word)) fail(where, name + " holds bytes that are no UTF-8 text", "save it as UTF-8");
@@ -105,7 +105,7 @@ std::string wordOf(const YAML::Node& node, const std::string& where, const std::
   return word;
 }
 
-/// Whether a marker parts what it holds: no content, quoted or not, has one at the beginning of a line.
+/// Returns whether a document marker separates content; a line of content never begins with a marker.
 bool holdsMoreDocuments(const std::string& yaml) {
   std::istringstream lines(yaml);
   bool content = false, ended = false;
@@ -181,7 +181,7 @@ YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) 
 
 namespace {
 
-/// The value that states a field, in whatever unit; throws when two do.
+/// Returns the value of a field in any unit. Throws InputError if the field is given twice.
 template <class State>
 std::optional<Found> findValue(const State& state, const std::string& name) {
   std::optional<Found> found;

@@ -16,7 +16,7 @@ int rankOf(double dp, const CategoryThresholds& t) {
   return dp > t.dp_high ? kSafe : kMarginal;
 }
 
-/// Ranks lost to a quantity that should stay small.
+/// Levels lost to a quantity that should stay small.
 int demotion(double value, std::optional<double> threshold, std::optional<double> critical) {
   if (critical && value > *critical) return kDangerous;
   return threshold && !(value < *threshold) ? 1 : 0;

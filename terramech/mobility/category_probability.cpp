@@ -18,13 +18,13 @@ double density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
 }
 
-/// A quantity falls into one of three bands; `low` and `high` part them.
+/// Limits of the middle one of the three bands of a quantity.
 struct Bands {
   double low, high;
 };
 
-/// Bounds of band k in standard deviations from the mean. A known quantity (std 0) lies in its band surely:
-/// its bounds are put at plus and minus infinity or at one of them.
+/// Limits of a band in standard deviations from the mean. An exact quantity (std 0) is inside its band with
+/// probability 1: the limits are -infinity and infinity; for the other bands both are infinity.
 Bands standardised(Bands edges, int band, double mean, double std, int known_band) {
   if (std == 0.0) return band == known_band ? Bands{-kInfinity, kInfinity} : Bands{kInfinity, kInfinity};
   const double low = (edges.low - mean) / std, high = (edges.high - mean) / std;
@@ -40,7 +40,7 @@ void check(const ConditionBelief& belief) {
   range.within("correlation", belief.correlation, {-1.0, 1.0});
 }
 
-/// The category of the middle of a pair of bands, torque and slip included.
+/// Category of a pair of bands of DP/W and z/r, with the torque and slip of the mean.
 Category categoryOf(const ConditionBelief& belief, const CategoryThresholds& t, int pull_band,
                     int sinkage_band) {
   WheelCondition condition = belief.mean;
@@ -56,7 +56,7 @@ Category categoryOf(const ConditionBelief& belief, const CategoryThresholds& t, 
 }  // namespace
 
 double probability(const NormalRectangle& q) {
-  // int phi(y) [Phi((x2 - rho y)/s) - Phi((x1 - rho y)/s)] dy, panels no wider than the steps of Phi.
+  // int phi(y) [Phi((x2 - rho y)/s) - Phi((x1 - rho y)/s)] dy, in panels no wider than the transition of Phi.
   constexpr auto kRule = gaussLegendre<8>();
   const double rho = std::clamp(q.correlation, -0.999, 0.999), s = std::sqrt(1.0 - rho * rho);
   const double low = std::max(q.y1, -8.5), high = std::min(q.y2, 8.5);

@@ -6,23 +6,24 @@
 
 namespace talus::terramech {
 
-/// The estimate of a wheel at the reference slip: DP/W and z/r Gaussian; torque and slip as they are.
+/// Estimate of a wheel at the reference slip: DP/W and z/r are jointly Gaussian, torque and slip are exact.
 struct ConditionBelief {
-  WheelCondition mean;                      ///< its drawbar pull and sinkage are means
-  double drawbar_pull_over_load_std = 0.0;  ///< [-] >= 0; 0: known
-  double sinkage_over_radius_std = 0.0;     ///< [-] >= 0; 0: known
-  double correlation = 0.0;                 ///< of the two, (-1, 1)
+  WheelCondition mean;                      ///< drawbar pull and sinkage are means
+  double drawbar_pull_over_load_std = 0.0;  ///< [-] >= 0; 0: exactly known
+  double sinkage_over_radius_std = 0.0;     ///< [-] >= 0; 0: exactly known
+  double correlation = 0.0;                 ///< of DP/W and z/r, in [-1, 1]; limited to +-0.999
 };
 
-/// Probabilities of Safe, Marginal and Dangerous; they add up to 1.
+/// Probabilities of Safe, Marginal and Dangerous, with sum 1.
 using CategoryProbability = std::array<double, 3>;
 
-/// How likely each category of categorise() is under the belief: what the thesis' future work leaves to fuzzy
-/// sets. Error below 1e-6 for |correlation| <= 0.999. Throws std::invalid_argument when a field leaves its
-/// range or is NaN.
+/// Returns the probability of each category of categorise() (future work in the thesis, there by fuzzy sets).
+/// Error below 1e-6 for |correlation| <= 0.999. Throws std::invalid_argument if DP/W, z/r, a standard
+/// deviation, the correlation or a limit is outside its range or NaN.
 CategoryProbability categoryProbability(const ConditionBelief& belief, const CategoryThresholds& thresholds);
 
-/// P(x1 <= X < x2, y1 <= Y < y2) for standard normal X, Y of that correlation; bounds may be infinite.
+/// Rectangle x1 <= X < x2, y1 <= Y < y2 for standard normal X, Y with a correlation; bounds may be infinite.
+/// probability() returns its probability.
 struct NormalRectangle {
   double x1, x2, y1, y2, correlation;
 };

@@ -11,20 +11,20 @@
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
-/// A wheel somewhere.
+/// Load, slip and slope of a wheel.
 struct WheelStation {
   double load_N;
   double slip;
   double slope_rad;
 };
 
-/// Forces there; none where the soil cannot carry the wheel.
+/// Returns the forces of a wheel; empty if the soil cannot carry it.
 using CarriedForces = std::function<std::optional<WheelForces>(const WheelStation&)>;
 
-/// Forces of a wheel on its axle, for the record.
+/// Returns the forces of a wheel sunk to its axle.
 using AxleForces = std::function<WheelForces(const WheelStation&)>;
 
-/// How a curve asks for forces.
+/// Sources of the forces for a mobility curve.
 struct MobilitySolver {
   CarriedForces carried;
   AxleForces on_axle;
@@ -32,15 +32,15 @@ struct MobilitySolver {
 
 namespace {
 
-/// One steady drive: the slope that a slip holds on.
+/// Steady drive: slope, slip and forces.
 struct Drive {
   double slip;
   double slope_rad;
   WheelForces wheel;
 };
 
-/// The slope on which a wheel at this slip drives steadily: DP(i, W cos alpha) = W sin alpha. A fixed point,
-/// since DP/N hardly depends on the load N. None where the soil cannot carry the wheel.
+/// Returns the steady drive at a given slip: DP(i, W cos alpha) = W sin alpha. Fixed-point iteration, because
+/// DP/N hardly depends on the load N. Empty if the soil cannot carry the wheel.
 std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, double slip) {
   const double weight_N = wheelLoad_N(rover);
   Drive drive{slip, 0.0, {}};
@@ -57,8 +57,8 @@ std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, d
   return drive;
 }
 
-/// Drives at rising slip, as far as there is one: those whose slope goes beyond all before, upwards
-/// (sign 1) or downwards (sign -1).
+/// Appends drives at the given slips until one has no solution. Keeps only drives with a slope beyond all
+/// before, uphill (sign 1) or downhill (sign -1).
 void follow(const CarriedForces& carried, const Rover& rover, const std::vector<double>& slips, double sign,
             std::vector<Drive>& drives) {
   for (const double slip : slips) {
@@ -69,7 +69,7 @@ void follow(const CarriedForces& carried, const Rover& rover, const std::vector<
   }
 }
 
-/// Slips of the table: closer near 0, where slope changes fastest with slip, and near 1.
+/// Slips of the table: denser close to 0, where the slope changes fastest with slip, and close to 1.
 std::vector<double> drivenSlips() {
   std::vector<double> slips;
   for (int k = 0; k <= 40; ++k) slips.push_back(0.5 * (1.0 - std::cos(std::numbers::pi * k / 40.0)));
@@ -82,7 +82,7 @@ std::vector<double> brakedSlips() {
   return slips;
 }
 
-/// All steady drives, slope strictly rising.
+/// Returns all steady drives in the order of increasing slope.
 std::vector<Drive> steadyDrives(const CarriedForces& carried, const Rover& rover) {
   std::vector<Drive> up, down;
   follow(carried, rover, drivenSlips(), 1.0, up);
@@ -101,7 +101,7 @@ CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
   };
 }
 
-/// What a model says of a wheel of a rover at full speed.
+/// Returns the prediction of a model for a wheel of a rover at maximum rim speed.
 WheelForces predicted(const RefinedModel& model, const Rover& rover, const WheelStation& at, int pass) {
   WheelState state;
   state.wheel = rover.wheel;
@@ -119,7 +119,7 @@ WheelForces predicted(const RefinedModel& model, const Rover& rover, const Wheel
           .drawbar_pull_N = reading.drawbar_pull_N};
 }
 
-/// The mean wheel of axles that follow one another, sunk as the first.
+/// Returns the mean torque and pull of consecutive axles, with the sinkage of the first.
 WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const WheelStation& at,
                         const MobilityOptions& options) {
   WheelForces mean = predicted(model, rover, at, options.first_pass);
@@ -132,7 +132,7 @@ WheelForces meanOfAxles(const RefinedModel& model, const Rover& rover, const Whe
   return mean;
 }
 
-/// Of a wheel on a soil; both are to outlive it.
+/// Returns the solver of a wheel on a soil; soil and rover must outlive it.
 MobilitySolver solverOf(const Soil& soil, const Rover& rover) {
   validate(soil);
   return {carriedBy(soil, rover.wheel), [&](const WheelStation& at) {
@@ -142,7 +142,7 @@ MobilitySolver solverOf(const Soil& soil, const Rover& rover) {
           }};
 }
 
-/// The ground of a model, without effects of sensors.
+/// Returns a model without sensor errors.
 RefinedModel groundOf(const RefinedModel& model) {
   validate(model.soil);
   if (model.base == BaseModel::LinearFormula)
@@ -152,7 +152,7 @@ RefinedModel groundOf(const RefinedModel& model) {
   return withoutSensors(model);
 }
 
-/// Of the axles of a rover on the ground of a model; all are to outlive it.
+/// Returns the solver of the axles of a rover with a model; all arguments must outlive it.
 MobilitySolver solverOf(const RefinedModel& ground, const Rover& rover, const MobilityOptions& options) {
   const AxleForces forces = [&](const WheelStation& at) { return meanOfAxles(ground, rover, at, options); };
   return {[&rover, forces](const WheelStation& at) -> std::optional<WheelForces> {
@@ -242,7 +242,7 @@ MobilityState MobilityCurve::at(double slope_rad) const noexcept {
   state.sinkage_m = sinkage_m_.at(slope_rad);
   state.torque_Nm = torque_Nm_.at(slope_rad);
   state.speed_mps = rover_.max_speed_mps * (1.0 - std::max(state.slip, 0.0));
-  // P = count T omega + P_hotel with omega = v / (r (1 - i)); a braking wheel gives nothing back.
+  // P = count T omega + P_hotel with omega = v / (r (1 - i)); braking recovers no energy.
   const double drive_J_per_m = std::max(state.torque_Nm, 0.0) * rover_.wheel_count *
                                (state.slip < 0.0 ? 1.0 + state.slip : 1.0 / (1.0 - state.slip)) /
                                rover_.wheel.radius_m;

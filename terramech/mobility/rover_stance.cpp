@@ -39,7 +39,7 @@ RoverStance::RoverStance(const Rover& rover)
 }
 
 RoverStance::Loads RoverStance::shares(const Planar& demand) const {
-  // Where the weight's line meets the plane.
+  // Intersection of the line of the weight with the plane.
   const Planar at{centre_m_.x - height_m_ * demand.x, centre_m_.y - height_m_ * demand.y};
   Loads shares{};
   bool lifts = false;
@@ -56,7 +56,7 @@ RoverStance::Loads RoverStance::lifted(const Planar& at, Loads shares) const {
   for (int k = 0; k < wheels_; ++k)
     down[static_cast<std::size_t>(k)] = shares[static_cast<std::size_t>(k)] >= 0.0;
   for (int round = 0; round < wheels_; ++round) {
-    // Least squares under sum N = 1, sum N x = at.x, sum N y = at.y: N = A^T (A A^T)^-1 (1, at).
+    // Least squares with sum N = 1, sum N x = at.x, sum N y = at.y: N = A^T (A A^T)^-1 (1, at).
     Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
     const auto row = [&](std::size_t i) { return Eigen::Vector3d{1.0, position_m_[i].x, position_m_[i].y}; };
     for (std::size_t i = 0; i < static_cast<std::size_t>(wheels_); ++i)

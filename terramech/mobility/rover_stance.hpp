@@ -4,45 +4,43 @@
 
 #include <talus/terramech/contact/rover.hpp>
 
-/// How a rover stands on an inclined plane: where its wheels are, what each carries, how far it is from
-/// tipping.
+/// Rover on an inclined plane: wheel positions, wheel loads and distance from tip-over.
 namespace talus::terramech {
 
-/// Components along two axes of a rover: x ahead, y to the left.
+/// Components in two directions: x forward, y to the left.
 struct Planar {
   double x = 0.0;
   double y = 0.0;
 };
 
-/// Loads of a rover's wheels on a plane. Wheels stand in pairs, axles evenly from the front to the back of
-/// the wheelbase, and share the load so that the sum of squares is least, as a suspension that evens loads
-/// does: with two axles that is N = m g cos(alpha) (1/4 +- ...), the textbook's transfer in pitch and in
-/// roll. Immutable; thread-safe.
+/// Loads of the wheels of a rover on a plane. Wheels are in pairs on axles evenly spaced over the wheelbase.
+/// The loads have the least sum of squares, as with a load-equalising suspension; for two axles N = m g
+/// cos(alpha) (1/4 +- ...), the textbook's load transfer in pitch and roll. Immutable; thread-safe.
 class RoverStance {
  public:
   static constexpr int kMostWheels = 12;
   using Loads = std::array<double, kMostWheels>;
 
-  /// Throws std::invalid_argument when a field leaves its range, or wheels.count is not even, 4 to 12.
+  /// Throws std::invalid_argument if a field is outside its range, or wheels.count is not even or not in [4,
+  /// 12].
   explicit RoverStance(const Rover& rover);
 
   int wheels() const { return wheels_; }
 
-  /// Where wheel k stands from the middle of the wheels [m]; front left, front right, then the next axle.
+  /// Returns the position of wheel k from the middle of the wheels [m]; order: front left, front right, next
+  /// axle.
   Planar position_m(int wheel) const { return position_m_[static_cast<std::size_t>(wheel)]; }
 
-  /// Where the centre of mass stands above the ground's plane [m].
+  /// Returns the position of the centre of mass, projected on the ground plane [m].
   Planar centre_m() const { return centre_m_; }
 
-  /// Share of the force normal to the plane that each wheel carries; they add up to 1. `demand` is the weight
-  /// along the plane over the weight normal to it that the ground must hold, per axis: tan(slope), uphill
-  /// positive. Weight moves by height times demand downhill. A wheel that would be pulled down carries
-  /// nothing, the others all.
+  /// Returns the fraction of the normal force on each wheel, with sum 1. `demand` is the tangential over the
+  /// normal component of the weight per direction: tan(slope), uphill positive. Load shifts downhill by
+  /// height times demand. A wheel that would need a negative load has load 0.
   Loads shares(const Planar& demand) const;
 
-  /// The angle [rad] by which the plane may still tilt, to the edge that is nearest, before the centre of
-  /// mass passes over it; < 0: the rover has tipped (static stability). NaN where the height is 0, which
-  /// counts as unknown.
+  /// Returns the angle [rad] by which the plane may tilt further before the centre of mass passes the nearest
+  /// edge (static stability); negative: tipped over. NaN if the height is 0, which means unknown.
   double stabilityMargin_rad(const Planar& demand) const;
 
  private:

@@ -4,18 +4,19 @@
 
 namespace talus::terramech {
 
-/// How much stiffer soil is when it is loaded again by a driven wheel. On reloading by a plate it is some
-/// tens of times stiffer than at first (wong_2001, response to repetitive loading), but a wheel that slips
-/// goes on digging: the second one is known to meet about half the first one's resistance, which grows with
-/// the root of the sinkage. Ours, number unverified [-].
+/// Stiffness of soil on reloading by a driven wheel, relative to the first loading [-] (ours, number
+/// unverified). Reloaded by a plate, soil is some tens of times stiffer (wong_2001, response to repetitive
+/// loading), but a slipping wheel continues to dig. The second wheel is known to have about half the
+/// resistance of the first, which grows with the root of the sinkage.
 inline constexpr double kReloadStiffness = 4.0;
 
-/// By how much less displacement its shear strength is mobilised there: compacted soil has a smaller K
-/// (senatore_sandu_2011 let it fall with density). Ours: as the contact shortens, sqrt(kReloadStiffness) [-].
+/// Divisor of the shear modulus K on reloading [-]. Compacted soil has a smaller K (in senatore_sandu_2011 K
+/// falls with density). Ours: sqrt(kReloadStiffness), as the contact shortens.
 inline constexpr double kReloadShear = 2.0;
 
-/// The soil as a wheel meets it in the rut of an equal one: compacted, so that it sinks less and
-/// pays less for compaction, and of the same strength (ours: what cohesion and friction gain is left out).
+/// Returns the soil in the rut of an equal wheel: stiffer moduli and smaller K, so that sinkage and
+/// compaction resistance are smaller. Cohesion and friction angle are unchanged (ours: their gain is
+/// neglected).
 Soil rutted(const Soil& soil);
 
 }  // namespace talus::terramech

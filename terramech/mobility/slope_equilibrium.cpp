@@ -14,9 +14,10 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kSunk = 0.999;  // z/r
+constexpr double kSunk = 0.999;  // z/r of a wheel sunk to its axle
 
-/// Forces in the direction of the way made good, from a wheel whose plane lies beta to the right of it.
+/// Returns the force components along and across the direction of travel, for a wheel plane at angle beta to
+/// the right of that direction.
 Planar turned(double along_wheel, double across_wheel, double beta) {
   const double c = std::cos(beta), s = std::sin(beta);
   return {along_wheel * c + across_wheel * s, across_wheel * c - along_wheel * s};
@@ -55,20 +56,20 @@ class SlopeEquilibrium::Solver {
   }
 
  private:
-  /// What is sought: slip, slip angle, and the difference that takes the yaw moment.
+  /// Unknowns: slip, slip angle, and the steering or slip difference that balances the yaw moment.
   struct Unknowns {
     double slip = 0.0, angle_rad = 0.0, difference = 0.0;
   };
 
-  /// Forces along and across over the normal force, less the demand, and the yaw moment over it and the half
-  /// wheelbase; with derivatives by the unknowns, loads kept.
+  /// Residuals of the force balance along and across, over the normal force, and of the yaw moment over
+  /// normal force and half wheelbase; derivatives by the unknowns at constant loads.
   struct Balance {
     Eigen::Vector3d rest = Eigen::Vector3d::Zero();
     Eigen::Matrix3d by = Eigen::Matrix3d::Zero();
   };
 
-  /// What the table's own nodes say under even loads: the first slip angle at which the demand is met, and how
-  /// far it could go.
+  /// Result of a scan of the table's nodes under even loads: initial values at the first slip angle that
+  /// meets the demand, and the largest lateral force.
   struct Scan {
     bool found = false, pulls = false;
     Unknowns start;
@@ -99,8 +100,8 @@ double SlopeEquilibrium::Solver::normal_N(const Gradient& g) const noexcept {
   return rover_.mass_kg * rover_.gravity_m_s2 / std::sqrt(1.0 + g.along * g.along + g.across * g.across);
 }
 
-/// Of a demand in the body's axes. Beyond 0.97 of the way to tipping they stay: with all weight on one axle or side nothing would
-/// tell whether the ground holds.
+/// Load shares for a demand in body axes. The demand is limited to 0.97 of tip-over, because grip cannot be
+/// assessed with all weight on one axle or side.
 RoverStance::Loads SlopeEquilibrium::Solver::shares(const Planar& demand) const noexcept {
   constexpr double kMost = 0.97;
   const Planar centre = stance_.centre_m();
@@ -115,7 +116,7 @@ RoverStance::Loads SlopeEquilibrium::Solver::shares(const Planar& demand) const 
   return stance_.shares({part * demand.x, part * demand.y});
 }
 
-/// How a wheel's slip and slip angle follow from the difference.
+/// Slip and slip angle of a wheel for the given unknowns.
 WheelMotion SlopeEquilibrium::Solver::motionOf(int wheel, const Unknowns& u) const noexcept {
   const Planar at = stance_.position_m(wheel);
   WheelMotion motion{0.0, u.slip, u.angle_rad};
@@ -132,7 +133,7 @@ WheelMotion SlopeEquilibrium::Solver::motionOf(int wheel, const Unknowns& u) con
 SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar& demand, double normal,
                                                                     const Unknowns& u) const noexcept {
   const bool crabs = rover_.steering == Steering::AllWheel, skids = rover_.steering == Steering::Skid;
-  // The body lies `turn` to the right of the way, with its own wheels.
+  // Body angle `turn` to the right of the direction of travel; the wheels turn with the body.
   const double turn = crabs ? 0.0 : u.angle_rad, c = std::cos(turn), s = std::sin(turn);
   const auto shares = this->shares({demand.x * c - demand.y * s, demand.x * s + demand.y * c});
   const double lever = 1.0 / stance_.position_m(0).x;
@@ -148,11 +149,11 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
     const Planar force = turned(f.value[kPullRatio], f.value[kSideRatio], beta);
     const Planar by_slip = turned(f.by_slip[kPullRatio], f.by_slip[kSideRatio], beta);
     Planar by_angle = turned(f.by_angle[kPullRatio], f.by_angle[kSideRatio], beta);
-    by_angle.x += force.y;  // the turning itself
+    by_angle.x += force.y;  // rotation of the force
     by_angle.y -= force.x;
     const Planar at = stance_.position_m(k), centre = stance_.centre_m();
     const double x = at.x - centre.x, y = at.y - centre.y;
-    // Where the wheel stands from the centre of mass along and across the way.
+    // Position of the wheel from the centre of mass, along and across the direction of travel.
     const Planar arm{lever * (x * c + y * s), lever * (y * c - x * s)};
     const double angle_by_difference = crabs   ? -0.5 * at.x / stance_.position_m(0).x
                                        : skids ? 0.0
@@ -169,8 +170,9 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
   return b;
 }
 
-/// For each angle of the table, towards the side that must be held, the least slip that gives the demand
-/// along, and the force across there; the first angle where that is enough.
+/// Scans the slip angles of the table towards the uphill side. For each angle, finds the least slip that
+/// meets the demand along, and the lateral force there; selects the first angle whose lateral force meets the
+/// demand across.
 SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& demand) const noexcept {
   const double side = demand.y < 0.0 ? -1.0 : 1.0, wanted = std::abs(demand.y);
   constexpr int kRolling = (WheelForcesTable::kSlips - 1) / 2;
@@ -180,7 +182,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
   for (int a = 0; a < WheelForcesTable::kAngles; ++a) {
     const double beta = WheelForcesTable::angleOf(a);
     const double c = std::cos(beta), s = std::sin(beta);
-    // Mirrored so that the way slides down to the right and the force holds to the left of it.
+    // Mirrored so that downhill is to the right and the lateral force acts to the left.
     const auto along = [&](int k) {
       return forces_.atNode(kPullRatio, k, a) * c + forces_.atNode(kSideRatio, k, a) * s;
     };
@@ -218,7 +220,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
   return out;
 }
 
-/// Newton's method with steps that stay in the table.
+/// Newton's method with steps limited to the table.
 bool SlopeEquilibrium::Solver::solve(const Planar& demand, double normal, Unknowns& u) const noexcept {
   constexpr double kClose = 1e-10, kSteepest = 1.04;
   for (int iteration = 0; iteration < 25; ++iteration) {
@@ -248,7 +250,7 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
   state.stability_margin_rad = stance_.stabilityMargin_rad(of_body);
   const auto shares = this->shares(of_body);
   const double radius = rover_.wheel.radius_m;
-  // All rims turn at the greatest speed that the fastest may have.
+  // The travel speed is limited by the fastest rim, at max_speed_mps.
   double power_W_per_mps = 0.0, fastest = 0.0;
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);
@@ -259,14 +261,14 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
     if (std::abs(torque) > std::abs(state.torque_Nm)) state.torque_Nm = torque;
     state.sinkage_m = std::max(state.sinkage_m, f.value[kSinkageRatio] * radius);
     state.side_force_over_load = std::max(state.side_force_over_load, std::abs(f.value[kSideRatio]));
-    // r omega over the speed of the way.
+    // r omega over travel speed.
     const double rim = std::cos(motion.slip_angle_rad) / std::max(travelRatio(motion.slip), 1e-9);
     fastest = std::max(fastest, rim);
     power_W_per_mps += std::max(torque, 0.0) * rim / radius;
   }
   state.speed_mps = rover_.max_speed_mps / std::max(fastest, 1.0);
   state.energy_J_per_m = power_W_per_mps + rover_.hotel_power_W / state.speed_mps;
-  // What the slip angle kept leaves along, at the nodes under even loads.
+  // Pull reserve at the current slip angle, from nodes under even loads.
   const double size = std::abs(u.angle_rad);
   double most = -std::numeric_limits<double>::infinity(), least = -most;
   for (double slip = -1.0; slip <= options_.max_slip + 1e-9; slip += WheelForcesTable::kSlipStep) {
@@ -300,8 +302,8 @@ SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept
   } else {
     const double rolling = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
     const bool sunk = rolling > kSunk || rolling * rover_.wheel.radius_m >= rover_.clearance_m;
-    state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // no turn of the body is known
-    // Even loads would hold it: what it asks most is what it lacks.
+    state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // body angle unknown
+    // Even loads would hold the rover: the larger demand counts as the failing one.
     const bool lacks_pull = !scanned.pulls || (scanned.found && std::abs(gradient.across) <= gradient.along);
     state.grip = sunk                                 ? SlopeFailure::Sinks
                  : lacks_pull && gradient.along > 0.0 ? SlopeFailure::CannotPull

@@ -7,112 +7,114 @@
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 
-/// A rover that drives steadily over an inclined plane in any direction: the slip and the slip angle at which
-/// its wheels hold it.
+/// Steady motion of a rover over an inclined plane in any direction: slip and slip angle at equilibrium.
 namespace talus::terramech {
 
 struct Planar;
 struct RefinedModel;
 
-/// The plane as the way over it sees it: rise over horizontal run [-].
+/// Gradient of the plane relative to the direction of travel: rise over horizontal run [-].
 struct Gradient {
   double along = 0.0;   ///< uphill > 0
   double across = 0.0;  ///< rising to the left > 0
 };
 
-/// What a rover must hold per unit of the force normal to the plane, along and across: a sqrt(1 + a^2 + c^2) / sqrt(1 + a^2) and
+/// Returns the force demand per normal force [-], along and across: a sqrt(1 + a^2 + c^2) / sqrt(1 + a^2) and
 /// c / sqrt(1 + a^2), for gradients a along and c across.
 Planar demandOf(const Gradient& gradient) noexcept;
 
-/// Choices behind an equilibrium.
+/// Options of an equilibrium.
 struct SlopeOptions {
-  double max_slip = 0.8;  ///< more counts as stuck, (0, 1], as MobilityOptions (ours)
+  double max_slip = 0.8;  ///< higher slip counts as immobilised, (0, 1], as MobilityOptions (ours)
   double max_slip_angle_rad =
-      0.7854;  ///< more counts as sliding, (0, 1.04]: wheels were held against data to 45 deg (ours)
+      /// Larger angle counts as sliding, (0, 1.04]; wheel model compared with data up to 45 deg (ours).
+      0.7854;
 };
 
-/// Why nothing holds.
+/// Reason why there is no equilibrium.
 enum class SlopeFailure {
-  None,        ///< it holds
-  Tips,        ///< the centre of mass passes over the wheels
+  None,        ///< equilibrium
+  Tips,        ///< the centre of mass passes the edge of the wheels
   Sinks,       ///< a wheel sinks to its axle, or by the rover's clearance
-  CannotPull,  ///< no slip up to max_slip pulls it up
-  Slides,      ///< the wheels do not hold it down or across the slope
-  Torque       ///< a wheel takes more torque than the rover has
+  CannotPull,  ///< no slip up to max_slip has enough drawbar pull uphill
+  Slides,      ///< the wheels do not hold the rover downhill or across the slope
+  Torque       ///< a wheel needs more than max_torque_Nm
 };
 
-/// "holds", "tips", "sinks", "cannot pull", "slides" or "torque".
+/// Returns "holds", "tips", "sinks", "cannot pull", "slides" or "torque".
 const char* name(SlopeFailure failure);
 
-/// A rover in steady motion over a plane, or the reason why there is none; the numbers below `failure` are
-/// then what was found until it failed.
+/// Steady motion over a plane, or the reason of failure. After a failure the numbers are those computed up to
+/// the failure.
 struct SlopeState {
   SlopeFailure failure = SlopeFailure::None;
   SlopeFailure grip =
-      SlopeFailure::None;  ///< the same of a rover that cannot tip: loads beyond are those shortly before
-  double stability_margin_rad =
-      0.0;            ///< RoverStance::stabilityMargin_rad() of the body as it lies on the plane
-  double slip = 0.0;  ///< of the wheels along their planes; the mean of left and right of a skid rover
+      SlopeFailure::None;  ///< failure without tip-over; loads are limited to those shortly before tip-over
+  double stability_margin_rad = 0.0;  ///< RoverStance::stabilityMargin_rad() at the body's angle on the plane
+  double slip = 0.0;                  ///< along the wheel planes; skid rover: mean of left and right
   double slip_angle_rad =
-      0.0;  ///< from the wheels' planes to the way made good, left positive; the mean of the axles
-  double steering_rad = 0.0;  ///< by which front wheels point further left than rear ones; of a skid rover 0
-  double slip_difference = 0.0;  ///< right less left wheels, of a skid rover
-  double body_turn_rad = 0.0;    ///< of the body from the way made good, left positive: 0 of one that crabs
-  double sinkage_m = 0.0;        ///< of the deepest wheel
-  double torque_Nm = 0.0;        ///< of the wheel with the greatest, signed
-  double side_force_over_load = 0.0;  ///< greatest |F|/N of a wheel
-  double energy_J_per_m =
-      0.0;  ///< all wheels and hotel power, per metre of way made good; braking gives none back
-  double speed_mps = 0.0;  ///< of the way made good, at the rover's greatest rim speed
+      0.0;  ///< from the wheel planes to the direction of travel, left positive; mean of the axles
+  /// Angle of front wheels minus that of rear wheels, left positive; 0 for a skid rover.
+  double steering_rad = 0.0;
+  double slip_difference = 0.0;  ///< right minus left wheels of a skid rover
+  /// From the direction of travel to the body, left positive; 0 for an all-wheel-steered rover.
+  double body_turn_rad = 0.0;
+  double sinkage_m = 0.0;             ///< of the deepest wheel
+  double torque_Nm = 0.0;             ///< largest in magnitude of all wheels, signed
+  double side_force_over_load = 0.0;  ///< largest |F|/N of a wheel
+  double energy_J_per_m = 0.0;  ///< all wheels and hotel power, per metre of travel; braking recovers none
+  double speed_mps = 0.0;       ///< travel speed at maximum rim speed
   double pull_reserve =
-      0.0;  ///< [-] by which the demand along could grow, or fall, with the slip angle kept; < 0: fails
+      0.0;  ///< [-] possible change of the demand along, up or down, at the same slip angle; < 0: fails
   double side_reserve =
-      0.0;  ///< [-] by which the demand across could grow with the demand along kept; < 0: fails
+      0.0;  ///< [-] possible increase of the demand across at the same demand along; < 0: fails
 
+  /// Returns whether there is an equilibrium without failure.
   bool holds() const { return failure == SlopeFailure::None; }
 };
 
-/// A wheel of it.
+/// State of one wheel at an equilibrium.
 struct WheelOnSlope {
   double load_N = 0.0;  ///< normal to the plane
   double slip = 0.0;
   double slip_angle_rad = 0.0;
   double sinkage_m = 0.0;
   double torque_Nm = 0.0;
-  double drawbar_pull_N = 0.0;  ///< along its plane
-  double side_force_N = 0.0;    ///< across it, left positive
+  double drawbar_pull_N = 0.0;  ///< along the wheel plane
+  double side_force_N = 0.0;    ///< across the wheel plane, left positive
 };
 
-/// Finds slip and slip angle for one ground and rover. The wheels' forces, turned into the direction of the
-/// way made good, balance the weight along and across it and leave no yaw moment about the centre of mass,
-/// under loads with transfer in pitch and roll (iagnemma_dubowsky_2004, ishigami_2009: quasi-static). Per
-/// unit of the force normal to the plane they must give a sqrt(1 + a^2 + c^2) / sqrt(1 + a^2) along and c /
-/// sqrt(1 + a^2) across, for gradients a along and c across. Unknowns: slip and slip angle, the same of all
-/// wheels, and for the yaw moment, by the kind of steering,
-///   all wheels steer   the body keeps to the way, front and rear wheels steer apart;
+/// Equilibrium of slip and slip angle for one ground and one rover. The wheel forces, resolved along and
+/// across the direction of travel, balance the weight components and have no yaw moment about the centre of
+/// mass, with load transfer in pitch and roll (iagnemma_dubowsky_2004, ishigami_2009: quasi-static). The
+/// demand per normal force is demandOf(). Unknowns are slip and slip angle, equal for all wheels, and one
+/// difference for the yaw moment, by the kind of steering:
+///   all wheels steer   the body stays in the direction of travel, front and rear wheels steer differently;
 ///   ackermann          the body turns with the rear wheels, the front wheels steer;
-///   skid               the body turns with the wheels, left and right wheels slip apart.
-/// Of several equilibria the one with the least slip angle, and there the least slip, is taken. Driving is
-/// slip > 0, braking < 0. No wheel follows another's track. Limits of pitch and roll are not looked at.
-/// Immutable, cheap to copy, thread-safe.
+///   skid               the body turns with the wheels, left and right wheels have different slip.
+/// Of several equilibria the result has the least slip angle, and then the least slip. Slip > 0 is driven, <
+/// 0 braked. No wheel follows the track of another. Pitch and roll limits are not checked. Immutable, cheap
+/// to copy, thread-safe.
 class SlopeEquilibrium {
  public:
-  /// Throws std::invalid_argument for a soil or rover out of its range and when an option leaves its own.
+  /// Throws std::invalid_argument if soil, rover or an option is outside its range.
   SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options = {});
   SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options = {});
 
+  /// Returns the steady motion over a plane, or the reason of failure.
   SlopeState at(const Gradient& gradient) const noexcept;
 
-  /// Each wheel of a state that holds, front to rear, left before right.
+  /// Returns each wheel of a state that holds, front to rear, left before right.
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
 
-  /// One wheel under its even share of the weight on the flat; slip within [-1, 1], slip angle within 60 deg.
+  /// Returns one wheel under its even load on level ground; slip in [-1, 1], slip angle within 60 deg.
   WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept;
 
-  /// Whether the rover is alike on its left and right.
+  /// Returns whether the rover is symmetric about its longitudinal axis.
   bool symmetric() const noexcept;
 
-  /// The same wheels on a rover that no slope moves load in: its centre of mass on the ground, in the middle.
+  /// Returns the equilibrium without load transfer: centre of mass on the ground, in the middle of the
+  /// wheels.
   SlopeEquilibrium withEvenLoads() const;
 
  private:
@@ -121,7 +123,8 @@ class SlopeEquilibrium {
   std::shared_ptr<const Solver> solver_;
 };
 
-/// What is taken for granted where a rover file leaves it open, one sentence each; empty where nothing is.
+/// Returns the assumptions made for missing values of a rover file, one sentence each; empty if none is
+/// missing.
 std::vector<std::string> slopeAssumptions(const Rover& rover);
 
 }  // namespace talus::terramech

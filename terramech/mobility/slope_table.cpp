@@ -22,7 +22,7 @@ constexpr std::array kNumbers{&SlopeState::stability_margin_rad,
                               &SlopeState::pull_reserve,
                               &SlopeState::side_reserve};
 
-/// The same on the mirrored plane: what points to a side changes sign.
+/// Returns the state on the mirrored plane: lateral quantities change sign.
 SlopeState mirror(SlopeState state) {
   for (auto field : {&SlopeState::slip_angle_rad, &SlopeState::steering_rad, &SlopeState::slip_difference,
                      &SlopeState::body_turn_rad})

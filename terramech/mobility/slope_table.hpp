@@ -6,21 +6,21 @@
 
 namespace talus::terramech {
 
-/// How finely a ground is tabulated.
+/// Options of a SlopeTable.
 struct SlopeTableOptions {
   SlopeOptions slope;
-  double step = 0.03;          ///< between nodes, rise over run, (0, 0.5]
-  double max_gradient = 0.75;  ///< in each of the two directions, (0, 2]; beyond it nothing is said to hold
+  double step = 0.03;          ///< node spacing, rise over run, [1e-3, 0.5]
+  double max_gradient = 0.75;  ///< in both directions, [step, 2]; beyond it every state fails
 };
 
-/// The equilibria of one ground and rover over gradients along and across: what a cost reads. What lies
-/// between nodes is taken from the four about it, and holds only where they all hold: never where the exact
-/// equilibrium fails at one of them, so it gives up less than one step of gradient and, but for an island
-/// smaller than a cell, allows nothing that fails. Numbers are interpolated; the reason is that of the first
-/// corner that fails. Immutable; thread-safe.
+/// Equilibria of one ground and rover, tabulated over the gradients along and across, for cost functions. A
+/// state between nodes holds only if all four surrounding nodes hold. The table therefore rejects less than
+/// one step of gradient that would hold, and accepts no failing gradient except inside a cell with four
+/// holding corners. Numbers are interpolated; the failure is that of the first failing corner; `grip` is not
+/// tabulated. Immutable; thread-safe.
 class SlopeTable {
  public:
-  /// Throws std::invalid_argument as SlopeEquilibrium, and when an option leaves its range.
+  /// Throws std::invalid_argument if an option is outside its range.
   explicit SlopeTable(const SlopeEquilibrium& equilibrium, const SlopeTableOptions& options = {});
 
   SlopeState at(const Gradient& gradient) const noexcept;
@@ -35,7 +35,7 @@ class SlopeTable {
   SlopeState between(double along, double across) const noexcept;
 
   SlopeTableOptions options_;
-  bool mirrored_;  // left and right alike: only gradients that rise to the left are kept
+  bool mirrored_;  // symmetric rover: only gradients rising to the left are stored
   int reach_, columns_;
   std::vector<SlopeState> states_;
 };

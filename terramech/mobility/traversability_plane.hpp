@@ -7,15 +7,15 @@
 
 namespace talus::terramech {
 
-/// The picture of thesis Fig. 3.12: the category of every pair (T/(rW), z/r), and the lines that part them.
+/// Raster of categories over (T/(rW), z/r), as thesis Fig. 3.12.
 struct TraversabilityPlane {
-  double max_torque = 1.0;         ///< T/(rW) at the right edge [-]; 0 at the left
-  double max_sinkage = 1.0;        ///< z/r at the upper edge [-]; 0 at the lower
+  double max_torque = 1.0;         ///< T/(rW) at the right edge [-]; the left edge is 0
+  double max_sinkage = 1.0;        ///< z/r at the upper edge [-]; the lower edge is 0
   int columns = 0;                 ///< along T/(rW)
-  int rows = 0;                    ///< along z/r, from below
-  std::vector<Category> category;  ///< row by row, of the cells' centres
+  int rows = 0;                    ///< along z/r, from the lower edge
+  std::vector<Category> category;  ///< row by row, at the centres of the cells
 
-  /// T/(rW) and z/r of a cell's centre.
+  /// T/(rW) and z/r at the centre of a cell.
   double torqueAt(int column) const { return max_torque * (column + 0.5) / columns; }
   double sinkageAt(int row) const { return max_sinkage * (row + 0.5) / rows; }
   Category at(int column, int row) const {
@@ -23,24 +23,26 @@ struct TraversabilityPlane {
   }
 };
 
-/// DP/W [-] from T/(rW) and z/r: any estimator of drawbar pull, such as thesis Eq. 3.21, T/(rW) - z/r - 0.1.
+/// Returns DP/W [-] from T/(rW) and z/r: any estimator of drawbar pull, such as thesis Eq. 3.21, T/(rW) - z/r
+/// - 0.1.
 using PullFromTorqueAndSinkage =
     std::function<double(double torque_over_load_radius, double sinkage_over_radius)>;
 
-/// Size of the picture.
+/// Size of the raster.
 struct PlaneSize {
-  int columns = 200;         ///< >= 1
-  int rows = 200;            ///< >= 1
+  int columns = 200;         ///< in [1, 1e4]
+  int rows = 200;            ///< in [1, 1e4]
   double max_torque = 1.0;   ///< > 0 [-]
   double max_sinkage = 1.0;  ///< > 0 [-]
 };
 
-/// Categorises the whole plane. The torque criterion applies where the thresholds have one.
+/// Returns the category of every cell. The torque criterion applies if the thresholds have one. Throws
+/// std::invalid_argument if the thresholds or the size are outside their range.
 TraversabilityPlane traversabilityPlane(const PullFromTorqueAndSinkage& pull,
                                         const CategoryThresholds& thresholds, const PlaneSize& size = {});
 
-/// T/(rW) where DP/W reaches a threshold at z/r, by bisection in [0, max_torque]; NaN where it does not. The
-/// slanted lines of the picture.
+/// Returns T/(rW) at which DP/W reaches a threshold at z/r, by bisection in [0, max_torque]; NaN if there is
+/// no crossing. The slanted lines of the figure.
 double torqueForPull(const PullFromTorqueAndSinkage& pull, double pull_threshold, double sinkage_over_radius,
                      double max_torque);
 

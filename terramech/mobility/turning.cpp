@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace {
 
-// Of a wheel's place, over the wheels.
+// Mean over the axles of a function of the axle position x.
 template <typename Number>
 double meanOverAxles(const Rover& rover, Number number) noexcept {
   const int axles = std::max(1, rover.wheel_count / 2);

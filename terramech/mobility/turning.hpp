@@ -3,20 +3,20 @@
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 
-/// What it takes a rover to change its heading.
+/// Energy and time of a rover to change its heading.
 namespace talus::terramech {
 
-/// The ground that a rover turns on.
+/// Ground properties for a turn.
 struct TurningGround {
   double lateral_resistance =
       0.6;                    ///< lateral force over load of a wheel dragged sideways [-]; tan(phi) in soil
-  double bulldozing_N = 0.0;  ///< that the soil beside the sunk wheel adds for each wheel dragged, >= 0
-  double rolling_J_per_m = 0.0;  ///< of the whole rover on this ground, on the flat
+  double bulldozing_N = 0.0;  ///< additional bulldozing force on each wheel dragged sideways, >= 0
+  double rolling_J_per_m = 0.0;  ///< rolling energy of the whole rover on level ground
 };
 
-/// A radian of heading, beside the path's own length.
+/// Additional energy and time per radian of heading, apart from the length of the path.
 struct TurnEffort {
-  double energy_J = 0.0;  ///< >= 0, the hotel's included
+  double energy_J = 0.0;  ///< >= 0, includes hotel power
   double time_s = 0.0;    ///< >= 0
 };
 
@@ -24,20 +24,20 @@ struct TurnEfforts {
   TurnEffort on_arc, in_place;
 };
 
-/// Soil pushed aside by the side of a wheel that is dragged sideways [N]: passive earth pressure on the sunk
-/// part of its side, (rho g z^2 K_p / 2 + 2 c z sqrt(K_p)) l with K_p = tan^2(pi/4 + phi/2) after Rankine and
-/// l = 2 sqrt(2 r z - z^2), the chord of the wheel in the surface. Ours; deeper than the mean depth of the
-/// sunk side, so rather expensive.
+/// Returns the bulldozing force [N] on the side of a wheel dragged sideways, (rho g z^2 K_p / 2 + 2 c z
+/// sqrt(K_p)) l, with Rankine's passive earth pressure K_p = tan^2(pi/4 + phi/2) and the chord l = 2 sqrt(2 r
+/// z - z^2) of the wheel at the surface. Ours; the full depth z instead of the mean depth makes it
+/// conservative.
 double bulldozing_N(const Soil& soil, const Rover& rover, double sinkage_m) noexcept;
 
-/// For a rover whose wheels are evenly spaced on two rows. By Steering:
-///   Skid:                sum_k (mu N_k + B) |x_k|   each axle dragged sideways through |x_k| (wong_2001,
-///                                                   ch. 6, for wheels), on an arc as in place; in place
+/// Returns the efforts of a turn for a rover with evenly spaced wheels in two rows. Energy by Steering:
+///   Skid:                sum_k (mu N_k + B) |x_k|   each axle is dragged sideways through |x_k| (wong_2001,
+///                                                   ch. 6, for wheels), on an arc and in place; in place
 ///                                                   the rows also roll against each other, R_m b / 2
-///   Ackermann, AllWheel: R_m mean rho_k in place    each wheel rolls a circle about the centre, rho_k its distance from
-///                                                   that; nothing on an arc
-/// Time: no wheel exceeds max_speed_mps, so that on an arc the outer row takes (b/2) / v longer a radian, and
-/// in place max rho_k / v (Skid: (b/2) / v); the hotel's power is drawn meanwhile.
+///   Ackermann, AllWheel: R_m mean rho_k in place    each wheel rolls on a circle of radius rho_k about the
+///                                                   centre; nothing on an arc
+/// Time per radian: no wheel exceeds max_speed_mps, so that the outer row needs (b/2) / v more on an arc, and
+/// a turn in place takes max rho_k / v (Skid: (b/2) / v). Hotel power is consumed during that time.
 TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcept;
 
 }  // namespace talus::terramech

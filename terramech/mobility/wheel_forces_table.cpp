@@ -11,8 +11,8 @@ namespace talus::terramech {
 namespace {
 
 constexpr double kRightAngle = 1.5707963267948966;
-// Loads over the even one: what transfer in pitch and roll makes of it, up to a corner wheel of eight near tipping, and less on
-// a steep plane.
+// Loads of the table over the even load: the range of load transfer in pitch and roll, up to a corner wheel
+// of eight near tip-over, and of steep planes.
 constexpr std::array<double, WheelForcesTable::kLoads> kLoadShares{0.2, 0.6, 1.2, 2.4, 4.8};
 
 using Node = std::array<double, kWheelChannels>;
@@ -22,7 +22,7 @@ Node ratios(const WheelForces& f, double load_N, double radius_m) {
           f.sinkage_m / radius_m};
 }
 
-/// A wheel that the soil cannot carry: as it lies on its axle, sinkage 1.
+/// Forces of a wheel that the soil cannot carry: sunk to its axle, z/r = 1.
 Node onAxle(const Soil& soil, const Rover& rover, const WheelMotion& m) {
   const ImposedContact at = forcesAtEntry(
       soil, rover.wheel,
@@ -32,8 +32,8 @@ Node onAxle(const Soil& soil, const Rover& rover, const WheelMotion& m) {
   return node;
 }
 
-/// Weights of the four nodes about a point of an even grid, and their slopes per step: Catmull and Rom's
-/// cubic, with the grid continued evenly at its ends.
+/// Weights of the four nodes around a point of an even grid and their derivatives per step, by Catmull and
+/// Rom's cubic; the grid is extrapolated linearly at its ends.
 struct CubicWeights {
   int first;
   std::array<double, 4> value, slope;
@@ -60,7 +60,7 @@ CubicWeights cubic(double position, int nodes) {
   return w;
 }
 
-/// Lagrange's polynomial in the logarithm of the load.
+/// Weights of Lagrange's polynomial in the logarithm of the load.
 std::array<double, WheelForcesTable::kLoads> loadWeights(double share) {
   static const std::array<double, WheelForcesTable::kLoads> logs = [] {
     std::array<double, WheelForcesTable::kLoads> l{};
@@ -150,7 +150,7 @@ void WheelForcesTable::tabulate(const std::vector<Node>& nodes) {
     }
   };
   for (std::size_t l = 0; l < kLoads; ++l) {
-    add(l, 1, -1.0);  // the mirror of the first angle, before 0
+    add(l, 1, -1.0);  // mirror image of the first angle, before 0
     for (std::size_t a = 0; a < kAngles; ++a) add(l, a, 1.0);
   }
   const auto weights = loadWeights(1.0);

@@ -10,7 +10,7 @@
 
 namespace talus::terramech {
 
-/// What the soil does to a wheel, over its load or radius [-].
+/// Forces on a wheel over its load, and sinkage over its radius [-].
 enum WheelChannel {
   kPullRatio,
   kSideRatio,
@@ -19,38 +19,40 @@ enum WheelChannel {
   kWheelChannels
 };  // DP/N, F/N, T/(rN), z/r
 
-/// The channels at a point, and how they change there with slip and with slip angle.
+/// Values of the channels at a point, and their derivatives by slip and by slip angle [1/rad].
 struct WheelRatios {
   std::array<double, kWheelChannels> value{}, by_slip{}, by_angle{};
 };
 
-/// How a wheel is used, as WheelOperation.
+/// Load, slip and slip angle of a wheel, as WheelOperation.
 struct WheelMotion {
   double load_N = 0.0;
   double slip = 0.0;
   double slip_angle_rad = 0.0;
 };
 
-/// One wheel of a rover on one ground, tabulated over slip, slip angle and load: cubic in all three, so that
-/// the slope equilibrium of a rover solves no contact. Side force is odd in the slip angle, the rest even.
-/// Off the exact wheel by less than 0.015 in each channel, 0.001 in the median (WheelForcesTable.IsTheWheel).
-/// Immutable; thread-safe.
+/// Forces of one wheel of a rover on one ground, tabulated over slip, slip angle and load, so that a slope
+/// equilibrium needs no contact solution. Interpolation: cubic in slip and slip angle, degree 4 in the
+/// logarithm of the load. Side force is odd in the slip angle, the other channels even. Error below 0.015 in
+/// each channel, median 0.001 (WheelForcesTable.IsTheWheel). Immutable; thread-safe.
 class WheelForcesTable {
  public:
   static constexpr int kSlips = 41, kAngles = 16, kLoads = 5;
   static constexpr double kSlipStep = 0.05, kAngleStep_rad = 0.0698131700797732;  // 4 deg, to 60 deg
 
-  /// Under loads about the even share of the rover's weight; throws std::invalid_argument as wong_reece.hpp.
+  /// Tabulates loads around the even share of the rover's weight. Throws std::invalid_argument as
+  /// wong_reece.hpp.
   WheelForcesTable(const Soil& soil, const Rover& rover);
 
-  /// The same of a model with effects but those of its sensors, at the rover's speed, on fresh ground; 20
-  /// times slower.
+  /// Tabulates a model with effects, without sensor errors, at the rover's speed and pass 1; 20 times slower.
+  /// Throws std::invalid_argument also for the base linear-formula.
   WheelForcesTable(const RefinedModel& model, const Rover& rover);
 
-  /// Slip within [-1, 1], slip angle within 60 deg; loads beyond the table count as its ends.
+  /// Returns the interpolated channels; slip, slip angle and load are clamped to the table, [-1, 1], 60 deg
+  /// and 0.2 to 4.8 of the even load.
   WheelRatios at(const WheelMotion& motion) const noexcept;
 
-  /// Node of the table under the even load: slips from -1 up, angles from 0 up.
+  /// Returns a node under the even load; slips start at -1, angles at 0.
   double atNode(WheelChannel channel, int slip, int angle) const {
     return even_[static_cast<std::size_t>((angle * kSlips + slip) * kWheelChannels + channel)];
   }

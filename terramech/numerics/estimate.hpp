@@ -2,7 +2,7 @@
 
 namespace talus::terramech {
 
-/// A quantity that is not exactly known: its expected value and standard deviation, both in its unit.
+/// Expected value and standard deviation of an uncertain quantity, both in the unit of the quantity.
 struct Estimate {
   double value = 0.0;
   double std = 0.0;

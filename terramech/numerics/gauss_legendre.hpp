@@ -6,8 +6,8 @@
 
 namespace talus::terramech {
 
-/// Nodes on (0, 1) in ascending order and their weights, which add up to 1: exact for polynomials of degree 2
-/// N - 1.
+/// Gauss-Legendre rule on (0, 1): ascending nodes and weights with sum 1, exact for polynomials of degree 2 N
+/// - 1.
 template <std::size_t N>
 struct GaussLegendre {
   std::array<double, N> node{};
@@ -16,7 +16,7 @@ struct GaussLegendre {
 
 namespace detail {
 
-constexpr double cosine(double x) {  // |x| <= pi; only starts the Newton iteration below
+constexpr double cosine(double x) {  // |x| <= pi; initial values of the Newton iteration below only
   double term = 1.0, sum = 1.0;
   for (int k = 1; k < 16; ++k) sum += term *= -x * x / ((2.0 * k - 1.0) * (2.0 * k));
   return sum;

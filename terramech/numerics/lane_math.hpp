@@ -2,13 +2,14 @@
 
 #include <cstdint>
 
-/// Elementary functions on double or on four doubles at once, with the same bits in each lane: the same
-/// additions and multiplications in the same order, no table, no contraction. Private to the batch kernels,
-/// which inline them under their own target. Accuracy is what a wheel to 1e-7 needs, not the last bit.
-/// Arguments outside the stated range give a finite nonsense, never a trap.
+/// Elementary functions of one double or of four doubles at once, with identical bits in each lane: every
+/// lane executes the same additions and multiplications in the same order, without tables and without
+/// contraction. Private to the batch kernels, which inline the functions for their own target. The accuracy
+/// suffices for wheel forces to 1e-7, not to the last bit. Arguments outside the stated range give a finite,
+/// meaningless result and never trap.
 namespace talus::terramech::lanes {
 
-/// Four doubles in one vector register, where the machine has one.
+/// Four doubles, in one vector register where the machine has one.
 using Four = double __attribute__((vector_size(32)));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
 
@@ -27,7 +28,7 @@ struct Traits<Four> {
 
 #define TALUS_LANES [[gnu::always_inline]] inline
 
-/// Where the condition holds a, else b.
+/// Returns a in lanes where the condition holds, otherwise b.
 template <class Mask, class T>
 TALUS_LANES T pick(Mask condition, T a, T b) {
   return condition ? a : b;
@@ -39,12 +40,13 @@ TALUS_LANES T spread(double value) {
   return T{} + value;
 }
 
-/// e^x for x in [-700, 700], relative error below 2e-12: x = k ln 2 + f, e^f by a Chebyshev polynomial.
+/// e^x for x <= 700, relative error below 2e-12; x below -700 counts as -700. x = k ln 2 + f, e^f by a
+/// Chebyshev polynomial.
 template <class T>
 TALUS_LANES T exponential(T x) {
   using Bits = typename Traits<T>::Bits;
   constexpr double kRound =
-      6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number in the low bits
+      6755399441055744.0;  // 1.5 * 2^52: the addition rounds to an integer in the low bits
   x = pick(x < spread<T>(-700.0), spread<T>(-700.0), x);
   const T shifted = x * 1.4426950408889634 + kRound;
   const T k = shifted - kRound;
@@ -61,7 +63,7 @@ TALUS_LANES T exponential(T x) {
   return p * __builtin_bit_cast(T, power);
 }
 
-/// ln x for normal x > 0, error below 2e-12: x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m -
+/// ln x for normal x > 0, error below 2e-12. x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m -
 /// 1)/(m + 1)) by a Chebyshev polynomial.
 template <class T>
 TALUS_LANES T logarithm(T x) {
@@ -81,7 +83,8 @@ TALUS_LANES T logarithm(T x) {
   return e * 0.6931471805599453 + 2.0 * f * p;
 }
 
-/// 1 / sqrt x for normal x > 0, relative error below 1e-15: halved exponent, then Newton's method.
+/// 1 / sqrt x for normal x > 0, relative error below 1e-15: initial value by halving the exponent, then four
+/// Newton steps.
 template <class T>
 TALUS_LANES T inverseRoot(T x) {
   using Bits = typename Traits<T>::Bits;

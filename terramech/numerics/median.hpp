@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// The middle value, the upper of the two middle ones of an even number; 0 of none.
+/// Returns the median; for an even count the upper of the two middle values, for an empty vector 0.
 inline double medianOf(std::vector<double> v) {
   if (v.empty()) return 0.0;
   std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());

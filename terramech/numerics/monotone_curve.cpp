@@ -7,14 +7,14 @@
 namespace talus::terramech {
 namespace {
 
-/// Slope at a point between two intervals of widths w and secant slopes s: 0 at an extremum.
+/// Derivative at an inner point between intervals of widths w with secant slopes s; 0 at an extremum.
 double innerSlope(double w_left, double w_right, double s_left, double s_right) {
   if (s_left * s_right <= 0.0) return 0.0;
   const double a = (2.0 * w_right + w_left), b = (w_right + 2.0 * w_left);
   return (a + b) / (a / s_left + b / s_right);
 }
 
-/// Three-point slope at an end, kept from overshooting.
+/// Three-point derivative at an end point, limited so that the curve does not overshoot.
 double endSlope(double w_near, double w_far, double s_near, double s_far) {
   const double slope = ((2.0 * w_near + w_far) * s_near - w_near * s_far) / (w_near + w_far);
   if (slope * s_near <= 0.0) return 0.0;

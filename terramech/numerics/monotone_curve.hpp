@@ -4,20 +4,22 @@
 
 namespace talus::terramech {
 
-/// A continuously differentiable curve through points that adds no extremum between them: piecewise cubic
-/// with the harmonic-mean slopes of Fritsch and Butland (fritsch_butland_1984). Immutable; safe to share
-/// between threads.
+/// Continuously differentiable, shape-preserving interpolation: piecewise cubic with the harmonic-mean slopes
+/// of Fritsch and Butland (fritsch_butland_1984), without extrema between the points. Immutable; safe to
+/// share between threads.
 ///
-/// Not Boost's pchip (1.74): it needs four points, where a weak soil gives two, and its one-sided slopes at the ends move the
-/// slip by up to 0.001 beside the steepest slope that a soil holds. Elsewhere both agree within rounding, in the same time.
+/// Boost's pchip (1.74) is not used: it needs four points, while a weak soil has only two, and its one-sided
+/// end slopes change the slip by up to 0.001 close to the maximum climbable slope. Elsewhere both agree
+/// within rounding, at equal cost.
 class MonotoneCurve {
  public:
   MonotoneCurve() = default;
 
-  /// `x` strictly increasing, as many as `y`, at least two. Throws std::invalid_argument otherwise.
+  /// Interpolates y over strictly increasing x. Throws std::invalid_argument if x is not strictly increasing,
+  /// the sizes differ or there are fewer than two points.
   MonotoneCurve(std::vector<double> x, std::vector<double> y);
 
-  /// Value at x; the end values outside [x.front(), x.back()].
+  /// Returns the value at x; outside [x.front(), x.back()] the value of the nearer end.
   double at(double x) const noexcept;
 
  private:

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Second derivatives at the knots of the natural cubic spline (tridiagonal system, Thomas' algorithm).
+/// Second derivatives at the knots of the natural cubic spline (tridiagonal system, Thomas algorithm).
 std::vector<double> curvatures(std::span<const double> x, std::span<const double> y) {
   const std::size_t n = x.size();
   std::vector<double> m(n, 0.0), upper(n, 0.0);

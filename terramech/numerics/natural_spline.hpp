@@ -4,7 +4,8 @@
 
 namespace talus::terramech {
 
-/// Natural cubic spline through (knots, values), constant outside; one knot: a constant, none: 0.
+/// Natural cubic spline through (knots, values); constant outside the knots. With one knot the spline is
+/// constant, without knots 0.
 class NaturalSpline {
  public:
   NaturalSpline() = default;

@@ -6,15 +6,16 @@
 
 namespace talus::terramech {
 
-/// Standard normal density, distribution function and its inverse [-].
+/// Density and cumulative distribution function of the standard normal distribution.
 double normalDensity(double x);
 double normalProbability(double x);
 
-/// x with normalProbability(x) = p, p in (0, 1), to 1e-12 or so.
+/// Returns x with normalProbability(x) = p to about 1e-12. Throws std::invalid_argument unless 0 < p < 1.
 double normalQuantile(double p);
 
-/// Points spread evenly over the open unit cube: a Halton sequence (bases 2, 3, 5, 7, ...; at most eight
-/// rows). Deterministic: an integral over a posterior needs no seed.
+/// Returns the first `count` points of the Halton sequence in the open unit cube, one per column (bases 2, 3,
+/// 5, 7, ...). The points are evenly spread and deterministic, so that integrals over a posterior need no
+/// random seed. Throws std::invalid_argument for more than eight rows.
 Eigen::MatrixXd evenPoints(Eigen::Index rows, Eigen::Index count);
 
 }  // namespace talus::terramech

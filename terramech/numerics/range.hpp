@@ -4,14 +4,14 @@
 
 namespace talus::terramech {
 
-/// Closed interval of a valid field value, in the field's unit.
+/// Closed interval of valid values of a field, in the unit of the field.
 struct Interval {
   double low;
   double high;
 };
 
-/// Throws std::invalid_argument "owner: field = value, must be bound" for a field outside its range or not
-/// finite.
+/// Throws std::invalid_argument "owner: field = value, must be bound" if a field is not finite or outside its
+/// range.
 class RangeCheck {
  public:
   explicit RangeCheck(std::string owner) : owner_(std::move(owner)) {}

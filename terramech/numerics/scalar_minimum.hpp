@@ -9,14 +9,14 @@
 
 namespace talus::terramech {
 
-/// An abscissa and the value there.
+/// Abscissa and value of a minimum.
 struct Minimum {
   double at;
   double value;
 };
 
-/// Least value of f over [low, high], both > 0: a scan of `rungs` points even in log, then Brent's method
-/// about the best, to 1e-8 of the abscissa.
+/// Returns the minimum of f over [low, high], 0 < low < high: scan of `rungs` logarithmically spaced points,
+/// then Brent's method around the best point, to 1e-8 of the abscissa.
 template <std::invocable<double> F>
 Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
   const double step = std::log(high / low) / (rungs - 1);
@@ -27,7 +27,7 @@ Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
     const double value = f(rung(i));
     if (value < best.value) best = {rung(i), value}, index = i;
   }
-  // Half of the digits: nearer to its minimum a smooth f does not change any more.
+  // 26 bits are half of a double's precision: closer to the minimum a smooth f is constant within rounding.
   const auto [at, value] = boost::math::tools::brent_find_minima(
       std::forward<F>(f), rung(std::max(0, index - 1)), rung(std::min(rungs - 1, index + 1)), 26);
   const Minimum refined{at, value};

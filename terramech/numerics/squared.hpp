@@ -2,7 +2,7 @@
 
 namespace talus::terramech {
 
-/// x x.
+/// Returns x^2.
 constexpr double squared(double x) noexcept {
   return x * x;
 }

@@ -9,8 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-// Plates whose widths differ by less than this ratio cannot tell k_c/b from k_phi: within one soil k scatters
-// by 20 % and more from place to place (ours).
+// Smallest ratio of plate widths from which k_c/b and k_phi can be separated (ours): within one soil k
+// scatters by 20 % and more from place to place.
 constexpr double kLeastWidthRatio = 1.2;
 constexpr double kLeastModulus_m = 1e-4;
 constexpr double kMostModulus_m = 0.2;

@@ -12,7 +12,7 @@
 namespace talus::terramech {
 namespace {
 
-// Stresses in units of this keep the Gram matrix well scaled.
+// Unit of stress that keeps the Gram matrix well scaled.
 constexpr double kStressUnit_Pa = 1e4;
 
 // 1 - 4 sin(h)/theta_1 + sin(theta_1)/theta_1 = (1 - sinc h) - sinc(h) (1 - cos h), without cancellation.
@@ -21,7 +21,7 @@ double offsetLoad(const LinearStressMoments& m) {
   return m.offset_sin - std::sin(h) * m.offset_cos;
 }
 
-// Rows: (M1, 1, M3, M4) times (c t, c, t, -1); its derivative by (c, t).
+// Vector (c t, c, t, -1), whose product with (M1, 1, M3, M4) is the residual; derivative() is by (c, t).
 Eigen::Vector4d unknowns(const Eigen::Vector2d& x) {
   return {x[0] * x[1], x[0], x[1], -1.0};
 }

@@ -7,12 +7,12 @@
 namespace talus::terramech {
 namespace {
 
-// Half the width of what soils span (thesis Table 2.3, dry to cohesive): a standard deviation above it says
-// nothing.
+// Half the range of soils (thesis Table 2.3, dry to cohesive): a parameter with a larger standard deviation
+// is not identified.
 constexpr double kWidestCohesion_Pa = 5000.0;
 constexpr double kWidestTanFriction = 0.25;
 
-// K_1 = [1, x] with both columns of unit length has singular values sqrt(1 +- q), q = mean(x) / rms(x).
+// K_1 = [1, x] with unit columns has the singular values sqrt(1 +- q), q = mean(x) / rms(x).
 double scaledCondition(double mean, double variance) {
   const double spread = variance / (mean * mean + variance);  // 1 - q^2
   const double q = std::sqrt(std::max(0.0, 1.0 - spread));

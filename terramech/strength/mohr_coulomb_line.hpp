@@ -8,23 +8,24 @@
 
 namespace talus::terramech {
 
-/// One equation c + normal tan(phi) = shear: what each linear method makes of a sample.
+/// Equation c + normal tan(phi) = shear of one sample, the result of each linear method.
 struct StressPair {
   double normal_Pa = 0.0;
   double shear_Pa = 0.0;
 };
 
-/// Cohesion and friction with their uncertainty, and the parameters that were not identifiable.
+/// Cohesion and friction with their covariance, and the parameters that are not identifiable.
 struct ShearStrength {
-  double cohesion_Pa = 0.0;   ///< c; not clipped: a negative value shows the method's error
+  double cohesion_Pa = 0.0;   ///< c; negative values, which indicate an error of the method, are not clipped
   double tan_friction = 0.0;  ///< tan(phi) [-]
-  /// Of (c [Pa], tan phi [-]), from the residual scatter: [Pa^2, Pa; Pa, -]. NaN with fewer than three
+  /// Covariance of (c [Pa], tan phi [-]) from the residuals: [Pa^2, Pa; Pa, -]. NaN with fewer than three
   /// samples.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  double residual_std_Pa = 0.0;  ///< scatter about the line [Pa]
-  double condition = 0.0;        ///< 2-norm condition number of K_1 with its columns scaled equally [-]
+  /// Standard deviation about the line [Pa]; NaN with fewer than three samples.
+  double residual_std_Pa = 0.0;
+  double condition = 0.0;  ///< 2-norm condition number of K_1 with columns scaled to equal length [-]
   std::size_t samples = 0;
-  /// Parameters that the data cannot see, each with the reason; empty: all seen.
+  /// Parameters that the data do not determine, each with the reason; empty if all are determined.
   std::vector<std::string> unseen;
 
   /// phi = arctan(tan_friction) [rad].
@@ -33,21 +34,21 @@ struct ShearStrength {
 
 /// Recursive least squares of shear = c + normal tan(phi) (thesis Eqs. 2.13 to 2.16, B.9 to B.12, A.2).
 ///
-/// Constant memory: count, means and centred second moments (Welford), which equals the batch solution to
-/// rounding and, unlike the normal equations as printed, does not lose it when the stresses hardly vary. A
-/// value type; const is thread-safe.
+/// Constant memory: count, means and central second moments (Welford). The result equals the batch solution
+/// within rounding; the normal equations as printed lose accuracy for almost equal stresses. A value type;
+/// const is thread-safe.
 class MohrCoulombLine {
  public:
-  /// Takes one sample in; constant time. A weight [-], > 0, is one over the relative variance of the pair's
-  /// shear.
+  /// Adds one sample in constant time. The weight [-], > 0, is the inverse of the relative variance of the
+  /// pair's shear.
   void add(StressPair pair, double weight = 1.0);
 
-  /// Least-squares line of all samples so far. Throws std::domain_error with fewer than two samples or when
-  /// all normal stresses are equal, naming what cannot be seen.
+  /// Returns the least-squares line of all samples. Throws std::domain_error with fewer than two samples, or
+  /// if all normal stresses are equal.
   ShearStrength estimate() const;
 
-  /// Root of the weighted mean square about the line [Pa times root of weight]; 0 with fewer than three
-  /// samples.
+  /// Returns sqrt(sum of weighted squared residuals / number of samples) [Pa times root of weight]; 0 with
+  /// fewer than three samples.
   double relativeResidual() const;
 
   std::size_t samples() const { return count_; }
@@ -62,13 +63,13 @@ class MohrCoulombLine {
   double shear_shear_ = 0.0;
 };
 
-/// Names in `unseen` what a spread of the normal stress this small leaves open; empty when conditioning is
-/// good. Limits are ours: condition number above kWorstCondition, or a standard deviation as wide as soils
-/// differ.
+/// Returns the entries of `unseen` for a fit; empty if all parameters are determined. A parameter is
+/// undetermined if the condition number exceeds kWorstCondition, or if its standard deviation exceeds half
+/// the range of soils (limits ours).
 std::vector<std::string> unseenStrength(const ShearStrength& fit);
 
-/// Above this scaled condition number 1 % of noise on a reading moves tan(phi) by more than soils differ
-/// (ours).
+/// Above this scaled condition number a reading error of 1 % changes tan(phi) by more than the differences
+/// between soils (ours).
 inline constexpr double kWorstCondition = 200.0;
 
 }  // namespace talus::terramech

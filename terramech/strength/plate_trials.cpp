@@ -12,7 +12,7 @@ namespace {
 
 struct FittedTrial {
   PressureSinkage fit;
-  double weight = 0.0, log_depth = 0.0;  ///< sum of sigma^2, and the mean of ln z that it weighs
+  double weight = 0.0, log_depth = 0.0;  ///< sum of sigma^2, and mean of ln z with these weights
 };
 
 std::optional<FittedTrial> fitted(const PlateTrial& trial) {
@@ -47,7 +47,7 @@ TrialSoil soilOf(const std::string& name, const std::vector<FittedTrial>& trials
   soil.exponent = randomEffect(exponents);
   soil.fit.sinkage_exponent = soil.exponent.mean.value;
   soil.fit.exponent_std = soil.exponent.mean.std;
-  std::map<double, std::vector<Estimate>> pressures;  // of each plate size
+  std::map<double, std::vector<Estimate>> pressures;  // by plate size
   for (const FittedTrial& t : trials)
     for (const PlateModulus& p : t.fit.plates)
       pressures[p.plate_width_m].push_back(
@@ -72,7 +72,7 @@ TrialSoil soilOf(const std::string& name, const std::vector<FittedTrial>& trials
 }  // namespace
 
 RandomEffect randomEffect(std::span<const Estimate> values) {
-  constexpr double kExact = 1e-12;  // a trial without scatter counts much, not infinitely
+  constexpr double kExact = 1e-12;  // limits the weight of a trial without scatter
   const auto weighted = [&](double between) {
     double sum = 0.0, square = 0.0, mean = 0.0;
     for (const Estimate& v : values) {

@@ -24,8 +24,7 @@ bool atBound(double modulus, ModulusRange range) {
   return modulus < 1.001 * range.low_m || modulus > 0.999 * range.high_m;
 }
 
-// (M3, M4) and the weight that turns a residual in M4 into one in relative torque: residual = w (M4 - c - M3
-// t)/M4.
+// Pair (M3, M4) and the weight that makes the residual relative to the torque: 1/M4^2.
 struct WeightedPair {
   StressPair pair;
   double weight;
@@ -45,10 +44,10 @@ double relativeTorqueError(const Wheel& wheel, std::span<const WheelSample> samp
   return line.relativeResidual();
 }
 
-// globalMinimum() of an error that takes long where samples are many.
+// globalMinimum() with progress and cancellation, for an error that is slow to evaluate with many samples.
 template <class Error>
 Minimum leastError(const Error& error, ModulusRange range, const ProgressMonitor& watch) {
-  constexpr double kUsual = 85.0;  // evaluations
+  constexpr double kUsual = 85.0;  // usual number of evaluations
   double count = 0.0;
   const auto watched = [&](double k) {
     if (watch.stopped()) return 0.0;
@@ -87,7 +86,7 @@ double torquePerLoad(const WheelSample& s) {
   return s.torque_Nm / s.load_N;
 }
 
-// A(K)/A_max(K) falls from 1 at K = 0 to j/j_max: bisection in log K.
+// Bisection in log K: A(K)/A_max(K) falls from 1 at K = 0 to j/j_max.
 std::optional<double> solveRatio(double ratio, double j, double j_max, ModulusRange range) {
   const auto excess = [&](double k) { return std::expm1(-j / k) / std::expm1(-j_max / k) - ratio; };
   double low = range.low_m;

@@ -7,47 +7,50 @@
 #include <talus/terramech/contact/wheel_sample.hpp>
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
-/// The shear deformation modulus K from wheel readings (thesis App. D). What each is worth, measured over
-/// Table 2.1: the minimum of D.1 lies low (0.8 K noise-free, 0.65 K at 5 % noise); D.8 as printed gives 0.5
-/// to 0.6 K. Once its watch is stopped a search ends with a K that means nothing.
+/// Shear deformation modulus K from wheel readings (thesis App. D). Bias over Table 2.1: the minimum of D.1
+/// is 0.8 K noise-free and 0.65 K at 5 % noise; D.8 as printed gives 0.5 to 0.6 K. If the watch stops a
+/// search, the returned K is meaningless.
 namespace talus::terramech {
 
-/// Where K is looked for [m].
+/// Search range of K [m], 0 < low_m < high_m.
 struct ModulusRange {
   double low_m = 0.002;
   double high_m = 0.1;
 };
 
-/// K and the criterion at it.
+/// Estimate of K and the value of the criterion.
 struct ModulusEstimate {
   double shear_modulus_m = 0.0;
-  /// Of the criterion: [Pa] for D.1, relative torque [-] for the joint fit, [m] spread for D.8.
+  /// Criterion at K: [Pa] for D.1, relative torque [-] for the joint fit, median absolute deviation [m] for
+  /// D.8.
   double error = 0.0;
-  bool at_bound = false;  ///< the data do not see K: the criterion has no minimum inside the range
+  /// True: the criterion has no minimum inside the range, and the data do not determine K.
+  bool at_bound = false;
 };
 
-/// Err(K_e) = sum of the distances of the points (M3, M4) from the line fitted to them [Pa] (thesis Eq. D.2).
+/// Returns Err(K_e), the sum of the distances of the points (M3, M4) from the line fitted to them [Pa]
+/// (thesis Eq. D.2).
 double modulusError_Pa(const Wheel& wheel, std::span<const WheelSample> samples, double shear_modulus_m);
 
-/// The K_e of least Err(K_e), globally in the range (thesis App. D.1). Throws std::domain_error with fewer
-/// than three samples.
+/// Returns the K_e of the global minimum of Err(K_e) in the range (thesis App. D.1). Throws std::domain_error
+/// with fewer than three samples.
 ModulusEstimate modulusByErrorMinimisation(const Wheel& wheel, std::span<const WheelSample> samples,
                                            ModulusRange range = {}, const ProgressMonitor& watch = {});
 
-/// K = -j(theta_m) / ln(1 - T/T_m), the median over the samples; T_m is the torque at the highest slip
-/// (thesis Eq. D.8, as printed; T and T_m per unit of load, since loads differ). Low: it takes A(i_max)
-/// for 1. Throws std::domain_error when no sample slips less and pulls less torque than the one at the
-/// highest slip.
+/// Returns K = -j(theta_m) / ln(1 - T/T_m), the median over the samples; T_m is the torque at the highest
+/// slip (thesis Eq. D.8, as printed; T and T_m per unit of load, because loads differ). The result is too
+/// low, because D.8 assumes A(i_max) = 1. Throws std::domain_error with fewer than two samples, or if no
+/// sample has less slip and less torque than that at the highest slip.
 ModulusEstimate modulusByEffectiveTorque(const Wheel& wheel, std::span<const WheelSample> samples);
 
-/// The same with A(i; K)/A(i_max; K) = T/T_m solved for K in each sample (ours: D.8 without setting A(i_max)
-/// to 1).
+/// Returns the median K over the samples, each from A(i; K)/A(i_max; K) = T/T_m (ours: D.8 without A(i_max) =
+/// 1). Throws as modulusByEffectiveTorque().
 ModulusEstimate modulusByTorqueRatio(const Wheel& wheel, std::span<const WheelSample> samples,
                                      ModulusRange range = {});
 
-/// K, c and phi together: the K at which c + M3 tan(phi) = M4, fitted in relative torque, leaves least
-/// (ours). Each equation is multiplied back to the torque it came from, so a small K gains nothing by
-/// shrinking M3 and M4.
+/// Returns the K at which the least-squares fit of c + M3 tan(phi) = M4 over c and tan(phi) has the smallest
+/// error relative to the torque (ours). The relative error prevents a small K from reducing the error by
+/// shrinking M3 and M4. Throws std::domain_error with fewer than four samples.
 ModulusEstimate modulusJointly(const Wheel& wheel, std::span<const WheelSample> samples,
                                ModulusRange range = {}, const ProgressMonitor& watch = {});
 

@@ -65,7 +65,8 @@ double ShearModulusGrid::squaredError(const GridValue& rung) const {
       return squared(rung.telling.relativeResidual());
     case ModulusCriterion::ErrorMinimisation:
       return squared(rung.telling.relativeResidual()) / (1.0 + squared(rung.telling.estimate().tan_friction));
-    case ModulusCriterion::EffectiveTorque:  // the sample at the highest slip is the measure, not a reading
+    // the sample at the highest slip is the reference and has no residual
+    case ModulusCriterion::EffectiveTorque:
       return mean(torque_squares_ / squared(fastest_torque_) - 2.0 * rung.torque_share / fastest_torque_ +
                   rung.share_squares - squared(1.0 - rung.share_fastest));
     case ModulusCriterion::TorqueRatio:

@@ -7,24 +7,25 @@
 
 namespace talus::terramech {
 
-/// How K is found (thesis App. D): see shear_modulus.hpp.
+/// Criterion for K (thesis App. D); see shear_modulus.hpp.
 enum class ModulusCriterion {
-  Joint,              ///< least relative error of the torque
-  ErrorMinimisation,  ///< D.1, by root mean square of the distances from the line
-  EffectiveTorque,    ///< D.8 as printed, least squares over the samples in place of their median
-  TorqueRatio         ///< T/W = tau A(i; K), tau and K by least squares: D.8 without setting A(i_max) to 1
+  Joint,              ///< smallest error relative to the torque
+  ErrorMinimisation,  ///< D.1, by rms of the distances from the line
+  EffectiveTorque,    ///< D.8 as printed, by least squares over the samples instead of their median
+  TorqueRatio         ///< T/W = tau A(i; K), tau and K by least squares: D.8 without A(i_max) = 1
 };
 
-/// A linear method: the equation it makes of a sample at a K [m].
+/// Linear method: returns the equation of a sample at a given K [m].
 using PairOf = StressPair (*)(const Wheel&, const WheelSample&, double);
 
-/// c + M3 tan(phi) = M4 of linear_offset.hpp.
+/// Returns c + M3 tan(phi) = M4 of linear_offset.hpp.
 inline StressPair linearOffsetPair(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m) {
   return linearOffset(wheel, sample, shear_modulus_m).pair();
 }
 
-/// K, c and tan(phi) taken in sample by sample: for each K of a fixed ladder the sums that a criterion and a
-/// linear method need, so memory and time are constant. A value type; const is thread-safe.
+/// Recursive estimate of K, c and tan(phi). For each K of a fixed grid the object stores the sums for the
+/// criterion and for the linear method, so that memory and time per sample are constant. A value type; const
+/// is thread-safe.
 class ShearModulusGrid {
  public:
   struct Options {
@@ -36,35 +37,37 @@ class ShearModulusGrid {
   explicit ShearModulusGrid(const Wheel& wheel) : ShearModulusGrid(wheel, Options{}) {}
   ShearModulusGrid(const Wheel& wheel, const Options& options);
 
-  /// Samples whose equation has no solution (nothing mobilised) are left out and counted by the caller:
-  /// returns false.
+  /// Adds a sample. Returns false, without adding, if torque or shear displacement is not above 0 (no shear
+  /// mobilised).
   bool add(const WheelSample& sample);
 
-  /// K at the lowest error, refined by a parabola through three rungs. Throws std::domain_error below four
-  /// samples.
+  /// Returns the K of the smallest error, refined by a parabola through three grid values. Throws
+  /// std::domain_error with fewer than four samples.
   ModulusEstimate modulus() const;
 
-  /// The method's line at that K, between the two rungs next to it. Throws as modulus() and
-  /// MohrCoulombLine::estimate() do.
+  /// Returns the line of the linear method at that K, interpolated between two grid values. Throws as
+  /// modulus() and MohrCoulombLine::estimate().
   ShearStrength strength() const;
 
   std::size_t samples() const { return count_; }
 
  private:
-  static constexpr std::size_t kValues = 17;  // 28 % apart: finer is slower and, by the parabola, no better
+  // Spacing 28 %: with the parabola a finer grid is slower and no more accurate.
+  static constexpr std::size_t kValues = 17;
 
   struct GridValue {
-    double modulus_m = 0.0;      // K
-    MohrCoulombLine method;      // c + x tan(phi) = y
-    MohrCoulombLine telling;     // linear-offset: weighted for Joint, plain for ErrorMinimisation
-    double torque_share = 0.0;   // sum of T/W A
+    double modulus_m = 0.0;  // K
+    MohrCoulombLine method;  // line of the linear method, c + x tan(phi) = y
+    // Line of the criterion, linear-offset: weighted for Joint, plain for ErrorMinimisation.
+    MohrCoulombLine telling;
+    double torque_share = 0.0;   // sum of (T/W) A
     double share_squares = 0.0;  // sum of A^2
     double share_fastest = 0.0;  // A at the highest slip so far
   };
 
   double squaredError(const GridValue& rung) const;
 
-  // A place on the ladder: the lowest rung and how far the minimum lies from it, in rungs.
+  // Location of the minimum: grid value with the smallest error, and shift in grid steps.
   struct Place {
     std::size_t rung;
     double shift;  // [-0.5, 0.5]
@@ -78,7 +81,7 @@ class ShearModulusGrid {
   std::size_t count_ = 0;
   double torque_squares_ = 0.0;  // sum of (T/W)^2
   double fastest_slip_ = 0.0;
-  double fastest_torque_ = 0.0;  // T/W there
+  double fastest_torque_ = 0.0;  // T/W at the highest slip
 };
 
 }  // namespace talus::terramech

@@ -256,7 +256,8 @@ Errand errand(const ProvingGround& ground, std::uint64_t k) {
 
 Call planCall(const ProvingGround& ground, const Errand& errand, const std::string& output) {
   return {"plan " + demWords(ground) + " --map map.ot --start " + text(errand.start) + " --goal " +
-          text(errand.goal) + " --planner " + errand.planner + " --time 0.5 --seed " +
+          text(errand.goal) + " --planner " + errand.planner +
+          (errand.planner == "field" ? "" : " --no-proof") + " --time 0.25 --seed " +
           std::to_string(ground.number + 1) + " -o " + output};
 }
 

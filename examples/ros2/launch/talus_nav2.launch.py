@@ -11,7 +11,7 @@ def generate_launch_description():
     usual = PathJoinSubstitution([FindPackageShare("talus_nav2"), "config", "talus_nav2.yaml"])
     sim_time = {"use_sim_time": LaunchConfiguration("use_sim_time")}
     map_file = LaunchConfiguration("map_file")
-    # The costmap is a node of its own within the server: its parameters have its name before them.
+    # The costmap is a separate node inside the server, so that its parameters are prefixed with its name.
     maps = {"Talus.map_file": map_file}
     costmap = ["-p", ["global_costmap:ground.map_file:=", map_file]]
     return LaunchDescription(

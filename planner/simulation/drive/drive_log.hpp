@@ -6,21 +6,24 @@
 
 namespace talus::planner {
 
-/// How far a map's predictions were off along a drive.
+/// Errors of a map's predictions along a drive.
 struct PredictionErrors {
-  int steps = 0;
-  double slip_rmse = 0.0;     ///< over steps [-]
-  double energy_rmse = 0.0;   ///< of a step's energy a metre, over the mean of the true one [-]
-  double energy_error = 0.0;  ///< predicted less true energy of the whole drive, over the true one [-]
+  int steps = 0;              ///< number of steps
+  double slip_rmse = 0.0;     ///< over all steps [-]
+  double energy_rmse = 0.0;   ///< of the energy per metre of a step, relative to the mean true value [-]
+  double energy_error = 0.0;  ///< (predicted - true) / true energy of the whole drive [-]
 };
 
-/// The steps of one simulated drive: give record() to SimulationOptions::on_step.
+/// Log of the steps of a simulated drive; pass record() as SimulationOptions::on_step.
 class DriveLog {
  public:
+  /// Appends a step.
   void record(const DriveStep& step) { steps_.push_back(step); }
 
+  /// All recorded steps in order.
   const std::vector<DriveStep>& steps() const noexcept { return steps_; }
 
+  /// Errors over the recorded steps; zeros without steps or if the true energy is not positive.
   PredictionErrors errors() const;
 
  private:

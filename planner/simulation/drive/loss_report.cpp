@@ -13,7 +13,7 @@ std::string rounded(double value) {
   return text;
 }
 
-// Of the place under the wheels that the map holds for the weakest.
+// Map properties of the wheel position with the weakest estimated ground.
 std::string believedThere(const LossScene& scene) {
   std::optional<costmap::GroundBelief> weakest;
   std::uint8_t category = 0;

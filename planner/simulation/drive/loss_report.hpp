@@ -7,18 +7,18 @@
 
 namespace talus::planner {
 
-/// How a rover was lost.
+/// Situation in which a simulated rover was immobilised or slid.
 struct LossScene {
   const costmap::TraversabilityMap& map;
   const TrueWorld& world;
-  const TrueWorld::Step& step;  ///< the last one that it tried
-  const WheelLook& seen;        ///< what its wheels read when it stopped, or last
-  maps::Point believed;         ///< where it took itself to be
-  std::string why_it_stopped;   ///< the alarm; empty when nothing gave one
+  const TrueWorld::Step& step;  ///< last step attempted
+  const WheelLook& seen;        ///< latest readings of the wheels
+  maps::Point believed;         ///< estimated position of the rover
+  std::string why_it_stopped;   ///< reason of the alarm; empty without an alarm
 };
 
-/// In one line: what stopped it, how many wheels stand on ground that no class shows, what the map believed
-/// of the weakest place under them, what the wheels read.
+/// One-line description: reason of the stop, number of wheels on ground that no class shows, estimate of the
+/// weakest ground under the wheels, and the wheels' readings.
 std::string causeOfLoss(const LossScene& scene);
 
 }  // namespace talus::planner

@@ -5,18 +5,19 @@
 
 namespace talus::planner {
 
-/// What the map says, before a step's readings are in, of ground on the slope that a rover stands on, which it measures
-/// itself. The map must outlive it.
+/// Drive states and wheel readings predicted by the map before a step's readings are used, for ground on the
+/// slope at the rover's position, which the rover measures itself. The map must outlive the object.
 class MapExpectation {
  public:
-  /// `slope`: the cell under the rover's middle; of its ground nothing is taken.
+  /// `slope`: code of the cell under the rover's centre; only the gradient is used.
   MapExpectation(const costmap::TraversabilityMap& map, costmap::CellCode slope) : map_(map), slope_(slope) {}
 
-  /// At a place; its class says it where the cell is refused, and zeros off the map.
+  /// Predicted state at a place; of the place's class if the cell is refused; zeros outside the map.
   costmap::DriveState at(const maps::Point& place, const costmap::Direction& heading) const;
 
-  /// Of a wheel at a place, no weaker than its class: ground that was just learned to be weak still gives the alarm.
-  /// `middle`: of the rover, whose slip all wheels have.
+  /// Predicted readings of a wheel at a place, assuming ground no weaker than its class, so that ground just
+  /// estimated as weak still raises the alarm. `middle`: the rover's centre, whose slip applies to all
+  /// wheels.
   WheelExpectation ofWheel(const maps::Point& place, const maps::Point& middle,
                            const costmap::Direction& heading) const;
 

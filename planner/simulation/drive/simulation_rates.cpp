@@ -23,7 +23,7 @@ Sampled share(std::size_t hits, std::size_t all) {
   const double middle = p + zz / (2.0 * n);
   const double half = kNormal95 * std::sqrt(p * (1.0 - p) / n + zz / (4.0 * n * n));
   const double low = (middle - half) / (1.0 + zz / n), high = (middle + half) / (1.0 + zz / n);
-  return {p, {hits == 0 ? 0.0 : low, hits == all ? 1.0 : high}};  // exactly, where rounding leaves 1e-17
+  return {p, {hits == 0 ? 0.0 : low, hits == all ? 1.0 : high}};  // exact, because rounding leaves 1e-17
 }
 
 Sampled mean(const std::vector<double>& values) {

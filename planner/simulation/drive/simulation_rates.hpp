@@ -8,35 +8,36 @@
 
 namespace talus::planner {
 
-/// A number from a sample of worlds and its 95 % interval.
+/// Estimate from a sample of worlds with its 95 % confidence interval.
 struct Sampled {
-  double value = 0.0;
-  std::array<double, 2> interval_95{};
+  double value = 0.0;                   ///< estimate
+  std::array<double, 2> interval_95{};  ///< lower and upper end
 };
 
-/// A share of worlds with Wilson's interval (wilson_1927); NaN of none.
+/// Share of worlds with Wilson's interval (wilson_1927); NaN if `all` is 0.
 Sampled share(std::size_t hits, std::size_t all);
 
-/// A mean with the normal interval of its standard error; NaN of none.
+/// Mean with the normal interval of its standard error; NaN if there are no values.
 Sampled mean(const std::vector<double>& values);
 
-/// How the drives of some worlds ended.
+/// Outcomes of the drives of several worlds.
 struct Rates {
-  std::size_t worlds = 0;
+  std::size_t worlds = 0;            ///< number of worlds
   std::array<Sampled, 5> outcome{};  ///< shares, in the order of Outcome
-  double energy_J = 0.0;             ///< mean where the goal was reached; NaN where it never was
+  double energy_J = 0.0;             ///< mean of the drives that reached the goal; NaN if there are none
 };
 
+/// Outcome shares and mean energy of the results.
 Rates ratesOf(const std::vector<WorldResult>& results);
 
-/// A belief compared with perfect knowledge in the same worlds, counted where a safe route exists: where
-/// perfect knowledge reached the goal.
+/// Comparison of a soil knowledge with perfect knowledge in the same worlds, restricted to the worlds with a
+/// safe route: those in which perfect knowledge reached the goal.
 struct Comparison {
-  Rates rates;                              ///< over those worlds
-  Sampled energy_over_perfect_knowledge{};  ///< mean ratio, where both reached the goal [-]
+  Rates rates;                              ///< over the worlds with a safe route
+  Sampled energy_over_perfect_knowledge{};  ///< mean ratio over the worlds in which both reached the goal [-]
 };
 
-/// Both hold the same worlds in the same order. Throws std::invalid_argument when they are not as many.
+/// Both vectors hold the same worlds in the same order. Throws std::invalid_argument if their sizes differ.
 Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& perfect);
 
 }  // namespace talus::planner

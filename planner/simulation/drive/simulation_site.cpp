@@ -18,7 +18,7 @@ maps::Raster<std::uint8_t> classIndices(const costmap::TraversabilityMap& map) {
   return index;
 }
 
-// Hazards that the layers declared; those of the surface are measured anew.
+// Hazards declared by layers; hazards of the surface are computed again.
 maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
   constexpr auto kDeclared = static_cast<std::uint8_t>(Hazard::Rocks | Hazard::KeepOut | Hazard::Obstacle);
   maps::Raster<Hazard> hazards = map.surface().hazards();
@@ -26,8 +26,8 @@ maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
   return hazards;
 }
 
-// Every soil of the world as a class of its own with next to no doubt. A cell belongs to a patch as soon as a
-// wheel of a rover anywhere on it may touch the patch.
+// Makes every soil of the world a class of its own with negligible uncertainty. A cell belongs to a patch if
+// a wheel of a rover anywhere on the cell may touch the patch.
 void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& layers,
                costmap::GroundModel::Parts& parts) {
   constexpr double kNoDoubt = 0.01;
@@ -82,7 +82,7 @@ costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWor
 SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
   SensorOptions sensors = parts_.sensors;
   sensors.seed = parts_.seed + i;
-  if (belief == Belief::PerfectKnowledge) sensors.pose_drift = 0.0;  // it knows where it is, too
+  if (belief == Belief::PerfectKnowledge) sensors.pose_drift = 0.0;  // the position is known exactly, too
   return {.start = parts_.start,
           .goal = parts_.goal,
           .goal_tolerance_m = map_.grid().resolution_m,

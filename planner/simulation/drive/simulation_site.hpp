@@ -14,64 +14,65 @@
 
 namespace talus::planner {
 
-/// What the planner knows of the soil.
+/// Soil knowledge of the planner.
 enum class Belief {
-  Geometry,          ///< slopes and hazards only, all ground as firm as rock; telemetry is not used
-  AlongOnly,         ///< as Prior, but crossing a slope costs what level ground does; for comparison
+  Geometry,          ///< slopes and hazards only, the same firm soil everywhere; telemetry is not used
+  AlongOnly,         ///< as Prior, but without the costs of cross-slope driving; for comparison
   Prior,             ///< the soils of the map; telemetry is not used
   OnLine,            ///< the soils of the map, updated by the telemetry of the drive
-  PerfectKnowledge,  ///< the true soils, with all patches
+  PerfectKnowledge,  ///< the true soils, including all patches
 };
 
-/// All of them, in this order.
+/// All values of Belief in order.
 inline constexpr std::array kBeliefs{Belief::Geometry, Belief::AlongOnly, Belief::Prior, Belief::OnLine,
                                      Belief::PerfectKnowledge};
 
-/// The names in calls and in JSON: "geometry", "along-only", "prior", "online", "clairvoyant".
+/// Names in calls and JSON: "geometry", "along-only", "prior", "online", `"clairvoyant"`.
 std::string_view name(Belief belief) noexcept;
 
-/// What came of one world.
+/// Result of one world.
 struct WorldResult {
-  TraverseSimulation drive;
-  std::size_t categories_changed = 0;  ///< cells whose category for people is another after the drive
+  TraverseSimulation drive;            ///< the simulated drive
+  std::size_t categories_changed = 0;  ///< cells whose category differs after the drive
 };
 
-/// Worlds to simulateTraverse in, by their numbers.
+/// Range of world numbers for one soil knowledge.
 struct WorldRange {
-  Belief belief = Belief::OnLine;
-  std::size_t first = 0;
-  std::size_t count = 1;
+  Belief belief = Belief::OnLine;  ///< soil knowledge of the planner
+  std::size_t first = 0;           ///< number of the first world
+  std::size_t count = 1;           ///< number of worlds
 };
 
-/// A site as it is known, what is true of it, and a drive across it: makes as many random worlds as one asks
-/// for. Immutable; safe to share between threads.
+/// A site as mapped, its true soils, and a drive across the site; draws any number of random worlds.
+/// Immutable; safe to share between threads.
 class SimulationSite {
  public:
-  /// What every world shares.
+  /// Input common to all worlds.
   struct Parts {
-    Truth truth;
-    maps::Point start;
-    maps::Point goal;
-    terramech::Soil firm;     ///< what Belief::Geometry takes all ground for
+    Truth truth;              ///< true soils
+    maps::Point start;        ///< map coordinates [m]
+    maps::Point goal;         ///< map coordinates [m]
+    terramech::Soil firm;     ///< soil of all ground with Belief::Geometry
     std::uint64_t seed = 1;   ///< world i is drawn with seed + i
-    SensorOptions sensors{};  ///< of a rover that goes by its sensors; their seed is that of the world
-    std::function<Plan(const Problem&)> planner{};  ///< asked for every route; none: the field's
+    SensorOptions sensors{};  ///< sensors of the rover; their seed is replaced by that of the world
+    std::function<Plan(const Problem&)> planner{};  ///< called for every route; empty: FieldPlanner
   };
 
-  /// The map is kept by reference.
+  /// Keeps a reference to the map.
   SimulationSite(const costmap::TraversabilityMap& map, Parts parts);
 
-  /// World number i under a belief: depends on nothing else.
+  /// Simulates world number i with the given soil knowledge; the result depends on nothing else.
   WorldResult world(Belief belief, std::size_t i, const ProgressMonitor& watch = {}) const;
 
-  /// Worlds first .. first + count - 1, in that order; the same results however they are divided.
+  /// Results of worlds first to first + count - 1 in order, independent of their division into ranges. Fewer
+  /// when stopped.
   std::vector<WorldResult> worlds(const WorldRange& range, const ProgressMonitor& watch = {}) const;
 
   /// The true soils of world number i.
   TrueWorld trueWorld(std::size_t i) const;
-  /// What the rover believes before it drives there.
+  /// The planner's map before the drive.
   costmap::TraversabilityMap believed(Belief belief, const TrueWorld& world) const;
-  /// The options that a traverse simulation in world number i is run with.
+  /// Options of the traverse simulation in world number i.
   SimulationOptions options(Belief belief, std::size_t i) const;
 
  private:
@@ -79,7 +80,7 @@ class SimulationSite {
   Parts parts_;
 };
 
-/// Category for people of every cell, row by row from the south-west.
+/// Category of every cell, row by row from the south-west.
 std::vector<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map);
 
 }  // namespace talus::planner

@@ -16,9 +16,9 @@ namespace {
 
 using costmap::Direction;
 
-// The route is planned anew when what is left of it costs this much more than when it was planned.
+// The route is replanned if the cost of its remainder exceeds this multiple of its cost when planned.
 constexpr double kDearer = 1.3;
-// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit went in to the hub in some
+// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit sank to the hub within some
 // metres).
 constexpr double kDugPerMetre = 0.05;
 
@@ -72,8 +72,8 @@ class Drive {
     result_.events.push_back({result_.time_s, std::move(text), std::move(route)});
   }
 
-  // Where what was learned refuses the ground under the rover, or all ground around it, it goes back along its own
-  // track, by a length of the rover at a time, to where a route begins.
+  // Plans from the estimated position. If the ground under the rover or all ground around it is refused, the
+  // rover first drives back along its track, a keep-out radius at a time, until a route is found.
   bool plan() {
     const MotionCost cost(map_.published());
     for (;;) {
@@ -106,7 +106,7 @@ class Drive {
     return plan.status;
   }
 
-  // Where it takes itself to be.
+  // Estimated position of the rover.
   maps::Point believed() const { return sensors_.believed(here_); }
 
   FollowEnd follow() {
@@ -125,7 +125,7 @@ class Drive {
     return FollowEnd::Arrived;
   }
 
-  // One look at the wheels; then on by one step, unless something ends the leg.
+  // Reads the wheels once, then drives one step unless the leg ends.
   std::optional<FollowEnd> lookAndStep(const Direction& heading, double length_m) {
     const TrueWorld::Step step = world_.drive(motion(heading, dug_m_));
     result_.max_slip = std::max(result_.max_slip, step.slip);
@@ -153,7 +153,7 @@ class Drive {
     return std::nullopt;
   }
 
-  // Spins on the spot and does not know it.
+  // Spins on the spot without detecting it.
   std::optional<FollowEnd> dig(const TrueWorld::Step& step) {
     const double radius_m = map_.model().rover().wheel.radius_m;
     dug_m_ += kDugPerMetre * options_.step_m;
@@ -178,7 +178,7 @@ class Drive {
          .truth = step});
   }
 
-  // Of the ground under the rover's middle.
+  // Cell code under the rover's centre.
   costmap::CellCode ground() const {
     const auto cell = map_.grid().cellAt(here_);
     return cell ? map_.published()->at(*cell) : costmap::CellCode();
@@ -239,7 +239,7 @@ class Drive {
     if (there) ++next_;
   }
 
-  // One step back along the way it came; false where that way ends or the wheels find no hold.
+  // Drives one step back along the track. Returns false at the end of the track or if the rover is stuck.
   bool backOneStep(double dug_m) {
     while (!way_back_.empty() && distance_m(way_back_.back(), here_) < 1e-9) way_back_.pop_back();
     if (way_back_.empty()) return false;
@@ -258,7 +258,7 @@ class Drive {
     return true;
   }
 
-  // One step straight down the slope, which takes no side force; false where nothing brakes it.
+  // Drives one step straight down the slope, which needs no side force. Returns false if the rover is stuck.
   bool downOneStep() {
     const costmap::CellCode code = ground();
     const double steepest = std::hypot(code.dzDx(), code.dzDy());
@@ -275,7 +275,7 @@ class Drive {
     return true;
   }
 
-  // Out of ground that it should not stand on: the way that it came, or on down the slope where that way slides.
+  // Leaves unsuitable ground by one step: back along the track, or downhill if the rover slides there.
   bool leaveOneStep(double dug_m) {
     if (!downhill_ && backOneStep(dug_m)) return true;
     if (!downhill_ && !(held_ && last_step_.slides)) return false;
@@ -285,8 +285,7 @@ class Drive {
     return downhill_;
   }
 
-  // Whether all ground within the rover's outline is as strong as its class, give or take what a class
-  // varies.
+  // Returns true if the ground at four points of the outline is no weaker than (class mean - 1 sigma).
   bool standsSound() const {
     const auto& model = map_.model();
     const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
@@ -302,8 +301,8 @@ class Drive {
     return true;
   }
 
-  // Backs out along the ruts it came in: by one length of the rover, and until it stands on sound ground,
-  // where it may turn. Ground that gave the alarm is not tried again.
+  // Drives back in its own ruts by at least the keep-out radius, until the rover stands on sound ground,
+  // where it may turn. The ground that raised the alarm is refused afterwards.
   FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
     tell(*heard.reason);
     why_it_stopped_ = *heard.reason;
@@ -324,7 +323,7 @@ class Drive {
     return FollowEnd::Replan;
   }
 
-  // The wheels that sank, or the foremost two where all merely slipped; not the ground that it now stands on.
+  // Refuses the ground under wheels that sank and the two foremost wheels, but not under the rover itself.
   void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
     ++result_.alarms;
     const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
@@ -338,7 +337,7 @@ class Drive {
     if (options_.on_learned) options_.on_learned(result_.time_s);
   }
 
-  // Puts what the wheels read into the map, if it is time or must be now. True when the map changed.
+  // Adds readings to the map at each sensing interval, or if `now`. Returns true if the map was updated.
   bool learn(bool now) {
     const bool blind = !options_.senses && !options_.record;
     if (blind || (!now && since_sensing_m_ < options_.sensing_interval_m)) return false;
@@ -370,18 +369,18 @@ class Drive {
   FieldPlanner planner_;
   Ruts ruts_;
   maps::Point here_;
-  std::optional<Direction> heading_;  // of the step before
+  std::optional<Direction> heading_;  // of the previous step
   std::vector<maps::Point> way_back_;
   std::vector<maps::Point> route_;
   std::size_t next_ = 1;
   double planned_J_ = 0.0;
   double since_sensing_m_ = 0.0;
-  double dug_m_ = 0.0;         // depth of the holes that the wheels stand in
-  TrueWorld::Step last_step_;  // that was tried
-  WheelLook seen_;             // what the wheels read before it
+  double dug_m_ = 0.0;         // depth of the holes in which the wheels stand
+  TrueWorld::Step last_step_;  // last step attempted
+  WheelLook seen_;             // readings of the wheels before the last step
   std::string why_it_stopped_;
   bool held_ = false;
-  bool downhill_ = false;  // it slid, and leaves by the fall line
+  bool downhill_ = false;  // slides, and leaves by the fall line
   TraverseSimulation result_;
 };
 

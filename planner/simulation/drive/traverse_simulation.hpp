@@ -17,97 +17,101 @@ namespace talus::planner {
 struct Plan;
 struct Problem;
 
-/// How a simulated drive ended.
+/// Outcome of a simulated drive.
 enum class Outcome {
-  Reached,      ///< the goal
-  Immobilised,  ///< no slip gave the pull, neither on nor back, or nobody was watching the slip
-  Tipped,       ///< the true ground was steeper than the rover may stand
-  GaveUp,       ///< no route is left under what is believed
-  Slid,         ///< its wheels did not hold it across or down a slope, neither on nor back
+  Reached,      ///< the goal was reached
+  Immobilised,  ///< no slip gave the required drawbar pull, neither forward nor back, or the rover did not
+                ///< monitor its slip
+  Tipped,       ///< the true slope exceeded 1.5 times the rover's pitch or roll limit
+  GaveUp,       ///< no route left on the planner's map, too many replans, or cancelled
+  Slid,         ///< the wheels did not hold the rover across or down a slope, neither forward nor back
 };
 
 /// "reached", "immobilised", "tipped", "gave_up", "slid".
 std::string_view name(Outcome outcome) noexcept;
 
-/// One step of a drive: what the map said of it before, and what it was.
+/// One step of a drive: the map's prediction and the true state.
 struct DriveStep {
-  double time_s = 0.0;
-  maps::Point place;
-  costmap::Direction heading;
-  double gradient = 0.0;
-  double length_m = 0.0;
-  double expected_slip = 0.0;
-  double expected_energy_J_per_m = 0.0;  ///< along the surface
-  TrueWorld::Step truth;
+  double time_s = 0.0;                   ///< at the beginning of the step
+  maps::Point place;                     ///< true position [m]
+  costmap::Direction heading;            ///< heading of the motion
+  double gradient = 0.0;                 ///< along the heading, rise over run
+  double length_m = 0.0;                 ///< in the map plane
+  double expected_slip = 0.0;            ///< slip predicted by the map [-]
+  double expected_energy_J_per_m = 0.0;  ///< per metre of surface length
+  TrueWorld::Step truth;                 ///< true state of the rover
 };
 
-/// What a traverse simulation does.
+/// Parameters of a traverse simulation.
 struct SimulationOptions {
-  maps::Point start;
-  maps::Point goal;
+  maps::Point start;              ///< map coordinates [m]
+  maps::Point goal;               ///< map coordinates [m]
   double goal_tolerance_m = 0.0;  ///< >= 0
-  /// The rover watches its wheels, learns and replans; else it drives the first route blindly.
+  /// True: the rover monitors its wheels, updates the map and replans. False: it drives the first route
+  /// without sensing.
   bool senses = true;
-  AlarmLimits alarm{};      ///< at which it stops and backs out
-  SensorOptions sensors{};  ///< how well it senses
-  /// So far it backs out at least, and so wide a berth it gives the ground that gave the alarm.
+  AlarmLimits alarm{};      ///< limits at which the rover stops and reverses
+  SensorOptions sensors{};  ///< quality of the sensors
+  /// Smallest distance reversed after an alarm, and largest radius of the ground refused around a wheel after
+  /// an alarm.
   double keep_out_radius_m = 1.0;
-  double stall_detection_m =
-      0.06;              ///< rim travel on the spot before a rover that does not move notices (ours: a
-                         ///< quarter of a small wheel's diameter, as visual odometry resolves)
-  double step_m = 0.03;  ///< between two looks at the wheels, > 0
-  double sensing_interval_m = 0.5;  ///< between two readings of the wheels that the map learns from, > 0
-  int max_replans = 60;             ///< then it gives up
-  std::uint64_t seed = 1;           ///< of the sensors' noise
-  std::function<void(const DriveStep&)> on_step = {};  ///< called for every step that leads on
-  bool record = false;                                 ///< keep what the wheels read
+  /// Rim travel on the spot before the rover detects that it does not move (ours: a quarter of a small
+  /// wheel's diameter, the resolution of visual odometry).
+  double stall_detection_m = 0.06;
+  double step_m = 0.03;             ///< distance between two readings of the wheels, > 0
+  double sensing_interval_m = 0.5;  ///< distance between two updates of the map from readings, > 0
+  int max_replans = 60;             ///< more replans end the drive with GaveUp
+  std::uint64_t seed = 1;           ///< not used; SensorOptions::seed seeds the sensors
+  std::function<void(const DriveStep&)> on_step = {};  ///< called before every step driven forward
+  bool record = false;                                 ///< keep the wheels' readings
   std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
-  ProgressMonitor watch = {};
-  std::function<Plan(const Problem&)> planner = {};  ///< asked for every route; none: the field's
+  ProgressMonitor watch = {};                          ///< stops the simulation
+  std::function<Plan(const Problem&)> planner = {};    ///< called for every route; empty: FieldPlanner
 };
 
-/// A moment of a simulated drive.
+/// State at one point of a simulated drive.
 struct TrackPoint {
-  maps::Point place;
-  double time_s = 0.0;
-  double energy_J = 0.0;
-  double slip = 0.0;       ///< of the step that led here
+  maps::Point place;       ///< true position [m]
+  double time_s = 0.0;     ///< since the start
+  double energy_J = 0.0;   ///< since the start
+  double slip = 0.0;       ///< of the step that ended here
   double sinkage_m = 0.0;  ///< of the deepest wheel in that step
 };
 
-/// Something worth telling: "planned", "slips", "backed out", "stuck".
+/// Event of the drive: "planned", "reversed", "turned downhill", the reason of an alarm ("slips", "slides",
+/// "sinks"), "soil weaker than estimated", or the name of the outcome.
 struct DriveEvent {
-  double time_s = 0.0;
-  std::string text;
-  std::vector<maps::Point> route;  ///< where it planned one
+  double time_s = 0.0;             ///< since the start
+  std::string text;                ///< name of the event
+  std::vector<maps::Point> route;  ///< the planned route, of "planned" only
 };
 
-/// What one wheel read at one look, noise and all.
+/// Reading of one wheel at one time, including noise and faults.
 struct WheelRecord {
-  std::size_t wheel = 0;  ///< the foremost first
-  double heading_rad = 0.0;
-  costmap::WheelReading reading;
+  std::size_t wheel = 0;          ///< foremost wheels first
+  double heading_rad = 0.0;       ///< of the rover
+  costmap::WheelReading reading;  ///< as given to the map
 };
 
-/// What came of it.
+/// Result of a traverse simulation.
 struct TraverseSimulation {
   Outcome outcome = Outcome::GaveUp;
-  std::string cause;  ///< of not reaching the goal, in one line; empty where it did
-  double energy_J = 0.0;
-  double time_s = 0.0;
-  double length_m = 0.0;  ///< driven, backing out included
-  double max_slip = 0.0;
+  std::string cause;      ///< one line, for outcomes other than Reached and Tipped; else empty
+  double energy_J = 0.0;  ///< including turns and spinning on the spot
+  double time_s = 0.0;    ///< duration of the drive
+  double length_m = 0.0;  ///< distance driven, including reversing
+  double max_slip = 0.0;  ///< largest slip of a forward step [-]
   int replans = 0;
-  int alarms = 0;  ///< times that it stopped and backed out
-  std::vector<TrackPoint> track;
-  std::vector<DriveEvent> events;
-  std::vector<WheelRecord> records;  ///< where SimulationOptions::record asks for them
+  int alarms = 0;                    ///< alarms after which the rover reversed and refused ground
+  std::vector<TrackPoint> track;     ///< positions after every step
+  std::vector<DriveEvent> events;    ///< events in order of time
+  std::vector<WheelRecord> records;  ///< if SimulationOptions::record is set
 };
 
-/// Drives a rover over a true world with what a map believes, changing the map as it learns: what its
-/// simulated sensors read goes through DriveIntake, as a telemetry file does. A rover that senses watches its
-/// wheels at every short step; at the alarm it backs out in its own ruts and plans anew. Only the physics know
-/// the truth. Deterministic in the sensors' seed.
+/// Drives a rover over a true world with the map as its knowledge, and updates the map: the simulated
+/// sensors' readings pass through DriveIntake, like a telemetry file. A rover that senses monitors its wheels
+/// at every step; at an alarm it reverses in its own ruts and replans. Only the simulated physics uses the
+/// true world. Deterministic for a given sensor seed.
 TraverseSimulation simulateTraverse(costmap::TraversabilityMap& map, const TrueWorld& world,
                                     const SimulationOptions& options);
 

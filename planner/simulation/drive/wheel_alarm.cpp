@@ -6,8 +6,8 @@
 namespace talus::planner {
 namespace {
 
-constexpr std::size_t kRemembered = 120;  // looks
-constexpr std::size_t kLeast = 20;        // that tell a datum
+constexpr std::size_t kRemembered = 120;  // readings
+constexpr std::size_t kLeast = 20;        // readings needed for a datum
 
 double medianOf(std::deque<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -17,8 +17,7 @@ double medianOf(std::deque<double> values) {
 
 }  // namespace
 
-// Over the radius, the wheel's own datum taken off; a datum that reads too little counts, one that reads too
-// much is taken off no further than it has always been.
+// Excess sinkage over the wheel radius, minus the wheel's own datum (the median of earlier excesses).
 double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::WheelReading& reading,
                                  const WheelExpectation& expected) {
   if (std::isnan(reading.sinkage_m) || reading.pass > 1) return 0.0;
@@ -38,7 +37,8 @@ WheelAlarm::Heard WheelAlarm::hear(const WheelLook& look, const std::vector<Whee
   for (std::size_t w = 0; w < look.wheels.size(); ++w) {
     const costmap::WheelReading& reading = look.wheels[w];
     reading_slip += std::isnan(reading.slip) ? 0U : 1U;
-    // Downhill less than the limit is traction, whatever was expected: who stops there must climb back.
+    // The threshold is at least the limit: downhill, slip below the limit is traction even if the expected
+    // slip is negative, and a rover that stops there must climb back.
     slipping += reading.slip > std::max(expected[w].slip, 0.0) + limits_.slip ? 1U : 0U;
     expected_angle_rad = std::fmax(expected_angle_rad, expected[w].slip_angle_rad);
     heard.sank.push_back(excessSinkage(w, reading, expected[w]) > limits_.sinkage);

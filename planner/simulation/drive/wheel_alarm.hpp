@@ -10,35 +10,36 @@
 
 namespace talus::planner {
 
-/// When a rover that watches its wheels stops.
+/// Limits of the alarm of a rover that monitors its wheels.
 struct AlarmLimits {
-  double slip = 0.2;  ///< slip beyond what the map says and beyond 0, at half of the wheels or more [-]
-  double sinkage =
-      0.08;  ///< sinkage of a wheel on fresh ground beyond what the map says, over its radius [-]
-  double slip_angle_rad = 0.15;  ///< slip angle of the way made good beyond what the map says, as sizes
+  double slip = 0.2;  ///< slip above the larger of the expected slip and 0, at half of the wheels or more [-]
+  /// Sinkage of a wheel on fresh ground above the expected sinkage, over the wheel radius [-].
+  double sinkage = 0.08;
+  double slip_angle_rad = 0.15;  ///< magnitude of the slip angle above the expected magnitude
 };
 
-/// What the map says of the ground under a wheel in this heading.
+/// Readings expected by the map for the ground under a wheel and a heading.
 struct WheelExpectation {
   double slip = 0.0;                 ///< [-]
   double sinkage_over_radius = 0.0;  ///< [-]
-  double slip_angle_rad = 0.0;       ///< size; NaN, not known, counts as 0
+  double slip_angle_rad = 0.0;       ///< magnitude; NaN (not known) counts as 0
 };
 
-/// Compares what the wheels read, noise and faults and all, with what the map says. Half of the wheels must
-/// slip, so that one wheel's sensor neither stops the rover nor keeps it from stopping. One wheel that sinks
-/// is enough: it is the first to meet soft ground. An offset of a wheel's sinkage that it had all the way is
-/// its datum and taken off (ours: the median of its last 120 looks).
+/// Compares the wheels' readings, including noise and faults, with the map's expectations. Half of the wheels
+/// must slip, so that a single sensor neither stops the rover nor prevents a stop. A single sinking wheel
+/// suffices, because it is the first to reach soft ground. A constant offset of a wheel's sinkage is its
+/// datum and is subtracted (ours: the median of its last 120 readings).
 class WheelAlarm {
  public:
+  /// The wheel radius [m] normalises sinkages, > 0.
   WheelAlarm(const AlarmLimits& limits, double wheel_radius_m) : limits_(limits), radius_m_(wheel_radius_m) {}
 
-  /// What a look says.
+  /// Result of one set of readings.
   struct Heard {
-    std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"
-    std::vector<bool> sank;             ///< of each wheel
+    std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"; empty without an alarm
+    std::vector<bool> sank;             ///< for each wheel: true if its sinkage exceeds the limit
   };
-  /// `expected`: of each wheel of the look.
+  /// `expected`: one entry per wheel of `look`.
   Heard hear(const WheelLook& look, const std::vector<WheelExpectation>& expected);
 
  private:
@@ -47,7 +48,7 @@ class WheelAlarm {
 
   AlarmLimits limits_;
   double radius_m_;
-  std::vector<std::deque<double>> excess_;  // of each wheel's last looks
+  std::vector<std::deque<double>> excess_;  // of each wheel's latest readings
 };
 
 }  // namespace talus::planner

@@ -7,26 +7,27 @@
 
 namespace talus::planner {
 
-/// Where wheels have been, in squares as wide as a wheel. A square is a rut for whoever comes after the rover
-/// moved on by two squares, or turned back: a wheel does not follow itself.
+/// Tracks of wheels, in squares as wide as a wheel. A square counts as a rut after the rover has moved on by
+/// more than two squares or turned back, so a wheel does not follow itself.
 class Ruts {
  public:
+  /// The width of the squares is the wheel width [m], > 0.
   explicit Ruts(double wheel_width_m) : square_m_(wheel_width_m) {}
 
-  /// A wheel stands here.
+  /// Marks the square under a wheel.
   void press(const maps::Point& place);
-  /// The rover moved by so much.
+  /// Adds a driven distance.
   void moved(double distance_m) noexcept { odometer_m_ += distance_m; }
-  /// It changed its direction: what lies behind is a rut at once.
+  /// The rover reversed its direction: all squares behind it are ruts at once.
   void turnBack() noexcept { odometer_m_ += 3.0 * square_m_; }
-  /// How many wheels came by before.
+  /// Number of earlier wheel passes at a place.
   int passes(const maps::Point& place) const;
 
  private:
   struct Mark {
     double pressed_at_m = 0.0;
     int passes = 1;
-    int before = 0;  // before the wheel that stands here now
+    int before = 0;  // passes before the present wheel
   };
 
   std::uint64_t square(const maps::Point& place) const noexcept;

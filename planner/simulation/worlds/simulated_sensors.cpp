@@ -9,11 +9,11 @@
 namespace talus::planner {
 namespace {
 
-// Standard deviations of the rover's sensors: those that WheelObserver expects.
+// Standard deviations of the rover's sensors, equal to those assumed by WheelObserver.
 constexpr double kSlipNoise = 0.02, kAngleNoise_rad = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
-// Of one wheel's own slip about that of the rover.
+// Of the deviation of one wheel's slip from the rover's slip.
 constexpr double kEncoderNoise = 0.005;
-// Faults, as SensorFault says.
+// Magnitudes of the faults of SensorFault.
 constexpr double kSlipBias = -0.2, kTorqueOffset = 0.15, kSinkageOffset = -0.1;
 constexpr double kDisplaced_m = 5.0, kDisplacedFor_m = 10.0;
 

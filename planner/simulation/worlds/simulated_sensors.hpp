@@ -15,70 +15,72 @@
 
 namespace talus::planner {
 
-/// What is wrong with one sensor of a rover, all the way.
+/// Fault of one sensor, present during the whole drive.
 enum class SensorFault {
-  None,
-  SlipStuck,      ///< one wheel's slip stays at what it first read
-  SlipBiased,     ///< one wheel's slip reads 0.2 less
-  OdometryStuck,  ///< the slip of all wheels stays at what it first read
-  TorqueOffset,   ///< one wheel's torque reads more by 0.15 of load times radius
-  SinkageDatum,   ///< one wheel's sinkage reads less by 0.1 of the radius
-  Silent,         ///< one wheel reads nothing
-  PoseDisplaced,  ///< the pose that is logged is 5 m off for 10 m of the way
+  None,           ///< no fault
+  SlipStuck,      ///< one wheel's slip stays at its first value
+  SlipBiased,     ///< one wheel's slip reads 0.2 too low
+  OdometryStuck,  ///< the slip of all wheels stays at its first value
+  TorqueOffset,   ///< one wheel's torque reads too high by 0.15 of load times radius
+  SinkageDatum,   ///< one wheel's sinkage reads too low by 0.1 of the radius
+  Silent,         ///< one wheel gives no slip, torque or sinkage
+  PoseDisplaced,  ///< the logged position is wrong by 5 m over 10 m of the drive
 };
 
 /// "none", "slip_stuck", "slip_biased", "odometry_stuck", "torque_offset", "sinkage_datum", "silent",
 /// "pose_displaced"; in the order of SensorFault.
 const std::vector<std::string_view>& sensorFaultNames();
 
-/// Greatest drift of the estimated pose per metre driven [-]: with one of 1 a rover that drives to its goal never takes itself to
-/// be there.
+/// Largest drift of the estimated position per metre driven [-]. With a drift of 1, the estimated position of
+/// a rover that drives to its goal may never reach the goal.
 inline constexpr double kMostPoseDrift = 0.5;
 
-/// How well a simulated rover senses. Plain data.
+/// Quality of a simulated rover's sensors. Plain data.
 struct SensorOptions {
-  bool noise =
-      true;  ///< of slip (0.02), slip angle (0.02 rad), torque (5 %), sinkage (3 %), and missing values
-  double dropout = 0.02;  ///< share of torque and sinkage values that are missing, with noise
-  double pose_drift =
-      0.01;  ///< by which the believed pose leaves the true one, per metre driven, in [0, kMostPoseDrift] [-]
-  SensorFault fault = SensorFault::None;
-  std::uint64_t seed = 1;
+  /// Noise of slip (0.02), slip angle (0.02 rad), torque (5 %) and sinkage (3 %), and missing values.
+  bool noise = true;
+  double dropout = 0.02;     ///< share of missing torque and sinkage values; only with noise
+  double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, in [0, kMostPoseDrift] [-]
+  SensorFault fault = SensorFault::None;  ///< fault of one sensor
+  std::uint64_t seed = 1;                 ///< of noise, drift direction and faulty wheel
 };
 
-/// What the wheels of a rover read at one look.
+/// Readings of all wheels of a rover at one time.
 struct WheelLook {
-  double heading_rad = 0.0;
-  double slip_angle_rad = 0.0;  ///< from the wheels' planes to the way made good, as visual odometry sees it
-  std::vector<costmap::WheelReading> wheels;  ///< the foremost first, at the believed place; NaN = missing
+  double heading_rad = 0.0;     ///< of the rover
+  double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, as measured by visual
+                                ///< odometry
+  std::vector<costmap::WheelReading> wheels;  ///< foremost wheels first, at estimated positions; NaN: missing
 };
 
-/// A look as rows of telemetry, for DriveIntake: wheels named w1, w2, ... A wheel without slip has no row.
+/// Readings as rows of telemetry for DriveIntake, with wheels named w1, w2, ... A wheel without slip has no
+/// row.
 terramech::Telemetry telemetryOf(const WheelLook& look);
 
-/// The sensors of one rover on one drive: noise, dropouts, a pose that drifts, one fault. The wheel that has
-/// the fault is drawn. Deterministic in the seed.
+/// Sensors of one rover on one drive: noise, dropouts, a drifting position and at most one fault. The faulty
+/// wheel is drawn at random. Deterministic for a given seed.
 class SimulatedSensors {
  public:
+  /// Throws std::invalid_argument if pose_drift is out of range.
   SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover);
 
-  /// Where the rover takes itself to be when it stands at a true place.
+  /// Estimated position of the rover at a true place.
   maps::Point believed(const maps::Point& place) const noexcept;
-  /// The rover drove on by so much.
+  /// Adds a driven distance.
   void moved(double distance_m);
 
-  /// A moment of the drive.
+  /// State of the drive at one time.
   struct Moment {
-    double time_s = 0.0;
-    costmap::Direction heading;
-    double gradient = 0.0;  ///< along the heading as the map has it
-    double across = 0.0;    ///< the same to the left of it
-    double dug_m = 0.0;     ///< depth of the holes that the wheels dug on the spot
+    double time_s = 0.0;         ///< since the start
+    costmap::Direction heading;  ///< heading of the motion
+    double gradient = 0.0;       ///< along the heading, from the map
+    double across = 0.0;         ///< to the left of the heading, from the map
+    double dug_m = 0.0;          ///< depth of the holes dug on the spot
   };
-  /// What the wheels read.
+  /// Readings of the wheels, including noise and faults.
   WheelLook look(const TrueWorld::Step& step, const Moment& moment);
 
-  /// The wheel with the fault, by number.
+  /// Number of the wheel with the fault.
   std::size_t faultyWheel() const noexcept { return faulty_wheel_; }
 
  private:

@@ -20,18 +20,19 @@ bool sameSoil(const terramech::Soil& a, const terramech::Soil& b) {
          a.c1 == b.c1 && a.c2 == b.c2 && a.slip_sinkage_exponent == b.slip_sinkage_exponent;
 }
 
-// A wheel in a hole of its own shape, d deep, rises by d over sqrt(2 r d): the mean slope out of it (ours).
+// A wheel in a hole of its own shape and depth d rises by d over a length of sqrt(2 r d): the mean slope to
+// climb (ours).
 double slopeOutOf(double dug_m, double radius_m) {
   return std::sqrt(std::max(dug_m, 0.0) / (2.0 * radius_m));
 }
 
 struct LoadedTable {
   const WheelTable* table;
-  double load;   // over that on the flat
-  double share;  // of the rover's
+  double load;   // relative to the load on level ground
+  double share;  // share of the rover's weight
 };
 
-// What the slope asks of the wheels over the force normal to it; across as a size.
+// Required force over the normal force; `across` is a magnitude.
 struct Demand {
   double along, across;
 };
@@ -41,14 +42,14 @@ Demand demandOf(double along, double across) {
   return {along * std::sqrt(1.0 + along * along + across * across) / run, std::abs(across) / run};
 }
 
-// The common slip and slip angle at which the wheels pull and hold what is asked.
+// Common slip and slip angle at which the wheels give the required forces.
 struct Balance {
   double slip = kHighestSlip;
   double angle_rad = 0.0;
   bool stuck = true, slides = false;
 };
 
-// What wheels turned uphill by an angle give along and across the way.
+// Forces along and across the direction of travel of wheels turned uphill by the slip angle of a sheet.
 Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
   double pull = 0.0, hold = 0.0;
   for (const LoadedTable& w : wheels) {
@@ -60,11 +61,11 @@ Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_
   return {pull * c - hold * s, hold * c + pull * s};
 }
 
-// At one slip angle, the least slip that gives the demand along, since on soft ground the pull falls again as the
-// wheel digs in, and what it holds across there.
+// Smallest slip at one slip angle that gives the required force along the direction of travel, and the side
+// force at that slip. On soft ground the pull decreases again at higher slip, because the wheel digs in.
 struct Steady {
   double slip, hold;
-  bool brakes;  // false where even locked wheels pull more than is asked: it slides down
+  bool brakes;  // false: even locked wheels pull more than required, so the rover slides down
 };
 
 std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double along, std::size_t sheet) {
@@ -82,7 +83,8 @@ std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double alon
   return std::nullopt;
 }
 
-// The least slip angle at which the wheels hold it, between two sheets where both are steady.
+// Smallest slip angle at which the wheels hold the rover, interpolated between two sheets with an
+// equilibrium.
 Balance balanced(const std::vector<LoadedTable>& wheels, const Demand& demand) {
   std::optional<Steady> before;
   for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet) {
@@ -118,11 +120,12 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
     patch_soil_.push_back(static_cast<std::size_t>(alike - soils_.begin()));
     if (alike == soils_.end()) soils_.push_back(patch.soil);
   }
-  // A class raster may declare hundreds of classes, each a tenth of a second, and hold three.
+  // Only the soils that occur get tables: a class raster may declare hundreds of classes, and a table takes a
+  // tenth of a second.
   std::vector<bool> occurs(soils_.size(), false);
   for (const std::uint8_t index : class_index_.values())
     occurs[std::min<std::size_t>(index, classes_ - 1)] = true;
-  occurs[0] = true;  // beyond the map
+  occurs[0] = true;  // outside the map
   for (const std::size_t soil : patch_soil_) occurs[soil] = true;
   tables_.resize(soils_.size());
   for (std::size_t i = 0; i < soils_.size(); ++i)
@@ -141,8 +144,9 @@ std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const n
   return cell ? std::min<std::size_t>(class_index_[*cell], classes_ - 1) : 0;
 }
 
-// Axles evenly over the wheelbase. Across the slope weight moves to the lower wheels by the moment of its part across it,
-// as along it; none carries less than a tenth of its share.
+// Axles are evenly spaced over the wheelbase. On a cross slope, load moves to the lower wheels by the moment
+// of the weight's component across the slope, as along the slope; no wheel carries less than a tenth of its
+// share.
 std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
   const int axles = std::max(rover_.wheel_count / 2, 2);
   std::vector<double> along_m;
@@ -189,8 +193,8 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
     step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad);
     step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
-  // Power of all wheels over the speed of the way: T omega / v with omega = v cos(beta)/(r (1 - i)); a braking wheel
-  // gives nothing back.
+  // Power of all wheels over the speed of travel: T omega / v with omega = v cos(beta) / (r (1 - i)). Braking
+  // recovers no energy.
   const double moving = (1.0 - std::max(step.slip, 0.0)) / std::cos(balance.angle_rad);
   step.speed_mps = rover_.max_speed_mps * moving;
   step.energy_J_per_m = std::max(step.torque_Nm, 0.0) / (rover_.wheel.radius_m * moving) +

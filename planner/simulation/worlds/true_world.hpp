@@ -18,34 +18,34 @@ struct TurnEffort;
 
 namespace talus::planner {
 
-/// A disc of ground whose soil no class map shows.
+/// Disc of soil that the class map does not show.
 struct SoilPatch {
-  maps::Point centre;
-  double radius_m = 0.0;
-  terramech::Soil soil;
+  maps::Point centre;     ///< map coordinates [m]
+  double radius_m = 0.0;  ///< >= 0
+  terramech::Soil soil;   ///< soil within the disc
 };
 
-/// The soils of a simulated world, which the planner does not know.
+/// True soils of a simulated world, not known to the planner.
 struct WorldSoils {
-  std::vector<terramech::Soil> classes;      ///< true soil of each class of the map, in its order
-  std::vector<SoilPatch> patches;            ///< later ones lie on top
-  std::vector<terramech::Effect> effects{};  ///< that act on all of them, beyond a rigid wheel on that soil
+  std::vector<terramech::Soil> classes;      ///< true soil of each class of the map, in the map's order
+  std::vector<SoilPatch> patches;            ///< later patches lie on top
+  std::vector<terramech::Effect> effects{};  ///< effects beyond a rigid wheel that act on all soils
 };
 
-/// Where a rover stands and where it is driven to.
+/// Position and motion of a rover.
 struct Motion {
-  maps::Point place;           ///< of the rover's middle
+  maps::Point place;           ///< of the rover's centre
   costmap::Direction heading;  ///< of the motion
   double gradient = 0.0;       ///< rise over run along the motion
-  double across = 0.0;         ///< rise over run to the left of it
-  double dug_m = 0.0;          ///< depth of the holes that the wheels stand in and must climb out of
-  const Ruts* ruts = nullptr;  ///< none: all ground is fresh
+  double across = 0.0;         ///< rise over run to the left of the motion
+  double dug_m = 0.0;          ///< depth of the holes from which the wheels must climb
+  const Ruts* ruts = nullptr;  ///< null: all ground is fresh
 };
 
-/// How a rover of alike wheels stands and drives on the true ground: each wheel on the soil under it, in the
-/// rut of the one ahead where there is one, under its share of the weight; all turn at one rate and are turned
-/// uphill alike, so slip and slip angle are common, and together they pull what the slope asks along the way and
-/// hold what it asks across (ishigami_2009). The balance of yaw is left to the steering.
+/// Statics of a rover with identical wheels on the true ground. Each wheel stands on its own soil, in a rut
+/// if a wheel passed before, under its share of the weight. All wheels turn at one rate and are turned uphill
+/// by the same angle, so slip and slip angle are common; together the wheels give the forces required along
+/// and across the direction of travel (ishigami_2009). The yaw moment is left to the steering.
 ///
 /// Quasi-static. Immutable, safe to share between threads.
 class TrueWorld {
@@ -53,39 +53,42 @@ class TrueWorld {
   /// `class_index`: position of each cell's class in soils.classes.
   TrueWorld(const WorldSoils& soils, const terramech::Rover& rover, maps::Raster<std::uint8_t> class_index);
 
-  /// A wheel during a step.
+  /// State of a wheel during a step.
   struct WheelState {
-    maps::Point place;
-    double load_N = 0.0;
-    int passes = 0;  ///< wheels that were here before
-    WheelTable::Row forces;
+    maps::Point place;       ///< position of the wheel [m]
+    double load_N = 0.0;     ///< normal load
+    int passes = 0;          ///< earlier wheel passes at the place
+    WheelTable::Row forces;  ///< normalised forces and sinkage
   };
 
-  /// One steady step of the rover.
+  /// Steady state of the rover during one step.
   struct Step {
-    bool stuck = false;   ///< no slip gives the pull, or it slides
-    bool slides = false;  ///< the wheels hold it across or down the slope at no slip angle up to 45 deg
-    double slip = 0.0;
-    double slip_angle_rad = 0.0;  ///< from the wheels' planes to the way made good, left positive
-    double energy_J_per_m = 0.0;  ///< of driving and hotel, along the way made good on the surface
-    double speed_mps = 0.0;
-    double torque_Nm = 0.0;          ///< of all wheels together
-    std::vector<WheelState> wheels;  ///< the foremost first
+    bool stuck = false;              ///< no slip gives the required pull, or the rover slides
+    bool slides = false;             ///< no slip angle up to 45 deg holds the rover on the slope
+    double slip = 0.0;               ///< -1 to 0.98 [-]; 0.98 if stuck
+    double slip_angle_rad = 0.0;     ///< from the wheels' planes to the direction of travel, left positive
+    double energy_J_per_m = 0.0;     ///< drive and hotel energy per metre of surface along the direction of
+                                     ///< travel
+    double speed_mps = 0.0;          ///< speed of travel along the surface
+    double torque_Nm = 0.0;          ///< sum over all wheels
+    std::vector<WheelState> wheels;  ///< foremost wheels first
   };
 
+  /// Steady state of the rover for a motion.
   Step drive(const Motion& motion) const;
-  /// What it takes to turn from a heading to that of a step, where that is taken (terramech::turnEfforts), on the soil under the rover's
-  /// middle; nothing from a heading (0, 0).
+  /// Energy and time to turn from heading `from` to the heading of `to` at its place
+  /// (terramech::turnEfforts()), on the soil under the rover's centre; zero if `from` is (0, 0).
   terramech::TurnEffort turn(const costmap::Direction& from, const Motion& to) const;
 
-  /// Which of soils() lies at a place; patches reach `margin_m` further than they do.
+  /// Index in soils() of the soil at a place; patches are extended by `margin_m`.
   std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;
-  /// Whether ground that no class shows lies there.
+  /// Returns true if the place lies in a patch.
   bool inPatch(const maps::Point& place) const noexcept { return soilAt(place) >= classes_; }
-  /// The classes' soils in their order, then those of the patches, each once.
+  /// Soils of the classes in order, then the distinct soils of the patches.
   const std::vector<terramech::Soil>& soils() const noexcept { return soils_; }
-  /// Effects that act on all of them.
+  /// Effects that act on all soils.
   const std::vector<terramech::Effect>& effects() const noexcept { return effects_; }
+  /// Patches of the world; later patches lie on top.
   const std::vector<SoilPatch>& patches() const noexcept { return patches_; }
 
  private:
@@ -100,7 +103,7 @@ class TrueWorld {
   std::size_t classes_;
   std::vector<terramech::Soil> soils_;
   std::vector<terramech::Effect> effects_;
-  std::vector<std::optional<Tables>> tables_;  // of each soil that some cell or patch has
+  std::vector<std::optional<Tables>> tables_;  // of each soil that occurs in a cell or patch
   std::vector<SoilPatch> patches_;
   std::vector<std::size_t> patch_soil_;  // of each patch
 };

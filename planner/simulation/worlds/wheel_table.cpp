@@ -12,7 +12,7 @@ namespace {
 
 using Row = WheelTable::Row;
 
-// Of a soil that cannot carry the wheel.
+// For a soil that cannot carry the wheel.
 constexpr Row kSunk{-1.0, 1.0, 1.0, 0.0};
 
 Row between(const Row& a, const Row& b, double t) {
@@ -20,7 +20,7 @@ Row between(const Row& a, const Row& b, double t) {
           a.sinkage + t * (b.sinkage - a.sinkage), a.hold + t * (b.hold - a.hold)};
 }
 
-// How the wheel of one entry of the table moves.
+// Wheel operations of all entries of the table.
 std::vector<terramech::WheelOperation> operations(const terramech::Rover& rover) {
   std::vector<terramech::WheelOperation> all;
   for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet)
@@ -87,7 +87,7 @@ terramech::RefinedModel modelOf(const terramech::Soil& soil, const std::vector<t
   return model;
 }
 
-// The first of two nodes about a position, and how far it lies between them.
+// The lower of two nodes around a coordinate, and the position between the nodes [0, 1].
 struct Between {
   std::size_t first;
   double share;

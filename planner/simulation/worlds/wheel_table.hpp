@@ -9,23 +9,23 @@
 
 namespace talus::planner {
 
-/// What a wheel does on one soil, with the effects that act there, tabulated by the forward model over slip
-/// -1 .. 1, over its load, 0.25 to 1.9 times that on the flat, and over its slip angle, 0 to 45 degrees.
+/// Forces of a wheel on one soil, with the effects that act there, tabulated with the forward model over slip
+/// (-1 to 1), load (0.25 to 1.9 times the load on level ground) and slip angle (0 to 45 degrees).
 class WheelTable {
  public:
-  /// Forces over the load.
+  /// Normalised forces and sinkage.
   struct Row {
     double pull = 0.0;     ///< drawbar pull over load [-]
     double torque = 0.0;   ///< torque over load and radius [-]
     double sinkage = 0.0;  ///< sinkage over radius [-]
-    double hold = 0.0;     ///< force across the wheel, against its sideways motion, over load [-]
+    double hold = 0.0;     ///< side force against the wheel's lateral motion, over load [-]
   };
 
-  static constexpr std::size_t kRows = 81;
-  static constexpr std::size_t kLoads = 12;
-  static constexpr std::size_t kAngles = 9;
+  static constexpr std::size_t kRows = 81;   ///< number of slips
+  static constexpr std::size_t kLoads = 12;  ///< number of loads
+  static constexpr std::size_t kAngles = 9;  ///< number of slip angles
 
-  /// Load of a layer, over that on the flat: 0.25 to 1.9.
+  /// Load of a layer relative to the load on level ground: 0.25 to 1.9.
   static constexpr double load(std::size_t layer) noexcept {
     return 0.25 + 0.15 * static_cast<double>(layer);
   }
@@ -35,7 +35,7 @@ class WheelTable {
     return 0.09817477042468103 * static_cast<double>(sheet);
   }
 
-  /// A soil that cannot carry the wheel pulls and holds nothing.
+  /// On a soil that cannot carry the wheel, the pull is -1 and the side force 0.
   WheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
              const std::vector<terramech::Effect>& effects = {});
 
@@ -43,9 +43,10 @@ class WheelTable {
   static constexpr double slip(std::size_t row) noexcept {
     return 2.0 * static_cast<double>(row) / (kRows - 1) - 1.0;
   }
-  /// Of a row and sheet, interpolated at a load, over that on the flat; beyond the table's ends their values.
+  /// Entry of a row and sheet, interpolated at a load relative to level ground; clamped to the table's range.
   Row row(std::size_t i, double load_over_flat, std::size_t sheet = 0) const noexcept;
-  /// Interpolated at a slip, clamped to [-1, 1], and at the size of a slip angle, too.
+  /// Entry interpolated at a slip, a relative load and the magnitude of a slip angle; clamped to the table's
+  /// range.
   Row at(double slip, double load_over_flat, double slip_angle_rad = 0.0) const noexcept;
 
  private:

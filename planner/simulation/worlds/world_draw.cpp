@@ -9,9 +9,9 @@ namespace {
 
 using terramech::Soil;
 
-constexpr double kClear_m = 2.0;  // between start or goal and a random patch
+constexpr double kClear_m = 2.0;  // distance of start and goal from random patches
 
-// A soil stays in range however far the draw lies out.
+// Limits the factor, so that extreme draws leave a soil within its range.
 double scaled(double value, double factor) {
   return value * std::max(factor, 0.2);
 }
@@ -26,7 +26,8 @@ Soil varied(Soil soil, double spread, std::mt19937_64& random) {
   return soil;
 }
 
-// The draws of a class are its own: they depend on the world and its number, not on what else is declared.
+// Random generator of one class: depends on the world's seed and the class number, not on other declared
+// classes.
 std::mt19937_64 drawsOf(std::uint64_t seed, int number) {
   const auto low = [](std::uint64_t word) { return static_cast<std::uint32_t>(word); };
   std::seed_seq words{low(seed), low(seed >> 32), static_cast<std::uint32_t>(number)};

@@ -10,26 +10,27 @@
 
 namespace talus::planner {
 
-/// What is true of a site's soils and how they vary from world to world. Plain data.
+/// True soils of a site and their variation from world to world. Plain data.
 struct Truth {
-  std::map<int, terramech::Soil> classes;  ///< true soils where they differ from what the map believes
-  std::vector<SoilPatch> patches;          ///< in every world
-  double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of friction and moduli [-]
-  int random_patches = 0;  ///< undeclared, a world
-  double patch_radius_m = 3.0;               ///< mean; they range evenly over +-50 %
-  terramech::Soil patch_soil;                ///< of the random patches, varied as the classes are
-  std::vector<terramech::Effect> effects{};  ///< undeclared, on all soils
+  std::map<int, terramech::Soil> classes;  ///< true soils that differ from those of the map
+  std::vector<SoilPatch> patches;          ///< present in every world
+  double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of the friction angle and
+                           ///< moduli [-]
+  int random_patches = 0;  ///< random patches drawn per world; patches near start or goal are omitted
+  double patch_radius_m = 3.0;               ///< mean; uniform within +-50 %
+  terramech::Soil patch_soil;                ///< of the random patches, varied like the classes
+  std::vector<terramech::Effect> effects{};  ///< undeclared effects on all soils
 };
 
-/// What draws a world: its number, and the places that random patches spare.
+/// Seed of a world, and the places kept free of random patches.
 struct WorldDraw {
-  std::uint64_t seed = 1;
-  maps::Point start;
-  maps::Point goal;
+  std::uint64_t seed = 1;  ///< world seed
+  maps::Point start;       ///< kept free of random patches [m]
+  maps::Point goal;        ///< kept free of random patches [m]
 };
 
-/// Soils of one world over a grid, in the order of the classes. Same draw, same world; what a class and the random patches are
-/// like does not depend on which other classes there are.
+/// Soils of one world on a grid, in the order of the classes. Equal draws give equal worlds; the soils of a
+/// class and of the random patches do not depend on the other classes.
 WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
                      const maps::Grid& grid, const WorldDraw& draw);
 
