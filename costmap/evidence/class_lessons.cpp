@@ -139,16 +139,31 @@ double ClassLessons::leastMean(Told raising, const ByDrive& lowering) const {
   return least;
 }
 
-// Infinite of fewer than two drives.
+// Standard deviation of the class mean by these lessons alone (B12).
+double ClassLessons::deviationOf(const Told& told) const noexcept {
+  const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(told.weight) / kUnit /
+                         (ground_.pull_std * ground_.pull_std);
+  return ground_.mean_std / std::sqrt(1.0 + weighed);
+}
+
+// Each of several drives that may raise bounds the class by its own mean and one deviation. Infinite of fewer than two.
 double ClassLessons::mostByDrives() const noexcept {
   double most = std::numeric_limits<double>::infinity();
   if (pull_by_drive_.size() < 2) return most;
-  for (const auto& [drive, told] : pull_by_drive_) {
-    const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(told.weight) / kUnit /
-                           (ground_.pull_std * ground_.pull_std);
-    if (drive != 0) most = std::min(most, meanOf(told) + ground_.mean_std / std::sqrt(1.0 + weighed));
-  }
+  for (const auto& [drive, told] : pull_by_drive_)
+    if (drive != 0) most = std::min(most, meanOf(told) + deviationOf(told));
   return most;
+}
+
+bool ClassLessons::drivesAgree() const noexcept {
+  constexpr double kApart =
+      3.0;  // deviations of the difference; of sound drives 0.3 % of pairs lie further apart
+  for (const auto& [one, weak] : pull_by_drive_)
+    for (const auto& [other, strong] : pull_by_drive_)
+      if (one != 0 && other != 0 &&
+          meanOf(strong) - meanOf(weak) > kApart * std::hypot(deviationOf(weak), deviationOf(strong)))
+        return false;
+  return true;
 }
 
 void ClassLessons::refresh() {

@@ -97,7 +97,10 @@ class ClassLessons {
   /// ends on a step of cost curves, which says no less than any rise up to the next.
   ClassState stateInSteps() const noexcept;
   /// Whether enough places may raise that the belief in ground of the class may rise at all.
-  bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)); }
+  bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)) && drivesAgree(); }
+  /// Whether no two drives that may raise differ in the class mean by more than 3 standard deviations of the difference.
+  /// Otherwise the sensors of one are faulty, which one is not known, and nothing rises above the class.
+  bool drivesAgree() const noexcept;
   /// The most by which it may: what as many places agree on; >= 0.
   double mostRise() const noexcept;
 
@@ -114,6 +117,7 @@ class ClassLessons {
   using ByDrive = std::map<std::uint16_t, Told>;
   static void add(std::uint16_t drive, const Told& told, ByDrive& drives);
   double meanOf(const Told& told) const noexcept;
+  double deviationOf(const Told& told) const noexcept;
   double leastMean(Told raising, const ByDrive& lowering) const;
   double mostByDrives() const noexcept;
 
