@@ -105,13 +105,6 @@ bool copied(const fs::path& from, const fs::path& to) {
   return true;
 }
 
-// Synchronises the file to the disk before the rename, so that a power failure after the rename leaves a
-// complete file.
-bool synced(const fs::path& path) {
-  const Descriptor file(path, O_RDONLY);
-  return *file >= 0 && ::fsync(*file) == 0;
-}
-
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& path) : path_(path) {
@@ -144,7 +137,7 @@ void OutputFile::commit() {
     if (!copied(temporary_, path_)) fail(std::strerror(errno));
     return;
   }
-  if (!synced(temporary_)) fail(std::strerror(errno));
+  sync();
   std::error_code error;
   const fs::file_status before = fs::status(path_, error);
   if (fs::exists(before)) fs::permissions(temporary_, before.permissions(), error);
@@ -152,16 +145,35 @@ void OutputFile::commit() {
   if (error) fail(error.message());
 }
 
+void OutputFile::write(std::string_view content) {
+  std::ofstream stream(temporary_, std::ios::binary);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  if (!stream) fail(std::strerror(errno));
+  sync();
+}
+
+void OutputFile::sync() const {
+  const Descriptor file(temporary_, O_RDONLY);
+  if (*file < 0 || ::fsync(*file) != 0) fail(std::strerror(errno));
+}
+
 void OutputFile::fail(const std::string& reason) const {
   refuse(path_, "cannot be written: " + reason, "check the folder, its permissions and free space");
 }
 
+void OutputFile::failToGrow(const std::string& reason) const {
+  const std::string block(65536, '\0');
+  const Descriptor file(temporary_, O_WRONLY | O_APPEND);
+  // On a full disk the first may still be written in part.
+  const bool grows = *file < 0 || (::write(*file, block.data(), block.size()) >= 0 &&
+                                   ::write(*file, block.data(), block.size()) >= 0);
+  fail(grows ? reason : std::strerror(errno));
+}
+
 void writeFile(const fs::path& path, std::string_view content) {
   OutputFile file(path);
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (!stream) file.fail(std::strerror(errno));
+  file.write(content);
   file.commit();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Entry header of talus::calibration: the soil, the pull and category of each row, or the effects that a model lacks, from
-/// a whole table of telemetry.
+/// Entry header of talus::calibration. From a table of telemetry: soil parameters, drawbar pull and category
+/// of each row, or the effects missing in a model.
 
 #include <talus/terramech/calibration/tables/assessment.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>

@@ -28,7 +28,8 @@ JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::si
   }
 }
 
-// Each job falls into its own place, so that order does not matter; the caller's thread reports.
+// Each job writes its own element of the result, so that the order of the jobs does not matter. Only the
+// caller's thread reports progress.
 std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
                                 const ProgressMonitor& watch, std::size_t workers) {
   std::vector<JobOutcome> outcomes(count);
@@ -81,7 +82,7 @@ Campaign::Campaign() {
   mpi_ = std::make_unique<Ranks>();
   const int joined = ranks();
   if (joined < mpiLaunch()->ranks)
-    mpi_.reset();  // its end would abort the process while an exception is on the way
+    mpi_.reset();  // ~environment() would abort the process during the exception
   requireJoinedRanks(joined,
                      "the launcher belongs to another MPI than this program; start it by Open MPI's mpirun");
 }
@@ -111,7 +112,8 @@ Campaign::~Campaign() = default;
 
 #ifdef TALUS_MPI
 
-// The leading rank does its own share and takes in what the others send meanwhile, then the rest.
+// Rank 0 runs its own jobs and receives the outcomes of other ranks between them, then the remaining
+// outcomes.
 std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                                       const ProgressMonitor& watch, std::size_t workers) const {
   if (!mpi_) return runHere(count, job, watch, workers);

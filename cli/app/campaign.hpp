@@ -10,32 +10,33 @@
 
 namespace talus::cli {
 
-/// What became of one job.
+/// Result of one job.
 struct JobOutcome {
   bool failed = false;
-  bool stopped = false;  ///< failed because a stop was requested before it had an answer
-  std::string text;      ///< the job's result, or why it failed
+  bool stopped = false;  ///< failed because a stop was requested before the job had a result
+  std::string text;      ///< result of the job, or the reason of its failure
 };
 
-/// Many independent jobs, one after another or some at a time, or over the ranks of an MPI run when the
-/// program was started by mpirun and built with Boost.MPI. Job i runs on rank i modulo their number, so
-/// results do not depend on how many there are.
+/// Runs independent jobs: one after another, several at a time, or distributed over the ranks of an MPI run
+/// if the program was started by mpirun and built with Boost.MPI. Job i runs on rank i modulo the number of
+/// ranks; the results do not depend on the number of ranks.
 class Campaign {
  public:
-  /// Joins the MPI run that the process was started in, if any. Throws std::invalid_argument where the
-  /// launcher belongs to another MPI, so that its ranks would not know of each other.
+  /// Joins the MPI run in which the process was started, if any. Throws std::invalid_argument if the launcher
+  /// belongs to another MPI implementation, whose ranks would not find each other.
   Campaign();
   ~Campaign();
   Campaign(const Campaign&) = delete;
   Campaign& operator=(const Campaign&) = delete;
 
   int ranks() const noexcept;
-  bool leads() const noexcept;  ///< rank 0, the only one that gets the results and prints
+  bool leads() const noexcept;  ///< true on rank 0, the only rank that receives results and prints
 
-  /// Outcomes of job(0) .. job(count - 1) in order; empty on the other ranks. A job that throws has failed
-  /// and stops nothing; a requested stop ends each rank after its job in work, and the rest have failed and
-  /// say that they were stopped, as does a job in work that answers with an empty text. In a plain run
-  /// `workers` jobs run at a time, which must then be safe to; a rank runs one.
+  /// Returns the outcomes of job(0) .. job(count - 1) in order on rank 0, and nothing on other ranks. A job
+  /// that throws is marked as failed; the other jobs continue. After a requested stop each rank completes its
+  /// current job; jobs not started, and jobs that return an empty text, are marked as failed and stopped.
+  /// Without MPI, `workers` jobs run concurrently and must be thread-safe; an MPI rank runs one job at a
+  /// time.
   std::vector<JobOutcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                               const ProgressMonitor& watch = {}, std::size_t workers = 1) const;
 

@@ -25,11 +25,11 @@ struct CommandText {
   std::string name;
   std::string group;        ///< one of Group
   std::string description;  ///< its purpose, one line
-  std::string examples;     ///< two calls at least, each on lines indented by two blanks
+  std::string examples;     ///< at least two calls, each on lines indented by two blanks
 };
 
-/// Registers a subcommand. `bind` declares its options onto a plain struct; `run` gets that struct once the
-/// whole line is parsed, and its result is the program's exit code. Errors are thrown, and printed by main.
+/// Registers a subcommand. `bind` declares the options of the subcommand as fields of a plain struct. `run`
+/// receives the parsed struct and returns the exit code of the program. Exceptions are printed by main.
 template <typename Options>
 CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
                      void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {

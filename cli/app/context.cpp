@@ -13,7 +13,7 @@
 namespace talus::cli {
 namespace {
 
-/// A bar of 30 marks, drawn again only when its percentage changes, erased when full.
+/// Progress bar of 30 marks. Redrawn only if its percentage changes; erased at 100 %.
 class Bar {
  public:
   explicit Bar(std::string_view what) : what_(what) {}
@@ -76,7 +76,7 @@ std::string oneLine(std::string_view text) {
     else
       line += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
   }
-  // A byte that is no UTF-8 becomes U+FFFD, as in JSON.
+  // A byte that is not valid UTF-8 becomes U+FFFD, as in JSON.
   return nlohmann::json::parse(jsonText(line)).get<std::string>();
 }
 

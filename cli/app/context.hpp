@@ -11,61 +11,63 @@
 
 #include <talus/common/progress_monitor.hpp>
 
-/// The program: thin, one file a subcommand.
+/// The command line program: one file per subcommand.
 namespace talus::cli {
 
-/// Exit codes that other programs rely on.
+/// Exit codes of the program, stable for scripts.
 struct Exit {
   static constexpr int kDone = 0;          ///< done
-  static constexpr int kNo = 1;            ///< a well-posed question with the answer no: no route, no fit
-  static constexpr int kInput = 2;         ///< the call or an input is wrong
-  static constexpr int kInternal = 3;      ///< our failure
-  static constexpr int kCancelled = 130;   ///< stopped by the user; 143 by SIGTERM
-  static constexpr int kReaderGone = 141;  ///< nobody reads the output any more; without a word, as SIGPIPE
+  static constexpr int kNo = 1;            ///< valid input, negative result: no route, no fit
+  static constexpr int kInput = 2;         ///< invalid call or input
+  static constexpr int kInternal = 3;      ///< internal error
+  static constexpr int kCancelled = 130;   ///< interrupted by SIGINT (SIGTERM: 143)
+  static constexpr int kReaderGone = 141;  ///< reader of stdout closed the pipe; no message, as SIGPIPE
 };
 
-/// What every subcommand shares: the global options, and the way to the terminal.
+/// Global options and terminal output, shared by all subcommands.
 struct Context {
   bool json = false;                          ///< results as JSON on stdout
   bool quiet = false;                         ///< no progress, no warnings
-  bool force = false;                         ///< overwrites what checkOutput() would keep
-  std::uint64_t seed = 1;                     ///< of every random number
-  int threads = 0;                            ///< at most so many; 0: one a core
-  const char* const* argv = nullptr;          ///< the words of the call, ended by a null pointer
-  std::stop_token stop;                       ///< set by Ctrl-C
+  bool force = false;                         ///< allows overwriting of files that checkOutput() protects
+  std::uint64_t seed = 1;                     ///< seed of all random numbers
+  int threads = 0;                            ///< largest number of threads; 0: one per core
+  const char* const* argv = nullptr;          ///< arguments of the call, terminated by a null pointer
+  std::stop_token stop;                       ///< stop requested by SIGINT or SIGTERM
   std::atomic<bool>* answers_stop = nullptr;  ///< see answerStop()
   int exit_code = Exit::kDone;
 
-  /// Follows one stretch of work: a bar on stderr where that is a terminal (silent in a pipe), stopped by
-  /// Ctrl-C.
+  /// Progress monitor of one stage of work: a bar on stderr if stderr is a terminal, no output otherwise.
+  /// Stopped by Ctrl-C.
   ProgressMonitor watch(std::string_view what) const;
 
-  /// Says that from here on the call ends by itself when stopped, and hands out what it has; else it is ended.
+  /// Declares that the call ends by itself after a stop request, and outputs its results so far. Other calls
+  /// are terminated by Interrupt.
   void answerStop() const noexcept {
     if (answers_stop) *answers_stop = true;
   }
 
-  /// Threads to work with: what the user allows, else one a core; at least 1.
+  /// Number of threads to use, at least 1: the user's limit, or one per core.
   int workers() const noexcept;
 
-  /// One line "talus: warning: TEXT" on stderr, unless quiet.
+  /// Prints one line "talus: warning: TEXT" to stderr, unless `quiet` is set.
   void warn(std::string_view text) const;
 };
 
-/// JSON as text, indented by so many blanks or on one line; a NaN or an infinity becomes null, and each byte that is no
-/// UTF-8, as file names may hold, U+FFFD.
+/// JSON as text, indented by `indent` blanks, or on one line if negative. NaN and infinity become null; each
+/// byte that is not valid UTF-8 (possible in file names) becomes U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& value, int indent = -1);
 
-/// Prints a result as indented JSON on stdout; a NaN or an infinity becomes null.
+/// Prints a result as indented JSON to stdout; NaN and infinity become null.
 void printJson(const nlohmann::ordered_json& value);
 
-/// Prints a result that a person reads on stdout.
+/// Prints a result as plain text to stdout.
 void print(std::string_view text);
 
-/// Writes to stderr. Where nobody listens, the text is lost and nothing else happens.
+/// Writes to stderr. If stderr is closed, the text is lost and no error is reported.
 void printError(std::string_view text) noexcept;
 
-/// The text on one line: line breaks become "; ", other control characters blanks, and bytes that are no UTF-8 U+FFFD.
+/// The text on one line: line breaks become "; ", other control characters blanks, invalid UTF-8 bytes
+/// U+FFFD.
 std::string oneLine(std::string_view text);
 
 }  // namespace talus::cli

@@ -32,7 +32,7 @@ Identity identityOf(const struct stat& status) noexcept {
 
 FileLock::FileLock(const std::vector<std::filesystem::path>& paths, const std::stop_token& stop) {
   using namespace std::chrono_literals;
-  // All or none: who holds one file and waits for another could wait for ever.
+  // Locks all files or none: a process that locks one file while it waits for another could deadlock.
   while (!tryAll(paths)) {
     if (stop.stop_requested()) throw std::runtime_error("cancelled");
     std::this_thread::sleep_for(20ms);
@@ -58,7 +58,7 @@ bool FileLock::tryAll(const std::vector<std::filesystem::path>& paths) {
       release();
       return false;
     }
-    // Whoever held it may have put a new file in its place.
+    // The previous owner of the lock may have replaced the file.
     if (::fstat(file, &opened) != 0 || ::stat(path.c_str(), &named) != 0 ||
         identityOf(opened) != identityOf(named)) {
       release();

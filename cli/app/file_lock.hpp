@@ -6,11 +6,13 @@
 
 namespace talus::cli {
 
-/// Holds files against other processes of Talus that read one, change it and put it back: they queue. Files that do
-/// not exist are left out. Advisory: who does not ask is not kept away.
+/// Locks files against other Talus processes that read, change and rewrite a file; later processes wait.
+/// Paths of files that do not exist are ignored. The lock is advisory: programs that do not request the lock
+/// are not blocked.
 class FileLock {
  public:
-  /// Waits for its turn. Throws InputError when a file cannot be opened or locked, std::runtime_error when stopped.
+  /// Waits until all files are locked. Throws InputError if a file cannot be opened or locked,
+  /// std::runtime_error if a stop is requested.
   FileLock(const std::vector<std::filesystem::path>& paths, const std::stop_token& stop);
   ~FileLock();
   FileLock(const FileLock&) = delete;

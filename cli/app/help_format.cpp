@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kColumn = 30;
 
-// "  NAME      description", the description wrapped; below the name where the name is too long.
+// "  NAME      description" with the description wrapped; the description begins on the next line if the name
+// is too long.
 std::string entry(const std::string& name, const std::string& description) {
   std::string text = "  " + name;
   if (text.size() + 2 > kColumn)
@@ -26,7 +27,7 @@ std::string entry(const std::string& name, const std::string& description) {
   return text + "\n";
 }
 
-// "{a,b}" and "INT in [1 - 9]", as CLI11 describes its checks, in words.
+// CLI11's description of a check, such as "{a,b}" or "INT in [1 - 9]", in words.
 std::string checkText(const std::string& check) {
   if (check.empty()) return "";
   if (check.front() == '{') {
@@ -49,7 +50,7 @@ std::string namesOf(const std::set<CLI::Option*>& options) {
   return names;
 }
 
-// What follows the description in brackets: "[one of a, b; default: a]".
+// Remarks in brackets after the description: "[one of a, b; default: a]".
 std::string remarks(const CLI::Option* option) {
   std::vector<std::string> parts;
   const auto add = [&parts](const std::string& before, const std::string& text) {
@@ -95,7 +96,7 @@ std::string wrapped(std::string_view text, std::size_t width) {
   return out;
 }
 
-// The headings in the order of their first options; options without one come last.
+// Headings appear in the order of their first options; options without a heading come last.
 std::string HelpFormat::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
   std::string text = wrapped(app->get_description(), kHelpWidth) + "\n" + make_usage(app, std::move(name)) +
                      make_positionals(app);

@@ -11,14 +11,15 @@ namespace talus::cli {
 /// Widest line of --help, in characters.
 inline constexpr std::size_t kHelpWidth = 100;
 
-/// Where a type's name ends: the first colon, behind which CLI11 has the checks, but none in "[:UNIT]".
+/// Index of the end of a type name: the first colon, after which CLI11 lists the checks. A colon in "[:UNIT]"
+/// does not count.
 std::size_t endOfTypeName(const std::string& type);
 
-/// The text broken at blanks into lines of at most `width` characters; a longer word has a line of its own.
+/// Breaks the text at blanks into lines of at most `width` characters; a longer word gets its own line.
 std::string wrapped(std::string_view text, std::size_t width);
 
-/// --help within kHelpWidth: an option's value in its left column; its default, its choices and what it
-/// excludes in brackets after its description.
+/// Formats --help within kHelpWidth: the option and its value in the left column, then the description with
+/// default, choices and exclusions in brackets.
 class HelpFormat : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
@@ -26,14 +27,14 @@ class HelpFormat : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* command) const override;
 };
 
-/// Puts the options of the command that have no heading in --help yet under this one.
+/// Assigns the --help heading to all options of the command that have no heading yet.
 void groupOptions(CLI::App& command, const std::string& heading);
 
-/// Makes the option the old name of another: it stays accepted, is hidden from --help, and a call that uses
-/// it gets a warning.
+/// Makes the option a deprecated name of another option: the old name is accepted, hidden from --help, and
+/// causes a warning.
 void makeOldName(CLI::Option& option, const std::string& new_name);
 
-/// "'--old' is deprecated: use '--new'" of each old name that the call used.
+/// Messages "'--old' is deprecated: use '--new'" for all deprecated names in the call.
 std::vector<std::string> oldNamesUsed(CLI::App& command);
 
 }  // namespace talus::cli

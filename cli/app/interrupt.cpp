@@ -28,7 +28,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
   closing_ = true;
-  // The listener has SIGTERM blocked and waits for it: this wakes it.
+  // Wakes the listener thread, which has SIGTERM blocked and waits in sigwait().
   // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(listener_.native_handle(), SIGTERM);
   listener_.join();

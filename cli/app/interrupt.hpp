@@ -7,9 +7,10 @@
 
 namespace talus::cli {
 
-/// Turns the first SIGINT or SIGTERM into a stop request. Work that does not end by itself within 0.4 s of the process's
-/// CPU time or 3 s, or takes none for 0.3 s (it waits, as for a FIFO), and has not said that it answers, is ended; so is
-/// all work by a second signal. Files that are not finished are removed. To be made before any other thread, so that all of them leave the signals to its own.
+/// Converts the first SIGINT or SIGTERM to a stop request. The process is terminated if the work does not end
+/// within 0.4 s of CPU time or 3 s of wall time, or uses no CPU time for 0.3 s (blocked, for example on a
+/// FIFO), unless answered() is set. A second signal always terminates the process. Unfinished files are
+/// removed. Must be created before any other thread, so that all threads inherit the blocked signals.
 class Interrupt {
  public:
   Interrupt();
@@ -19,9 +20,9 @@ class Interrupt {
 
   std::stop_token token() const noexcept { return source_.get_token(); }
   bool requested() const noexcept { return source_.stop_requested(); }
-  /// Exit code of the signal that came: 130 or 143.
+  /// Exit code of the received signal: 130 for SIGINT, 143 for SIGTERM.
   int code() const noexcept { return code_; }
-  /// To be set by work that answers the stop request by itself, as planners do with their best route.
+  /// Set by work that ends by itself after the stop request, such as planners, which return their best route.
   std::atomic<bool>& answered() noexcept { return answered_; }
 
  private:

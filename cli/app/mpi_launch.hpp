@@ -5,20 +5,20 @@
 
 namespace talus::cli {
 
-/// What an MPI launcher (mpirun, mpiexec) told this process by its environment.
+/// MPI launch (mpirun, mpiexec) of this process according to its environment.
 struct MpiLaunch {
-  std::string variable;  ///< that says so
-  int ranks = 1;         ///< processes it started
+  std::string variable;  ///< environment variable that contains the number of ranks
+  int ranks = 1;         ///< number of processes started
 };
 
-/// The launcher's word (Open MPI, MVAPICH2, MPICH and Intel MPI); none in a plain run.
+/// Launch by Open MPI, MVAPICH2, MPICH or Intel MPI; nothing if the process was started without a launcher.
 std::optional<MpiLaunch> mpiLaunch();
 
-/// Throws std::invalid_argument where a launcher started more ranks than `joined`, the number that work
-/// together here: each would do the whole job and write the same files. `reason` says why they do not.
+/// Throws std::invalid_argument if the launcher started more ranks than the `joined` ranks that cooperate:
+/// each rank would run the whole job and write the same files. `reason` is the cause in the message.
 void requireJoinedRanks(int joined, const std::string& reason);
 
-/// The same for a program built without MPI, in which no ranks work together; nothing in one built with it.
+/// requireJoinedRanks() for one rank in a program built without MPI; no effect in a program built with MPI.
 void requireMpiForRanks();
 
 }  // namespace talus::cli

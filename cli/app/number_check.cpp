@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
-// An end in few digits, in all where few are another number: a bound of 1 - 1e-12 is not 1.
+// Shortest of {:g} and {} that represents the value exactly: a bound of 1 - 1e-12 must not be printed as 1.
 std::string end(double value) {
   std::string few = fmt::format("{:g}", value);
   return std::strtod(few.c_str(), nullptr) == value ? few : fmt::format("{}", value);
@@ -26,9 +26,10 @@ std::string bound(double low, double high) {
   return high == kNoEnd ? "finite, >= " + end(low) : end(low) + " to " + end(high);
 }
 
-// Whether a word is a number in itself, such as "nan"; a whole number is not judged by its size: seeds are large.
+// Returns true for an implausible number such as "nan". Integers are always accepted, because seeds are
+// large.
 bool isImpossible(std::string_view word) {
-  if (word.ends_with('d')) word.remove_suffix(1);  // degrees of a place
+  if (word.ends_with('d')) word.remove_suffix(1);  // suffix of degrees of a place
   const std::string text(word);
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -37,7 +38,8 @@ bool isImpossible(std::string_view word) {
   return !whole && !plausible(value);
 }
 
-// Whether a word would be taken for another number than it shows: 0x10 for 16, 010 for 8. A name such as 0xfile is none.
+// Returns true for a number that strtod() reads but that is not decimal, such as 0x10. A name such as 0xfile
+// is not a number.
 bool isNotDecimal(std::string_view word) {
   const std::string text(word);
   char* end = nullptr;
@@ -45,7 +47,7 @@ bool isNotDecimal(std::string_view word) {
   return !isDecimal(word) && end == text.c_str() + text.size();
 }
 
-// The parser knows no name of a hidden option.
+// CLI11's get_name() is empty for hidden options.
 std::string nameOf(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name(true) : "--" + option.get_lnames().front();
 }
@@ -58,7 +60,7 @@ void refuseEmptyValue(CLI::Option& option) {
       throw InputError({name, "its value is empty", remedy});
     return "";
   };
-  option.transform(CLI::Validator(check, ""));  // before all other checks
+  option.transform(CLI::Validator(check, ""));  // runs before all other checks
 }
 
 }  // namespace
@@ -69,7 +71,7 @@ void refuseEmptyValues(CLI::App& program) {
   for (CLI::App* command : program.get_subcommands({})) refuseEmptyValues(*command);
 }
 
-// Whether the option's values may be files: a number of such a name can be meant.
+// Returns true if values of the option may be file names, for which a number can be a valid name.
 bool takesFiles(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return option.get_positional() || type == "TEXT" || type.find("FILE") != type.npos ||

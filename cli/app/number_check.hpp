@@ -4,23 +4,24 @@
 
 namespace talus::cli {
 
-/// Makes every option and argument of the program and its subcommands refuse a value that is empty or blank: to the
-/// parser of numbers it is 0, and to a path it is as if nothing had been given. Call it once all options are declared.
-/// The parse then throws InputError that names the option.
+/// Makes every option and argument of the program and its subcommands refuse empty or blank values. The
+/// number parser would read such a value as 0, and a path option as not given. Call once after all options
+/// are declared. The parse then throws InputError with the name of the option.
 void refuseEmptyValues(CLI::App& program);
 
-/// Refuses, of a parsed call, every number that is not plausible(), whatever option of the subcommand or the program it
-/// was given to: NaN passes a test of a range; and one that is hexadecimal or octal to the option's parser. Throws
-/// InputError that names the option.
+/// Checks all numbers of a parsed call, of options of the subcommand and of the program. Refuses numbers that
+/// are not plausible(), because NaN passes range tests, and numbers that the option's parser reads as
+/// hexadecimal or octal. Throws InputError with the name of the option.
 void checkNumbers(const CLI::App& command);
 
-/// Refuses a number outside [low, high], an infinite one and NaN; an infinite end does not bind.
+/// Refuses numbers outside [low, high], infinities and NaN. An infinite `high`, or both ends infinite, means
+/// no bound.
 CLI::Validator within(double low, double high);
 
-/// Refuses what is not a finite number >= 0.
+/// Refuses values other than finite numbers >= 0.
 CLI::Validator notNegative();
 
-/// Refuses what is not a finite number > 0.
+/// Refuses values other than finite numbers > 0.
 CLI::Validator positive();
 
 /// Refuses NaN and infinity.

@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace {
 
-// Text of a page: no line of it is a request of roff or longer than a terminal is wide.
+// Text of a manual page. No line begins with a roff request or is wider than a terminal.
 std::string roff(std::string_view text) {
   constexpr std::size_t kWidth = 72;
   std::string out;
@@ -36,7 +36,7 @@ std::string valueOf(const CLI::Option& option) {
   return option.get_type_size() == 0 ? "" : type.substr(0, endOfTypeName(type));
 }
 
-// {a,b} of CLI11's check of members; empty where the option takes other words.
+// Choices {a,b} of CLI11's membership check, separated by blanks; empty if the option accepts other words.
 std::string membersOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto begin = type.find(":{");
@@ -47,7 +47,7 @@ std::string membersOf(const CLI::Option& option) {
   return words;
 }
 
-// Those that help shows: old names have no group.
+// Options shown by --help; deprecated names have no group.
 std::vector<const CLI::Option*> shown(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
 }

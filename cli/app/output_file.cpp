@@ -31,7 +31,7 @@ bool isOutput(const CLI::Option& option) {
   }
 }
 
-// One file by two names, or a file that does not exist yet by two spellings.
+// Returns true for two names of one existing file, or two spellings of one path that does not exist yet.
 bool same(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
@@ -44,10 +44,11 @@ bool isJournal(const fs::path& path) {
   return std::string_view(start.data(), start.size()) == "SQLite format 3";
 }
 
-// What SQLite keeps beside a database: what is committed, but not yet in the database itself, is there alone.
+// Suffixes of SQLite's files beside a database. Committed data that are not yet in the database exist only
+// there.
 constexpr std::array<std::string_view, 3> kBesideJournal{"-wal", "-shm", "-journal"};
 
-// The file that a name leads to, also where the last of its links leads to none.
+// Target of a chain of symbolic links, also if the last target does not exist.
 fs::path followed(fs::path path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
@@ -56,7 +57,7 @@ fs::path followed(fs::path path) {
   return path;
 }
 
-// The journal of whose files a name is one; empty where there is none.
+// The journal of which `path` is one of SQLite's side files; empty if `path` is no such file.
 fs::path journalBehind(const fs::path& path) {
   const std::string name = followed(path).string();
   for (const std::string_view end : kBesideJournal)
@@ -67,7 +68,7 @@ fs::path journalBehind(const fs::path& path) {
   return {};
 }
 
-// Formats that are written, by the endings that a file's name may have; those in a row mean the same.
+// File name endings of the formats that Talus writes; endings in one row denote the same format.
 using Names = std::vector<std::string_view>;
 const std::array<Names, 15> kFormats{{{".tif", ".tiff"},
                                       {".asc"},
@@ -85,7 +86,7 @@ const std::array<Names, 15> kFormats{{{".tif", ".tiff"},
                                       {".bt"},
                                       {".npz"}}};
 
-// Endings of formats that no call writes.
+// Endings of formats that Talus never writes.
 const Names kForeign{
     ".db",  ".sqlite", ".sqlite3", ".shp",  ".kmz", ".xml",  ".vrt", ".img", ".lbl",  ".nc",  ".h5",  ".hdf5",
     ".mat", ".npy",    ".parquet", ".las",  ".laz", ".ply",  ".pcd", ".obj", ".stl",  ".bag", ".pdf", ".ps",
@@ -124,7 +125,7 @@ CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string&
 void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) return;  // told by OutputFile
+  if (fs::is_directory(status)) return;  // reported by OutputFile
   if (fs::exists(status) && !fs::is_regular_file(status)) refuse(path, "is a device, a FIFO or a socket");
   if (fs::is_symlink(path, error) && leavesItsFolder(path)) refuse(path, "is a link to another folder");
   for (const std::string& input : inputs)
@@ -145,7 +146,7 @@ void checkBesideJournal(const fs::path& path, const fs::path& journal) {
     refuseIf(file.string() + std::string(end), "is a part of the journal " + journal.string());
 }
 
-// A GeoTIFF named .asc is believed by its name later.
+// Readers of the file would take the format from the name, for example of a GeoTIFF named .asc.
 void checkFormat(const fs::path& path, const std::string& written) {
   const Names* named = formatOf(path.string());
   if (named == nullptr) return;
@@ -157,7 +158,7 @@ void checkFormat(const fs::path& path, const std::string& written) {
     if (format != nullptr) endings.emplace_back(format->front());
   }
   if (endings.empty()) return;
-  // Of OUT.geojson.gz, too, it is OUT that is kept.
+  // Removes all known endings: OUT.geojson.gz becomes OUT.
   fs::path stem = path.stem();
   while (formatOf(stem.string()) != nullptr) stem = stem.stem();
   throw InputError({path.string(),

@@ -4,11 +4,12 @@
 
 namespace talus::cli {
 
-/// SHA-256 of a file's bytes as 64 hexadecimal digits (FIPS 180-4 [fips_180_4]); empty when it cannot be
+/// SHA-256 of a file's bytes as 64 hexadecimal digits (FIPS 180-4 [fips_180_4]); empty if the file cannot be
 /// read.
 std::string sha256OfFile(const std::string& path);
 
-/// Where a file PATH.sha256 lies beside a file, as sha256sum writes it, both must agree. Throws InputError where they do not.
+/// Compares a file with the checksum in PATH.sha256 (format of sha256sum), if that file exists. Throws
+/// InputError if they differ.
 void compareChecksum(const std::string& path);
 
 }  // namespace talus::cli

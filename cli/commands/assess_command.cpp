@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,7 +24,7 @@ using namespace terramech;
 using Json = nlohmann::ordered_json;
 
 struct AssessCommand : AssessOptions {
-  std::string html;  // page to write; empty: none
+  std::string html;  // HTML page to write; empty: no page
   TableOptions columns;
 };
 
@@ -132,7 +134,7 @@ std::string textOf(const AssessOptions& options, const std::vector<Assessment>& 
   return text;
 }
 
-// The plane of thesis Figs. 3.10 to 3.12: where each row stands in it.
+// Rows in the plane of thesis Figs. 3.10 to 3.12.
 Plot mapOf(const std::vector<Assessment>& rows) {
   Plot plot{.title = "Traversability diagram",
             .x = {.label = "T/(rW) [-]"},
@@ -154,7 +156,7 @@ Plot mapOf(const std::vector<Assessment>& rows) {
   return plot;
 }
 
-// Each row's drawbar pull with its standard deviation beside what the slope requires.
+// Drawbar pull of each row with its standard deviation, and the pull required by the slope.
 Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) {
   Series pulls{.name = "available, one standard deviation", .x = {}, .y = {}, .mark = Series::Mark::Points};
   for (const Assessment& a : rows) {
@@ -172,6 +174,18 @@ Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) 
       .series = {pulls, {.name = "required by the slope", .x = ends, .y = std::vector(ends.size(), asked)}}};
 }
 
+// Number and share of rows in each category.
+std::vector<std::vector<std::string>> countsOf(const std::vector<Assessment>& rows) {
+  std::vector<std::vector<std::string>> out;
+  for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
+    const auto count = std::ranges::count(rows, c, &Assessment::category);
+    out.push_back({name(c), std::to_string(count),
+                   fmt::format("{:.1f} %", 100.0 * static_cast<double>(count) /
+                                               static_cast<double>(std::max<std::size_t>(1, rows.size())))});
+  }
+  return out;
+}
+
 void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
   HtmlReport page("Traversability of " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(fmt::format(
@@ -179,13 +193,18 @@ void writePage(const AssessCommand& options, const std::vector<Assessment>& rows
       "it is dangerous.",
       options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
   page.charts({mapOf(rows), pullsOf(options, rows)});
+  page.table({"category", "rows", "share"}, countsOf(rows));
+  constexpr std::size_t kMostRows = 500;
+  const std::size_t shown = std::min(rows.size(), kMostRows);
+  if (shown < rows.size())
+    page.paragraph(
+        fmt::format("The first {} of {} rows; `talus assess` prints all of them, with --json as JSON.", shown,
+                    rows.size()));
   std::vector<std::vector<std::string>> cells;
-  cells.reserve(rows.size());
-  for (const Assessment& a : rows) {
+  for (const Assessment& a : std::span(rows).first(shown))
     cells.push_back({fmt::format("{}", a.line), fmt::format("{:.3f}", a.pull.value),
                      fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius.value),
                      name(a.category)});
-  }
   page.table({"line", "DP/W", "std", "z/r", "category"}, cells);
   writeFile(options.html, page.html());
 }

@@ -1,4 +1,4 @@
-// talus bench SUITE: planners compared on the same questions.
+// talus bench SUITE: compares planners on the same problems.
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
@@ -12,7 +12,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/drive_options.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
@@ -81,8 +81,8 @@ std::string fileName(std::string name) {
   return name;
 }
 
-// Made before the runs, so that a bad place is told at once; after the suite, so that a bad suite leaves
-// nothing. Whether it was not there before.
+// Creates the folder before the runs, so that an unusable path is reported immediately, and after the suite
+// is read, so that an invalid suite creates no folder. Returns true if the folder did not exist.
 bool makeFolder(const std::string& folder) {
   std::error_code error;
   const bool made = std::filesystem::create_directories(folder, error);
@@ -92,7 +92,7 @@ bool makeFolder(const std::string& folder) {
   return made;
 }
 
-// What is named twice would be counted twice.
+// A name given twice would be counted twice.
 void refuseTwice(const std::string& what, std::vector<std::string> names) {
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);
@@ -115,7 +115,7 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
-// Fewer when a stop is requested: those that had ended.
+// Runs all jobs. After a requested stop, only the runs completed before are returned.
 std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
                                            const Context& context) {
   const auto jobs = planner::jobsOf(plan);
@@ -131,7 +131,8 @@ std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, c
   return runs;
 }
 
-// What had ended is kept, and said on stderr: a program that reads stdout gets the whole or nothing.
+// Writes the results of completed runs and reports the cancellation on stderr, so that stdout contains either
+// a complete table or nothing.
 int cancelled(const BenchOptions& options, const planner::BenchmarkPlan& plan,
               const std::vector<planner::BenchmarkRun>& runs, bool made, const Context& context) {
   if (!runs.empty()) {
@@ -139,7 +140,7 @@ int cancelled(const BenchOptions& options, const planner::BenchmarkPlan& plan,
     context.warn(fmt::format("cancelled after {} of {} runs; their results are in {}", runs.size(),
                              planner::jobsOf(plan).size(), options.folder));
   } else if (made) {
-    std::filesystem::remove(options.folder);  // empty still
+    std::filesystem::remove(options.folder);  // still empty
   }
   return Exit::kCancelled;
 }

@@ -1,4 +1,4 @@
-// talus costmap DEM -o MAP.ot: what is believed of every cell, as files.
+// talus costmap DEM -o MAP.ot: builds a traversability map and writes it to files.
 #include <fstream>
 #include <string>
 
@@ -55,7 +55,7 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
                                        [&](maps::Cell cell) { return beliefs.at(cell); });
   tree->write(stream);
   stream.close();
-  if (!stream) file.fail("the stream failed");
+  if (!stream) file.failToGrow("the stream failed");
   file.commit();
 }
 

@@ -1,4 +1,4 @@
-// talus doctor: what this installation can do, and the values in force.
+// talus doctor: capabilities of this installation and the values in use.
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,12 +31,12 @@ void bind(CLI::App& command, DoctorOptions& options) {
   options.program = command.get_parent();
 }
 
-// A value and where it comes from.
+// A value and its origin.
 Json inForce(const CLI::App& program, const char* option, const std::string& value) {
   return {{"value", value}, {"origin", program.get_option(option)->count() > 0 ? option : "default"}};
 }
 
-// The drivers of a list that this GDAL has, and those that it lacks.
+// Splits the wanted drivers into those that this GDAL provides and those that are missing.
 Json driversOf(const std::vector<std::string>& wanted) {
   Json there = Json::array(), missing = Json::array();
   for (const std::string& name : wanted)

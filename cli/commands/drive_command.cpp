@@ -1,4 +1,4 @@
-// talus drive DEM --truth TRUTH.yaml: a simulated traverse over soils that the planner does not know.
+// talus drive DEM --truth TRUTH.yaml: simulates a traverse over soils that are unknown to the planner.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -15,11 +15,11 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/cli/route/drive_page.hpp>
-#include <talus/cli/route/drive_report.hpp>
-#include <talus/cli/route/drive_telemetry.hpp>
-#include <talus/cli/route/drive_worlds.hpp>
 #include <talus/cli/route/provenance.hpp>
+#include <talus/cli/route/simulated_worlds.hpp>
+#include <talus/cli/route/traverse_page.hpp>
+#include <talus/cli/route/traverse_report.hpp>
+#include <talus/cli/route/traverse_telemetry.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/maps/vector/place_reader.hpp>
@@ -29,27 +29,27 @@
 namespace talus::cli {
 namespace {
 
-using planner::Belief;
 using planner::kBeliefs;
+using planner::SoilKnowledge;
 
 struct DriveCommandOptions {
   GroundOptions ground;
   std::string truth, start, goal, html, telemetry, plugin;
   std::string belief = "online";
   std::size_t worlds = 1;
-  double time_limit_s = 0.0;  ///< of a plugin for each plan; 0: none
+  double time_limit_s = 0.0;  ///< limit per plan of a plugin; 0: no limit
   planner::SensorOptions sensors;
   std::string fault = "none", noise = "on";
 };
 
-const Belief* findBelief(const std::string& word) {
+const SoilKnowledge* findBelief(const std::string& word) {
   if (word == "perfect-knowledge") return &kBeliefs.back();
-  const auto* found =
-      std::find_if(kBeliefs.begin(), kBeliefs.end(), [&](Belief b) { return planner::name(b) == word; });
+  const auto* found = std::find_if(kBeliefs.begin(), kBeliefs.end(),
+                                   [&](SoilKnowledge b) { return planner::name(b) == word; });
   return found == kBeliefs.end() ? nullptr : found;
 }
 
-// The check of --belief: a reason, or an empty text.
+// Validator of --belief: returns the reason of a refusal, or an empty text.
 std::string refusedBelief(const std::string& word) {
   if (word == "all" || findBelief(word) != nullptr) return "";
   return word + ", must be one of geometry, along-only, prior, online, perfect-knowledge, all";
@@ -116,20 +116,21 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
   groupOptions(command, "Output");
 }
 
-// What was asked for and where it runs.
+// Site and execution of a campaign of simulations.
 struct Campaigning {
   const planner::SimulationSite& site;
   const Campaign& campaign;
   const Context& context;
 };
 
-DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs, std::size_t worlds) {
+SimulatedWorlds simulated(const Campaigning& on, const std::vector<SoilKnowledge>& beliefs,
+                          std::size_t worlds) {
   on.context.answerStop();
   const ProgressMonitor watch = on.context.watch("simulating");
   const ProgressMonitor inside{.progress = {}, .stop = watch.stop};
   const WorldCount count{
       .beliefs = beliefs.size(), .worlds = worlds, .workers = static_cast<std::size_t>(on.context.workers())};
-  DrivenWorlds driven = drivenWorlds(
+  SimulatedWorlds driven = simulatedWorlds(
       count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, on.campaign,
       watch);
   for (const auto& failure : driven.failures)
@@ -137,9 +138,9 @@ DrivenWorlds simulated(const Campaigning& on, const std::vector<Belief>& beliefs
   return driven;
 }
 
-// The report, and which worlds failed.
+// Prints the report; JSON includes the failed worlds.
 template <typename Results>
-int show(const Results& results, const DrivenWorlds& driven, const Campaigning& on) {
+int show(const Results& results, const SimulatedWorlds& driven, const Campaigning& on) {
   if (!on.campaign.leads()) return Exit::kDone;
   if (on.context.stop.stop_requested()) return Exit::kCancelled;
   if (!on.context.json) {
@@ -155,24 +156,24 @@ int show(const Results& results, const DrivenWorlds& driven, const Campaigning& 
 }
 
 int runAll(const Campaigning& on, const DriveCommandOptions& options) {
-  const DrivenWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
+  const SimulatedWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
   BeliefResults results;
   std::copy(driven.results.begin(), driven.results.end(), results.begin());
   return show(results, driven, on);
 }
 
 int runMany(const Campaigning& on, const DriveCommandOptions& options) {
-  const DrivenWorlds driven = simulated(on, {*findBelief(options.belief)}, options.worlds);
+  const SimulatedWorlds driven = simulated(on, {*findBelief(options.belief)}, options.worlds);
   return show(driven.results[0], driven, on);
 }
 
 int runOne(const planner::SimulationSite& site, const DriveCommandOptions& options, const Context& context,
            const Ground& ground) {
-  const Belief belief = *findBelief(options.belief);
+  const SoilKnowledge belief = *findBelief(options.belief);
   context.answerStop();
-  const WatchedDrive drive = watchedDrive(site, belief, context.watch("simulating"));
+  const RecordedTraverse drive = recordedTraverse(site, belief, context.watch("simulating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!options.html.empty()) saveDrivePage(options.html, site, belief, drive, originOf(ground, context));
+  if (!options.html.empty()) saveTraversePage(options.html, site, belief, drive, originOf(ground, context));
   if (!options.telemetry.empty())
     saveTelemetry(options.telemetry, drive.result.drive, ground.map.model().rover());
   if (context.json) {
@@ -190,7 +191,7 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 
-// The truth, whose classes must be classes of the map.
+// Reads the truth and checks that its classes are classes of the map.
 planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
   planner::Truth truth = readTruth(path);
   std::string known;
@@ -212,7 +213,7 @@ int run(const DriveCommandOptions& options, Context& context) {
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {
     plugin.emplace(pluginOf(options.plugin));
-    context.threads = 1;  // it plans in processes, which a program of several threads must not make
+    context.threads = 1;  // the plugin forks, which a multi-threaded program must not do
   }
   const auto byPlugin = [&](planner::Problem problem) {
     if (options.time_limit_s > 0.0)

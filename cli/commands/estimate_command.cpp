@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 using namespace terramech;
 
 struct EstimateCommand : EstimateOptions {
-  std::string html;  // page to write; empty: none
+  std::string html;  // HTML page to write; empty: no page
   TableOptions columns;
 };
 
@@ -118,7 +118,7 @@ Json soilsJson(const SoilEstimate& e) {
   return all;
 }
 
-/// The spread between trials, and each soil where there are several.
+/// The spread between trials, and the values of each soil if there are several soils.
 std::string soilsText(const SoilEstimate& e) {
   std::string text;
   for (const TrialSoil& s : e.soils) {
@@ -255,7 +255,8 @@ Plot posteriorPlot(const SoilEstimate& e) {
   return plot;
 }
 
-// The table's rows over those of the model on the estimated soil, channel by channel; none where a method gives no whole soil.
+// Measured rows and model predictions for the estimated soil, one plot per channel; empty if the estimate has
+// no posterior.
 std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e) {
   std::vector<Plot> plots;
   if (!e.posterior) return plots;

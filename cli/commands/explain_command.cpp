@@ -1,4 +1,4 @@
-// talus explain DEM --at P [--heading RAD]: why a cell is what it is.
+// talus explain DEM --at P [--heading RAD]: explains the category and cost of a cell.
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -85,7 +85,7 @@ SlopeRose roseOf(const costmap::TraversabilityMap& map, const maps::Cell& cell, 
   for (int k = 0; k < kHeadings; ++k) {
     const double heading = 2.0 * std::numbers::pi * k / kHeadings;
     const costmap::Direction towards{std::cos(heading), std::sin(heading)};
-    const costmap::DriveState state = grid->cost().detail(code, towards);
+    const costmap::TravelState state = grid->cost().detail(code, towards);
     rose.headings.push_back({.heading_rad = heading,
                              .cost_J_per_m = static_cast<double>(grid->cost().costPerMetre(code, towards)),
                              .slip = static_cast<double>(state.slip),

@@ -1,4 +1,4 @@
-// talus generate KIND: an example site with all its layers.
+// talus generate KIND: generates an example site with all its layers.
 #include <filesystem>
 #include <optional>
 
@@ -18,13 +18,13 @@ namespace talus::cli {
 namespace {
 
 struct GenerateOptions {
-  std::string site;                 ///< a kind, or the path of a description
-  std::optional<std::string> size;  ///< as typed
+  std::string site;                 ///< a site kind, or the path of a site description
+  std::optional<std::string> size;  ///< as entered
   std::optional<double> resolution_m;
   std::string output;
 };
 
-// Soil of each class. Loose lunar soils: ours, weaker than the nominal one within the ranges of
+// Soil of each class. The loose lunar soils are ours, weaker than the nominal soil within the ranges of
 // [heiken_1991].
 constexpr const char* kLunarSoils = R"(terrain_classes:
   1: lunar_nominal
@@ -46,7 +46,7 @@ struct Size {
   int width, height;
 };
 
-// "512" or "512x400", cells.
+// Parses a size in cells, "512" or "512x400".
 Size parseSize(const std::string& text) {
   const auto refuse = [&]() -> Size {
     throw InputError(
@@ -63,7 +63,7 @@ Size parseSize(const std::string& text) {
   return {number(text.substr(0, cross)), number(text.substr(cross + 1))};
 }
 
-// site.tif -> site_classes.tif
+// Adds a suffix to the file name: site.tif becomes site_classes.tif.
 std::string beside(const std::string& output, const std::string& suffix) {
   std::filesystem::path path(output);
   return (path.parent_path() / (path.stem().string() + suffix)).string();
@@ -80,17 +80,19 @@ Paths pathsOf(const std::string& output) {
 
 void write(const maps::Site& site, maps::SiteKind kind, const Paths& paths) {
   const maps::Georeference* georeference = &*site.map.georeference;
-  maps::writeGeoTiff({paths.map, georeference}, {{"elevation", "m", site.map.elevation_m}});
-  maps::writeGeoTiff({paths.classes, georeference}, "terrain class", site.classes, std::nullopt);
-  maps::writeGeoTiff({paths.rocks, georeference}, {{"rock abundance", "", site.rock_abundance}});
-  writeFile(paths.soils, kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  OutputFile map(paths.map), classes(paths.classes), rocks(paths.rocks), soils(paths.soils);
+  maps::writeGeoTiff({paths.map, georeference, &map}, {{"elevation", "m", site.map.elevation_m}});
+  maps::writeGeoTiff({paths.classes, georeference, &classes}, "terrain class", site.classes, std::nullopt);
+  maps::writeGeoTiff({paths.rocks, georeference, &rocks}, {{"rock abundance", "", site.rock_abundance}});
+  soils.write(kind == maps::SiteKind::Craters ? kLunarSoils : kMartianSoils);
+  for (OutputFile* file : {&map, &classes, &rocks, &soils}) file->commit();
 }
 
 bool isDescription(const std::string& site) {
   return site.ends_with(".yaml") || site.ends_with(".yml");
 }
 
-// A description is complete; words of the call that are there override it.
+// Options from a site description or a kind; arguments of the call override a description.
 maps::SiteOptions siteOptions(const GenerateOptions& options, const Context& context) {
   maps::SiteOptions out;
   if (isDescription(options.site)) {

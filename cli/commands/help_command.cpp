@@ -1,4 +1,4 @@
-// talus help [TOPIC]: formats of files, or the help of a call.
+// talus help [TOPIC]: describes file formats, or prints the help of a subcommand.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -67,7 +67,7 @@ void bind(CLI::App& command, HelpOptions& options) {
 }
 
 std::string helpOf(const std::string& topic, const CLI::App& app) {
-  // app.help() is that of the call in hand.
+  // app.help() would print the help of the current subcommand.
   if (topic.empty()) return app.get_formatter()->make_help(&app, "talus", CLI::AppFormatMode::Normal);
   std::vector<std::string> known;
   for (const Topic& one : kTopics) {

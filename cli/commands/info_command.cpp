@@ -1,4 +1,4 @@
-// talus info DEM: what a map is, before anyone plans on it.
+// talus info DEM: properties of a map, for checks before planning.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ struct Quantiles {
   double p99 = std::nan("");
 };
 
-// Slopes of the valid cells, degrees.
+// Slopes of the valid cells [deg].
 std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
   std::vector<float> out;
   const maps::Grid& grid = metrics.dz_dx.grid();
@@ -38,7 +38,7 @@ std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
   return out;
 }
 
-// The value below which the share lies (nearest rank).
+// Quantile of the values by nearest rank; reorders the values.
 double quantile(std::vector<float>& values, double share) {
   const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());

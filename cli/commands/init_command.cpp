@@ -1,6 +1,9 @@
-// talus init DEM: a mission file to start from.
+// talus init DEM: writes a mission file as a starting point.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +13,7 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission_text.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::cli {
 namespace {
@@ -29,20 +33,43 @@ void bind(CLI::App& command, InitOptions& options) {
   groupOptions(command, "Output");
 }
 
-// The cell with an elevation that is nearest to a share of the map's width and height.
-std::string placeAt(const maps::ElevationMap& map, double share) {
+// Largest set of cells that are connected by drives between cell centres in both directions; empty if no cell
+// is permitted.
+std::vector<maps::Cell> largestPart(const costmap::TraversabilityMap& map) {
+  const planner::MotionCost cost(map.published());
   const maps::Grid& grid = map.grid();
-  const maps::Cell wanted{static_cast<int>(share * grid.width), static_cast<int>(share * grid.height)};
-  maps::Cell nearest = wanted;
-  double least = 1e300;
+  const auto joined = [&](maps::Cell a, maps::Cell b) {
+    const maps::Point from = grid.centre(a), to = grid.centre(b);
+    return std::isfinite(cost({from, to})) && std::isfinite(cost({to, from}));
+  };
+  maps::Raster<std::uint8_t> seen(grid);
+  std::vector<maps::Cell> largest, part;
   for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column)
-      if (const double off = std::hypot(column - wanted.column, row - wanted.row);
-          off < least && !std::isnan(map.elevation_m[{column, row}])) {
-        least = off;
-        nearest = {column, row};
+    for (int column = 0; column < grid.width; ++column) {
+      if (seen[{column, row}] != 0 || !cost.allowed(grid.centre({column, row}))) continue;
+      part.assign(1, {column, row});
+      seen[{column, row}] = 1;
+      for (std::size_t next = 0; next < part.size(); ++next) {
+        const maps::Cell at = part[next];
+        for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+          const maps::Cell beside{at.column + dx, at.row + dy};
+          if (!grid.contains(beside) || seen[beside] != 0 || !joined(at, beside)) continue;
+          seen[beside] = 1;
+          part.push_back(beside);
+        }
       }
-  const maps::Point at = grid.centre(nearest);
+      if (part.size() > largest.size()) largest.swap(part);
+    }
+  return largest;
+}
+
+// The cell nearest to a given share of the map's width and height.
+std::string placeAt(const std::vector<maps::Cell>& cells, const maps::Grid& grid, double share) {
+  const auto off = [&](maps::Cell cell) {
+    return std::hypot(cell.column - std::floor(share * grid.width),
+                      cell.row - std::floor(share * grid.height));
+  };
+  const maps::Point at = grid.centre(*std::ranges::min_element(cells, {}, off));
   return fmt::format("{:.10g},{:.10g}", at.x_m, at.y_m);
 }
 
@@ -52,14 +79,23 @@ int run(const InitOptions& options, Context& context) {
     throw InputError({options.output, "exists", "name another file with -o, or pass --force"});
   const maps::ElevationMap map = readMap(options.map, context);
   const auto [soil, rover] = assumedGround(map);
+  const Ground ground = readGround({.dem = options.map, .soil = soil, .rover = rover}, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  std::vector<maps::Cell> cells = largestPart(ground.map);
+  if (cells.empty()) {
+    context.warn(
+        fmt::format("rover {} on {} may drive nowhere on this map: choose rover and soil", rover, soil));
+    cells = {{map.grid().width / 4, map.grid().height / 4},
+             {3 * map.grid().width / 4, 3 * map.grid().height / 4}};
+  }
   const fs::path folder = fs::absolute(options.output, error).parent_path();
   const MissionDraft draft{.dem = fs::absolute(options.map.path, error).lexically_relative(folder).string(),
                            .resolution_m = options.map.read.resolution_m.value_or(0.0),
                            .ignore_crs = options.map.read.ignore_crs,
                            .rover = rover,
                            .soil = soil,
-                           .start = placeAt(map, 0.25),
-                           .goal = placeAt(map, 0.75)};
+                           .start = placeAt(cells, map.grid(), 0.25),
+                           .goal = placeAt(cells, map.grid(), 0.75)};
   writeFile(options.output, missionText(draft));
   if (context.json)
     printJson({{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}});

@@ -1,4 +1,4 @@
-// talus plan DEM --start P --goal P: a route.
+// talus plan DEM --start P --goal P: plans a route.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -19,8 +19,8 @@
 #include <talus/cli/draw/reach_scene.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
@@ -41,11 +41,12 @@ namespace {
 using planner::Route;
 using planner::RouteStatus;
 
-// Prices of time and of risk that are tried for the Pareto set, each.
+// Number of prices of time, and of risk, for the Pareto set.
 constexpr int kParetoSteps = 6;
 
+// plan_s includes proof_s.
 struct Timing {
-  double load_s, costmap_s, plan_s;
+  double load_s, costmap_s, plan_s, proof_s;
 };
 
 planner::RoutePlanner plannerOf(const PlanOptions& options) {
@@ -79,7 +80,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
   if (options.max_risk > 0.0) request.risk_limit = RiskLimit{.immobilisation = options.max_risk};
   request.prove = !options.no_proof;
   request.watch = context.watch("plan");
-  if (options.plugin.empty()) context.answerStop();  // a plugin's route is whole or none
+  if (options.plugin.empty()) context.answerStop();  // a plugin returns no partial route
   return request;
 }
 
@@ -92,7 +93,7 @@ PlannerSettings settingsOf(const PlanOptions& options, const Context& context) {
   return settings;
 }
 
-// Which of several goals the route ends at.
+// Summary line with the chosen goal; empty for a single goal.
 std::string goalText(const PlanOptions& options, const Route& route) {
   if (options.goals.size() < 2) return "";
   return summaryLine("goal", fmt::format("{}, number {} of {}: the goal of least cost",
@@ -100,9 +101,10 @@ std::string goalText(const PlanOptions& options, const Route& route) {
 }
 
 std::string planText(const Route& route, const Timing& seconds) {
+  const std::string proof = seconds.proof_s > 0.0 ? fmt::format(" (proof {:.3f} s)", seconds.proof_s) : "";
   return summaryText(route) +
-         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s", seconds.load_s,
-                                             seconds.costmap_s, seconds.plan_s));
+         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s{}",
+                                             seconds.load_s, seconds.costmap_s, seconds.plan_s, proof));
 }
 
 void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
@@ -134,7 +136,8 @@ int exitOf(RouteStatus status) {
   }
 }
 
-// Says why there is no route; the exit code tells a wrong call from the answer no.
+// Prints the reason why there is no route. The exit code distinguishes an invalid call from a negative
+// result.
 int refuse(const Route& route, const Context& context) {
   if (context.json) {
     auto json = summaryJson(route);
@@ -145,9 +148,9 @@ int refuse(const Route& route, const Context& context) {
   return exitOf(route.status);
 }
 
-// A route, and the ground that it was planned on.
+// A route, and the ground on which it was planned.
 struct Planned {
-  Ground ground;  // of large maps the overview
+  Ground ground;  // for large maps the overview
   PlanRequest request;
   Route route;
   double plan_s = 0.0;
@@ -157,12 +160,12 @@ Planned timedPlan(Ground ground, PlanRequest request, const std::function<Route(
   const auto begin = std::chrono::steady_clock::now();
   request.hazards = [&map = ground.map](maps::Cell cell) { return map.surface().hazards(cell); };
   Route route = plan(request);
-  request.hazards = {};  // the map moves on
+  request.hazards = {};  // refers to the map, which is moved
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   return {std::move(ground), std::move(request), std::move(route), seconds.count()};
 }
 
-// The risk once more, with soil that is alike nearby.
+// Immobilisation risk of the route by simulation with correlated soil.
 nlohmann::ordered_json riskJson(const Planned& planned, const Context& context) {
   const Route& route = planned.route;
   const RiskLimit& limit = *planned.request.risk_limit;
@@ -180,7 +183,7 @@ nlohmann::ordered_json riskJson(const Planned& planned, const Context& context) 
             {"worst_y_m", risk.worst_y_m}}}};
 }
 
-// Many routes over one map, over all ranks of an MPI run.
+// Plans many routes on one map, distributed over the ranks of an MPI run.
 int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
@@ -202,7 +205,8 @@ int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context
   return Exit::kDone;
 }
 
-// A route of ours that the check refuses is an error of ours: it is kept to be sent, and none is handed out.
+// Handles an own route that the check refuses, which is an internal error: writes the route to a file for a
+// bug report and returns no route.
 int refuseOwn(const PlanOptions& options, const Planned& planned, const Context& context) {
   const std::string file = options.output.empty() ? "refused.geojson" : options.output + ".refused.geojson";
   const auto document =
@@ -213,7 +217,7 @@ int refuseOwn(const PlanOptions& options, const Planned& planned, const Context&
   return refuse(none, context);
 }
 
-// Both sets of cells that a proof of no route rests on.
+// Draws the two sets of cells on which the proof of infeasibility is based.
 void drawSevered(const PlanOptions& options, const Planned& planned, const Context& context) {
   const PlanRequest& request = planned.request;
   const maps::ElevationMap& map = planned.ground.map.elevation();
@@ -235,17 +239,23 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   if (route.status == RouteStatus::NoRoute) drawSevered(options, planned, context);
   if (route.status != RouteStatus::Found) return refuse(route, context);
   writeFiles(options, planned.ground, route, context);
-  const Timing seconds{planned.ground.load_s, planned.ground.build_s, planned.plan_s};
+  const Timing seconds{.load_s = planned.ground.load_s,
+                       .costmap_s = planned.ground.build_s,
+                       .plan_s = planned.plan_s,
+                       .proof_s = route.summary.proof_s};
   if (context.json) {
     nlohmann::ordered_json risk;
     if (planned.request.risk_limit) {
       risk = riskJson(planned, context);
-      route.interrupted |= context.stop.stop_requested();  // the numbers may be missing
+      route.interrupted |= context.stop.stop_requested();  // simulations may be missing
     }
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[route.goal];
     if (!risk.is_null()) json["risk"] = std::move(risk);
-    json["seconds"] = {{"load", seconds.load_s}, {"costmap", seconds.costmap_s}, {"plan", seconds.plan_s}};
+    json["seconds"] = {{"load", seconds.load_s},
+                       {"costmap", seconds.costmap_s},
+                       {"plan", seconds.plan_s},
+                       {"proof", seconds.proof_s}};
     printJson(json);
   } else {
     print(goalText(options, route) + planText(route, seconds));
@@ -280,7 +290,7 @@ int runInWindows(const PlanOptions& options, const PlannerCapabilities& offers, 
   return finish(options, route, context);
 }
 
-// A stopped call has handed out what it has: what it still does may be ended.
+// After a stopped call has printed its results, remaining work may be terminated.
 void letEnd(const Context& context) {
   std::fflush(stdout);
   if (context.answers_stop) *context.answers_stop = false;
@@ -314,7 +324,7 @@ int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const C
   return code;
 }
 
-// A mission may come from elsewhere: of what exists, it replaces routes only.
+// Mission files may come from other sources: without --force, their outputs overwrite only existing routes.
 void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bool force) {
   if (force) return;
   const GroundOptions& ground = options.ground;

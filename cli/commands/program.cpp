@@ -1,6 +1,8 @@
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -35,10 +37,11 @@
 namespace talus::cli {
 namespace {
 
-// Less is not meaningful: the program with its libraries takes some of it (docs/security.md).
+// Smaller limits are not meaningful, because the program and its libraries use a part of the memory
+// (docs/security.md).
 constexpr double kLeastMemory_B = 1e8;
 
-// Every whole number up to here is a number of JSON as well, where a route's file states the seed.
+// Largest integer up to which all integers are exact in JSON numbers; route files state the seed.
 constexpr double kGreatestSeed = 9007199254740992.0;
 
 CLI::Validator enoughMemory() {
@@ -49,7 +52,7 @@ CLI::Validator enoughMemory() {
   return CLI::Validator(check, "");
 }
 
-// The parser of sizes takes a bare unit for one of it, 0x1GB for 1 GB, 010GB for 8 GB, and 1e for 1 EB.
+// CLI11's parser of sizes accepts a unit without a number as 1, 0x1GB as 1 GB, 010GB as 8 GB, and 1e as 1 EB.
 CLI::Validator decimalSize() {
   const auto check = [](std::string& text) -> std::string {
     static const std::regex size(R"((0|[1-9]\d*) *(B|[KMGTP](I|I?B)?|E(I|I?B))?)", std::regex::icase);
@@ -60,7 +63,8 @@ CLI::Validator decimalSize() {
   return CLI::Validator(check, "");
 }
 
-/// The libraries' own chatter would break "one line on stderr"; their errors reach us as return values.
+/// Silences messages of the libraries, because errors are printed as one line on stderr; the libraries return
+/// their errors.
 void silenceLibraries() {
   CPLSetErrorHandler(CPLQuietErrorHandler);
   ompl::msg::noOutputHandler();
@@ -73,7 +77,7 @@ int fail(int code, std::string_view text) {
   return code;
 }
 
-/// The exit code and line for the exception in flight.
+/// Prints the current exception and returns its exit code.
 int failure() {
   try {
     throw;
@@ -98,17 +102,18 @@ int failure() {
   }
 }
 
-/// A stream that the caller closed would be the first file that the call opens. A dead one is an error, no signal.
+/// Opens closed standard streams, because the first file that a call opens would get the number of a closed
+/// stream. A write to a broken pipe becomes an error instead of a signal.
 void keepStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 &&
         ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
       std::abort();
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit is a failed write, as on a full disk
 }
 
-/// Whether what standard output leads into was closed at its other end, as by `head`.
+/// Returns true if the other end of standard output was closed, as by `head`.
 bool readerIsGone() {
   pollfd out{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
   return ::poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0;
@@ -122,7 +127,7 @@ Names subcommandNames(const CLI::App& app) {
   return names;
 }
 
-// Old names are accepted, but not suggested.
+// Option names for suggestions; deprecated names are accepted but not suggested.
 Names optionNames(const CLI::App& app) {
   Names names;
   for (const CLI::Option* option : app.get_options())
@@ -136,7 +141,7 @@ const CLI::App* chosen(const CLI::App& app) {
   return parsed.empty() ? nullptr : parsed.front();
 }
 
-/// What the unknown word may have meant: ", did you mean 'plan'?".
+/// Suggestion for an unknown word: ", did you mean 'plan'?".
 std::string suggestion(const CLI::App& app, const std::string& word) {
   const CLI::App* command = chosen(app);
   std::vector<std::string> known = optionNames(app);
@@ -191,14 +196,14 @@ void addGlobalOptions(CLI::App& app, Context& context) {
   app.require_subcommand(1);
 }
 
-/// CLI11 takes the word behind "--map=" for its value.
+/// Refuses an option without a value, because CLI11 would use the word after "--map=" as its value.
 void refuseNoValue(std::string_view word) {
   if (word.starts_with("--") && word.find('=') == word.size() - 1)
     throw InputError({std::string(word.substr(0, word.size() - 1)), "its value is empty",
                       "leave the option out or give a value"});
 }
 
-/// Words as CLI11 takes them, last first; a leading "-.5" would be read as an option.
+/// Arguments in CLI11's order, last first; a leading "-.5" would be read as an option.
 std::vector<std::string> words(int argc, const char* const* argv) {
   std::vector<std::string> reversed;
   for (int i = argc - 1; i > 0; --i) {
@@ -243,10 +248,14 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     code = interrupt.requested() ? interrupt.code() : failure();
   }
   if (code != Exit::kDone && interrupt.requested()) return fail(interrupt.code(), "cancelled");
+  errno = 0;
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !!std::cout.flush();
-  if (!written && readerIsGone()) return Exit::kReaderGone;
-  if (!written) return fail(Exit::kInput, "standard output: cannot be written; check where it leads");
-  return code;
+  if (written) return code;
+  // After an earlier failed write, another write sets errno to the reason.
+  const bool stated = errno != 0 || ::write(STDOUT_FILENO, "\n", 1) < 0;
+  const std::string reason = stated ? std::string(": ") + std::strerror(errno) : "";
+  if (readerIsGone()) return Exit::kReaderGone;
+  return fail(Exit::kInput, "standard output: cannot be written" + reason + "; check where it leads");
 }
 
 }  // namespace talus::cli

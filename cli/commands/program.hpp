@@ -8,7 +8,8 @@ namespace talus::cli {
 
 struct Context;
 
-/// Runs the program with the subcommands that `add` registers and returns its exit code; every error ends as one line on stderr.
+/// Runs the program with the subcommands that `add` registers, and returns the exit code. Every error is
+/// printed as one line to stderr.
 int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&));
 
 }  // namespace talus::cli

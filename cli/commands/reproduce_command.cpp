@@ -26,7 +26,7 @@ void bind(CLI::App& command, ReproduceOptions& options) {
       ->type_name("M.csv");
 }
 
-// Beside this program, in the build folder or where an installation keeps programs that others start.
+// Path of talus-reproduce: beside this program, in the build folder, or in libexec of an installation.
 std::filesystem::path validationProgram() {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   for (const char* place : {"", "../tests/reproduce", "../libexec/talus"})

@@ -1,4 +1,4 @@
-// talus score DEM --path FILE: what any polyline costs under the cost that the planners minimise.
+// talus score DEM --path FILE: cost of a polyline under the planners' cost function.
 #include <chrono>
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/common/input_error.hpp>
@@ -25,8 +25,8 @@ namespace {
 struct ScoreOptions {
   GroundOptions ground;
   std::string path;
-  std::string plugin, start, goal;  ///< in place of a path: the route of a plugin
-  double time_limit_s = 0.0;        ///< of the plugin; 0: none
+  std::string plugin, start, goal;  ///< alternative to `path`: the route of a plugin
+  double time_limit_s = 0.0;        ///< time limit of the plugin; 0: no limit
   std::string chassis;
 };
 
@@ -46,7 +46,7 @@ std::string scoreText(const planner::Route& route, const std::vector<planner::Vi
   std::string last;
   for (const auto& v : violations) {
     const std::string line = fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
-    if (line != last) text += line;  // pieces of one cell have one place
+    if (line != last) text += line;  // several pieces in one cell have the same place
     last = line;
   }
   return text;
@@ -66,7 +66,7 @@ void bind(CLI::App& command, ScoreOptions& options) {
   groupOptions(command, "Path");
 }
 
-// What forbids the polyline: the map, and the chassis where one is asked for.
+// Violations of the polyline: those of the map, and those of the chassis if a chassis is specified.
 std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
                                              const costmap::TraversabilityMap& map) {
   auto all = planner::violations(*map.published(), points);
@@ -84,7 +84,8 @@ void requirePath(const ScoreOptions& options) {
   if (!routed && options.path.empty()) throw InputError({"talus score", "no path", "pass --path FILE"});
 }
 
-// The polyline to score: read, or as a plugin plans it, whatever the check holds against that.
+// The polyline to score: read from a file, or planned by a plugin and returned even if the check refuses the
+// route.
 std::vector<maps::Point> pointsOf(const ScoreOptions& options, const Ground& ground, const Context& context) {
   if (options.plugin.empty()) return readPath(options.path, ground.map.elevation());
   planner::Problem problem;

@@ -80,7 +80,7 @@ void warnOfRejected(const terramech::Telemetry& telemetry, const Context& contex
         fmt::format("{}: {} more rows rejected", telemetry.source, telemetry.rejected.size() - kShown));
 }
 
-/// The loop on rows that the search never saw.
+/// Repeats the trace with rows held out and evaluates the rows that the search did not use.
 int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& table,
                 const terramech::TableTraceOptions& how, Context& context) {
   const auto [rows, search] = terramech::traceInput(table, how.base, how.search);
@@ -107,7 +107,7 @@ void writeModel(const std::string& path, const terramech::TableTrace& trace, con
                  "it, plan and costmap refuse it");
 }
 
-/// What measured runs say of the causes that a trace leaves.
+/// Scores of the causes that the trace left open, from measured runs.
 std::vector<terramech::CauseScore> scored(const TraceCommandOptions& options,
                                           const terramech::TableTrace& trace, const Context& context) {
   const terramech::Telemetry measured =

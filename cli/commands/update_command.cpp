@@ -1,4 +1,4 @@
-// talus update MAP.ot T.csv -o MAP2.ot: put a drive's telemetry into a map.
+// talus update MAP.ot T.csv -o MAP2.ot: adds the telemetry of a drive to a map.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -56,7 +56,7 @@ void bind(CLI::App& command, UpdateOptions& options) {
   addTableOptions(command, options.columns);
 }
 
-// What a cell costs and is, before and after.
+// Costs and categories of the cells at one time, for a comparison before and after.
 struct Snapshot {
   std::shared_ptr<const costmap::CostGrid> grid;
   std::vector<std::uint8_t> categories;
@@ -101,14 +101,14 @@ Difference between(const Snapshot& before, const Snapshot& after) {
       {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
 }
 
-// A journal of which this map can use no row is another map's.
+// Reports a journal without any usable row for this map: the journal probably belongs to another map.
 void tellForeign(const UpdateOptions& options, const costmap::DriveReport& report, const Context& context) {
   const std::string reason = fmt::format("none of its {} rows tells of this map", report.rejected);
   if (options.replay) throw InputError({options.journal, reason, "name the journal of this map"});
   context.warn(options.journal + ": " + reason + "; it may be another map's");
 }
 
-// One that does not exist yet is an output as others are.
+// A journal that does not exist yet, or is empty, is checked as an output.
 void checkJournal(const UpdateOptions& options, bool force) {
   std::error_code error;
   const auto size = std::filesystem::file_size(options.journal, error);
@@ -142,7 +142,7 @@ terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::Trav
   return telemetry;
 }
 
-// The rows of the file that go into the map; `report` holds what the journal gave already.
+// Adds the rows of the file to the map. `report` already contains the rows replayed from the journal.
 void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
                   const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
                   const Context& context, costmap::DriveReport& report) {
@@ -218,14 +218,15 @@ int run(const UpdateOptions& options, Context& context) {
   std::optional<terramech::Telemetry> telemetry;
   if (!options.replay) telemetry = readDrive(options, map, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  // Opened, and by that made, when the other files of the call have been read.
+  // Opening creates the journal, and so follows the reading of all other files of the call.
   std::optional<costmap::EvidenceJournal> journal;
   std::optional<costmap::EvidenceJournal::Transaction> transaction;
   if (!options.journal.empty()) transaction.emplace(journal.emplace(options.journal));
   if (options.replay && journal->drives().empty()) refuseReplay(options);
 
   const Snapshot before = snapshotOf(map);
-  // The map is the journal's drives and this one: those that it lacks, as after a call that was killed, come first.
+  // Rows of the journal that are missing in the map, as after an interrupted call, are added before this
+  // drive.
   costmap::DriveReport report;
   if (journal) report = costmap::replay(map, *journal);
   if (report.used == 0 && report.rejected > 0) tellForeign(options, report, context);

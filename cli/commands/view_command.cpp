@@ -1,4 +1,4 @@
-// talus view ROUTE|MAP [ROUTE ...]: one page to look at.
+// talus view ROUTE|MAP [ROUTE ...]: writes an HTML page or a picture.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 struct ViewOptions {
   MapOptions file;
-  std::vector<std::string> others;  ///< routes that are compared with the first
+  std::vector<std::string> others;  ///< routes compared with the first
   std::string map;
   std::string title;
   std::string html;
@@ -68,8 +68,8 @@ Scene mapScene(const ViewOptions& options, const std::string& path, const Contex
   return sceneOf(readMap(dem, context), scene);
 }
 
-// Where the map may lie: by its path as it was given to `talus plan`, here, from the route's folder and from those above it; by
-// its name beside the route and here.
+// Candidate paths of the map. By file name: the folder of the route and the current folder. By the path given
+// to `talus plan`: the current folder, the folder of the route and all its parents.
 std::vector<fs::path> placesOf(const planner::RouteInput& map, const fs::path& route) {
   std::error_code error;
   const fs::path folder = fs::absolute(route, error).parent_path();
@@ -82,8 +82,8 @@ std::vector<fs::path> placesOf(const planner::RouteInput& map, const fs::path& r
   }
 }
 
-/// The first input of the route, where a file is the same; its name has to be that of a DEM or a traversability map, which come
-/// first.
+/// Path of a file whose SHA-256 equals that of the first input of the route, the DEM or traversability map;
+/// nothing, with a warning, if no such file is found.
 std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
                                    const Context& context) {
   if (file.inputs.empty()) return std::nullopt;

@@ -9,8 +9,8 @@
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
+#include <talus/cli/soil/wheel_case_table.hpp>
 #include <talus/cli/soil/wheel_report.hpp>
-#include <talus/cli/soil/wheel_table.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
@@ -99,13 +99,13 @@ void bind(CLI::App& command, WheelOptions& options) {
                     .remedy = "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
 }
 
-nlohmann::ordered_json refusedRows(const WheelTable& table) {
+nlohmann::ordered_json refusedRows(const WheelCaseTable& table) {
   auto rows = nlohmann::ordered_json::array();
   for (const auto& row : table.refused) rows.push_back({{"line", row.line}, {"reason", row.reason}});
   return rows;
 }
 
-void warnOfRefused(const WheelTable& table, const std::string& path, const Context& context) {
+void warnOfRefused(const WheelCaseTable& table, const std::string& path, const Context& context) {
   constexpr std::size_t kShown = 20;
   for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", path, table.refused[k].line, table.refused[k].reason));
@@ -116,7 +116,7 @@ void warnOfRefused(const WheelTable& table, const std::string& path, const Conte
 
 int runTable(const WheelOptions& options, Context& context) {
   if (options.output.empty()) lacking("-o OUT.csv");
-  const WheelTable table =
+  const WheelCaseTable table =
       solveWheelTable(tableFile(options.cases, options.columns, context, wheelCaseColumns()), options.output,
                       context.workers(), context.watch("wheels"));
   if (table.replaced) context.warn(options.cases + ": contains result columns; they are replaced");

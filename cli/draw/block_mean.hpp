@@ -7,10 +7,11 @@
 
 namespace talus::cli {
 
-/// A grid seen coarser: blocks of factor x factor cells become one; blocks over the edge are cut.
+/// A coarser version of a grid: each cell is a block of factor x factor fine cells; blocks at the edge are
+/// cut off.
 class Blocks {
  public:
-  /// The smallest factor that brings both sides to max_side cells or fewer.
+  /// Uses the smallest factor for which neither side exceeds max_side cells.
   Blocks(const maps::Grid& fine, int max_side)
       : fine_(fine), factor_(std::max(1, (std::max(fine.width, fine.height) + max_side - 1) / max_side)) {
     const auto count = [this](int cells) { return (cells + factor_ - 1) / factor_; };
@@ -19,10 +20,10 @@ class Blocks {
 
   const maps::Grid& coarse() const noexcept { return coarse_; }
 
-  /// Fine cells a side of a block.
+  /// Fine cells per side of a block.
   int factor() const noexcept { return factor_; }
 
-  /// The fine cell that holds the middle of a block.
+  /// The fine cell at the centre of a block.
   maps::Cell middle(maps::Cell block) const noexcept {
     return {std::min(fine_.width - 1, block.column * factor_ + factor_ / 2),
             std::min(fine_.height - 1, block.row * factor_ + factor_ / 2)};
@@ -39,7 +40,7 @@ class Blocks {
         visit(maps::Cell{column, row});
   }
 
-  /// Mean over each block of value(cell), NaNs left out; NaN where there is nothing else.
+  /// Mean of value(cell) over each block without NaNs; NaN if all values are NaN.
   template <typename Value>
   maps::Raster<float> mean(Value value) const {
     maps::Raster<float> out(coarse_, std::nanf(""));

@@ -31,11 +31,12 @@ void setFont(cairo_t* cairo, const TextStyle& style) {
   cairo_set_font_size(cairo, style.size);
 }
 
-// Numbers cut to hundredths: of an SVG most bytes are the outlines of its letters, to a millionth of a pixel.
+// Truncates numbers to two decimals. Most bytes of an SVG are glyph outlines, written to a millionth of a
+// pixel.
 std::string shortened(const std::string& svg) {
   std::string out;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t decimals = 0;  // behind a point, the point included; 0: before one
+  std::size_t decimals = 0;  // digits after a decimal point, including the point; 0 before a point
   for (std::size_t i = 0; i < svg.size(); ++i) {
     const bool point = svg[i] == '.' && i > 0 && digit(svg[i - 1]);
     decimals = point ? 1 : decimals > 0 && digit(svg[i]) ? decimals + 1 : 0;
@@ -153,7 +154,7 @@ double Canvas::textWidth(const std::string& text, const TextStyle& style) {
 
 void Canvas::image(const Image& image, const Box& box) {
   cairo_t* c = surface_->cairo;
-  auto* data = reinterpret_cast<unsigned char*>(const_cast<std::uint32_t*>(image.argb.data()));  // read only
+  auto* data = reinterpret_cast<unsigned char*>(const_cast<std::uint32_t*>(image.argb.data()));  // only read
   cairo_surface_t* source = cairo_image_surface_create_for_data(data, CAIRO_FORMAT_ARGB32, image.width,
                                                                 image.height, 4 * image.width);
   cairo_save(c);

@@ -10,13 +10,13 @@ namespace talus::cli {
 
 struct Image;
 
-/// A place on paper: x to the right, y down, in pixels.
+/// A position on the canvas: x to the right, y down [pixels].
 struct Spot {
   double x = 0.0;
   double y = 0.0;
 };
 
-/// A rectangle on paper, from its upper left corner.
+/// A rectangle on the canvas; x, y is its upper left corner [pixels].
 struct Box {
   double x = 0.0;
   double y = 0.0;
@@ -24,24 +24,24 @@ struct Box {
   double height = 0.0;
 };
 
-/// How a line is drawn.
+/// Line style.
 struct Stroke {
   Colour colour;
   double width = 1.0;
   bool dashed = false;
 };
 
-/// How a text is drawn and which of its points lies at the spot.
+/// Text style, and the point of the text that is placed at the given spot.
 struct TextStyle {
   double size = 12.0;
   Colour colour = rgb(0x222222);
   bool bold = false;
   double anchor = 0.0;   ///< 0 left, 0.5 middle, 1 right
-  bool upright = false;  ///< turned a quarter to the left
-  bool halo = false;     ///< white rim, to stay legible on a map
+  bool upright = false;  ///< turned 90 deg counter-clockwise
+  bool halo = false;     ///< white outline for legibility on a map
 };
 
-/// A page to draw on, ending as PNG or SVG. Not to be shared between threads.
+/// Drawing surface that produces a PNG or SVG file. Not thread-safe.
 class Canvas {
  public:
   enum class Kind { Png, Svg };
@@ -60,19 +60,19 @@ class Canvas {
   void line(std::span<const Spot> spots, const Stroke& stroke);
   void polygon(std::span<const Spot> spots, Colour colour);
   void disc(Spot centre, double radius, Colour colour);
-  /// Many of one colour as one shape: where they overlap they are no darker.
+  /// Draws many discs of one colour as one shape: overlaps are no darker.
   void discs(std::span<const Spot> centres, double radius, Colour colour);
   void text(const std::string& text, Spot spot, const TextStyle& style = {});
   double textWidth(const std::string& text, const TextStyle& style = {});
 
-  /// Scales the image into the box; enlarged pixels stay square.
+  /// Scales the image into the box without smoothing: enlarged pixels stay squares.
   void image(const Image& image, const Box& box);
 
-  /// Until unclip(), nothing is drawn outside the box.
+  /// Limits drawing to the box until unclip().
   void clip(const Box& box);
   void unclip();
 
-  /// The finished file; nothing can be drawn afterwards.
+  /// Finishes the file and returns its bytes. Nothing can be drawn afterwards.
   std::string bytes();
 
  private:
@@ -83,7 +83,7 @@ class Canvas {
 /// The image as a PNG file.
 std::string png(const Image& image);
 
-/// The box outline of a stroke.
+/// Draws the outline of the box.
 void outline(Canvas& canvas, const Box& box, const Stroke& stroke);
 
 }  // namespace talus::cli

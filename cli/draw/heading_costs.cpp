@@ -12,33 +12,34 @@ namespace talus::cli {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 
 constexpr std::uint32_t kNoCurve = 255;
-constexpr double kMostWord = 16777214.0;  // of 24 bits, less one for "refused"
+constexpr double kMostWord = 16777214.0;  // largest 24-bit value, less one for "refused"
 
-/// The nodes within the limits, the bins of a row from the steepest descent on, the rows of a curve from the level one on.
+/// Nodes of the cost curves within the limits of pitch and roll: bins of a row from the steepest descent,
+/// rows from the level row.
 struct Nodes {
   int first_bin, bins, rows;
 
-  explicit Nodes(const costmap::DriveCost::Limits& limits) {
+  explicit Nodes(const costmap::TravelCost::Limits& limits) {
     const auto bin = [](double along) {
-      return static_cast<int>(std::floor(along * DriveCurve::kBinsPerUnit)) + DriveCurve::kBins / 2;
+      return static_cast<int>(std::floor(along * TravelCurve::kBinsPerUnit)) + TravelCurve::kBins / 2;
     };
     first_bin = std::max(0, bin(-limits.max_along));
-    bins = std::min(DriveCurve::kBins - 1, bin(limits.max_along) + 1) - first_bin + 1;
-    rows = static_cast<int>(limits.max_across * DriveCurve::kRowsPerUnit) + 2;
+    bins = std::min(TravelCurve::kBins - 1, bin(limits.max_along) + 1) - first_bin + 1;
+    rows = static_cast<int>(limits.max_across * TravelCurve::kRowsPerUnit) + 2;
   }
 };
 
-/// Costs on a logarithmic scale, so that a word is right to a few millionths; 0 for what is refused.
-nlohmann::ordered_json tableOf(const std::vector<const DriveCurve*>& curves, const Nodes& nodes) {
+/// Costs on a logarithmic scale, with a relative error of a few millionths; 0 for refused headings.
+nlohmann::ordered_json tableOf(const std::vector<const TravelCurve*>& curves, const Nodes& nodes) {
   std::vector<double> costs;
   double low = INFINITY, high = 0.0;
-  for (const DriveCurve* curve : curves)
+  for (const TravelCurve* curve : curves)
     for (int row = 0; row < nodes.rows; ++row)
       for (int bin = 0; bin < nodes.bins; ++bin) {
-        const float* its = curve->rows() + std::min(row, curve->lastRow()) * DriveCurve::kBins;
+        const float* its = curve->rows() + std::min(row, curve->lastRow()) * TravelCurve::kBins;
         const double cost = std::max(1e-6, static_cast<double>(its[nodes.first_bin + bin]));
         costs.push_back(cost);
         if (!std::isfinite(cost)) continue;
@@ -66,9 +67,9 @@ nlohmann::ordered_json tableOf(const std::vector<const DriveCurve*>& curves, con
 
 nlohmann::ordered_json headingCostsOf(const Scene& scene) {
   if (!scene.costs) return nullptr;
-  const costmap::DriveCost& cost = *scene.costs->cost;
+  const costmap::TravelCost& cost = *scene.costs->cost;
   std::map<std::uint32_t, std::uint32_t> numbers;
-  std::vector<const DriveCurve*> curves;
+  std::vector<const TravelCurve*> curves;
   const auto numberOf = [&](CellCode code) {
     if (code.curve() >= cost.curves().size()) return kNoCurve;
     const auto [known, added] = numbers.try_emplace(code.curve(), static_cast<std::uint32_t>(curves.size()));

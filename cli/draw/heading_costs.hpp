@@ -6,8 +6,9 @@
 
 namespace talus::cli {
 
-/// What cli/page/rose.js prices headings by: the cost curves that the cells refer to, at their nodes within the limits of
-/// pitch and roll, and an image each of the cells' gradients and of their curves and categories; null without costs.
+/// Data from which cli/page/rose.js computes the cost per heading: the cost curves used by the cells, at
+/// nodes within the limits of pitch and roll, an image of the cells' gradients, and an image of their curves
+/// and categories. Null if the scene has no costs.
 nlohmann::ordered_json headingCostsOf(const Scene& scene);
 
 }  // namespace talus::cli

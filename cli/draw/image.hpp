@@ -9,11 +9,11 @@
 
 namespace talus::cli {
 
-/// Pixels, top row first.
+/// An image; top row first.
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint32_t> argb;  ///< premultiplied, as cairo has them
+  std::vector<std::uint32_t> argb;  ///< premultiplied, cairo's ARGB32
 
   Image() = default;
   Image(int w, int h)
@@ -24,7 +24,7 @@ struct Image {
   }
 };
 
-/// A colour as one pixel.
+/// Converts a colour to a pixel.
 std::uint32_t pixel(Colour colour);
 
 /// Base64 of bytes, for data URIs.

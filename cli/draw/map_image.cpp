@@ -11,7 +11,8 @@ namespace {
 using maps::Cell;
 using maps::Raster;
 
-/// Gradient by central differences, one-sided at edges and beside nodata; zero for a lone cell.
+/// Gradient by central differences, one-sided at edges and beside cells without data; zero for an isolated
+/// cell.
 class Gradient {
  public:
   explicit Gradient(const Raster<float>& z) : z_(z) {}
@@ -34,8 +35,7 @@ class Gradient {
   const Raster<float>& z_;
 };
 
-/// How many times steeper the ground is drawn: its 90 % quantile of slope is brought to 25 deg, at least 1,
-/// at most 20.
+/// Vertical exaggeration: scales the 90 % quantile of slope to 25 deg; 1 to 20.
 double exaggeration(const Raster<float>& z) {
   const Gradient gradient(z);
   std::vector<double> steepness;
@@ -52,7 +52,7 @@ double exaggeration(const Raster<float>& z) {
   return std::clamp(std::tan(25.0 * kDegree) / std::max(*p90, 1e-6), 1.0, 20.0);
 }
 
-/// Fills an image from the north: draw(cell) gives each pixel.
+/// Builds an image from draw(cell), with the northernmost row first.
 template <typename Draw>
 Image imageOf(const maps::Grid& grid, Draw draw) {
   Image image(grid.width, grid.height);
@@ -67,7 +67,7 @@ Image imageOf(const maps::Grid& grid, Draw draw) {
 Raster<float> hillshade(const Raster<float>& elevation_m) {
   const Gradient gradient(elevation_m);
   const double factor = exaggeration(elevation_m);
-  // Unit vector to the sun: azimuth 315 deg, 45 deg high.
+  // unit vector to the sun: azimuth 315 deg, elevation 45 deg
   constexpr double kSunX = -0.5, kSunY = 0.5, kSunZ = std::numbers::sqrt2 / 2.0;
   Raster<float> shade(elevation_m.grid(), std::nanf(""));
   for (int row = 0; row < elevation_m.grid().height; ++row) {

@@ -5,23 +5,23 @@
 
 namespace talus::cli {
 
-/// Light on the ground from the north-west, 45 deg high: brightness [-], 0 to 1; NaN without data. Flat
-/// ground is shown steeper than it is, so that its shape can be seen.
+/// Hillshade with the sun in the north-west at 45 deg elevation: brightness 0 to 1 [-]; NaN without data.
+/// Flat terrain is vertically exaggerated.
 maps::Raster<float> hillshade(const maps::Raster<float>& elevation_m);
 
-/// Brightnesses that are no light and full light, 0 and 1, where colours are lit(): the 2 % and 98 % quantiles.
+/// Brightness values that lit() maps to light 0 and 1: the 2 % and 98 % quantiles.
 Range lightRange(const maps::Raster<float>& shade);
 
-/// Brightness as grey; nodata transparent.
+/// Brightness as grey; cells without data are transparent.
 Image shadeImage(const maps::Raster<float>& shade);
 
-/// Category colours, mixed where a cell stands for many; nodata transparent.
+/// Category colours, mixed by the shares of a cell; cells without data are transparent.
 Image categoryImage(const maps::Raster<CategoryShares>& categories);
 
-/// Values in colours; NaN transparent.
+/// Values in the colours of the layer; NaN is transparent.
 Image valueImage(const ValueLayer& layer);
 
-/// The colours of a layer's scale.
+/// Colour scale of a layer.
 Scale scaleOf(const ValueLayer& layer);
 
 }  // namespace talus::cli

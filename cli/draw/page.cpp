@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Every vertex, or for a very long route an even selection with both ends.
+/// Indices of all vertices, or of 4000 evenly selected vertices, including both ends, for a longer route.
 std::vector<std::size_t> selection(std::size_t count) {
   constexpr std::size_t kMost = 4000;
   std::vector<std::size_t> chosen;
@@ -57,8 +57,8 @@ ordered_json places(const std::vector<maps::Point>& points) {
   return out;
 }
 
-// Rows of plain numbers: a drive has thousands of moments.
-ordered_json storyOf(const DriveStory& story) {
+// Track points as rows of plain numbers, because a drive has thousands of points.
+ordered_json storyOf(const TraverseRecord& story) {
   ordered_json out{{"track", ordered_json::array()},
                    {"events", ordered_json::array()},
                    {"changes", ordered_json::array()},
@@ -67,7 +67,7 @@ ordered_json storyOf(const DriveStory& story) {
   for (const planner::TrackPoint& t : story.drive.track)
     out["track"].push_back({number(t.time_s), number(t.place.x_m), number(t.place.y_m), number(t.slip),
                             number(t.energy_J / 1000.0), number(t.sinkage_m)});
-  for (const planner::DriveEvent& e : story.drive.events)
+  for (const planner::TraverseEvent& e : story.drive.events)
     out["events"].push_back({{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}});
   for (const CellChange& c : story.changes) {
     const maps::Point centre = story.grid.centre(c.cell);
@@ -157,8 +157,8 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
     text.replace(at, from.size(), to);
 }
 
-/// JSON that may stand inside a script element: "<" occurs in strings only, and what begins with it, such as "</script"
-/// or "<!--<script", would change how the page is read.
+/// JSON for a script element. "<" occurs only inside strings and is escaped, because "</script" or
+/// "<!--<script" would change how the page is parsed.
 std::string embedded(const ordered_json& data) {
   std::string text = jsonText(data);
   replaceAll(text, "<", "\\u003c");
@@ -168,7 +168,8 @@ std::string embedded(const ordered_json& data) {
 }  // namespace
 
 std::string page(const Scene& scene) {
-  // The head is filled before the data are put in, so that no text of the user's is taken for a place-holder.
+  // The title is replaced before the data are inserted, so that user text in the data is never taken for a
+  // place-holder.
   std::string html(pageTemplate());
   replaceAll(html, "@TALUS_TITLE@", escaped(scene.title));
   replaceAll(html, "@TALUS_SUBTITLE@", escaped(scene.subtitle));

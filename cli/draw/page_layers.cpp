@@ -15,8 +15,8 @@ namespace {
 using maps::Cell;
 using nlohmann::ordered_json;
 
-/// Adds the values as whole numbers of the layer's decimals, fewer where 24 bits do not hold them: 0 for none, else 1 more
-/// than the number above the lowest.
+/// Adds the values as integers with the decimals of the layer, or fewer if 24 bits do not suffice. 0 is no
+/// value; other values are stored as 1 + steps above the lowest value.
 void addValues(ordered_json& json, const ValueLayer& layer) {
   double low = INFINITY, high = -INFINITY;
   for (const float v : layer.values.values())
@@ -36,7 +36,7 @@ void addValues(ordered_json& json, const ValueLayer& layer) {
   });
 }
 
-/// Shares of safe, marginal, dangerous and unknown as six bits each.
+/// Shares of safe, marginal, dangerous and unknown, six bits each.
 std::uint32_t sharesWord(const CategoryShares& shares) {
   int total = 0;
   for (const int n : shares.count) total += n;
@@ -53,7 +53,7 @@ ordered_json legendOf(const ValueLayer& layer) {
   return legend;
 }
 
-/// A direction from the body's centre, its latitude taken as an angle there.
+/// Unit vector from the centre of the body; the latitude is used as the angle at the centre.
 struct Direction {
   double x = 0.0, y = 0.0, z = 0.0;
 };
@@ -68,7 +68,8 @@ maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
           grid.south_west.y_m + north * grid.height * grid.resolution_m};
 }
 
-/// Greatest error [m] in the middles of the squares on and beside the diagonals, where the page mixes four corners.
+/// Largest interpolation error [m] of the page at centres of lattice squares; checked on both diagonals of
+/// the lattice.
 double latticeError_m(const maps::Georeference& places, const maps::Grid& grid, int intervals) {
   double most = 0.0;
   for (int i = 0; i < intervals; ++i)

@@ -1,6 +1,6 @@
 #include <talus/cli/draw/page_template.hpp>
 
-// The file's bytes, put between two symbols of the read-only data.
+// Embeds the bytes of the file between two symbols in the read-only data.
 asm(R"(
   .section .rodata
   talus_page_template: .incbin ")" TALUS_PAGE_TEMPLATE R"("

@@ -9,11 +9,11 @@
 
 namespace talus::cli {
 
-/// Draws what may be traded: energy against risk and against time, a point a route. PNG, SVG or, for .html, a
-/// page with the numbers. @throws InputError when the file cannot be written
+/// Draws the Pareto front: energy over risk and energy over time, one point per route. Writes PNG, SVG or,
+/// for .html, a page with the numbers. @throws InputError when the file cannot be written
 void saveParetoChart(const std::string& path, const std::vector<planner::ParetoRoute>& front);
 
-/// The routes' energy_J, time_s, risk and the prices that picked them.
+/// The energy_J, time_s and risk of the routes, and the weights with which the routes were planned.
 nlohmann::ordered_json paretoJson(const std::vector<planner::ParetoRoute>& front);
 
 }  // namespace talus::cli

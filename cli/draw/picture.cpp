@@ -27,7 +27,7 @@ constexpr Colour kRing = rgb(0xD6006C);
 constexpr Colour kWhite = rgb(0xFFFFFF);
 constexpr Colour kInk = rgb(0x222222);
 
-/// Colours under the light of the hillshade.
+/// Applies the hillshade to the colours.
 Image underLight(Image colours, const maps::Raster<float>& shade, double relief) {
   const Range range = lightRange(shade);
   for (int y = 0; y < colours.height; ++y) {
@@ -42,7 +42,7 @@ Image underLight(Image colours, const maps::Raster<float>& shade, double relief)
   return colours;
 }
 
-/// The title in lines that fit into the width; a word is not parted.
+/// Breaks the title into lines of the given width; words are not split.
 std::vector<std::string> wrapped(const std::string& text, double width, const TextStyle& style) {
   Canvas measure({.width = 1, .height = 1});
   std::vector<std::string> lines{""};
@@ -59,7 +59,7 @@ std::vector<std::string> wrapped(const std::string& text, double width, const Te
 
 constexpr TextStyle kTitle{.size = 18, .bold = true};
 
-/// A picture being drawn.
+/// State of a picture during drawing.
 class Picture {
  public:
   explicit Picture(const Scene& scene)
@@ -87,7 +87,7 @@ class Picture {
   }
 
  private:
-  /// Small maps are enlarged by a whole number so that the longer side has some 900 pixels.
+  /// Enlarges small maps by an integer factor, to at most 900 pixels on the longer side.
   static double pixelsPerCell(const maps::Grid& grid) {
     return std::max(1.0, std::floor(900.0 / std::max(grid.width, grid.height)));
   }
@@ -130,7 +130,7 @@ class Picture {
     mark(spots.back(), "G");
   }
 
-  // Where the rover drives backwards, and dots where it changes direction or turns in place.
+  // Marks reverse sections, and points at which the direction changes or the rover turns in place.
   void manoeuvres(const std::vector<Spot>& spots) {
     const auto& vertices = scene_.route->vertices;
     for (std::size_t i = 0; i + 1 < spots.size(); ++i) {
@@ -147,7 +147,7 @@ class Picture {
     canvas_.text(letter, {at.x, at.y + 4.5}, {.size = 12, .colour = kWhite, .bold = true, .anchor = 0.5});
   }
 
-  // Outside of the marks, however small what it surrounds is.
+  // Draws a ring with a minimum radius outside the start and goal marks, even around a small set.
   void encircle(const Ring& ring) {
     const Spot centre = spot(ring.centre.x_m, ring.centre.y_m);
     const double radius = std::max(18.0, ring.radius_m * scale_ / scene_.grid().resolution_m + 8.0);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ void check(const Series& s) {
                                           s.name, s.x.size(), s.y.size(), s.y_std.size()));
 }
 
-/// The finite values' range, widened a little; fixed ends win.
+/// Range of the finite values with a margin; fixed ends have precedence.
 class Extent {
  public:
   void add(double value) {
@@ -43,7 +44,7 @@ class Extent {
   Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
-/// One chart on its way onto the canvas.
+/// State of one chart during drawing.
 class Panel {
  public:
   Panel(Canvas& canvas, const Plot& plot, const Box& box) : canvas_(canvas), plot_(plot) {
@@ -105,19 +106,46 @@ class Panel {
       runs(s, c);
       return;
     }
+    bars(s, c);
     std::vector<Spot> spots;
-    for (std::size_t i = 0; i < s.x.size(); ++i) {
-      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
-      if (!s.y_std.empty() && std::isfinite(s.y_std[i]))
-        canvas_.line(std::array{spot(s.x[i], s.y[i] - s.y_std[i]), spot(s.x[i], s.y[i] + s.y_std[i])},
-                     {.colour = faded(c, 0.5)});
-      spots.push_back(spot(s.x[i], s.y[i]));
-    }
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) spots.push_back(spot(s.x[i], s.y[i]));
     const bool many = spots.size() > 400;
+    if (many) leaveOutCovered(spots);
     canvas_.discs(spots, many ? 1.6 : 2.8, faded(c, many ? 0.5 : 0.85));
   }
 
-  /// A line between each pair of breaks.
+  /// Keeps one disc per square of two pixels, because all discs of a series are drawn as one shape.
+  static void leaveOutCovered(std::vector<Spot>& spots) {
+    const auto square = [](const Spot& spot) {
+      return std::pair{std::floor(spot.x / 2.0), std::floor(spot.y / 2.0)};
+    };
+    std::ranges::sort(spots, {}, square);
+    const auto rest = std::ranges::unique(spots, {}, square);
+    spots.erase(rest.begin(), rest.end());
+  }
+
+  /// Draws one standard deviation about each reading; overlapping bars in one pixel column are merged.
+  void bars(const Series& s, Colour c) {
+    struct Bar {
+      double column = 0.0, low = 0.0, high = 0.0;  // pixels from the left, values
+    };
+    std::vector<Bar> bars;
+    for (std::size_t i = 0; i < s.y_std.size(); ++i)
+      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]) && std::isfinite(s.y_std[i]))
+        bars.push_back({std::floor(spot(s.x[i], 0.0).x), s.y[i] - s.y_std[i], s.y[i] + s.y_std[i]});
+    std::ranges::sort(bars, {}, [](const Bar& bar) { return std::pair{bar.column, bar.low}; });
+    for (std::size_t i = 0; i < bars.size();) {
+      Bar bar = bars[i];
+      for (++i; i < bars.size() && bars[i].column == bar.column && bars[i].low <= bar.high; ++i)
+        bar.high = std::max(bar.high, bars[i].high);
+      const double x = bar.column + 0.5;
+      canvas_.line(std::array{Spot{x, spot(0.0, bar.low).y}, Spot{x, spot(0.0, bar.high).y}},
+                   {.colour = faded(c, 0.5)});
+    }
+  }
+
+  /// Draws a line between consecutive interruptions.
   void runs(const Series& s, Colour c) {
     std::vector<Spot> run;
     for (std::size_t i = 0; i <= s.x.size(); ++i) {
@@ -166,7 +194,7 @@ class Panel {
     }
   }
 
-  /// The box in the corner of the frame where it covers the fewest points.
+  /// The corner position of the box that covers the fewest points.
   Box emptiestCorner(Box box) const {
     Box best = box;
     std::size_t fewest = std::numeric_limits<std::size_t>::max();

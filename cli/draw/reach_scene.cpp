@@ -14,9 +14,9 @@ using planner::Reach;
 
 namespace {
 
-constexpr double kSmall = 0.15;  // of the map's diagonal: a smaller set is easily overlooked
+constexpr double kSmall = 0.15;  // of the map's diagonal: sets smaller than this share are marked
 
-/// How many cells of the scene, and the circle about them.
+/// Number of reached cells, and their bounding circle.
 struct ReachedExtent {
   std::size_t count = 0;
   double west = INFINITY, east = -INFINITY, south = INFINITY, north = -INFINITY;

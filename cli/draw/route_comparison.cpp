@@ -26,7 +26,7 @@ double distanceToLine_m(Point p, const Route& line) {
   return least;
 }
 
-/// Calls visit(distance from the start, place) at steps along a route, its ends included.
+/// Calls visit(distance from the start, place) at regular steps along a route, including both ends.
 template <typename Visit>
 void walk(const Route& route, double step_m, Visit visit) {
   const std::vector<double> s = distances_m(route);
@@ -46,8 +46,8 @@ std::string partingText(const Parting& part) {
                      part.most_m);
 }
 
-/// The facts of all routes, a row for each name in the order of its first occurrence; of a name that a route has twice,
-/// such as a file, the values together.
+/// Facts of all routes, one row per name in order of first occurrence. Several values of one name in a route,
+/// such as files, are joined.
 std::vector<ComparedFact> rowsOf(const std::vector<NamedRoute>& routes) {
   std::vector<ComparedFact> rows;
   for (std::size_t i = 0; i < routes.size(); ++i) {

@@ -18,7 +18,7 @@ std::string lengthText(double metres) {
   return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
-/// Largest and mean of a field over the motions, by length; not known where no motion has it.
+/// Extremes and length-weighted mean of a field over the motions; unknown if no motion has a value.
 struct Profile {
   double highest = -INFINITY;
   double lowest = INFINITY;
@@ -132,7 +132,7 @@ std::string riskText(double probability) {
 
 std::string driveText(const Route& route) {
   if (!route.summary.drive) return "";
-  const planner::DriveShape& d = *route.summary.drive;
+  const planner::RouteShape& d = *route.summary.drive;
   const std::string radius = d.max_curvature_1_m > 0.0
                                  ? fmt::format("min turning radius {:.3g} m", 1.0 / d.max_curvature_1_m)
                                  : "no arcs";

@@ -9,23 +9,23 @@
 
 namespace talus::cli {
 
-/// Map distance from the start to each vertex [m].
+/// Horizontal distance from the start to each vertex along the route [m].
 std::vector<double> distances_m(const planner::Route& route);
 
-/// The summary of a route, ten quantities, each with its value and unit; fewer where one is not known. For a
-/// route that was not found, its status and reason.
+/// Summary of a route: up to ten quantities with value and unit; unknown quantities are omitted. For a route
+/// that was not found: status and reason.
 std::vector<std::pair<std::string, std::string>> summaryOf(const planner::Route& route);
 
-/// One aligned line of text: a quantity and its value.
+/// One aligned line of text with a quantity and its value.
 std::string summaryLine(std::string_view what, std::string_view value);
 
 /// The summary as lines of text.
 std::string summaryText(const planner::Route& route);
 
-/// Joules as J, kJ or MJ, four digits.
+/// Energy in J, kJ or MJ with four digits.
 std::string energyText(double joules);
 
-/// "2 h 05 min", "45 s", "3 d 04 h".
+/// Duration as "2 h 05 min", "45 s" or "3 d 04 h".
 std::string durationText(double seconds);
 
 }  // namespace talus::cli

@@ -23,7 +23,7 @@ Range scaleRange(const Raster<float>& values) {
   return range.high > range.low ? range : Range{range.low, range.low + 1.0};
 }
 
-/// Slope of the cells as they are drawn, by central differences [deg].
+/// Slope of the drawn cells by central differences [deg].
 Raster<float> slope_deg(const Raster<float>& z) {
   const maps::Grid& grid = z.grid();
   Raster<float> out(grid, std::nanf(""));
@@ -39,7 +39,7 @@ Raster<float> slope_deg(const Raster<float>& z) {
   return out;
 }
 
-/// What the map believes of each block, on average over its cells; NaN where none has a category.
+/// Averages of the map's estimates over the cells of each block; NaN if no cell has a category.
 struct BlockBeliefs {
   Raster<CategoryShares> categories;
   Raster<float> pull, pull_std, sinkage;
@@ -74,7 +74,7 @@ BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& bloc
 HeadingCosts headingCosts(const costmap::TraversabilityMap& map, const Blocks& blocks) {
   const auto version = map.published();
   HeadingCosts out{Raster<costmap::CellCode>(blocks.coarse()), Raster<std::uint8_t>(blocks.coarse()),
-                   std::shared_ptr<const costmap::DriveCost>(version, &version->cost())};
+                   std::shared_ptr<const costmap::TravelCost>(version, &version->cost())};
   for (int row = 0; row < blocks.coarse().height; ++row)
     for (int column = 0; column < blocks.coarse().width; ++column) {
       const Cell cell = blocks.middle({column, row});
@@ -90,7 +90,7 @@ void addLayer(Scene& scene, std::string name, Raster<float> values) {
   scene.layers.push_back(std::move(layer));
 }
 
-/// Names of the soils that the map's classes stand for.
+/// Names of the soils of the map's classes.
 std::string soilNames(const costmap::TraversabilityMap& map) {
   std::string names;
   for (const costmap::GroundClass& one : map.model().parts().classes)
@@ -98,7 +98,7 @@ std::string soilNames(const costmap::TraversabilityMap& map) {
   return names;
 }
 
-/// "4 x 3.00 km, cells of 5 m".
+/// Size of the map, such as "4 x 3.00 km, cells of 5 m".
 std::string sizeText(const maps::Grid& grid) {
   const double width_m = grid.width * grid.resolution_m;
   const double height_m = grid.height * grid.resolution_m;
@@ -129,7 +129,8 @@ void addElevation(Scene& scene) {
   scene.layers.back().decimals = 2;
 }
 
-/// Slope where every cell is drawn: of the plane that `talus explain` states; else the mean of those that routes are planned on.
+/// Slope [deg]. If each cell is drawn: slope of the plane that `talus explain` prints. Otherwise: block mean
+/// of the planning slopes.
 Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blocks) {
   if (blocks.factor() == 1) {
     const maps::TerrainMetrics metrics =

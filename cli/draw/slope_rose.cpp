@@ -24,7 +24,7 @@ void circle(Canvas& canvas, Spot centre, double radius) {
   canvas.line(spots, {.colour = kRim, .width = 0.7});
 }
 
-// One panel: a magnitude over the headings.
+// One panel: magnitude of a quantity over the headings.
 struct Quantity {
   std::string title;
   double (*value)(const RoseHeading&);

@@ -8,24 +8,24 @@
 
 namespace talus::cli {
 
-/// What driving a cell is like in one heading.
+/// Driving properties of a cell in one heading.
 struct RoseHeading {
   double heading_rad = 0.0;  ///< counter-clockwise from east
   double cost_J_per_m = 0.0;
   double slip = 0.0;
-  double slip_angle_rad = 0.0;  ///< NaN where it is not known
-  bool refused = false;         ///< the numbers are then not drawn
+  double slip_angle_rad = 0.0;  ///< NaN: unknown
+  bool refused = false;         ///< refused headings have no values in the chart
 };
 
-/// Three polar charts over the headings, east to the right and north up: cost, slip, slip angle, as magnitudes;
-/// sectors whose heading is refused are shaded, and an arrow points uphill where there is an uphill.
+/// Three polar charts over the heading (east to the right, north up): magnitudes of cost, slip and slip
+/// angle. Sectors of refused headings are shaded. An arrow points uphill on sloping ground.
 struct SlopeRose {
   std::string title;
-  std::vector<RoseHeading> headings;  ///< evenly spaced, the first again not at the end
+  std::vector<RoseHeading> headings;  ///< evenly spaced; the first heading is not repeated at the end
   std::optional<double> uphill_rad;
 };
 
-/// The bytes of a PNG or SVG file.
+/// Draws the charts and returns the bytes of a PNG or SVG file.
 std::string draw(const SlopeRose& rose, Canvas::Kind kind);
 
 }  // namespace talus::cli

@@ -31,14 +31,15 @@ std::uint8_t byteOf(double part) {
   return static_cast<std::uint8_t>(std::lround(255.0 * part));
 }
 
-// Grey of map_server's trinary mode: free above 0.9, occupied below 0.35.
+// Grey value for map_server's trinary mode: free above 0.9, occupied below 0.35.
 char greyOf(Category category, bool allow_marginal) {
   constexpr char kFree = '\xFE', kOccupied = '\x00', kUnknown = '\x80';
   if (category == Category::Safe || (category == Category::Marginal && allow_marginal)) return kFree;
   return category == Category::Unknown ? kUnknown : kOccupied;
 }
 
-// Of a palette of bytes QGIS lists 256 numbers; by the style beside the file, which it reads by itself, four names.
+// QGIS style with four category names; QGIS reads the file beside the GeoTIFF and would otherwise list all
+// 256 palette entries.
 std::string qgisStyle() {
   std::string entries;
   for (const Category category : kCategories)
@@ -64,9 +65,12 @@ void writeCategories(const costmap::TraversabilityMap& map, const std::string& p
                        .colour = {byteOf(colour.red), byteOf(colour.green), byteOf(colour.blue)}});
   }
   const auto& georeference = map.elevation().georeference;
-  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr}, "category",
-                     categoriesOf(map), std::nullopt, classes);
-  writeFile(categoryStyle(path), qgisStyle());
+  OutputFile raster(path), style(categoryStyle(path));
+  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr, .into = &raster},
+                     "category", categoriesOf(map), std::nullopt, classes);
+  style.write(qgisStyle());
+  raster.commit();
+  style.commit();
 }
 
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
@@ -81,11 +85,15 @@ void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml
   for (int row = grid.height - 1; row >= 0; --row)
     for (int column = 0; column < grid.width; ++column)
       picture += greyOf(static_cast<Category>(categories[{column, row}]), allow_marginal);
-  writeFile(nav2Picture(yaml), picture);
-  writeFile(yaml, fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
-                              "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
-                              nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
-                              grid.south_west.x_m, grid.south_west.y_m));
+  OutputFile beside(nav2Picture(yaml)), file(yaml);
+  beside.write(picture);
+  file.write(
+      fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
+                  "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
+                  nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
+                  grid.south_west.x_m, grid.south_west.y_m));
+  beside.commit();
+  file.commit();
 }
 
 }  // namespace talus::cli

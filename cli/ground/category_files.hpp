@@ -7,18 +7,19 @@
 
 namespace talus::cli {
 
-/// The style for QGIS that lies beside a GeoTIFF of categories.
+/// Path of the QGIS style file beside a GeoTIFF of categories.
 std::filesystem::path categoryStyle(const std::filesystem::path& tif);
 
-/// Writes the category of each cell, of the worst heading, as a GeoTIFF of whole numbers with names, a colour table and
-/// overviews, and its style for QGIS. @throws InputError
+/// Writes the category of each cell in its worst heading as an integer GeoTIFF with category names, colour
+/// table and overviews, and a QGIS style. @throws InputError
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
 
-/// The picture of a map of ROS' map_server that lies beside its YAML file.
+/// Path of the image beside the YAML file of a ROS map_server map.
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
 
-/// Writes a map of ROS' map_server, for Nav2: the YAML file and its PGM. Safe cells are free, marginal ones where the map's
-/// policy allows them, dangerous ones occupied, the rest unknown; its metres are those of the map. @throws InputError
+/// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Free: safe cells, and marginal
+/// cells if the map's policy permits them. Occupied: dangerous cells. Other cells are unknown. Coordinates
+/// are those of the map [m]. @throws InputError
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml);
 
 }  // namespace talus::cli

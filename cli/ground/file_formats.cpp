@@ -11,7 +11,7 @@ namespace {
 
 using terramech::FileKey;
 
-// Number of the class and its soil, in the place of a name.
+// Number of a class and its soil, instead of a soil name.
 std::span<const FileKey> classKeys() {
   static constexpr FileKey kKeys[] = {
       {"terrain_classes", "mapping of class numbers, 0 to 254, to soils; classes is the same"},
@@ -51,7 +51,8 @@ std::vector<FileFormat> fileFormats() {
       {"Rover", "YAML file, the keys at its root or under `rover`.", terramech::roverKeys()},
       {"Rover: wheels", "Mapping under `wheels`; all wheels are equal.", terramech::wheelKeys()},
       {"Vector file",
-       "Places, paths, keep-out areas and routes, by the driver of GDAL; read in any CRS of the map's body.",
+       "Places, paths, keep-out areas and routes, by the driver of GDAL; read in any CRS of the map's body; "
+       "a path has at most a million positions.",
        vectorFileKeys()},
       {"Telemetry", "CSV with a header row, columns in any order; others are kept as they are.",
        terramech::telemetryKeys()},

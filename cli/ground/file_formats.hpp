@@ -8,20 +8,20 @@
 
 namespace talus::cli {
 
-/// A file that users write, or a mapping in it.
+/// A file format for users, or a mapping inside such a file.
 struct FileFormat {
   std::string title;
   std::string about;  ///< one sentence
   std::span<const terramech::FileKey> keys;
 };
 
-/// All of them, with the keys that their readers take.
+/// All file formats, with the keys that their readers accept.
 std::vector<FileFormat> fileFormats();
 
-/// What `talus help formats` prints.
+/// Output of `talus help formats`.
 std::string formatsText();
 
-/// The same as Markdown: docs/formats.md from its first heading of a format on.
+/// The formats as Markdown: docs/formats.md from its first format heading onwards.
 std::string formatsMarkdown();
 
 }  // namespace talus::cli

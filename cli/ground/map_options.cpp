@@ -102,7 +102,7 @@ MapWithFloors readMapWithFloors(const MapOptions& options, const Context& contex
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
   maps::ElevationMap map = maps::readElevation(options.path, read);
-  // What is built on it: beliefs, hazards, curves, tiles and their working copies.
+  // memory of beliefs, hazards, curves, tiles and their working copies
   constexpr double kBytesPerCell = 40.0;
   requireMemory(kBytesPerCell * static_cast<double>(map.elevation_m.values().size()), options.path);
   for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
@@ -151,7 +151,8 @@ costmap::CostLayer costLayer(const std::string& given, const maps::ElevationMap&
   return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.dearest_J_per_m};
 }
 
-// Whether rocks lie there is not known, which makes the ground unknown; where that is allowed it costs no more.
+// Cells without rock data become unknown ground (NaN); if unknown ground is permitted, such cells cost no
+// extra energy.
 costmap::CostLayer unseenRocks(const maps::Raster<std::uint8_t>& unseen) {
   costmap::CostLayer layer{.name = "rocks", .added_J_per_m = maps::Raster<float>(unseen.grid())};
   std::ranges::transform(unseen.values(), layer.added_J_per_m.values().begin(), [](std::uint8_t hidden) {

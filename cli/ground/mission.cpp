@@ -16,7 +16,7 @@ namespace {
 using terramech::FileKey;
 using terramech::YamlFields;
 
-// A path as the mission means it: relative to the mission's folder; a library name stays as it is.
+// Resolves a path relative to the folder of the mission; library names stay unchanged.
 std::string resolved(const std::string& path, const std::filesystem::path& folder) {
   const std::filesystem::path beside = folder / path;
   const std::string found = !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
@@ -29,7 +29,7 @@ void take(std::string& option, const YamlFields& fields, const std::string& name
   if (option.empty()) option = said;
 }
 
-// A number that its option takes, too.
+// A number checked with the validator of the corresponding option.
 double ranged(const YamlFields& fields, const std::string& name, const CLI::Validator& range) {
   const double value = fields.number(name);
   std::string text = fmt::format("{}", value);
@@ -38,7 +38,7 @@ double ranged(const YamlFields& fields, const std::string& name, const CLI::Vali
   return value;
 }
 
-// "x,y" from a text or from a list of two numbers.
+// A place as "x,y", from a text or a list of two numbers.
 std::string place(const YamlFields& fields, const std::string& name) {
   if (!fields.has(name)) return "";
   try {
@@ -49,7 +49,7 @@ std::string place(const YamlFields& fields, const std::string& name) {
   return fields.word(name);
 }
 
-// One place, or a list of them.
+// One place or a list of places.
 std::vector<std::string> places(const YamlFields& fields, const std::string& name) {
   try {
     if (fields.numbers(name).size() == 2) return {place(fields, name)};
@@ -75,27 +75,27 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
   if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
 }
 
-// What differs from its default was said on the command line and holds.
-void readThresholds(const YamlFields& fields, costmap::DrivePolicy& policy) {
+// A policy value that differs from its default was set on the command line and is kept.
+void readThresholds(const YamlFields& fields, costmap::TravelPolicy& policy) {
   fields.only(namesOf(thresholdKeys()));
-  const costmap::DrivePolicy defaults;
-  const auto number = [&](double costmap::DrivePolicy::*field, const char* name) {
+  const costmap::TravelPolicy defaults;
+  const auto number = [&](double costmap::TravelPolicy::*field, const char* name) {
     const double said = fields.number(name, policy.*field);
     if (policy.*field == defaults.*field) policy.*field = said;
   };
-  const auto flag = [&](bool costmap::DrivePolicy::*field, const char* name) {
+  const auto flag = [&](bool costmap::TravelPolicy::*field, const char* name) {
     const bool said = fields.flag(name, policy.*field);
     if (policy.*field == defaults.*field) policy.*field = said;
   };
-  number(&costmap::DrivePolicy::slope_margin_rad, "slope_margin_rad");
-  number(&costmap::DrivePolicy::sinkage_threshold, "sinkage_threshold");
-  number(&costmap::DrivePolicy::sinkage_critical, "sinkage_critical");
-  number(&costmap::DrivePolicy::max_immobilisation, "max_immobilisation");
-  flag(&costmap::DrivePolicy::allow_marginal, "allow_marginal");
-  flag(&costmap::DrivePolicy::allow_dangerous, "allow_dangerous");
-  flag(&costmap::DrivePolicy::allow_unknown, "allow_unknown");
-  number(&costmap::DrivePolicy::time_weight_W, "time_weight_W");
-  number(&costmap::DrivePolicy::risk_weight_J, "risk_weight_J");
+  number(&costmap::TravelPolicy::slope_margin_rad, "slope_margin_rad");
+  number(&costmap::TravelPolicy::sinkage_threshold, "sinkage_threshold");
+  number(&costmap::TravelPolicy::sinkage_critical, "sinkage_critical");
+  number(&costmap::TravelPolicy::max_immobilisation, "max_immobilisation");
+  flag(&costmap::TravelPolicy::allow_marginal, "allow_marginal");
+  flag(&costmap::TravelPolicy::allow_dangerous, "allow_dangerous");
+  flag(&costmap::TravelPolicy::allow_unknown, "allow_unknown");
+  number(&costmap::TravelPolicy::time_weight_W, "time_weight_W");
+  number(&costmap::TravelPolicy::risk_weight_J, "risk_weight_J");
 }
 
 }  // namespace

@@ -10,37 +10,37 @@
 
 namespace talus::cli {
 
-/// How the rover may move, for planners of drives.
-struct DriveOptions {
-  std::optional<double> start_heading_rad;  ///< none: it may look any way
-  std::optional<double> goal_heading_rad;   ///< the same on arrival
-  std::optional<double> turning_radius_m;   ///< none: the rover's
+/// Constraints on the motion of the rover, for planners of drives.
+struct MotionOptions {
+  std::optional<double> start_heading_rad;  ///< none: any heading
+  std::optional<double> goal_heading_rad;   ///< none: any heading at the goal
+  std::optional<double> turning_radius_m;   ///< none: that of the rover
   bool no_reverse = false;
-  std::string chassis;  ///< "rigid" or "rocker-bogie": clearance and tilt are kept along the whole motion
+  std::string chassis;  ///< "rigid" or "rocker-bogie": limits clearance and tilt along the whole motion
 
   bool any() const { return start_heading_rad || goal_heading_rad || turning_radius_m || no_reverse; }
 };
 
-/// Everything that `talus plan` needs: on the command line or in a mission file.
+/// Options of `talus plan`, from the command line or a mission file.
 struct PlanOptions {
   GroundOptions ground;
   std::string start;
-  std::vector<std::string> goals;  ///< the one that costs least is driven to
+  std::vector<std::string> goals;  ///< the route leads to the goal of least cost
   std::vector<std::string> via;
-  std::string pairs;  ///< CSV of many starts and goals; empty: one route
+  std::string pairs;  ///< CSV of starts and goals; empty: one route
   double tolerance_m = 0.0;
   std::string planner = "field";
-  std::string plugin;  ///< shared library whose planner is asked; empty: the program's own
-  DriveOptions drive;
-  double max_risk = 0.0;               ///< chance constraint on immobilisation, 0: none
-  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read in windows along an overview's route
-  bool whole_field = false;            ///< even on large maps
-  bool no_proof = false;               ///< no best lower bound, no other corridors
-  std::string pareto;                  ///< chart to draw; empty: none
-  double time_limit_s = 0.0;           ///< 0: none
+  std::string plugin;  ///< shared library of an external planner; empty: built-in planners
+  MotionOptions drive;
+  double max_risk = 0.0;               ///< upper bound of the immobilisation probability; 0: none
+  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read window by window
+  bool whole_field = false;            ///< also on large maps
+  bool no_proof = false;               ///< computes no improved lower bound and no alternative corridors
+  std::string pareto;                  ///< chart file; empty: none
+  double time_limit_s = 0.0;           ///< 0: no limit
   std::string output;
-  std::string html;  ///< page to write; empty: none
-  std::string png;   ///< picture to write; empty: none
+  std::string html;  ///< HTML page; empty: none
+  std::string png;   ///< PNG picture; empty: none
 };
 
 /// The keys of a mission file, of its `maps` and of its `thresholds`.
@@ -48,11 +48,11 @@ std::span<const terramech::FileKey> missionKeys();
 std::span<const terramech::FileKey> missionMapKeys();
 std::span<const terramech::FileKey> thresholdKeys();
 
-/// Whether the path names a mission file by its extension, .yaml or .yml.
+/// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
-/// Takes over what the mission file at options.ground.dem.path says; what the command line says holds over
-/// it. Paths in it are relative to the file. @throws InputError with file and line
+/// Reads the mission file at options.ground.dem.path into the options. Values from the command line have
+/// precedence. Paths in the file are relative to the file. @throws InputError with file and line
 void readMission(PlanOptions& options);
 
 }  // namespace talus::cli

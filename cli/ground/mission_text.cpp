@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace {
 
-// Keys with a value, and those without as remarks.
+// Keys with a value as entries; keys without a value as YAML comments.
 std::string keysText(std::span<const terramech::FileKey> keys,
                      const std::map<std::string, std::string>& values, const std::string& indent) {
   std::string text;

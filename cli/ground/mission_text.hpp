@@ -4,16 +4,17 @@
 
 namespace talus::cli {
 
-/// What a new mission knows: the rest of its keys are remarks.
+/// Values of a new mission file; all other keys are written as comments.
 struct MissionDraft {
   std::string dem{"dem.tif"};
-  double resolution_m = 0.0;  ///< of a map without a coordinate system; 0: not stated
+  double resolution_m = 0.0;  ///< for a map without a coordinate system; 0: not stated
   bool ignore_crs = false;
   std::string rover{"mer"}, soil{"mars_blocky"};
-  std::string start{"100,100"}, goal{"900,900"};  ///< in map metres
+  std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]
 };
 
-/// A mission file with every key that its reader takes, those that the draft does not know as remarks with their meaning.
+/// Text of a mission file with all keys that the reader accepts. Keys without a value in the draft are
+/// comments with their meaning.
 std::string missionText(const MissionDraft& draft);
 
 }  // namespace talus::cli

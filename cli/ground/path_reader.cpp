@@ -44,7 +44,7 @@ std::vector<Point> readCsv(const std::string& path) {
   return points;
 }
 
-// The map metres that a route of ours carries besides its coordinates.
+// The map coordinates in the properties x_m, y_m of a route file; empty if there are none.
 std::vector<Point> ownMetres(const json& document) {
   std::vector<Point> points;
   if (document.value("type", "") != "FeatureCollection" || !document.contains("features")) return points;
@@ -61,7 +61,7 @@ std::vector<Point> ownMetres(const json& document) {
   return points;
 }
 
-// Positions of a line; a track in one part counts as one.
+// Positions of a line or of a single-part track; null for other geometries.
 const json* positionsOf(const json& geometry, const std::string& path) {
   const json& positions = geometry["coordinates"];
   const std::string type = geometry.value("type", "");
@@ -85,10 +85,12 @@ std::vector<Point> lineOf(const json& document, const maps::ElevationMap& map, c
   throw InputError({path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m"});
 }
 
-// What a line that was not edited may lie off its own metres: programs write degrees with few digits.
+// Tolerance between the coordinates of an unedited line and its x_m, y_m: programs write degrees with few
+// digits.
 constexpr double kRounding_cells = 0.1;
 
-// A line was edited where its coordinates are no longer its metres: which of them is meant is not known.
+// Refuses a line whose coordinates differ from its x_m, y_m: the line was edited, and the intended values are
+// unknown.
 void requireSame(const std::vector<Point>& line, const std::vector<Point>& own, const maps::Grid& grid,
                  const std::string& path) {
   const auto refuse = [&](const std::string& reason) {
@@ -116,7 +118,8 @@ std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& m
   return own;
 }
 
-// What is judged piece by piece, cell by cell, ends near the map.
+// Limits the distance from the map and the length of a path, because the path is checked piece by piece and
+// cell by cell.
 void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const std::string& path) {
   const double around_m = 1e6 * grid.resolution_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -131,7 +134,7 @@ void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const
                        i + 1, points[i].x_m, points[i].y_m, around_m),
            "check the coordinate system"});
   }
-  constexpr double kMostCells = 4e6;  // from one far corner to the other
+  constexpr double kMostCells = 4e6;  // from one distant corner to the other
   double length_m = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i)
     length_m += std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
@@ -149,6 +152,7 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
   const bool table = extension == ".csv" || extension == ".txt";
   std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
+  maps::requireFewPositions(points.size(), path);
   requireNear(points, map.grid(), path);
   return points;
 }

@@ -3,7 +3,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/drive_options.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/plugin_option.hpp>
 #include <talus/common/input_error.hpp>
@@ -71,7 +71,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
       ->type_name("ALPHA")
       ->check(within(1e-12, 1.0 - 1e-12));
   groupOptions(command, "Planner");
-  addDriveOptions(command, options.drive);
+  addMotionOptions(command, options.drive);
   addOutputs(command, options);
 }
 

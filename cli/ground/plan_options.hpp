@@ -11,7 +11,7 @@ namespace talus::cli {
 /// Declares the options of `talus plan`.
 void bindPlan(CLI::App& command, PlanOptions& options);
 
-/// Whether the places asked for, and what is combined, make a call. @throws InputError
+/// Checks that the places and combined options of a call are consistent. @throws InputError
 void requirePlaces(const PlanOptions& options);
 
 }  // namespace talus::cli

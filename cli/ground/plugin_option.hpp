@@ -13,10 +13,11 @@ namespace talus::cli {
 /// Declares --plugin.
 void addPluginOption(CLI::App& command, std::string& plugin);
 
-/// Declares --time of a plugin that plans for a call that sets no other limit.
+/// Declares --time, the time limit of a plugin in calls without another limit.
 void addPluginTime(CLI::App& command, double& time_limit_s);
 
-/// The planner of --plugin FILE.so and --planner; "field", the program's default, is the plugin's own default.
+/// The planner of --plugin FILE.so and --planner; the value "field" (default of the program) selects the
+/// plugin's own default.
 /// @throws InputError
 planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& planner = {});
 

@@ -27,7 +27,7 @@ maps::Layer layer(const maps::Grid& grid, std::string name, std::string unit,
   return out;
 }
 
-// Energy straight up (sign 1) or down (-1) the cell's slope; NaN where that is refused.
+// Energy [J/m] straight up (sign 1) or down (-1) the slope of the cell; NaN if the direction is refused.
 float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   const CellCode code = grid.at(cell);
   const double steepness = std::hypot(code.dzDx(), code.dzDy());
@@ -38,10 +38,10 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   return grid.cost().detail(code, up).energy_J_per_m;
 }
 
-// The category of a cell in the heading that is best on its slope, which is that of its curve and steepness.
+// Category of a cell in its best heading, which depends only on the cost curve and the steepness; cached.
 class BestHeading {
  public:
-  explicit BestHeading(const costmap::DriveCost& cost) : cost_(cost), known_(cost.curves().size()) {}
+  explicit BestHeading(const costmap::TravelCost& cost) : cost_(cost), known_(cost.curves().size()) {}
 
   float category(CellCode cell) {
     const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
@@ -61,13 +61,13 @@ class BestHeading {
     auto found = terramech::Category::Dangerous;
     for (int k = 0; k <= kHeadings / 2; ++k) {
       const double heading = 2.0 * std::numbers::pi * k / kHeadings;
-      const costmap::DriveState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
+      const costmap::TravelState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
       if (state.refusal == costmap::Refusal::None) found = std::min(found, state.category);
     }
     return static_cast<float>(found);
   }
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   std::vector<std::vector<float>> known_;  // by curve and step
 };
 

@@ -6,10 +6,10 @@
 
 namespace talus::cli {
 
-/// What TRUTH.yaml may hold, for the help of the program.
+/// Description of the format of TRUTH.yaml for the help.
 extern const char* const kTruthFormat;
 
-/// Reads a truth file. Throws InputError naming file, line and field.
+/// Reads a truth file. Throws InputError with file, line and field.
 planner::Truth readTruth(const std::string& path);
 
 }  // namespace talus::cli

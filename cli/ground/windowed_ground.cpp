@@ -37,12 +37,12 @@ Ground readOverview(const GroundOptions& options, const Context& context) {
 planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overview, const Context& context) {
   const auto build = [part = options, quiet = context](
                          const planner::MapBox& box) mutable -> std::optional<costmap::TraversabilityMap> {
-    quiet.quiet = true;  // said for the overview already
+    quiet.quiet = true;  // warnings were printed for the overview
     part.dem.window.clear();
     part.dem.read.window = maps::Window{box.low, box.high};
     try {
       return readGround(part, quiet).map;
-    } catch (const InputError&) {  // no data in the window
+    } catch (const InputError&) {  // window without data
       return std::nullopt;
     }
   };

@@ -7,13 +7,13 @@
 
 namespace talus::cli {
 
-/// Whether the map that the options name is a DEM of more cells than this.
+/// Returns true if the options name a DEM with more than `cells` cells; false for built maps and OctoMaps.
 bool needsWindows(const GroundOptions& options, std::size_t cells);
 
-/// The whole ground of such a DEM in cells so large that it has some two million. @throws InputError
+/// The whole ground of the DEM, resampled to about two million cells. @throws InputError
 Ground readOverview(const GroundOptions& options, const Context& context);
 
-/// The same ground at full resolution, to be read window by window. @throws InputError
+/// The ground at full resolution, read window by window. @throws InputError
 planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overview, const Context& context);
 
 }  // namespace talus::cli

@@ -31,10 +31,26 @@ function showFacts(data) {
   for (const [name, value] of data.provenance) addRow(document.getElementById("provenance"), name, [value]);
 }
 
+// What lies over the map on a screen, its legend and the explained cell, has its own place on paper: it would cover the route, or be cut
+// at the map's edge. Returns how to put it back.
+function besideMap() {
+  const key = document.getElementById("key"), legend = document.querySelector(".legend"), open = legend.firstChild.open;
+  const moved = [legend, ...document.querySelectorAll("#map .probe .leaflet-popup-content > div")].map(part => [part, part.parentNode]);
+  for (const [part] of moved) key.appendChild(part);
+  legend.firstChild.open = true;
+  return () => {
+    for (const [part, place] of moved) place.appendChild(part);
+    legend.firstChild.open = open;
+  };
+}
+
 // For a printer the page is laid out as a sheet of paper, and the map with it.
 function printable(map, data, profiles) {
+  let back = null;
   const lay = paper => {
     document.documentElement.classList.toggle("paper", paper);
+    if (back) back();
+    back = paper ? besideMap() : null;
     map.invalidateSize({animate: false});
     firstView(map, data);
     if (profiles) profiles.draw();

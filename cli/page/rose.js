@@ -34,7 +34,8 @@ function headingCost({gradients, kinds, nodes, table, most}, index, heading) {
   return isNaN(cost) ? null : cost;
 }
 
-// A polar chart, east right and north up: cost as the distance from the middle, refused headings as grey sectors.
+// A polar chart, east right and north up: cost as the distance from the middle, refused headings as light sectors with a rim, which
+// stay apart from the curve in grey.
 function drawRose(read, index) {
   const step = 2 * Math.PI / roseHeadings, angles = Array.from({length: roseHeadings}, (_, k) => k * step);
   const costs = angles.map(heading => headingCost(read, index, heading)), allowed = costs.filter(cost => cost !== null);
@@ -44,9 +45,9 @@ function drawRose(read, index) {
   angles.forEach((heading, k) => {
     const next = (k + 1) % roseHeadings;
     if (costs[k] === null)
-      parts.push(`<path class="refused" fill="#777" d="M0 0 L${at(heading - step / 2, 50)} L${at(heading + step / 2, 50)} Z"/>`);
+      parts.push(`<path class="refused" fill="#d4d4d4" stroke="#777" stroke-width=".8" d="M0 0 L${at(heading - step / 2, 50)} L${at(heading + step / 2, 50)} Z"/>`);
     else if (costs[next] !== null)
-      parts.push(`<path stroke="#1b3fbf" stroke-width="2.5" d="M${at(heading, 50 * costs[k] / most)} L${at(heading + step, 50 * costs[next] / most)}"/>`);
+      parts.push(`<path stroke="#1b3fbf" stroke-width="3" d="M${at(heading, 50 * costs[k] / most)} L${at(heading + step, 50 * costs[next] / most)}"/>`);
   });
   const figure = document.createElement("figure");
   const caption = allowed.length === 0 ? "every heading is refused"

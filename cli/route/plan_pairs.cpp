@@ -19,9 +19,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
                               "goal_y_m",  "start_heading_rad", "goal_heading_rad"};
 constexpr std::size_t kNeeded = 4;
-constexpr double kGreatestPlace_m = 1e9;  // as in telemetry; far beyond any map, and any heading
+constexpr double kGreatestPlace_m = 1e9;  // as in telemetry; beyond any map, and any heading
 
-// Position of each column in the file; nothing for a heading that is not there.
+// Index of each column in the file; nothing for a missing heading column.
 std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::string& path,
                                                                   const std::vector<std::string>& header) {
   std::array<std::optional<std::size_t>, kColumns.size()> found;

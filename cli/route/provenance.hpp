@@ -14,17 +14,17 @@ struct Context;
 struct Ground;
 struct Scene;
 
-/// The words of a call as a shell takes them, without those that decide no number: outputs, --threads, --json, --quiet and
-/// --force. Empty without words.
+/// The call as a shell command, without arguments that do not affect results: outputs, --threads, --json,
+/// --quiet and --force. Empty without arguments.
 std::string callText(const char* const* argv);
 
-/// What a route's "inputs" state, a line each: command, rover, soil, files with their SHA-256, seed, version.
+/// Lines of a route's "inputs": command, rover, soil, files with their SHA-256, seed, version.
 std::vector<std::pair<std::string, std::string>> provenanceOf(const nlohmann::ordered_json& inputs);
 
-/// What a call on this ground is made from: its files with their SHA-256, seed, rover, soils, and the call.
+/// Origin of results on this ground: files with their SHA-256, seed, rover, soils, and the call.
 planner::RouteOrigin originOf(const Ground& ground, const Context& context);
 
-/// States the origin on a page or picture, in place of the facts that it repeats.
+/// Adds the origin to a page or picture and removes the facts that it repeats.
 void addProvenance(Scene& scene, const planner::RouteOrigin& origin);
 
 }  // namespace talus::cli

@@ -27,14 +27,14 @@ using planner::RouteVertex;
 
 constexpr const char* kRemedy = "pass a route from `talus plan -o`";
 
-/// Fields of a JSON object, with errors that name file and field.
+/// Fields of a JSON object; errors name file and field.
 class Fields {
  public:
   Fields(std::string path, const json& object) : path_(std::move(path)), object_(object) {
     if (!object.is_object()) refuse("properties", "is missing");
   }
 
-  /// null is NaN.
+  /// Null is read as NaN.
   double number(const char* field) const { return numberOf(field, at(field)); }
 
   int count(const char* field) const {
@@ -57,7 +57,7 @@ class Fields {
 
   bool has(const char* field) const { return object_.contains(field); }
 
-  /// One value a vertex; null is NaN.
+  /// Reads one value per vertex; null is read as NaN.
   void fill(const char* field, double RouteVertex::*member, std::vector<RouteVertex>& vertices) const {
     const json& values = array(field);
     if (values.size() != vertices.size())
@@ -71,7 +71,7 @@ class Fields {
 
  private:
   double numberOf(const char* field, const json& value) const {
-    constexpr double kMost = 1e30;  // costs by the greatest weights are less
+    constexpr double kMost = 1e30;  // greater than any cost under the largest weights
     if (value.is_null()) return std::nan("");
     if (!value.is_number()) refuse(field, "holds what is no number");
     if (!(std::abs(value.get<double>()) <= kMost)) refuse(field, "holds a number beyond 1e30");
@@ -88,7 +88,7 @@ class Fields {
   const json& object_;
 };
 
-// The document that a GeoPackage carries, with the line as it was drawn there.
+// The document stored in a GeoPackage, with the coordinates of its line layer.
 json fromGeoPackage(const std::string& path) {
   const maps::StoredDocument stored = maps::storedDocument(path);
   json document = json::parse(stored.document, nullptr, false);
@@ -131,7 +131,7 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("slope_along_rad", &RouteVertex::slope_along_rad, vertices);
   fields.fill("slope_across_rad", &RouteVertex::slope_across_rad, vertices);
   fields.fill("slip", &RouteVertex::slip, vertices);
-  // Routes of version 0.1.0 have none of these.
+  // absent in routes of version 0.1.0
   for (const auto& [field, member] : {std::pair{"slip_angle_rad", &RouteVertex::slip_angle_rad},
                                       {"side_force_over_load", &RouteVertex::side_force_over_load},
                                       {"stability_margin_rad", &RouteVertex::stability_margin_rad}})
@@ -147,7 +147,8 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);
 }
 
-// An edited line would be drawn where it was before. Coordinates in degrees are compared where the map is known (readPath()).
+// Refuses an edited line, because the page would draw the original x_m and y_m. Coordinates in degrees are
+// compared when the map is known (readPath()).
 void requireLine(const Fields& fields, const json& document, const std::vector<RouteVertex>& vertices) {
   const auto place = json::json_pointer("/features/0/geometry/coordinates");
   const json line = document.contains(place) ? document.at(place) : json();
@@ -169,7 +170,7 @@ void requireLine(const Fields& fields, const json& document, const std::vector<R
   }
 }
 
-// What only a drive has.
+// Reads the fields that only drives have.
 void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
   fields.fill("curvature_1_m", &RouteVertex::curvature_1_m, vertices);
   fields.fill("turn_rad", &RouteVertex::turn_rad, vertices);
@@ -178,14 +179,14 @@ void readDrive(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].reverse = reverse[i] == json(true);
 }
 
-planner::DriveShape shapeFrom(const Fields& drive) {
+planner::RouteShape shapeFrom(const Fields& drive) {
   return {.cusps = drive.count("cusps"),
           .turns_in_place = drive.count("turns_in_place"),
           .turned_rad = drive.number("turned_rad"),
           .max_curvature_1_m = drive.number("max_curvature_1_m")};
 }
 
-// Routes of version 0.1.0 state it not.
+// The field is absent in routes of version 0.1.0.
 double numberOr(const Fields& summary, const char* field) {
   return summary.has(field) ? summary.number(field) : std::nan("");
 }
@@ -204,7 +205,7 @@ planner::RouteSummary summaryFrom(const Fields& summary) {
           .planner = summary.text("planner")};
 }
 
-/// A member of an object; null where there is no such object or member.
+/// A member of an object; null if the object or the member is missing.
 json member(const json& object, const char* key) {
   return object.is_object() && object.contains(key) ? object.at(key) : json();
 }
@@ -227,7 +228,7 @@ std::vector<planner::RouteInput> inputsOf(const json& properties) {
 bool looksLikeRoute(const std::string& path) {
   if (isGeoPackage(path)) return true;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // a FIFO would wait
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // reading a FIFO would block
   std::ifstream stream(path, std::ios::binary);
   char c = ' ';
   while (std::isspace(static_cast<unsigned char>(c)) != 0 && stream.get(c)) continue;

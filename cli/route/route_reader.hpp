@@ -8,17 +8,18 @@
 
 namespace talus::cli {
 
-/// A route as `talus plan` wrote it.
+/// A route file of `talus plan`.
 struct RouteFile {
   planner::Route route;
   std::vector<planner::RouteInput> inputs;
-  std::vector<std::pair<std::string, std::string>> provenance{};  ///< as provenanceOf() states it
+  std::vector<std::pair<std::string, std::string>> provenance{};  ///< lines of provenanceOf()
 };
 
-/// Whether the file starts like JSON or is named as a GeoPackage, as a route does and no map.
+/// Returns true if the file starts like JSON or is named as a GeoPackage; maps are neither.
 bool looksLikeRoute(const std::string& path);
 
-/// Reads a route back. @throws InputError naming file and field when it is no such GeoJSON or GeoPackage
+/// Reads a route. @throws InputError naming file and field when the file is not a route as GeoJSON or
+/// GeoPackage
 RouteFile readRoute(const std::string& path);
 
 }  // namespace talus::cli

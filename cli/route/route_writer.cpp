@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// NaN where there is none.
+// The number, or NaN if the value is not a number.
 double numberIn(const Json& value) {
   return value.is_number() ? value.get<double>() : kNaN;
 }
@@ -28,9 +28,10 @@ maps::VectorPosition positionOf(const Json& vertex) {
   return {{vertex["x_m"], vertex["y_m"]}, numberIn(vertex["elevation_m"])};
 }
 
-// The lists of a route, vertex by vertex.
+// Converts the lists of a route to one object per vertex.
 std::vector<Json> verticesOf(const Json& properties) {
-  std::vector<Json> vertices(properties["x_m"].size(), {{"x_m", 0.0}, {"y_m", 0.0}});  // these come first
+  std::vector<Json> vertices(properties["x_m"].size(), {{"x_m", 0.0}, {"y_m", 0.0}});  // fixes the order of
+                                                                                       // columns
   for (const auto& [name, values] : properties.items())
     if (values.is_array() && values.size() == vertices.size())
       for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i][name] = values[i];
@@ -58,7 +59,8 @@ maps::VectorLayer vertexLayer(const std::vector<Json>& vertices) {
   return layer;
 }
 
-// From each vertex to the next, with what holds of the motion there and what it adds to energy, time and risk.
+// Segments between consecutive vertices, with the properties of the motion and its shares of energy, time and
+// risk.
 maps::VectorLayer segmentLayer(const std::vector<Json>& vertices) {
   maps::VectorLayer layer{"segments", {}};
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
@@ -100,7 +102,7 @@ std::string csvOf(const std::vector<Json>& vertices, const maps::ElevationMap& m
   return text;
 }
 
-// GDAL's driver of a name's ending; none of GeoJSON and CSV.
+// GDAL driver for the ending of a name; empty for GeoJSON and CSV.
 std::string driverOf(const std::string& path) {
   for (const auto& [ending, driver] : {std::pair{".gpkg", "GPKG"}, {".gpx", "GPX"}, {".kml", "KML"}})
     if (isNamed(path, ending)) return driver;

@@ -10,15 +10,15 @@ namespace talus::cli {
 
 struct Context;
 
-/// Names of files that writeRoute() writes, as an option's type name.
+/// File names accepted by writeRoute(), as an option's type name.
 inline constexpr const char* kRouteFiles = "ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|ROUTE.csv";
 
-/// Refuses a name whose format cannot have a route of that map, before it is planned. @throws InputError
+/// Refuses a file format that cannot store routes of the map, before planning. @throws InputError
 void requireRouteFormat(const std::string& path, const maps::ElevationMap& map);
 
-/// Writes a route, as routeGeoJson() makes it, in the format that the name ends in: GeoPackage (in the CRS of the map, layers
-/// route, vertices and segments), GPX and KML (of Earth alone), CSV of its vertices, else GeoJSON. Warns where GeoJSON does
-/// not say the body. @throws InputError
+/// Writes a route of routeGeoJson() in the format given by the ending of the name: GeoPackage (CRS of the
+/// map; layers route, vertices and segments), GPX and KML (Earth only), CSV of the vertices, otherwise
+/// GeoJSON. Warns if GeoJSON cannot state the body of the map. @throws InputError
 void writeRoute(const std::string& path, const nlohmann::ordered_json& route, const maps::ElevationMap& map,
                 const Context& context);
 

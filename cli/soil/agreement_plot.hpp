@@ -11,10 +11,11 @@
 
 namespace talus::cli {
 
-/// Predictions of rows x channels under a name.
+/// Named predictions, rows x channels.
 using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 
-/// One channel of rows, predicted over measured: on the dashed line both agree. Rows without a measurement are left out.
+/// Predicted over measured values of one channel; on the dashed line both are equal. Rows without a
+/// measurement are omitted.
 Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
                    const std::vector<NamedPredictions>& predictions);
 

@@ -18,7 +18,7 @@ bool measures(const std::vector<LeftOutErrors>& all, Channel channel) {
   });
 }
 
-/// Root mean square over the rows of all parts.
+/// Root mean square error over the rows of all held-out parts.
 double pooled(const std::vector<LeftOutErrors>& all, ChannelErrors LeftOutErrors::*errors, Channel channel) {
   const auto k = static_cast<std::size_t>(channel);
   double sum = 0.0, rows = 0.0;
@@ -63,7 +63,7 @@ void table(HtmlReport& page, const std::vector<LeftOutErrors>& all) {
   page.table({"held out", "channel", "base", "refined", "noise floor", "regression", ""}, rows);
 }
 
-/// Over the column; over the number of the row where it is one of words.
+/// Values over the held-out column; over the row number if the column contains text.
 Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column, Channel channel) {
   Series base{.name = "base", .x = {}, .y = {}, .mark = Series::Mark::Points}, refined = base,
                                                                                measured = base;
@@ -90,7 +90,7 @@ Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column
           .series = {base, refined, measured}};
 }
 
-/// On the line prediction and measurement agree.
+/// Predicted over measured values; on the dashed line both are equal.
 Plot againstMeasured(const std::vector<LeftOutErrors>& all, Channel channel) {
   const Plot over = overColumn(all, "slip", channel);
   Series base = over.series[0], refined = over.series[1];

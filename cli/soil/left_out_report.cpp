@@ -12,7 +12,7 @@ namespace {
 
 using namespace terramech;
 
-/// Channels in which the refined model errs more than the base.
+/// Channels in which the refined model has larger errors than the base.
 nlohmann::ordered_json worse(const LeftOutErrors& part) {
   auto out = nlohmann::ordered_json::array();
   for (Channel c : kAllChannels)

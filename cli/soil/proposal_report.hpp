@@ -9,18 +9,19 @@
 
 namespace talus::cli {
 
-/// A table of proposed runs: a row each slip with the conditions, empty columns for what the result measures, and of each
-/// cause its name, predictions and standard deviations (predicted_K_*).
+/// Table of proposed runs as CSV: one row per slip with the conditions, empty columns for the measured
+/// channels of the result, and name, predictions and standard deviations (predicted_K_*) of each cause.
 std::string proposalTable(const std::vector<terramech::ProposedRun>& runs,
                           const terramech::TraceResult& result);
 
 nlohmann::ordered_json proposalsJson(const std::vector<terramech::ProposedRun>& runs);
 nlohmann::ordered_json scoresJson(const std::vector<terramech::CauseScore>& scores);
 
-/// A line each run, with the columns that vary in the table, and what each cause predicts of the mean of its rows.
+/// One line per run, with the columns that vary in the table and each cause's prediction of the mean of the
+/// run's rows.
 std::string proposalText(const std::vector<terramech::ProposedRun>& runs, const terramech::Trial& trial);
 
-/// A line each cause.
+/// One line per cause.
 std::string causeScoreText(const std::vector<terramech::CauseScore>& scores);
 
 }  // namespace talus::cli

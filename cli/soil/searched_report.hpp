@@ -8,10 +8,10 @@
 
 namespace talus::cli {
 
-/// What of a large table was not searched, a line each for rows and columns; empty where all was.
+/// Rows and columns of a large table that were not searched, one line each; empty if all were searched.
 std::string searchedText(const terramech::TraceResult& result);
 
-/// The same as {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
+/// As JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
 nlohmann::ordered_json searchedJson(const terramech::TraceResult& result);
 
 }  // namespace talus::cli

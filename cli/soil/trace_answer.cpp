@@ -16,7 +16,7 @@ bool same(const Candidate& a, const Candidate& b) {
   return x.name == y.name && a.covariate() == b.covariate() && x.only_value == y.only_value;
 }
 
-/// Whether two models predict the same of the trial's rows.
+/// Returns true if the model's predictions for the trial's rows equal `a` within 1e-5.
 bool agree(const Eigen::MatrixXd& a, const RefinedModel& model, const Trial& trial) {
   SolvedContacts solved;
   const Eigen::MatrixXd difference = a - predictRows(model, trial, solved);
@@ -28,7 +28,7 @@ struct Term {
   double Soil::*field;
 };
 
-/// Terms of the base model that a form of the library may stand in place of.
+/// Terms of the base model that an effect of the library may replace.
 constexpr Term kTerms[] = {{"slip_sinkage_exponent", &Soil::slip_sinkage_exponent},
                            {"digging_exponent", &Soil::digging_exponent},
                            {"side_bulldozing", &Soil::side_bulldozing}};
@@ -47,7 +47,7 @@ EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& 
   return {};
 }
 
-/// Empty without any.
+/// Empty if no sensor is inconsistent with its declared error.
 std::string strainedText(const Answer& a) {
   std::string text;
   for (const StrainedSensor& s : a.strained)
@@ -56,7 +56,7 @@ std::string strainedText(const Answer& a) {
   return text;
 }
 
-/// Of effects whose cause is one of several; empty where each has one.
+/// Text on effects with several equivalent causes; empty if each effect has one cause.
 std::string equalCauses(const TraceResult& result) {
   std::string text;
   for (const TracedEffect& e : result.effects) {

@@ -7,27 +7,28 @@
 
 namespace talus::cli {
 
-/// Why what promised most in the last round was not accepted: what it gains, and the bound or check that refused it.
-/// Empty where nothing promised any gain.
+/// Reason why the best candidate of the last round was rejected: its gain and the threshold or check that
+/// rejected it. Empty if no candidate had a gain.
 std::string refusal(const terramech::TraceResult& result);
 
-/// Why a fitted candidate was not selected.
+/// Reason why a fitted candidate was not selected.
 std::string refusal(const terramech::TraceResult& result, const terramech::Explanation& rejected);
 
-/// The answer in one line: what is left, in which channel, over which column, which rows would decide.
+/// The conclusion in one line: the remaining residual, its channel and column, and the rows that would
+/// discriminate.
 std::string verdictText(const terramech::TraceResult& result, const terramech::Answer& answer);
 
-/// What an effect of the refined model changes there.
+/// Contribution of an effect to the refined model.
 struct EffectRole {
-  bool adds = true;  ///< false: without it, and without what it takes back, the model predicts the same
-  std::vector<std::string> takes_back;  ///< fields of the soil whose term in the base model it takes out
+  bool adds = true;  ///< false: without the effect and its replaced terms the model predicts the same
+  std::vector<std::string> takes_back;  ///< soil fields whose base-model term the effect removes
 };
 
-/// Of each effect, in order. An effect adds where a prediction of any row differs by more than 1e-5 of the scale of its
-/// channel, ten times what the two solvers of the contact differ by.
+/// Roles of all effects in order. An effect adds if a prediction of any row changes by more than 1e-5 of the
+/// scale of its channel, ten times the difference between the two contact solvers.
 std::vector<EffectRole> rolesOf(const terramech::TraceResult& result);
 
-/// One line about an effect that adds nothing; empty for another.
+/// One line about an effect that adds nothing; empty for other effects.
 std::string roleText(const EffectRole& role);
 
 }  // namespace talus::cli

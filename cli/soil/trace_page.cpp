@@ -16,7 +16,7 @@ namespace {
 
 using namespace terramech;
 
-/// Covariates worth a chart: those of effects, then those that the tests found strongest.
+/// Covariates to plot: those of effects, then those with the strongest test results.
 std::vector<std::string> shown(const TraceResult& r) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
@@ -54,8 +54,8 @@ Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel ch
           .series = {base, refined}};
 }
 
-/// What is left of the readings without one effect, and what that effect adds, row by row over its column (over the rows in
-/// order where it acts on a constant or a text).
+/// Residuals without one effect, and the contribution of that effect, row by row over its column (over the
+/// row number if the effect acts on a constant or text).
 Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at,
                 const Eigen::MatrixXd& level, const Eigen::VectorXd& sinkage) {
   RefinedModel without = r.refined;
@@ -93,7 +93,7 @@ void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level
   if (!plots.empty()) page.charts(plots);
 }
 
-// The fitted parameters, each with its standard deviation.
+// The fitted parameters with their standard deviations.
 std::string sizes(const TracedEffect& effect) {
   std::string text;
   for (const FittedNumber& p : fittedNumbers(effect)) {
@@ -160,7 +160,7 @@ void heldOut(HtmlReport& page, const TableTrace& trace) {
   page.table(kErrorColumns, rows);
 }
 
-// Measurement and model before and after, channel by channel.
+// Measured values over base and refined predictions, by channel.
 void agreement(HtmlReport& page, const Trial& trial, const Eigen::MatrixXd& base,
                const Eigen::MatrixXd& refined) {
   std::vector<Plot> plots;

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::ordered_json;
 using namespace terramech;
 
-/// Parameters of an effect by name; curves as knots and values a channel.
+/// Parameters of an effect by name; curves as knots and values per channel.
 ordered_json parametersJson(const Candidate& candidate) {
   ordered_json out = ordered_json::object();
   for (const Effect& part : candidate.parts) {
@@ -255,7 +255,7 @@ ordered_json heldOutJson(const TableTrace& trace) {
   return out;
 }
 
-/// Errors at the end levels, which the others foretell.
+/// Errors at the end levels, predicted from the other levels.
 std::string endLines(const TraceResult& r) {
   if (r.ends.empty()) return "";
   std::string out = "held out: end levels, predicted from the others (base -> refined)\n";

@@ -12,14 +12,14 @@ namespace {
 
 using terramech::WheelForces;
 
-terramech::WheelOperation operationOf(const WheelAtWork& work, double slip) {
+terramech::WheelOperation operationOf(const WheelOperatingPoint& work, double slip) {
   return {.load_N = work.load_N,
           .slip = slip,
           .slip_angle_rad = work.slip_angle_rad,
           .gravity_m_s2 = work.rover.gravity_m_s2};
 }
 
-Plot stressPlot(const WheelAtWork& work) {
+Plot stressPlot(const WheelOperatingPoint& work) {
   Series normal{.name = "normal", .x = {}, .y = {}}, shear{.name = "shear", .x = {}, .y = {}};
   for (const auto& s :
        terramech::stressDistribution(work.soil, work.rover.wheel, operationOf(work, work.slip), 301)) {
@@ -35,9 +35,9 @@ Plot stressPlot(const WheelAtWork& work) {
           {normal, shear}};
 }
 
-/// A quantity over slip, braked to driven; breaks where the soil cannot carry the wheel.
+/// A quantity over slip from -1 (braked) to 1; interrupted where the soil cannot carry the wheel.
 template <class Quantity>
-Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity& quantity) {
+Plot overSlip(const WheelOperatingPoint& work, const std::string& title, const Quantity& quantity) {
   Plot plot{title, {.label = "slip [-], negative: braked"}, {.label = title + " [-]"}, {}};
   std::vector<terramech::Soil> soils{work.soil};
   soils.insert(soils.end(), work.others.begin(), work.others.end());
@@ -57,7 +57,7 @@ Plot overSlip(const WheelAtWork& work, const std::string& title, const Quantity&
   return plot;
 }
 
-std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
+std::vector<std::vector<std::string>> forceRows(const WheelOperatingPoint& work) {
   const WheelForces f = terramech::equilibrium(work.soil, work.rover.wheel, operationOf(work, work.slip));
   const double r = work.rover.wheel.radius_m;
   return {{"sinkage", fmt::format("{:.3f}", 1e3 * f.sinkage_m), "mm", fmt::format("{:.3f}", f.sinkage_m / r)},
@@ -72,7 +72,7 @@ std::vector<std::vector<std::string>> forceRows(const WheelAtWork& work) {
 
 }  // namespace
 
-std::string wheelReport(const WheelAtWork& work) {
+std::string wheelReport(const WheelOperatingPoint& work) {
   const double r = work.rover.wheel.radius_m, load_N = work.load_N;
   HtmlReport report{fmt::format("Wheel of {} on {}", work.rover.name, work.soil.name)};
   report.paragraph(

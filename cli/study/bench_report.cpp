@@ -16,7 +16,7 @@ using planner::BenchmarkPlan;
 using planner::BenchmarkRun;
 using planner::RouteStatus;
 
-constexpr std::size_t kMostPlots = 12;  // that a page still shows well
+constexpr std::size_t kMostPlots = 12;  // limit for a legible page
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -98,14 +98,14 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
       continue;
     Series series{.name = run.planner, .x = {}, .y = {}};
     for (const auto& at : run.progress) {
-      if (!series.x.empty()) {  // a step: the old cost holds until the new one is found
+      if (!series.x.empty()) {  // step curve: the cost holds until the next improvement
         series.x.push_back(at.seconds);
         series.y.push_back(series.y.back());
       }
       series.x.push_back(at.seconds);
       series.y.push_back(100 * (at.cost_J / best_J - 1.0));
     }
-    series.x.push_back(end_s);  // what was found holds on
+    series.x.push_back(end_s);  // the last cost holds until the end
     series.y.push_back(series.y.back());
     plot.series.push_back(std::move(series));
   }
@@ -120,7 +120,7 @@ std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
   return groups;
 }
 
-// With the header first.
+// Table rows, beginning with the header.
 std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
   std::vector<std::vector<std::string>> rows{
       {"belief", "planner", "runs", "success %", "95 %", "time p50 s", "slip max p50"}};

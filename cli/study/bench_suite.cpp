@@ -28,7 +28,8 @@ maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
   return grid.centre({column, pick(grid.height)});
 }
 
-// Places far apart between which the field finds a route; fewer than asked for when the map has hardly any.
+// Distant places between which the field planner finds a route; fewer than `count` if the map has few such
+// places.
 std::vector<BenchmarkCase> pairsOn(const std::string& name,
                                    const std::shared_ptr<const costmap::CostGrid>& map, int count,
                                    std::uint64_t seed) {
@@ -37,7 +38,8 @@ std::vector<BenchmarkCase> pairsOn(const std::string& name,
   std::mt19937_64 random(seed);
   planner::FieldPlanner field;
   std::vector<BenchmarkCase> cases;
-  // Places are drawn quickly; a field of the whole map that leads nowhere is not, so few are tried in vain.
+  // Limits the unsuccessful field searches: drawing places is fast, but each search without a route covers
+  // the whole map.
   int in_vain = 0;
   for (int tries = 0; tries < 1000 && in_vain < 20 && static_cast<int>(cases.size()) < count; ++tries) {
     planner::Problem problem;
@@ -61,7 +63,7 @@ std::vector<BenchmarkCase> pairsOn(const std::string& name,
   return cases;
 }
 
-// What planners of drives keep on a case's map.
+// Assigns the rover's kinematics, with the option's turning radius, to the cases.
 void giveKinematics(std::vector<BenchmarkCase>& cases, const costmap::GroundModel& model,
                     const SuiteOptions& options) {
   for (BenchmarkCase& made : cases) {
@@ -105,7 +107,8 @@ std::vector<BenchmarkCase> generatedCases(const SuiteOptions& options, const Con
   return cases;
 }
 
-// Each world twice: planned on the slip of the terrain seen, and on the tail of what it may be.
+// Each world yields two cases: planned with the mean slip of the visible terrain, and with the tail of the
+// slip distribution.
 std::vector<BenchmarkCase> slipCases(const SuiteOptions& options, const Context& context) {
   std::vector<BenchmarkCase> cases;
   for (int k = 1; k <= options.pairs; ++k)
@@ -169,7 +172,7 @@ std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context
   std::set<std::string> names;
   for (const std::string& name : options.names)
     for (BenchmarkCase& made : casesOf(name, options, context)) {
-      // Maps of the same name in two folders: a case's log is named after it.
+      // Maps in different folders may have the same name; log files are named after cases.
       std::string unique = made.name;
       for (int k = 2; !names.insert(unique).second; ++k) unique = made.name + " of map " + std::to_string(k);
       made.name = unique;

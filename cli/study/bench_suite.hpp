@@ -11,16 +11,16 @@ namespace talus::cli {
 
 struct Context;
 
-/// Which cases are planned.
+/// Selection of the benchmark cases.
 struct SuiteOptions {
   std::vector<std::string> names{"generated"};  ///< "generated", "slip", "grids", DEMs, MovingAI .scen files
-  int pairs = 3;                                ///< starts and goals a map, > 0; worlds of "slip"
+  int pairs = 3;                                ///< start-goal pairs per map, > 0; number of "slip" worlds
   int side_cells = 300;                         ///< of generated sites
-  double turning_radius_m = -1.0;               ///< that planners of drives keep; < 0: the rover's
+  double turning_radius_m = -1.0;               ///< for planners of drives; < 0: that of the rover
   GroundOptions ground;                         ///< for DEMs: layers, rover, soils, policy
 };
 
-/// The cases of all suites named. Throws InputError for a file that cannot be used.
+/// Cases of all named suites. Throws InputError for an unusable file.
 std::vector<planner::BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context);
 
 }  // namespace talus::cli

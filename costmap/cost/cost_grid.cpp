@@ -98,7 +98,7 @@ std::optional<double> CostGrid::elevation_m(maps::Point point) const {
   });
 }
 
-CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost) {
+CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const TravelCost> cost) {
   return CostGrid({.grid = cells.grid(), .tiles = cut(cells), .cost = std::move(cost), .version = 1});
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/maps/grid/grid.hpp>
 
 namespace talus::costmap {
@@ -63,7 +63,7 @@ class CostGrid {
   struct Content {
     maps::Grid grid;
     TileTable tiles;  ///< tiles beyond the eastern and northern edge are padded
-    std::shared_ptr<const DriveCost> cost;
+    std::shared_ptr<const TravelCost> cost;
     std::uint64_t version = 0;
     HeightTable elevation_m{};  ///< NaN for unobserved cells; without tiles: unknown
   };
@@ -71,7 +71,7 @@ class CostGrid {
   explicit CostGrid(Content content);
 
   const maps::Grid& grid() const noexcept { return content_.grid; }
-  const DriveCost& cost() const noexcept { return *content_.cost; }
+  const TravelCost& cost() const noexcept { return *content_.cost; }
   const Content& content() const noexcept { return content_; }
   std::uint64_t version() const noexcept { return content_.version; }
   int tileColumns() const noexcept { return tile_columns_; }
@@ -91,7 +91,7 @@ class CostGrid {
 };
 
 /// First version of a cost map, from a raster of cell codes.
-CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const DriveCost> cost);
+CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const TravelCost> cost);
 
 /// Changes from one version to the next.
 struct Revision {
@@ -99,7 +99,7 @@ struct Revision {
   /// New code of a cell of the ranges, from its position and its old code.
   std::function<CellCode(maps::Cell, CellCode)> code;
   /// Cost function of the new version; called after all codes.
-  std::function<std::shared_ptr<const DriveCost>()> cost;
+  std::function<std::shared_ptr<const TravelCost>()> cost;
   std::optional<HeightTable> elevation_m{};  ///< elevation of the new version; nullopt: unchanged
 };
 

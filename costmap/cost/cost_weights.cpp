@@ -7,7 +7,7 @@ namespace talus::costmap {
 std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights) {
   if (!(weights.energy >= 0 && weights.time_W >= 0 && weights.risk_J >= 0))
     throw std::invalid_argument("cost weights: energy, time_W and risk_J must be >= 0");
-  std::vector<DriveGround> grounds;
+  std::vector<GroundCost> grounds;
   for (std::size_t i = 0; i < map.cost().states().size(); ++i) {
     const auto& states = map.cost().states()[i];
     if (!states)
@@ -17,7 +17,7 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
                        reweighted(map.cost().turns()[i], weights.energy, weights.time_W)});
   }
   CostGrid::Content content = map.content();
-  content.cost = std::make_shared<const DriveCost>(map.cost().limits(), grounds, map.cost().doubt());
+  content.cost = std::make_shared<const TravelCost>(map.cost().limits(), grounds, map.cost().doubt());
   return std::make_shared<const CostGrid>(std::move(content));
 }
 

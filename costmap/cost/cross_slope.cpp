@@ -20,9 +20,9 @@ using terramech::SlopeState;
 
 constexpr double kAlongStep = 1.0 / 32.0;   // step of the gradients along of a row
 constexpr double kLevelStep = 1.0 / 128.0;  // the same for row 0 under even loads
-constexpr double kRowStep = 1.0 / DriveCurve::kRowsPerUnit;
+constexpr double kRowStep = 1.0 / TravelCurve::kRowsPerUnit;
 constexpr double kSpare = 1.25;  // rows solved beyond the limit, to find the failure
-constexpr int kBins = DriveCurve::kBins;
+constexpr int kBins = TravelCurve::kBins;
 constexpr double kBelow = 0.16;        // descents solved beyond the limit, to find the failure
 constexpr double kNowhere = 4.0;       // steeper than any cell
 constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
@@ -30,7 +30,7 @@ constexpr float kSamePlace = 0.02F;    // [bins]
 
 // Position of a gradient in bins, clamped to the table.
 float placeOf(double gradient) {
-  return static_cast<float>(std::clamp(gradient * DriveCurve::kBinsPerUnit + kBins / 2, 0.0, kBins - 1.0));
+  return static_cast<float>(std::clamp(gradient * TravelCurve::kBinsPerUnit + kBins / 2, 0.0, kBins - 1.0));
 }
 
 // A position between nodes; positions within kSamePlace of a node are on the node.
@@ -102,10 +102,10 @@ class RangeMaximum {
 
 // Calls `each` for the states at both positions and at all nodes between the positions.
 template <typename Each>
-void overPlaces(const DriveTable& states, float from, float to, Each each) {
+void overPlaces(const TravelTable& states, float from, float to, Each each) {
   const Place a = placed(from), b = placed(to);
   const auto at = [&](const Place& place) {
-    const DriveState& state = states[static_cast<std::size_t>(place.whole)];
+    const TravelState& state = states[static_cast<std::size_t>(place.whole)];
     return place.share > 0.0F ? between(state, states[static_cast<std::size_t>(place.whole + 1)], place.share)
                               : state;
   };
@@ -132,7 +132,7 @@ float weighed(double energy_J_per_m, double time_s_per_m, double risk_per_m, con
                             weights.risk_J * risk_per_m);
 }
 
-double riskOf(const DriveState& state) noexcept {
+double riskOf(const TravelState& state) noexcept {
   return state.refusal == Refusal::None ? static_cast<double>(state.risk_per_m) : kInfinity;
 }
 
@@ -160,14 +160,14 @@ CrossSlope::Strengths CrossSlope::solvedRows(const SlopeRows& lattice, const Slo
 }
 
 void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& level_climbs,
-                        const Level& level, const DriveCost::Limits& limits) {
+                        const Level& level, const TravelCost::Limits& limits) {
   const SlopeRow& here = strengths.rows[static_cast<std::size_t>(row)];
   const double gain = strengths.gains[static_cast<std::size_t>(row)];
   const LevelClimbs::Surcharges dearer = level_climbs.surcharges(here);
   for (int bin = 0; bin < kBins; ++bin) {
-    const double along = DriveCurve::gradient(bin), node = along / kAlongStep - here.first_node;
+    const double along = TravelCurve::gradient(bin), node = along / kAlongStep - here.first_node;
     Climbs climbs;
-    if (std::abs(along) > limits.max_along + 2.0 / DriveCurve::kBinsPerUnit)
+    if (std::abs(along) > limits.max_along + 2.0 / TravelCurve::kBinsPerUnit)
       climbs.refused = Refusal::Pitch;
     else if (here.margin_rad(along) < kUpright_rad)
       climbs.refused = here.holds(along) ? Refusal::Tips : reasonAt(row, bin);
@@ -185,9 +185,9 @@ void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& 
 }
 
 CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
-                       const DriveCost::Limits& limits) {
+                       const TravelCost::Limits& limits) {
   // Includes the row beyond the limit, which gradients at the limit read; gradients across are at most 1.
-  const int needed = static_cast<int>(std::min(limits.max_across, 1.0) * DriveCurve::kRowsPerUnit) + 1;
+  const int needed = static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 1;
   const double low = -std::min(limits.max_along + kBelow, 1.0),
                high = std::clamp(level.last + kAlongStep, 0.0, 1.0);
   const terramech::SlopeEquilibrium even_equilibrium = equilibrium.withEvenLoads();
@@ -211,7 +211,7 @@ CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Lev
       kept.push_back({{s.slip_angle_rad, s.side_force_over_load, s.stability_margin_rad}, s.grip});
   }
   const LevelClimbs level_climbs(even, level.last);
-  for (int row = 0; row <= std::min(needed, DriveCurve::kRowsPerUnit + 1); ++row)
+  for (int row = 0; row <= std::min(needed, TravelCurve::kRowsPerUnit + 1); ++row)
     if (row < static_cast<int>(strengths.losses.size())) addRow(row, strengths, level_climbs, level, limits);
   if (rows() <= needed) {
     const int row = rows();
@@ -260,7 +260,7 @@ Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
   const std::vector<Held>& held = held_[std::min(static_cast<std::size_t>(row), held_.size() - 1)];
-  const double place = std::clamp(DriveCurve::gradient(bin) / kAlongStep - first_along_, 0.0,
+  const double place = std::clamp(TravelCurve::gradient(bin) / kAlongStep - first_along_, 0.0,
                                   static_cast<double>(held.size()) - 1.0);
   const auto k = static_cast<std::size_t>(place);
   const Held &low = held[k], &high = held[std::min(k + 1, held.size() - 1)];
@@ -285,7 +285,7 @@ SlopeHold CrossSlope::holdInRow(int row, double along) const noexcept {
 }
 
 SlopeHold CrossSlope::hold(const Gradient& gradient) const noexcept {
-  const auto row = DriveCurve::between(std::abs(gradient.across) * DriveCurve::kRowsPerUnit);
+  const auto row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
   SlopeHold out = holdInRow(row.whole, gradient.along);
   if (row.share > 0.0F)
     out = mixed(out, holdInRow(row.whole + 1, gradient.along), static_cast<double>(row.share));
@@ -307,10 +307,10 @@ void CrossSlope::tabulateSteepest() {
 }
 
 double CrossSlope::climb(const Gradient& gradient) const noexcept {
-  const double place = gradient.along * DriveCurve::kBinsPerUnit + kBins / 2;
-  if (!(place >= 0.0 && place < DriveCurve::kLastPlace)) return kNowhere;
-  const auto bin = DriveCurve::between(place),
-             row = DriveCurve::between(std::abs(gradient.across) * DriveCurve::kRowsPerUnit);
+  const double place = gradient.along * TravelCurve::kBinsPerUnit + kBins / 2;
+  if (!(place >= 0.0 && place < TravelCurve::kLastPlace)) return kNowhere;
+  const auto bin = TravelCurve::between(place),
+             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
   bool refused = false;
   const auto leaves = [&](int r) {
     const Climbs &a = at(r, bin.whole), &b = at(r, bin.whole + static_cast<int>(bin.share > 0.0F));
@@ -318,7 +318,7 @@ double CrossSlope::climb(const Gradient& gradient) const noexcept {
     return a.leaves + bin.share * (b.leaves - a.leaves);
   };
   const float low = leaves(row.whole), high = leaves(row.whole + static_cast<int>(row.share > 0.0F));
-  return refused ? kNowhere : DriveCurve::gradient(static_cast<double>(low + row.share * (high - low)));
+  return refused ? kNowhere : TravelCurve::gradient(static_cast<double>(low + row.share * (high - low)));
 }
 
 double CrossSlope::steepest(double gradient) const noexcept {
@@ -327,16 +327,16 @@ double CrossSlope::steepest(double gradient) const noexcept {
   return std::max(gradient, static_cast<double>(steepest_[static_cast<std::size_t>(std::ceil(step))]));
 }
 
-DriveState CrossSlope::state(const DriveTable& states, int row, int bin) const noexcept {
+TravelState CrossSlope::state(const TravelTable& states, int row, int bin) const noexcept {
   const Climbs& climbs = at(row, bin);
-  DriveState out = states[static_cast<std::size_t>(bin)];
+  TravelState out = states[static_cast<std::size_t>(bin)];
   if (climbs.refused != Refusal::None) {
     if (out.refusal == Refusal::None) out.refusal = climbs.refused;
     return out;
   }
-  const DriveState own = out;
+  const TravelState own = out;
   const auto here = static_cast<float>(bin);
-  overPlaces(states, here, climbs.costs, [&](const DriveState& climb) {
+  overPlaces(states, here, climbs.costs, [&](const TravelState& climb) {
     out.energy_J_per_m = std::max(out.energy_J_per_m, climb.energy_J_per_m);
     out.time_s_per_m = std::max(out.time_s_per_m, climb.time_s_per_m);
     out.slip = climb.slip;
@@ -344,11 +344,11 @@ DriveState CrossSlope::state(const DriveTable& states, int row, int bin) const n
     out.torque_Nm = farther(out.torque_Nm, climb.torque_Nm);
   });
   out.slip = std::clamp(out.slip + climbs.more_slip, -1.0F, 1.0F);
-  overPlaces(states, here, climbs.leaves, [&](const DriveState& climb) {
+  overPlaces(states, here, climbs.leaves, [&](const TravelState& climb) {
     out.pull_margin = std::min(out.pull_margin, climb.pull_margin);
     out.category = std::max(out.category, climb.category);
   });
-  overPlaces(states, climbs.brakes, climbs.leaves, [&](const DriveState& climb) {
+  overPlaces(states, climbs.brakes, climbs.leaves, [&](const TravelState& climb) {
     out.risk_per_m = std::max(out.risk_per_m, climb.risk_per_m);
     out.weak = std::max(out.weak, climb.weak);
     if (out.refusal == Refusal::None) out.refusal = climb.refusal;
@@ -357,15 +357,15 @@ DriveState CrossSlope::state(const DriveTable& states, int row, int bin) const n
   return out;
 }
 
-std::shared_ptr<const std::vector<float>> CrossSlope::costs(const DriveTable& states,
+std::shared_ptr<const std::vector<float>> CrossSlope::costs(const TravelTable& states,
                                                             const CostWeights& weights) const {
   const auto maximum = [&](auto value) {
     std::vector<double> values;
-    for (const DriveState& state : states) values.push_back(static_cast<double>(value(state)));
+    for (const TravelState& state : states) values.push_back(static_cast<double>(value(state)));
     return RangeMaximum(std::move(values));
   };
-  const RangeMaximum energy = maximum([](const DriveState&s) { return s.energy_J_per_m; }),
-                     time = maximum([](const DriveState&s) { return s.time_s_per_m; }),
+  const RangeMaximum energy = maximum([](const TravelState&s) { return s.energy_J_per_m; }),
+                     time = maximum([](const TravelState&s) { return s.time_s_per_m; }),
                      risk = maximum(riskOf);
   auto costs = std::make_shared<std::vector<float>>(climbs_.size(), std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < climbs_.size(); ++i) {
@@ -379,8 +379,8 @@ std::shared_ptr<const std::vector<float>> CrossSlope::costs(const DriveTable& st
   return costs;
 }
 
-DriveCurve priced(const DriveTable& states, const CrossSlope* crossing, const CostWeights& weights) {
-  DriveCurve curve;
+TravelCurve priced(const TravelTable& states, const CrossSlope* crossing, const CostWeights& weights) {
+  TravelCurve curve;
   if (crossing) {
     const auto costs = crossing->costs(states, weights);
     std::copy_n(costs->begin(), kBins, curve.cost_J_per_m.begin());
@@ -388,7 +388,7 @@ DriveCurve priced(const DriveTable& states, const CrossSlope* crossing, const Co
     return curve;
   }
   for (std::size_t bin = 0; bin < states.size(); ++bin) {
-    const DriveState& s = states[bin];
+    const TravelState& s = states[bin];
     const double risk = riskOf(s);
     curve.cost_J_per_m[bin] = risk < kInfinity ? weighed(static_cast<double>(s.energy_J_per_m),
                                                          static_cast<double>(s.time_s_per_m), risk, weights)

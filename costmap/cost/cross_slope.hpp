@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::costmap {
@@ -19,7 +19,7 @@ struct CostWeights {
   double risk_J = 1e7;  ///< cost of the loss of the rover [J], >= 0
 };
 
-/// Equivalent straight slopes for the ground of one class (ours). Each node of DriveCurve (gradient along,
+/// Equivalent straight slopes for the ground of one class (ours). Each node of TravelCurve (gradient along,
 /// gradient across; row 0 included) is represented by three gradients without cross slope, under even wheel
 /// loads:
 ///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
@@ -45,7 +45,7 @@ class CrossSlope {
     double thrust = 1.0;              ///< gross thrust over load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
-             const DriveCost::Limits& limits);
+             const TravelCost::Limits& limits);
 
   /// Ignores cross slopes: no additional cost and no failure. For comparison with planners that consider
   /// slopes along the heading only.
@@ -56,14 +56,15 @@ class CrossSlope {
 
   /// Number of tabulated rows, row 0 included; later rows equal the last row, which refuses every heading
   /// unless the limits are reached first.
-  int rows() const noexcept { return static_cast<int>(climbs_.size()) / DriveCurve::kBins; }
+  int rows() const noexcept { return static_cast<int>(climbs_.size()) / TravelCurve::kBins; }
 
   /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
   /// the climbs up to `leaves`. Risk and refusal: from `brakes` to `leaves`.
-  DriveState state(const DriveTable& states, int row, int bin) const noexcept;
+  TravelState state(const TravelTable& states, int row, int bin) const noexcept;
 
   /// Costs [J/m] of all nodes, row by row: those of state().
-  std::shared_ptr<const std::vector<float>> costs(const DriveTable& states, const CostWeights& weights) const;
+  std::shared_ptr<const std::vector<float>> costs(const TravelTable& states,
+                                                  const CostWeights& weights) const;
 
   /// Slip angle, side force and stability margin on a slope, interpolated between equilibria; after harder(a,
   /// b), those of a.
@@ -75,7 +76,7 @@ class CrossSlope {
   double steepest(double gradient) const noexcept;
 
  private:
-  // Positions in bins of DriveCurve; `refused` applies at any strength.
+  // Positions in bins of TravelCurve; `refused` applies at any strength.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
     float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
@@ -95,12 +96,12 @@ class CrossSlope {
   static Strengths solvedRows(const SlopeRows& lattice, const SlopeRows& even_lattice, const Ends& even,
                               int last_row);
   void addRow(int row, const Strengths& strengths, const LevelClimbs& level_climbs, const Level& level,
-              const DriveCost::Limits& limits);
+              const TravelCost::Limits& limits);
   void addLevelRow();
   static Climbs harder(const Climbs& a, const Climbs& b) noexcept;
   void tabulateSteepest();
   const Climbs& at(int row, int bin) const noexcept {
-    return climbs_[static_cast<std::size_t>(std::min(row, rows() - 1) * DriveCurve::kBins + bin)];
+    return climbs_[static_cast<std::size_t>(std::min(row, rows() - 1) * TravelCurve::kBins + bin)];
   }
   SlopeHold holdInRow(int row, double along) const noexcept;
   Refusal reasonAt(int row, int bin) const noexcept;
@@ -112,6 +113,6 @@ class CrossSlope {
 };
 
 /// Cost per metre on ground with these states and weights, with the rows of `crossing` if not null.
-DriveCurve priced(const DriveTable& states, const CrossSlope* crossing, const CostWeights& weights);
+TravelCurve priced(const TravelTable& states, const CrossSlope* crossing, const CostWeights& weights);
 
 }  // namespace talus::costmap

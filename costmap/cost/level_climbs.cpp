@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include <talus/common/constants.hpp>
-#include <talus/costmap/cost/drive_cost.hpp>
 #include <talus/costmap/cost/level_climbs.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::costmap {
 
@@ -51,7 +51,7 @@ double LevelClimbs::reached(const std::vector<double>& values, double value) con
 double strengthToLose(double along, double across, const LevelStrength& level,
                       const std::vector<double>& losses) {
   const auto fails = [&](double lost) {
-    const double row = across / (1.0 - lost / level.thrust) * DriveCurve::kRowsPerUnit;
+    const double row = across / (1.0 - lost / level.thrust) * TravelCurve::kRowsPerUnit;
     return row > static_cast<double>(losses.size() - 1) ||
            along + lost + interpolated(losses, row) > level.last;
   };

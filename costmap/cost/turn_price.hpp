@@ -2,30 +2,30 @@
 
 #include <algorithm>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::costmap {
 
 /// Cost of a turn with weights of energy [-] and time [W].
-inline TurnPrice priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
+inline TurnCost priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
   return {.cost_J = energy * effort.energy_J + time_W * effort.time_s,
           .energy_J = effort.energy_J,
           .time_s = effort.time_s};
 }
 
 /// The same turns with other weights.
-inline TurnPrices reweighted(TurnPrices turns, double energy, double time_W) noexcept {
-  for (TurnPrice* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
+inline TurnCosts reweighted(TurnCosts turns, double energy, double time_W) noexcept {
+  for (TurnCost* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
     *price = priced({price->energy_J, price->time_s}, energy, time_W);
   return turns;
 }
 
 /// The maximum of each quantity.
-inline TurnPrices dearer(const TurnPrices& a, const TurnPrices& b) noexcept {
-  const auto of = [](const TurnPrice& x, const TurnPrice& y) {
-    return TurnPrice{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),
-                     std::max(x.time_s, y.time_s)};
+inline TurnCosts dearer(const TurnCosts& a, const TurnCosts& b) noexcept {
+  const auto of = [](const TurnCost& x, const TurnCost& y) {
+    return TurnCost{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),
+                    std::max(x.time_s, y.time_s)};
   };
   return {of(a.on_arc, b.on_arc), of(a.in_place, b.in_place), of(a.at_vertex, b.at_vertex)};
 }

@@ -73,27 +73,27 @@ std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const 
   const auto& heard = bricks_[brickOf(block.column, block.row)].heard;
   const std::uint32_t key = keyOf(block);
   const auto first = std::lower_bound(heard.begin(), heard.end(), key,
-                                      [](const Heard& h, std::uint32_t k) { return h.block < k; });
+                                      [](const BlockReadings& h, std::uint32_t k) { return h.block < k; });
   for (auto at = first; at != heard.end() && at->block == key; ++at) out.push_back(at->reading);
   return out;
 }
 
-std::uint64_t EvidenceBricks::orderOf(const Heard& heard) noexcept {
+std::uint64_t EvidenceBricks::orderOf(const BlockReadings& heard) noexcept {
   return static_cast<std::uint64_t>(heard.block) << 32 |
          static_cast<std::uint64_t>(heard.reading.kind) << 24 |
          static_cast<std::uint64_t>(heard.reading.step) << 16 | heard.reading.drive;
 }
 
 // Where a count stands, or would.
-std::vector<EvidenceBricks::Heard>::iterator EvidenceBricks::placeOf(std::vector<Heard>& heard,
-                                                                     const Heard& one) {
+std::vector<EvidenceBricks::BlockReadings>::iterator EvidenceBricks::placeOf(
+    std::vector<BlockReadings>& heard, const BlockReadings& one) {
   return std::lower_bound(heard.begin(), heard.end(), orderOf(one),
-                          [](const Heard& h, std::uint64_t key) { return orderOf(h) < key; });
+                          [](const BlockReadings& h, std::uint64_t key) { return orderOf(h) < key; });
 }
 
 void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& reading) {
   auto& heard = bricks_[brickOf(block.column, block.row)].heard;
-  const Heard taken{keyOf(block), reading};
+  const BlockReadings taken{keyOf(block), reading};
   const auto found = placeOf(heard, taken);
   if (found == heard.end() || orderOf(*found) != orderOf(taken)) return;
   std::uint16_t& count = found->reading.count;
@@ -104,7 +104,7 @@ void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& readin
 
 void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
   auto& heard = bricks_[brickOf(block.column, block.row)].heard;
-  const Heard added{keyOf(block), reading};
+  const BlockReadings added{keyOf(block), reading};
   const auto found = placeOf(heard, added);
   if (found != heard.end() && orderOf(*found) == orderOf(added)) {
     const unsigned sum = found->reading.count + static_cast<unsigned>(reading.count);

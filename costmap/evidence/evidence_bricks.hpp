@@ -49,21 +49,22 @@ class EvidenceBricks {
   void visitAll(const Visit& visit) const;
 
  private:
-  struct Heard {
+  struct BlockReadings {
     std::uint32_t block = 0;  // as sorted: place, level, class
     ReadingCount reading;
   };
   struct Brick {
     std::vector<BlockEvidence> blocks;
-    std::vector<Heard> heard;
+    std::vector<BlockReadings> heard;
   };
 
   bool contains(int column, int row) const noexcept {
     return column >= 0 && row >= 0 && column < columns_ && row < rows_;
   }
   std::size_t brickOf(int column, int row) const noexcept;
-  static std::uint64_t orderOf(const Heard& heard) noexcept;
-  static std::vector<Heard>::iterator placeOf(std::vector<Heard>& heard, const Heard& one);
+  static std::uint64_t orderOf(const BlockReadings& heard) noexcept;
+  static std::vector<BlockReadings>::iterator placeOf(std::vector<BlockReadings>& heard,
+                                                      const BlockReadings& one);
 
   int columns_, rows_;
   int brick_columns_;

@@ -63,7 +63,7 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
 // One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
 // length), and for no departure beyond what its class explains: what is more is other ground that no class
 // raster shows.
-BlockLesson EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
+BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
   const bool raises = !std::isnan(block.pull);
@@ -72,13 +72,13 @@ BlockLesson EvidenceField::lessonOf(const BlockEvidence& block, int class_index)
   if (block.lowers) pull = std::min(pull, static_cast<double>(block.weak_pull) - prior.pull.value);
   const double variance = ground.pull_std * ground.pull_std;
   const double most = kOrdinary * std::sqrt(variance + ground.mean_std * ground.mean_std + measured);
-  BlockLesson lesson{.weight = std::min(1.0, 1.5 * store_->blocks.side_m() /
-                                                 site_->model->parts().policy.correlation_length_m) *
-                               variance / (variance + measured),
-                     .pull = std::clamp(pull, -most, most),
-                     .sinkage = std::nullopt,
-                     .raises = raises,
-                     .shared = raises ? static_cast<double>(block.shared) : 0.0};
+  BlockContribution lesson{.weight = std::min(1.0, 1.5 * store_->blocks.side_m() /
+                                                       site_->model->parts().policy.correlation_length_m) *
+                                     variance / (variance + measured),
+                           .pull = std::clamp(pull, -most, most),
+                           .sinkage = std::nullopt,
+                           .raises = raises,
+                           .shared = raises ? static_cast<double>(block.shared) : 0.0};
   if (std::isnan(block.sinkage)) return lesson;
   const double most_sinkage = kOrdinary * ground.sinkage_std;
   const double sinkage = static_cast<double>(block.sinkage) - prior.sinkage.value;
@@ -89,9 +89,9 @@ BlockLesson EvidenceField::lessonOf(const BlockEvidence& block, int class_index)
 
 // One of all readings where some may raise, as weak as each drive shows the block by itself; else one of each drive, so that
 // none makes another's milder.
-std::vector<BlockLesson> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
-                                                  int class_index) const {
-  std::vector<BlockLesson> lessons;
+std::vector<BlockContribution> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
+                                                        int class_index) const {
+  std::vector<BlockContribution> lessons;
   if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return lessons;
   const std::vector<ReadingCount> counts = store_->bricks.counts(where);
   const std::vector<std::uint16_t> drives = drivesOf(counts);
@@ -145,9 +145,9 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
 // Takes readings into a block, and what it then says into the lessons of its class. The cells whose belief that may change.
 maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
-  ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
-    for (const BlockLesson& before : lessonsOf(where, *known, class_index)) lessons.remove(before);
+    for (const BlockContribution& before : lessonsOf(where, *known, class_index)) lessons.remove(before);
   for (const ReadingCount& reading : heard.heard)
     how == Count::Add ? store_->bricks.count(where, reading) : store_->bricks.uncount(where, reading);
   BlockEvidence& block = store_->bricks.at(where);
@@ -155,9 +155,9 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   block.reach = std::max(block.reach, heard.reach);
   summarise(store_->bricks.counts(where), priorOf(class_index), block);
   const maps::CellBox reached = store_->reach.add(where, block.reach_m());
-  const std::vector<BlockLesson> taught = lessonsOf(where, block, class_index);
+  const std::vector<BlockContribution> taught = lessonsOf(where, block, class_index);
   if (taught.empty() && how == Count::Add) return reached;
-  for (const BlockLesson& lesson : taught) lessons.add(lesson);
+  for (const BlockContribution& lesson : taught) lessons.add(lesson);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
                                          where.row / store_->blocks.reach()};
   lessons.places().set(square, squareStrength(square, class_index));
@@ -282,7 +282,7 @@ std::vector<ClassState> EvidenceField::states(Classes classes) const {
 }
 
 ClassState EvidenceField::stateOf(int class_index, Classes classes) const {
-  const ClassLessons& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  const ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
   return classes == Classes::InSteps ? lessons.stateInSteps() : lessons.state();
 }
 

@@ -23,7 +23,7 @@ struct SavedBlock {
   std::vector<ReadingCount> heard;
 };
 
-struct BlockLesson;
+struct BlockContribution;
 struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
@@ -59,7 +59,7 @@ class EvidenceField {
   std::optional<maps::CellBox> forget(const SavedBlock& heard);
 
   /// What beliefs have of the classes: all that is known of them, or that in steps rounded towards danger
-  /// (ClassLessons::stateInSteps()), from which a map is published.
+  /// (ClassEvidence::stateInSteps()), from which a map is published.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
 
   /// Own evidence, of the cell's class, of the block that holds the cell, on top; null where nobody drove.
@@ -109,9 +109,9 @@ class EvidenceField {
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
   maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard, Count how = Count::Add);
-  BlockLesson lessonOf(const BlockEvidence& block, int class_index) const;
-  std::vector<BlockLesson> lessonsOf(const BlockLevel& where, const BlockEvidence& block,
-                                     int class_index) const;
+  BlockContribution lessonOf(const BlockEvidence& block, int class_index) const;
+  std::vector<BlockContribution> lessonsOf(const BlockLevel& where, const BlockEvidence& block,
+                                           int class_index) const;
   Estimate priorOf(int class_index) const;
   std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
   ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;

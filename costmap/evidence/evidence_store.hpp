@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <talus/costmap/evidence/block_grid.hpp>
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/evidence/evidence_bricks.hpp>
 #include <talus/costmap/evidence/evidence_reach.hpp>
 #include <talus/costmap/site/ground_site.hpp>
@@ -26,7 +26,7 @@ struct EvidenceStore {
   BlockGrid blocks;
   EvidenceBricks bricks;
   EvidenceReach reach;
-  std::vector<ClassLessons> lessons;  ///< one a class
+  std::vector<ClassEvidence> lessons;  ///< one a class
 
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {

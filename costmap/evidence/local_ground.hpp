@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/evidence/evidence_bricks.hpp>
 #include <talus/costmap/evidence/spreading.hpp>
 

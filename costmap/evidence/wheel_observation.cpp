@@ -85,7 +85,7 @@ struct WheelObserver::Wheel {
 
 WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
                                              std::span<const double> departures) const {
-  const WheelReading& r = read.reading;
+  const TelemetryReading& r = read.reading;
   const double radius_m = model_.rover().wheel.radius_m;
   const bool rut = r.pass > 1;
   const bool turned = known(r.slip_angle_rad) && known(r.across);
@@ -185,7 +185,7 @@ Estimate WheelObserver::upperBound(const Wheel& w, const Balance& all) const {
 std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Balance& balance,
                                                         double own) const {
   const bool by_balance = known(balance.departure);
-  const WheelReading& reading = w.read.reading;
+  const TelemetryReading& reading = w.read.reading;
   WheelObservation out{.time_s = reading.time_s,
                        .place = reading.place,
                        .z_m = reading.z_m,
@@ -236,7 +236,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   return out;
 }
 
-std::optional<WheelObservation> WheelObserver::observe(int class_index, const WheelReading& reading) const {
+std::optional<WheelObservation> WheelObserver::observe(int class_index,
+                                                       const TelemetryReading& reading) const {
   return observe({{class_index, reading}}).front();
 }
 

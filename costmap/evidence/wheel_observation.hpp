@@ -14,7 +14,7 @@
 namespace talus::costmap {
 
 /// What one wheel read at one moment, corrected for nothing. NaN = not measured.
-struct WheelReading {
+struct TelemetryReading {
   double time_s = 0.0;
   maps::Point place;                                      ///< of the wheel on the map
   double z_m = std::numeric_limits<double>::quiet_NaN();  ///< its height, which tells floors apart
@@ -44,7 +44,7 @@ struct GroundBound {
 /// A reading and the class of the ground under the wheel, as its position in GroundModel::Parts::classes.
 struct ClassReading {
   int class_index = 0;
-  WheelReading reading;
+  TelemetryReading reading;
 };
 
 /// How well the readings are known, one standard deviation.
@@ -123,7 +123,7 @@ class WheelObserver {
 
   /// What the reading of one wheel says; nothing where it cannot be used (no slip, no load, or neither slope,
   /// torque nor drawbar pull).
-  std::optional<WheelObservation> observe(int class_index, const WheelReading& reading) const;
+  std::optional<WheelObservation> observe(int class_index, const TelemetryReading& reading) const;
 
   /// The same for wheels of one rover read at one moment, in their order. `departures`: by which ground of each class is known to
   /// depart from its class at the reference slip, by other means; what the readings say is then the rest. Empty: none is.
@@ -158,7 +158,7 @@ class WheelObserver {
 double pullFromTorque(double torque_over_load_radius, double sinkage_over_radius) noexcept;
 
 /// The wheel that a row was read by, as its rover's file has it. NaN: not known.
-struct DrivenBy {
+struct RowWheel {
   double radius_m = std::numeric_limits<double>::quiet_NaN();
   double width_m = std::numeric_limits<double>::quiet_NaN();
   double weight_N =
@@ -171,9 +171,9 @@ struct JournalRow {
   std::int64_t line = 0;         ///< in the file
   bool accepted = false;         ///< whether the map learned from it
   std::string reason;            ///< why not; empty when accepted
-  WheelReading reading;          ///< as read
+  TelemetryReading reading;      ///< as read
   WheelObservation observation;  ///< what it said; of no meaning when refused
-  DrivenBy wheel{};              ///< by which it was read
+  RowWheel wheel{};              ///< by which it was read
 };
 
 }  // namespace talus::costmap

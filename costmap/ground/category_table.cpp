@@ -21,7 +21,7 @@ bool isOfSoil(Refusal refusal) {
   return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }
 
-CategoryTable::Entry entryOf(const Ranked& ranked) {
+CategoryTable::Entry entryOf(const RankedCategory& ranked) {
   // Rounded to the nearest step for dangerous ground, else down: the probability of better ground is never
   // overstated.
   const double steps = 16.0 * ranked.probability;
@@ -30,10 +30,10 @@ CategoryTable::Entry entryOf(const Ranked& ranked) {
 }
 
 // The model's category at the first climb, from `climb` upwards, whose category is at least `least`.
-Ranked atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
-  Ranked ranked = model.category(belief, climb);
+RankedCategory atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
+  RankedCategory ranked = model.category(belief, climb);
   while (ranked.category < least && climb < 4.0)
-    ranked = model.category(belief, climb += 1.0 / DriveCurve::kBinsPerUnit);
+    ranked = model.category(belief, climb += 1.0 / TravelCurve::kBinsPerUnit);
   return ranked;
 }
 
@@ -42,8 +42,8 @@ CellCode planeOf(int step) {
 }
 
 // State in the worst heading, with the worst category over all headings.
-DriveState stateOn(const DriveCost& cost, CellCode plane) {
-  DriveState state = cost.detail(plane, worstHeading(cost, plane));
+TravelState stateOn(const TravelCost& cost, CellCode plane) {
+  TravelState state = cost.detail(plane, worstHeading(cost, plane));
   for (int k = 0; k < kJudgedHeadings; ++k) {
     const double heading = k * std::numbers::pi / kJudgedHeadings;
     state.category =
@@ -54,14 +54,14 @@ DriveState stateOn(const DriveCost& cost, CellCode plane) {
 
 }  // namespace
 
-double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) noexcept {
+double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept {
   const terramech::Gradient gradient{cell.dzDx() * heading.x + cell.dzDy() * heading.y,
                                      cell.dzDy() * heading.x - cell.dzDx() * heading.y};
   const bool known = cell.curve() < cost.crossings().size() && cost.crossings()[cell.curve()];
   return known ? cost.crossings()[cell.curve()]->climb(gradient) : gradient.along;
 }
 
-Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept {
+Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept {
   const double length = std::hypot(cell.dzDx(), cell.dzDy());
   if (!(length > 0.0)) return {};
   const Direction up{cell.dzDx() / length, cell.dzDy() / length};
@@ -80,18 +80,18 @@ Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept {
   return found;
 }
 
-Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb) {
-  const Ranked ranked = atLeast(model, belief, state.category, climb);
+RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
+                      double climb) {
+  const RankedCategory ranked = atLeast(model, belief, state.category, climb);
   const bool driven = state.refusal == Refusal::None || state.refusal == Refusal::Category;
   if (driven || ranked.category == Category::Dangerous) return ranked;
   return {Category::Dangerous, isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0};
 }
 
-CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief,
-                             const DriveGround& ground) {
-  DriveCost::Limits limits = model.limits();
-  limits.stance.reset();  // only DriveCost::tips() needs the stance
-  const DriveCost cost(limits, std::vector{ground});
+CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground) {
+  TravelCost::Limits limits = model.limits();
+  limits.stance.reset();  // only TravelCost::tips() needs the stance
+  const TravelCost cost(limits, std::vector{ground});
   const auto judgedAt = [&](int step) {
     return judged(model, belief, stateOn(cost, planeOf(step)),
                   ground.crossing->steepest(step * CellCode::kStep));
@@ -111,7 +111,7 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   const std::array bounds{boundOf(Category::Marginal), boundOf(Category::Dangerous)};
   entries_.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) {
-    Ranked now = model.category(belief, ground.crossing->steepest(step * CellCode::kStep));
+    RankedCategory now = model.category(belief, ground.crossing->steepest(step * CellCode::kStep));
     for (const auto& [from, ranked] : bounds)
       if (step >= from && now.category < ranked.category) now = ranked;
     entries_.push_back(entryOf(now));

@@ -3,22 +3,23 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
 
 /// Gradient of the straight climb with the same strength reserve as the plane of a cell in a heading; the
 /// gradient along for ground without a soil.
-double climbAt(const DriveCost& cost, CellCode cell, const Direction& heading) noexcept;
+double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept;
 
 /// Heading for the category of a cell if no heading is given: straight uphill, or a heading across the slope
 /// whose equivalent climb is steeper by more than 1/32.
-Direction worstHeading(const DriveCost& cost, CellCode cell) noexcept;
+Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept;
 
-/// Category of ground in a heading and its probability: `state` is DriveCost::detail(), `climb` is climbAt()
+/// Category of ground in a heading and its probability: `state` is TravelCost::detail(), `climb` is climbAt()
 /// there. Ground that is refused for a reason other than its category is dangerous.
-Ranked judged(const GroundModel& model, const GroundBelief& belief, const DriveState& state, double climb);
+RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
+                      double climb);
 
 /// Category of one kind of ground over the gradient of its plane, in steps of CellCode: the worst category
 /// over all headings, and dangerous if worstHeading() is refused. A cell uses the next whole step.
@@ -33,7 +34,7 @@ class CategoryTable {
   /// Dangerous at every gradient.
   CategoryTable() = default;
   /// Table of the ground that GroundModel made from the estimate.
-  CategoryTable(const GroundModel& model, const GroundBelief& belief, const DriveGround& ground);
+  CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground);
 
   /// Entry for the gradient of a cell.
   Entry at(CellCode cell) const noexcept;

@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t kNumbers = CellCode::kUnknown;
 
 // Ground that no heading may enter, for classes whose number was not requested.
-const DriveGround& refused() {
-  static const DriveGround ground = [] {
-    auto states = std::make_shared<DriveTable>();
-    for (DriveState& state : *states) state.refusal = Refusal::Unknown;
-    DriveCurve curve;
+const GroundCost& refused() {
+  static const GroundCost ground = [] {
+    auto states = std::make_shared<TravelTable>();
+    for (TravelState& state : *states) state.refusal = Refusal::Unknown;
+    TravelCurve curve;
     curve.cost_J_per_m.fill(std::numeric_limits<float>::infinity());
-    return DriveGround{.curve = std::move(curve), .states = std::move(states)};
+    return GroundCost{.curve = std::move(curve), .states = std::move(states)};
   }();
   return ground;
 }
@@ -108,13 +108,13 @@ std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
   return number;
 }
 
-DriveGround CostCurveTable::dearer(const DriveGround& ground, double added_J_per_m) const {
-  auto states = std::make_shared<DriveTable>(*ground.states);
-  for (DriveState& state : *states)
+GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m) const {
+  auto states = std::make_shared<TravelTable>(*ground.states);
+  for (TravelState& state : *states)
     state.energy_J_per_m = static_cast<float>(static_cast<double>(state.energy_J_per_m) + added_J_per_m);
-  const DrivePolicy& policy = model_->parts().policy;
-  DriveCurve curve = priced(*states, ground.crossing.get(),
-                            {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
+  const TravelPolicy& policy = model_->parts().policy;
+  TravelCurve curve = priced(*states, ground.crossing.get(),
+                             {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
   return {.curve = std::move(curve),
           .states = std::move(states),
           .crossing = ground.crossing,
@@ -186,17 +186,17 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
                      bits(prior.sinkage.std)};
   if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
   if (worked_.size() >= kRemembered) worked_.clear();
-  DriveGround ground = model_->ground(class_index, prior);
+  GroundCost ground = model_->ground(class_index, prior);
   CategoryTable categories(*model_, prior, ground);
   return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 
 // Fraction of the pull variance of each class that is common to all of its ground: the excess over the
 // variance between places.
-SoilDoubt CostCurveTable::doubt() const {
+SoilUncertainty CostCurveTable::doubt() const {
   const GroundModel::Parts& parts = model_->parts();
-  SoilDoubt doubt{.correlation_length_m = parts.policy.correlation_length_m,
-                  .entrapment = parts.policy.held()};
+  SoilUncertainty doubt{.correlation_length_m = parts.policy.correlation_length_m,
+                        .entrapment = parts.policy.held()};
   for (std::size_t i = 0; i < classes(); ++i) {
     const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
     doubt.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
@@ -204,8 +204,8 @@ SoilDoubt CostCurveTable::doubt() const {
   return doubt;
 }
 
-std::shared_ptr<const DriveCost> CostCurveTable::cost() const {
-  if (!cost_) cost_ = std::make_shared<DriveCost>(model_->limits(), grounds_, doubt());
+std::shared_ptr<const TravelCost> CostCurveTable::cost() const {
+  if (!cost_) cost_ = std::make_shared<TravelCost>(model_->limits(), grounds_, doubt());
   return cost_;
 }
 

@@ -59,19 +59,19 @@ class CostCurveTable {
   const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
   /// Cost function of all assigned numbers; the same object until a number is added.
-  std::shared_ptr<const DriveCost> cost() const;
+  std::shared_ptr<const TravelCost> cost() const;
 
  private:
   // Bits of a prior, as the key of a cache: a class that is being learned alternates between few priors.
   using PriorKey = std::array<std::int64_t, 5>;
   struct Worked {
-    DriveGround ground;
+    GroundCost ground;
     CategoryTable categories;
   };
   const Worked& worked(int class_index, const GroundBelief& prior);
   std::uint8_t standIn(const GroundKind& kind) const;
-  DriveGround dearer(const DriveGround& ground, double added_J_per_m) const;
-  SoilDoubt doubt() const;
+  GroundCost dearer(const GroundCost& ground, double added_J_per_m) const;
+  SoilUncertainty doubt() const;
   void price(std::size_t class_index);
   std::optional<std::uint8_t> freeNumber();
   std::size_t classes() const noexcept { return model_->parts().classes.size(); }
@@ -79,7 +79,7 @@ class CostCurveTable {
   std::shared_ptr<const GroundModel> model_;
   int level_ = 0;
   bool overflowed_ = false;
-  std::vector<DriveGround> grounds_;
+  std::vector<GroundCost> grounds_;
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
   std::vector<GroundBelief> priors_;  // priors of the classes
@@ -94,7 +94,7 @@ class CostCurveTable {
   std::map<GroundKind, std::uint8_t> numbers_;
   std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // by number and step
   std::map<PriorKey, Worked> worked_;
-  mutable std::shared_ptr<const DriveCost> cost_;
+  mutable std::shared_ptr<const TravelCost> cost_;
 };
 
 }  // namespace talus::costmap

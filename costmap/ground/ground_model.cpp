@@ -113,7 +113,7 @@ struct GroundModel::ClassGround {
   terramech::MobilityCurve wheel;   // a wheel on fresh ground
   terramech::MobilityCurve in_rut;  // a wheel in the rut of an equal wheel
   terramech::MobilityCurve all;     // all axles of the rover
-  ExpectedDrive drive;              // expected cost by `all`
+  ExpectedTravel drive;             // expected cost by `all`
   terramech::SlopeEquilibrium slope;
   std::shared_ptr<const CrossSlope> crossing;
 };
@@ -157,7 +157,7 @@ GroundModel::ClassGround GroundModel::workedOut(const GroundClass& ground) const
   terramech::MobilityCurve wheel = mobilityOf(ground, parts_.rover);
   const auto axles = axlesOf(ground, parts_.rover);
   terramech::MobilityCurve all = axles ? mobilityOf(ground, parts_.rover, *axles) : wheel;
-  const ExpectedDrive drive(all);
+  const ExpectedTravel drive(all);
   terramech::SlopeEquilibrium slope = slopeOf(ground, parts_.rover);
   const CrossSlope::Level level{
       .first = drive.first(),
@@ -190,7 +190,7 @@ int GroundModel::classIndex(int number) const noexcept {
   return -1;
 }
 
-SteadyWheel GroundModel::steady(int class_index, const DrivenWheel& wheel) const {
+SteadyWheel GroundModel::steady(int class_index, const SlippingWheel& wheel) const {
   const ClassGround& ground = groundOf(class_index);
   const terramech::MobilityCurve& driven = wheel.in_rut ? ground.in_rut : ground.wheel;
   SteadyWheel steady = steadyAt(parts_.rover, driven, slopeAtSlip_rad(driven, wheel.slip));
@@ -241,7 +241,7 @@ Category GroundModel::categoryAt(double pull, double sinkage, double gradient) c
                                 .z_critical = critical});
 }
 
-Ranked GroundModel::category(const GroundBelief& belief, double gradient) const {
+RankedCategory GroundModel::category(const GroundBelief& belief, double gradient) const {
   const Edges edge = edges(gradient);
   const double below_low = probabilityBelow(belief.pull, edge.low);
   const double below_high = probabilityBelow(belief.pull, edge.high);
@@ -296,9 +296,9 @@ double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimat
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
-Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand& demand,
+Refusal GroundModel::refusal(const TravelState& state, double weak, const Demand& demand,
                              const ClassGround& ground) const noexcept {
-  const DrivePolicy& policy = parts_.policy;
+  const TravelPolicy& policy = parts_.policy;
   if (static_cast<double>(std::abs(state.torque_Nm)) > parts_.rover.max_torque_Nm) return Refusal::Torque;
   if (demand.braked < ground.drive.first() || demand.driven > ground.drive.last() ||
       weak > policy.max_immobilisation)
@@ -309,9 +309,9 @@ Refusal GroundModel::refusal(const DriveState& state, double weak, const Demand&
   return refused ? Refusal::Category : Refusal::None;
 }
 
-DriveState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
+TravelState GroundModel::state(int class_index, const GroundBelief& belief, double gradient) const {
   const ClassGround& ground = groundOf(class_index);
-  const DrivePolicy& policy = parts_.policy;
+  const TravelPolicy& policy = parts_.policy;
   const auto& reference = ground.wheel.reference();
   const double weakness = reference.drawbar_pull_over_load - belief.pull.value;
   const Estimate demand = this->demand(class_index, belief.pull, gradient);
@@ -324,7 +324,7 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   const double weak = std::max(weakProbability(ground, belief.pull, gradient),
                                unbrakedProbability(ground, belief.pull, gradient));
 
-  DriveState state;
+  TravelState state;
   state.slip = static_cast<float>(s.slip);
   // Stronger ground brakes harder on the same slope; that braking also counts for weaker ground.
   state.sinkage_m = static_cast<float>(
@@ -345,20 +345,20 @@ DriveState GroundModel::state(int class_index, const GroundBelief& belief, doubl
   return state;
 }
 
-double GroundModel::cost_J_per_m(const DriveState& state) const noexcept {
+double GroundModel::cost_J_per_m(const TravelState& state) const noexcept {
   if (state.refusal != Refusal::None) return std::numeric_limits<double>::infinity();
   return static_cast<double>(state.energy_J_per_m) +
          parts_.policy.time_weight_W * static_cast<double>(state.time_s_per_m) +
          parts_.policy.risk_weight_J * static_cast<double>(state.risk_per_m);
 }
 
-DriveGround GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
-  DriveGround ground;
-  auto states = std::make_shared<DriveTable>();
-  for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-    DriveState& s = (*states)[static_cast<std::size_t>(bin)];
-    s = state(class_index, belief, DriveCurve::gradient(bin));
-    if (other_class != class_index) s = worse(s, state(other_class, belief, DriveCurve::gradient(bin)));
+GroundCost GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
+  GroundCost ground;
+  auto states = std::make_shared<TravelTable>();
+  for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+    TravelState& s = (*states)[static_cast<std::size_t>(bin)];
+    s = state(class_index, belief, TravelCurve::gradient(bin));
+    if (other_class != class_index) s = worse(s, state(other_class, belief, TravelCurve::gradient(bin)));
   }
   ground.crossing = class_index == other_class ? crossing(class_index)
                                                : std::make_shared<const CrossSlope>(CrossSlope::harder(
@@ -367,14 +367,14 @@ DriveGround GroundModel::ground(int class_index, int other_class, const GroundBe
       priced(*states, ground.crossing.get(),
              {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J});
   ground.states = std::move(states);
-  const DriveState& flat = (*ground.states)[DriveCurve::kBins / 2];
+  const TravelState& flat = (*ground.states)[TravelCurve::kBins / 2];
   ground.turns = turns(class_index, flat);
   if (other_class != class_index) ground.turns = costmap::dearer(ground.turns, turns(other_class, flat));
   return ground;
 }
 
 // Turns on ground of a class with the given state on level ground.
-TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
+TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
   const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
   const terramech::Rover& rover = parts_.rover;
   const double hotel_J_per_m = rover.hotel_power_W * static_cast<double>(flat.time_s_per_m);
@@ -383,14 +383,14 @@ TurnPrices GroundModel::turns(int class_index, const DriveState& flat) const {
               .bulldozing_N = terramech::bulldozing_N(soil, rover, static_cast<double>(flat.sinkage_m)),
               .rolling_J_per_m = std::max(0.0, static_cast<double>(flat.energy_J_per_m) - hotel_J_per_m)});
   const double time_W = parts_.policy.time_weight_W;
-  const TurnPrice on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
-                  in_place = costmap::priced(efforts.in_place, 1.0, time_W);
+  const TurnCost on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
+                 in_place = costmap::priced(efforts.in_place, 1.0, time_W);
   return {on_arc, in_place, rover.turning_radius_m > 0.0 ? on_arc : in_place};
 }
 
-DriveCost::Limits GroundModel::limits() const {
-  DriveCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
-                           .max_across = std::tan(parts_.rover.max_roll_rad)};
+TravelCost::Limits GroundModel::limits() const {
+  TravelCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
+                            .max_across = std::tan(parts_.rover.max_roll_rad)};
   if (parts_.rover.centre_of_mass_height_m > 0.0)
     limits.stance = std::make_shared<const terramech::RoverStance>(parts_.rover);
   return limits;

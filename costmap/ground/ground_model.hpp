@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
-#include <talus/costmap/cost/drive_policy.hpp>
-#include <talus/costmap/cost/expected_drive.hpp>
+#include <talus/costmap/cost/expected_travel.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
+#include <talus/costmap/cost/travel_policy.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
@@ -42,7 +42,7 @@ struct GroundBelief {
 };
 
 /// State of a driven wheel on fresh ground or in the rut of an equal wheel.
-struct DrivenWheel {
+struct SlippingWheel {
   double slip = 0.0;
   bool in_rut = false;
   double slip_angle_rad = 0.0;  ///< limited to 60 degrees
@@ -57,7 +57,7 @@ struct SteadyWheel {
 };
 
 /// A category and its probability.
-struct Ranked {
+struct RankedCategory {
   terramech::Category category = terramech::Category::Unknown;
   double probability = 0.0;
 };
@@ -74,7 +74,7 @@ struct Ranked {
 /// standard deviation scales with the derivative of the demand by P - d. Ground with a greater pull drives as
 /// on a flatter slope, at most as on level ground, and has no more reserve than its class. Cost and risk
 /// never decrease with the standard deviation nor, from level ground upwards, with the gradient
-/// (ExpectedDrive). Downhill, ground weaker by d brakes less by d or by the fraction f: weaker ground is
+/// (ExpectedTravel). Downhill, ground weaker by d brakes less by d or by the fraction f: weaker ground is
 /// never allowed where stronger ground is refused. CrossSlope adds the effect of cross slopes.
 ///
 /// Curves and cross slopes of a class are computed once, at the first use: a class raster may declare
@@ -86,7 +86,7 @@ class GroundModel {
   struct Parts {
     terramech::Rover rover;
     std::vector<GroundClass> classes;  ///< the first class is the default, for cells without a class
-    DrivePolicy policy;
+    TravelPolicy policy;
     bool prices_crossing = true;  ///< false: CrossSlope::alongOnly(), for comparison only; unsafe for driving
   };
 
@@ -105,7 +105,7 @@ class GroundModel {
 
   /// Quantities of a wheel that drives steadily at this slip on ground of the class, by its soil; limited to
   /// the drivable range. The effect of a slip angle is that of a wheel on fresh ground.
-  SteadyWheel steady(int class_index, const DrivenWheel& wheel) const;
+  SteadyWheel steady(int class_index, const SlippingWheel& wheel) const;
   /// Quantities of a wheel that drives straight on a slope of this gradient (rise over run), limited to the
   /// drivable gradients.
   SteadyWheel onSlope(int class_index, double gradient, bool in_rut) const;
@@ -113,25 +113,25 @@ class GroundModel {
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
   /// Drive curve and states of ground of a class with an estimated strength.
-  DriveGround ground(int class_index, const GroundBelief& belief) const {
+  GroundCost ground(int class_index, const GroundBelief& belief) const {
     return ground(class_index, class_index, belief);
   }
   /// The same for ground of either class: each quantity is the less favourable of both.
-  DriveGround ground(int class_index, int other_class, const GroundBelief& belief) const;
+  GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
 
   /// Effect of cross slopes on ground of a class.
   const std::shared_ptr<const CrossSlope>& crossing(int class_index) const;
 
   /// State at a gradient along the heading (rise over run) without cross slope, as tabulated by ground().
-  DriveState state(int class_index, const GroundBelief& belief, double gradient) const;
+  TravelState state(int class_index, const GroundBelief& belief, double gradient) const;
 
   /// Cost of one horizontal metre [J]; infinite if refused.
-  double cost_J_per_m(const DriveState& state) const noexcept;
+  double cost_J_per_m(const TravelState& state) const noexcept;
 
   /// Category of ground at a gradient along the heading, and its probability under the estimate.
-  Ranked category(const GroundBelief& belief, double gradient) const;
+  RankedCategory category(const GroundBelief& belief, double gradient) const;
 
-  DriveCost::Limits limits() const;
+  TravelCost::Limits limits() const;
 
  private:
   // Quantities computed at construction; Lazy has those computed at the first use.
@@ -152,7 +152,7 @@ class GroundModel {
     double low, high;
   };
   Edges edges(double gradient) const noexcept;
-  TurnPrices turns(int class_index, const DriveState& flat) const;
+  TurnCosts turns(int class_index, const TravelState& flat) const;
   double criticalSinkage() const noexcept;
   Estimate demand(int class_index, const Estimate& pull, double gradient) const noexcept;
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
@@ -162,7 +162,7 @@ class GroundModel {
   struct Demand {
     double driven, braked;
   };
-  Refusal refusal(const DriveState& state, double weak, const Demand& demand,
+  Refusal refusal(const TravelState& state, double weak, const Demand& demand,
                   const ClassGround& ground) const noexcept;
   terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 

@@ -82,7 +82,7 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   sqlite3_bind_int64(s, 2, row.line);
   sqlite3_bind_int(s, 3, row.accepted ? 1 : 0);
   sqlite3_bind_text(s, 4, row.reason.c_str(), -1, SQLITE_TRANSIENT);
-  const WheelReading& r = row.reading;
+  const TelemetryReading& r = row.reading;
   const WheelObservation& o = row.observation;
   int at = 5;
   for (const double value : {r.time_s, r.place.x_m, r.place.y_m, r.load_N, r.slip, r.torque_Nm, r.sinkage_m,

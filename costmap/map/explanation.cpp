@@ -182,7 +182,7 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
   const CellCode code = grid->at(cell);
   const auto [along, across] = seenBy(code, heading);
   const double margin = map.model().parts().policy.slope_margin_rad;
-  const DriveState state = grid->cost().detail(code, heading);
+  const TravelState state = grid->cost().detail(code, heading);
   const std::string asks = "slope along the heading";
   const std::string drives = "mobility curve at the estimated DP/W";
   out.causes.push_back({"slope_along_rad", std::atan(along), kNotKnown, asks, ""});
@@ -244,8 +244,8 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   // Uses the cost and the gradient that planners read.
   const CellCode code = map.published()->at(cell);
   const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
-  const DriveState state = map.published()->cost().detail(code, heading);
-  const Ranked here = judged(map.model(), *ground, state, climb);
+  const TravelState state = map.published()->cost().detail(code, heading);
+  const RankedCategory here = judged(map.model(), *ground, state, climb);
   if (asked) out.category = here.category;
   if (here.category == out.category) out.probability = here.probability;
   out.verdict = std::string(terramech::name(out.category)) + ": available DP/W " +

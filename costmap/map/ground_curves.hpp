@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <talus/costmap/cost/learned_cells.hpp>
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/evidence/evidence_beliefs.hpp>
 #include <talus/costmap/evidence/evidence_field.hpp>
 #include <talus/costmap/ground/cost_curve_table.hpp>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/costmap/site/ground_site.hpp>
 #include <talus/costmap/surface/hazards.hpp>
 #include <talus/maps/grid/grid.hpp>

@@ -107,7 +107,7 @@ class TraversabilityMap {
   /// steps (GroundKind).
   ///
   /// The costs equal those of publishAll() to the bit, for any sequence of changes. A cell depends on its
-  /// shape, on the class states in steps (ClassLessons::stateInSteps()) and on the evidence within reach of
+  /// shape, on the class states in steps (ClassEvidence::stateInSteps()) and on the evidence within reach of
   /// its patch of blocks, and is recomputed after a change of any of these. Exception: after curve numbers
   /// were exhausted, steps may be up to 8 times as coarse as those of publishAll(); no cost is then lower.
   void publish();

@@ -113,10 +113,10 @@ class Filler {
 
 // Writes nodes in the order of the file. A cube is written as soon as two of its leaves differ; until then,
 // only the common estimate and the number of leaves are stored.
-class Streamer {
+class TreeStreamWriter {
  public:
   using Leaf = std::function<CellBelief(const Cube&)>;
-  Streamer(const Cubes& cubes, Leaf leaf, TreeWriter& writer)
+  TreeStreamWriter(const Cubes& cubes, Leaf leaf, TreeWriter& writer)
       : cubes_(cubes), leaf_(std::move(leaf)), writer_(writer) {}
 
   void write() {
@@ -194,7 +194,7 @@ void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(map
     const CellBelief* floor = cubes.floor(voxel);
     return floor ? *floor : belief(cubes.cellOf(voxel));
   };
-  if (cubes.anything()) Streamer(cubes, leaf, writer).write();
+  if (cubes.anything()) TreeStreamWriter(cubes, leaf, writer).write();
   writer.finish();
 }
 

@@ -15,7 +15,7 @@ constexpr double kMost = 10.0;     // of either bound: beyond it nothing changes
 constexpr double kFarBelow = 2.0;  // standard deviations
 
 // The greater of what the slip sensor and the speeds say; NaN where neither says anything.
-double slipOf(const WheelReading& reading) noexcept {
+double slipOf(const TelemetryReading& reading) noexcept {
   const double most = std::fmax(reading.slip, reading.speed_slip);
   return most > 1.0 ? 1.0 : most;
 }
@@ -37,7 +37,7 @@ double DangerWatch::neverDriven() const noexcept {
   return dangerousBelow(-std::tan(model_.rover().max_pitch_rad));
 }
 
-GroundBound DangerWatch::hear(int class_index, const WheelReading& reading, double least_gradient) const {
+GroundBound DangerWatch::hear(int class_index, const TelemetryReading& reading, double least_gradient) const {
   GroundBound bound;
   const double slip = slipOf(reading), z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (slip >= kDangerSlip) {

@@ -28,7 +28,7 @@ class DangerWatch {
   explicit DangerWatch(const GroundModel& model) : model_(model) {}
 
   /// `least_gradient`: the least that the slope along the heading may have been, rise over run.
-  GroundBound hear(int class_index, const WheelReading& reading, double least_gradient) const;
+  GroundBound hear(int class_index, const TelemetryReading& reading, double least_gradient) const;
 
   /// Of a reading that is suspected for another reason: its drawbar pull bounds the ground where it lies two standard
   /// deviations below its class.

@@ -52,13 +52,13 @@ void append(terramech::Telemetry& all, const terramech::Telemetry& part) {
   all.lines.insert(all.lines.end(), part.lines.begin(), part.lines.end());
 }
 
-DrivenBy wheelOf(const terramech::Rover& rover) {
+RowWheel wheelOf(const terramech::Rover& rover) {
   return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
 }
 
 // Of a journal's row: one that does not say so is another's.
-bool isOf(const terramech::Rover& rover, const DrivenBy& wheel) {
-  const DrivenBy own = wheelOf(rover);
+bool isOf(const terramech::Rover& rover, const RowWheel& wheel) {
+  const RowWheel own = wheelOf(rover);
   const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);
   return known && sameOrUnknown(wheel.radius_m, own.radius_m) && sameOrUnknown(wheel.width_m, own.width_m) &&
          sameOrUnknown(wheel.weight_N, own.weight_N);
@@ -74,7 +74,7 @@ std::string lackingFinding(std::size_t drives) {
          " that the map holds: it cannot rebuild this map";
 }
 
-void tellDrive(const FittedDrive& drive, const GroundModel& model, DriveReport& report) {
+void tellDrive(const SlipPosterior& drive, const GroundModel& model, DriveReport& report) {
   report.slip_offset = drive.slip_bias;
   report.slip_scale = drive.slip_scale;
   for (std::size_t c = 0; c < drive.departure.size(); ++c) {

@@ -39,7 +39,7 @@ bool contradicts(const ResponseSeries& series, double least) {
 
 }  // namespace
 
-void SensorProof::follow(Run& run, const Wheel& wheel, const WheelReading& reading) {
+void SensorProof::follow(Run& run, const Wheel& wheel, const TelemetryReading& reading) {
   if (!wheel.last) return;
   const double moved_m = distance_m(wheel.last->place, reading.place);
   const double passed_s = reading.time_s - wheel.last->time_s;
@@ -63,7 +63,7 @@ void SensorProof::takeLevel(Wheel& wheel, const Row& row) {
 void SensorProof::take(const Row& row) {
   Run& run = runs_[row.run];
   Wheel& wheel = run.wheels[row.wheel];
-  const WheelReading& r = row.reading;
+  const TelemetryReading& r = row.reading;
   follow(run, wheel, r);
   wheel.last = r;
   if (row.danger) return;

@@ -29,7 +29,7 @@ class SensorProof {
   /// What one wheel read, and what is known about its place. NaN = not known.
   struct Row {
     std::string run, wheel;
-    WheelReading reading;
+    TelemetryReading reading;
     double measured_gradient = 0.0;  ///< along the heading, by the rover
     double map_gradient = 0.0;       ///< the same by the map
     double class_slip = 0.0;         ///< of ground of the class on the measured gradient
@@ -80,7 +80,7 @@ class SensorProof {
 
  private:
   struct Wheel {
-    std::optional<WheelReading> last, last_counted;
+    std::optional<TelemetryReading> last, last_counted;
     ResponseSeries slip, torque;
     std::size_t level_rows = 0, felt_rows = 0;
   };
@@ -92,7 +92,7 @@ class SensorProof {
   };
 
   bool slopeScaled(const Run& run) const noexcept;
-  static void follow(Run& run, const Wheel& wheel, const WheelReading& reading);
+  static void follow(Run& run, const Wheel& wheel, const TelemetryReading& reading);
   void takeLevel(Wheel& wheel, const Row& row);
   const Run* find(const std::string& run) const;
   static const Wheel* find(const Run& run, const std::string& wheel);

@@ -11,14 +11,14 @@ namespace {
 constexpr std::size_t kWindow = 5;
 constexpr const char* kSpike = "spike";
 
-constexpr std::array<std::pair<const char*, double WheelReading::*>, 3> kSensors{
-    {{"slip", &WheelReading::slip},
-     {"torque", &WheelReading::torque_Nm},
-     {"sinkage", &WheelReading::sinkage_m}}};
+constexpr std::array<std::pair<const char*, double TelemetryReading::*>, 3> kSensors{
+    {{"slip", &TelemetryReading::slip},
+     {"torque", &TelemetryReading::torque_Nm},
+     {"sinkage", &TelemetryReading::sinkage_m}}};
 
-double medianOf(const std::deque<WheelReading>& last, double WheelReading::*field) {
+double medianOf(const std::deque<TelemetryReading>& last, double TelemetryReading::*field) {
   std::vector<double> values;
-  for (const WheelReading& r : last)
+  for (const TelemetryReading& r : last)
     if (std::isfinite(r.*field)) values.push_back(r.*field);
   if (values.size() < kWindow) return std::nan("");
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -35,32 +35,32 @@ bool sameNumber(double a, double b) {
 }
 
 // A reading in which nothing is measured exactly, yet nothing moved.
-bool sameReading(const WheelReading& a, const WheelReading& b) {
+bool sameReading(const TelemetryReading& a, const TelemetryReading& b) {
   return sameNumber(a.slip, b.slip) && sameNumber(a.torque_Nm, b.torque_Nm) &&
          sameNumber(a.sinkage_m, b.sinkage_m);
 }
 
 }  // namespace
 
-bool SensorWatch::isSpike(const Wheel& wheel, const WheelReading& reading) const {
+bool SensorWatch::isSpike(const Wheel& wheel, const TelemetryReading& reading) const {
   const double radius_m = model_.rover().wheel.radius_m;
-  return departs(reading.slip, medianOf(wheel.last, &WheelReading::slip), limits_.slip_spike) ||
-         departs(reading.torque_Nm, medianOf(wheel.last, &WheelReading::torque_Nm),
+  return departs(reading.slip, medianOf(wheel.last, &TelemetryReading::slip), limits_.slip_spike) ||
+         departs(reading.torque_Nm, medianOf(wheel.last, &TelemetryReading::torque_Nm),
                  limits_.torque_spike * radius_m * reading.load_N) ||
-         departs(reading.sinkage_m, medianOf(wheel.last, &WheelReading::sinkage_m),
+         departs(reading.sinkage_m, medianOf(wheel.last, &TelemetryReading::sinkage_m),
                  limits_.sinkage_spike * radius_m);
 }
 
-bool SensorWatch::slipsBackwardsUphill(const WheelReading& reading) const noexcept {
+bool SensorWatch::slipsBackwardsUphill(const TelemetryReading& reading) const noexcept {
   return reading.slip < limits_.backward_slip && reading.gradient > limits_.climb &&
          !(reading.torque_Nm <= 0.0);
 }
 
 // The reading as a whole, or one sensor that used to change from row to row. Counted before the reading is
 // taken in.
-std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const WheelReading& reading) const {
+std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReading& reading) const {
   if (wheel.last.empty()) return std::nullopt;
-  const WheelReading& before = wheel.last.back();
+  const TelemetryReading& before = wheel.last.back();
   wheel.equal = sameReading(before, reading) ? wheel.equal + 1 : 0;
   std::optional<std::string> reason;
   for (std::size_t i = 0; i < kSensors.size(); ++i) {
@@ -91,7 +91,7 @@ void SensorWatch::countGap(Wheel& wheel, double time_s) {
   wheel.interval_s += (passed_s - wheel.interval_s) / static_cast<double>(wheel.intervals);
 }
 
-void SensorWatch::countDropout(Wheel& wheel, const WheelReading& reading) {
+void SensorWatch::countDropout(Wheel& wheel, const TelemetryReading& reading) {
   const bool torque = std::isfinite(reading.torque_Nm), sinkage = std::isfinite(reading.sinkage_m);
   if ((wheel.has_torque && !torque) || (wheel.has_sinkage && !sinkage)) ++dropouts_;
   wheel.has_torque |= torque;
@@ -114,7 +114,7 @@ std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Na
 }
 
 std::optional<std::string> SensorWatch::judge(const Named& named) {
-  const WheelReading& reading = named.reading;
+  const TelemetryReading& reading = named.reading;
   Wheel& wheel = wheels_[named.wheel];
   std::optional<std::string> reason;
   countGap(wheel, reading.time_s);

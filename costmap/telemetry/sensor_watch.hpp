@@ -43,14 +43,14 @@ class SensorWatch {
   /// A wheel's name and what it read.
   struct Named {
     std::string wheel;
-    WheelReading reading;
+    TelemetryReading reading;
   };
 
   /// Why each of the readings of one moment is not believed; nothing where it is. What jumps at all wheels of
   /// several at once is the rover, slipping, and no spike.
   std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
   /// The same of one wheel.
-  std::optional<std::string> refuse(const std::string& wheel, const WheelReading& reading) {
+  std::optional<std::string> refuse(const std::string& wheel, const TelemetryReading& reading) {
     return refuse({{wheel, reading}}).front();
   }
 
@@ -83,17 +83,17 @@ class SensorWatch {
     double interval_s = 0.0;  // between rows, the mean outside gaps
     std::size_t intervals = 0;
     bool has_torque = false, has_sinkage = false;
-    std::deque<WheelReading> last;
+    std::deque<TelemetryReading> last;
     std::size_t equal = 0;
     std::array<Channel, 3> channels{};
   };
 
   std::optional<std::string> judge(const Named& named);
-  bool isSpike(const Wheel& wheel, const WheelReading& reading) const;
-  bool slipsBackwardsUphill(const WheelReading& reading) const noexcept;
-  std::optional<std::string> stuck(Wheel& wheel, const WheelReading& reading) const;
+  bool isSpike(const Wheel& wheel, const TelemetryReading& reading) const;
+  bool slipsBackwardsUphill(const TelemetryReading& reading) const noexcept;
+  std::optional<std::string> stuck(Wheel& wheel, const TelemetryReading& reading) const;
   void countGap(Wheel& wheel, double time_s);
-  void countDropout(Wheel& wheel, const WheelReading& reading);
+  void countDropout(Wheel& wheel, const TelemetryReading& reading);
 
   const GroundModel& model_;
   SensorLimits limits_;

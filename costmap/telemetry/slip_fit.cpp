@@ -253,10 +253,10 @@ SlipFit::OfClass SlipFit::ofClass(int class_index,
   return out;
 }
 
-std::shared_ptr<const FittedDrive> SlipFit::fitted(
+std::shared_ptr<const SlipPosterior> SlipFit::fitted(
     const std::function<double(const std::string& run)>& excess) const {
   const std::size_t classes = model_.parts().classes.size();
-  auto out = std::make_shared<FittedDrive>();
+  auto out = std::make_shared<SlipPosterior>();
   out->departure.assign(classes, {0.0, std::numeric_limits<double>::infinity()});
   out->caution.assign(classes, 0.0);
   for (const GroundClass& ground : model_.parts().classes) out->learned.push_back({0.0, ground.mean_std});

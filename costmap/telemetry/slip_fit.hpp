@@ -14,7 +14,7 @@
 namespace talus::costmap {
 
 /// What the slips of one drive say of their sensor and of the ground of each class, together.
-struct FittedDrive {
+struct SlipPosterior {
   double slip_bias = 0.0;   ///< b: what the sensor reads of a wheel that does not slip [-]
   double slip_scale = 1.0;  ///< s: by which it multiplies slip, 0.2 to 1 [-]
   /// By class: departure of drawbar pull over load at the reference slip from the class, on average of the drive, and what is
@@ -58,7 +58,7 @@ class SlipFit {
   void take(const Moment& moment);
 
   /// The estimate by all moments so far. `excess`: by how much the slopes of a run are measured too steep.
-  std::shared_ptr<const FittedDrive> fitted(
+  std::shared_ptr<const SlipPosterior> fitted(
       const std::function<double(const std::string& run)>& excess) const;
 
   std::size_t moments() const noexcept { return moments_; }

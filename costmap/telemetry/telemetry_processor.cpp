@@ -18,7 +18,7 @@ constexpr double kSlipOfResistance =
 constexpr double kLittleSlip =
     0.5;  // of the class's deviation: what a reading at little slip leaves open (ours)
 
-std::optional<int> classAt(const TraversabilityMap& map, const WheelReading& reading) {
+std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
   const int index = cell ? map.surface().classIndex(*cell, reading.z_m) : -1;
   return index < 0 ? std::nullopt : std::optional(index);
@@ -29,7 +29,7 @@ ClassReading withoutTorque(ClassReading read) {
   return read;
 }
 
-WheelObservation boundOf(const WheelReading& reading, const GroundBound& here) {
+WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& here) {
   WheelObservation out{
       .time_s = reading.time_s, .place = reading.place, .z_m = reading.z_m, .pull = {}, .sinkage = {}};
   out.pose_std_m = reading.pose_std_m;
@@ -113,7 +113,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
 
 std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows& rows,
                                                              std::size_t row) const {
-  const WheelReading reading = rows.reading(row);
+  const TelemetryReading reading = rows.reading(row);
   const auto index = classAt(map_, reading);
   if (!index) return ofUnobserved(reading, rows.steepestDescent(row));
   const GroundBound here = danger_.hear(*index, reading, rows.steepestDescent(row));
@@ -121,7 +121,7 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
 }
 
 // Ground of no class is refused, however it compares with one: the first stands for it.
-std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const WheelReading& reading,
+std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const TelemetryReading& reading,
                                                                  double least_gradient) const {
   const GroundBound here = danger_.hear(0, reading, least_gradient);
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
@@ -196,7 +196,7 @@ void TelemetryProcessor::refit() {
   next_fit_ = fit_.moments() + fit_.moments() / 4;
 }
 
-std::shared_ptr<const FittedDrive> TelemetryProcessor::fitted() const {
+std::shared_ptr<const SlipPosterior> TelemetryProcessor::fitted() const {
   return fit_.fitted([&](const std::string& run) { return proof_.gradientExcess(run); });
 }
 
@@ -255,11 +255,11 @@ std::string TelemetryProcessor::whyNoneRaises() const {
 // By the sensor of the drive, and about the strength of its ground.
 void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
                                std::vector<std::optional<WheelObservation>>& seen) const {
-  const FittedDrive& drive = verdict.drive ? *verdict.drive : *fitted_;
+  const SlipPosterior& drive = verdict.drive ? *verdict.drive : *fitted_;
   const double bias = std::min(drive.slip_bias, std::max(drive.slip_bias - kSlipOfResistance, 0.0));
   std::vector<ClassReading> read = sound.read;
   for (std::size_t i = 0; i < read.size(); ++i) {
-    WheelReading& reading = read[i].reading;
+    TelemetryReading& reading = read[i].reading;
     reading.slip = std::clamp((reading.slip - bias) / drive.slip_scale, -1.0, 1.0);
     reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
   }

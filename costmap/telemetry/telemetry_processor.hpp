@@ -19,7 +19,7 @@ struct DriveVerdict {
   bool without_torque = false;  ///< torque and sinkage are off: they count only where they point to danger
   const SensorProof* proof = nullptr;  ///< null: nothing may raise a belief
   /// Its slip sensor and its ground; null: as the processor knows them by the rows so far.
-  std::shared_ptr<const FittedDrive> drive{};
+  std::shared_ptr<const SlipPosterior> drive{};
 };
 
 /// What is left of an observation when nothing but the bound of its place is believed.
@@ -42,7 +42,7 @@ class TelemetryProcessor {
 
   /// Of one wheel: why it is not believed, or only as a bound of its place, and what it says if it is.
   struct Result {
-    WheelReading reading;
+    TelemetryReading reading;
     std::string reason{};
     std::optional<WheelObservation> observation{};
   };
@@ -72,14 +72,14 @@ class TelemetryProcessor {
     std::vector<bool> danger;
   };
 
-  std::optional<WheelObservation> ofUnobserved(const WheelReading& reading, double least_gradient) const;
+  std::optional<WheelObservation> ofUnobserved(const TelemetryReading& reading, double least_gradient) const;
   GroundBound bound(const ClassReading& read, double least_gradient, bool suspected) const;
   std::vector<std::optional<WheelObservation>> observed(const Sound& sound, const DriveVerdict& verdict);
   void prove(const TelemetryRows& rows, const Sound& sound,
              const std::vector<std::optional<WheelObservation>>& seen);
   void fit(const TelemetryRows& rows, const Sound& sound);
   void refit();
-  std::shared_ptr<const FittedDrive> fitted() const;
+  std::shared_ptr<const SlipPosterior> fitted() const;
   static bool torqueSound(const TelemetryRows& rows, std::size_t row, const DriveVerdict& verdict);
   bool mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
                 const DriveVerdict& verdict) const;
@@ -93,8 +93,8 @@ class TelemetryProcessor {
   SensorWatch watch_;
   SensorProof proof_;
   SlipFit fit_;
-  std::shared_ptr<const FittedDrive> fitted_;  // by some of the moments so far
-  std::size_t next_fit_ = 0;                   // moments from which it is worked out again
+  std::shared_ptr<const SlipPosterior> fitted_;  // by some of the moments so far
+  std::size_t next_fit_ = 0;                     // moments from which it is worked out again
   WheelObserver observer_;
   std::size_t read_ = 0, transferred_ = 0, others_ = 0;
 };

@@ -73,25 +73,26 @@ double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
   return column ? (*column)[i] : std::numeric_limits<double>::quiet_NaN();
 }
 
-WheelReading TelemetryRows::reading(std::size_t i) const {
+TelemetryReading TelemetryRows::reading(std::size_t i) const {
   const auto finite = [](double x) {
     return std::isfinite(x) ? x : std::numeric_limits<double>::quiet_NaN();
   };
-  WheelReading r{.time_s = finite(value(time_, i)),
-                 .place = {x_[i], y_[i]},
-                 .z_m = finite(value(z_, i)),
-                 .load_N = load_[i],
-                 .slip = slip_[i],
-                 .torque_Nm = value(torque_, i),
-                 .sinkage_m = value(sinkage_, i),
-                 .gradient = measuredGradient(i),
-                 .across = std::tan(finite(value(roll_, i))),
-                 .slip_angle_rad = finite(value(slip_angle_, i)),
-                 .drawbar_pull_N = value(pull_, i),
-                 .pose_std_m = std::isfinite(value(pose_, i)) ? std::clamp(value(pose_, i), 0.0, kWorstPose_m)
-                                                              : pose_std_m_,
-                 .pass = 1,
-                 .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
+  TelemetryReading r{.time_s = finite(value(time_, i)),
+                     .place = {x_[i], y_[i]},
+                     .z_m = finite(value(z_, i)),
+                     .load_N = load_[i],
+                     .slip = slip_[i],
+                     .torque_Nm = value(torque_, i),
+                     .sinkage_m = value(sinkage_, i),
+                     .gradient = measuredGradient(i),
+                     .across = std::tan(finite(value(roll_, i))),
+                     .slip_angle_rad = finite(value(slip_angle_, i)),
+                     .drawbar_pull_N = value(pull_, i),
+                     .pose_std_m = std::isfinite(value(pose_, i))
+                                       ? std::clamp(value(pose_, i), 0.0, kWorstPose_m)
+                                       : pose_std_m_,
+                     .pass = 1,
+                     .speed_slip = slipOf(value(speed_, i), value(rim_speed_, i))};
   if (std::isfinite(value(pass_, i))) r.pass = static_cast<int>(value(pass_, i));
   if (std::isnan(r.gradient)) r.gradient = mapGradient(r, heading(i));
   if (std::isnan(r.across)) r.across = mapGradient(r, heading(i) + kQuarterTurn);
@@ -108,7 +109,7 @@ double TelemetryRows::measuredGradient(std::size_t i) const {
 }
 
 // Of the top surface: that of a floor beneath it is not known.
-double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) const {
+double TelemetryRows::mapGradient(const TelemetryReading& r, double direction_rad) const {
   const auto cell = map_.grid().cellAt(r.place);
   if (!cell || std::isnan(direction_rad) || map_.surface().floorAt(*cell, r.z_m))
     return std::numeric_limits<double>::quiet_NaN();
@@ -117,13 +118,13 @@ double TelemetryRows::mapGradient(const WheelReading& r, double direction_rad) c
 }
 
 double TelemetryRows::leastGradient(std::size_t i) const {
-  const WheelReading r = reading(i);
+  const TelemetryReading r = reading(i);
   const double known = std::fmin(measuredSlope(i), mapGradient(r, heading(i)));
   return std::isfinite(known) ? known : steepestDescent(i);
 }
 
 double TelemetryRows::steepestDescent(std::size_t i) const {
-  const WheelReading r = reading(i);
+  const TelemetryReading r = reading(i);
   const double measured = measuredSlope(i);
   const auto cell = map_.grid().cellAt(r.place);
   if (!cell || map_.surface().floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
@@ -162,9 +163,9 @@ bool sameOrUnknown(double value, double of_rover) noexcept {
   return !(std::abs(value - of_rover) > kSameWheel * of_rover);
 }
 
-bool carriesRover(const std::vector<WheelReading>& readings, const terramech::Rover& rover) noexcept {
+bool carriesRover(const std::vector<TelemetryReading>& readings, const terramech::Rover& rover) noexcept {
   double sum_N = 0.0;
-  for (const WheelReading& r : readings) sum_N += r.load_N;
+  for (const TelemetryReading& r : readings) sum_N += r.load_N;
   const double even_N = terramech::wheelLoad_N(rover) * static_cast<double>(readings.size());
   return std::abs(sum_N - even_N) <= kSameWeight * even_N;
 }
@@ -175,7 +176,7 @@ Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const te
   const auto count = static_cast<double>(moment.rows.size());
   bool same = true;
   for (const std::size_t i : moment.rows) {
-    const WheelReading& r = moment.readings.emplace_back(rows.reading(i));
+    const TelemetryReading& r = moment.readings.emplace_back(rows.reading(i));
     middle.x_m += r.place.x_m / count;
     middle.y_m += r.place.y_m / count;
     const double even_N = terramech::wheelLoad_N(rover);
@@ -186,7 +187,7 @@ Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const te
   const bool whole = moment.readings.size() == static_cast<std::size_t>(rover.wheel_count);
   if (!same || !whole || !(std::abs(gradient) > kLevelGradient) || std::isnan(heading)) return moment;
   std::vector<double> along_m;
-  for (const WheelReading& r : moment.readings)
+  for (const TelemetryReading& r : moment.readings)
     along_m.push_back((r.place.x_m - middle.x_m) * std::cos(heading) +
                       (r.place.y_m - middle.y_m) * std::sin(heading));
   const std::vector<double> loads_N = terramech::wheelLoads_N(rover, gradient, along_m);

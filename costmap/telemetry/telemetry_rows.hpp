@@ -25,7 +25,7 @@ class TelemetryRows {
   std::size_t size() const noexcept { return x_.size(); }
 
   /// The slope is the row's own, slope_rad along the heading and roll_rad across it; without it the map's.
-  WheelReading reading(std::size_t i) const;
+  TelemetryReading reading(std::size_t i) const;
   double heading(std::size_t i) const { return value(heading_, i); }
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
@@ -48,7 +48,7 @@ class TelemetryRows {
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
-  double mapGradient(const WheelReading& reading, double direction_rad) const;
+  double mapGradient(const TelemetryReading& reading, double direction_rad) const;
   double measuredSlope(std::size_t i) const;
 
   const TraversabilityMap& map_;
@@ -63,15 +63,15 @@ class TelemetryRows {
 /// the same: such a column is the weight's even share and not a measurement.
 struct Moment {
   std::vector<std::size_t> rows;
-  std::vector<WheelReading> readings;  ///< of each of them
-  bool transferred = false;            ///< whether the loads are computed
+  std::vector<TelemetryReading> readings;  ///< of each of them
+  bool transferred = false;                ///< whether the loads are computed
 };
 
 /// Whether a number of a wheel is that of another, or not known.
 bool sameOrUnknown(double value, double of_rover) noexcept;
 
 /// Whether the wheels of a moment carry what the rover has them carry, on average, within a quarter.
-bool carriesRover(const std::vector<WheelReading>& readings, const terramech::Rover& rover) noexcept;
+bool carriesRover(const std::vector<TelemetryReading>& readings, const terramech::Rover& rover) noexcept;
 
 /// The moment of some rows, one a wheel.
 Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover);

@@ -102,7 +102,7 @@ double radius(GDALDataset& file) {
 // Pixels to read from a file, their grid and the conversion of their values to heights.
 struct Selection {
   FramedRaster from;
-  HeightCode code;
+  HeightConversion code;
   CellBox box;
   Grid grid;            // grid of the result
   GDALDataset* pixels;  // raster of the file as opened; owned through `from`
@@ -124,7 +124,7 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
                                .words = {"elev", "dem", "dtm", "height", "topo", "altitude"},
                                .others = {"slope", "aspect", "shade", "error", "count"}},
                               notes);
-  HeightCode code = heightCode(*file->GetRasterBand(band), radius(*file), notes);
+  HeightConversion code = heightCode(*file->GetRasterBand(band), radius(*file), notes);
   if (options.nodata) code.nodata = options.nodata;
   code.scale *= options.vertical_scale;
   code.offset_m *= options.vertical_scale;

@@ -80,9 +80,9 @@ void blankMarks(std::vector<float>& values, std::optional<double> nodata, std::v
 
 }  // namespace
 
-HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes) {
+HeightConversion heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes) {
   int stated = FALSE;
-  HeightCode code;
+  HeightConversion code;
   const double nodata = band.GetNoDataValue(&stated);
   if (stated != FALSE) code.nodata = nodata;
   const double unit = metres(band.GetUnitType(), notes);
@@ -95,7 +95,8 @@ HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<st
   return code;
 }
 
-void decodeHeights(std::vector<float>& values, const HeightCode& code, std::vector<std::string>& notes) {
+void decodeHeights(std::vector<float>& values, const HeightConversion& code,
+                   std::vector<std::string>& notes) {
   blankMarks(values, code.nodata, notes);
   if (code.scale == 1.0 && code.offset_m == 0.0) return;
   for (float& v : values) v = static_cast<float>(static_cast<double>(v) * code.scale + code.offset_m);

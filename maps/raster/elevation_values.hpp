@@ -9,7 +9,7 @@ class GDALRasterBand;
 namespace talus::maps {
 
 /// Conversion of band values to heights [m]: height = value * scale + offset_m.
-struct HeightCode {
+struct HeightConversion {
   double scale = 1.0;
   double offset_m = 0.0;
   std::optional<double> nodata{};  ///< no-data value of the band, before the conversion
@@ -18,10 +18,10 @@ struct HeightCode {
 /// Conversion by the scale, offset, unit and no-data value that the band states. An offset within 1 % of
 /// `body_radius_m` is measured from the centre of the body, and the radius is subtracted. Decisions are added
 /// to `notes`.
-HeightCode heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes);
+HeightConversion heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes);
 
 /// Converts values to heights in place. The no-data value becomes NaN; without a stated no-data value, so
 /// does a customary undeclared one. Magnitudes above 1e30 become NaN.
-void decodeHeights(std::vector<float>& values, const HeightCode& code, std::vector<std::string>& notes);
+void decodeHeights(std::vector<float>& values, const HeightConversion& code, std::vector<std::string>& notes);
 
 }  // namespace talus::maps

@@ -58,7 +58,7 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
   if (reason.starts_with("PROJ"))
     throw InputError({path, "cannot be written: " + reason,
                       "PROJ lacks its data: correct or unset PROJ_LIB and PROJ_DATA"});
-  file.fail(reason);
+  file.failToGrow(reason);
 }
 
 // Closes the file, which flushes all data: write errors may appear only here.
@@ -66,8 +66,23 @@ void finish(Dataset dataset, OutputFile& file, const std::string& path, const Gd
   dataset->FlushCache();
   dataset.reset();
   if (errors.any()) fail(file, path, errors);
-  file.commit();
+  file.sync();
 }
+
+// The caller's file, or one of the call's own.
+class Target {
+ public:
+  explicit Target(const GeoTiff& file) : file_(file.into != nullptr ? *file.into : own_.emplace(file.path)) {}
+
+  OutputFile& operator*() { return file_; }
+  void commit() {
+    if (own_) own_->commit();
+  }
+
+ private:
+  std::optional<OutputFile> own_{};
+  OutputFile& file_;
+};
 
 void describe(GDALRasterBand& band, const std::vector<NamedClass>& classes) {
   GDALColorTable colours;
@@ -132,35 +147,39 @@ void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
   checkGrids(layers);
   const Grid& grid = layers.front().values.grid();
   const GdalErrors errors;
-  OutputFile output(file.path);
+  Target target(file);
+  OutputFile& output = *target;
   Dataset dataset = create(output.temporary(), grid, {.bands = static_cast<int>(layers.size())});
-  if (!dataset) output.fail(errors.last());
+  if (!dataset) output.failToGrow(errors.last());
   place(*dataset, grid, file.georeference);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(i) + 1);
     band.SetDescription(layers[i].name.c_str());
     if (!layers[i].unit.empty()) band.SetUnitType(layers[i].unit.c_str());
     band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.fail(errors.last());
+    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.failToGrow(errors.last());
   }
   finish(std::move(dataset), output, file.path, errors);
+  target.commit();
 }
 
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes) {
   if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
   const GdalErrors errors;
-  OutputFile output(file.path);
+  Target target(file);
+  OutputFile& output = *target;
   Dataset dataset = create(output.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
-  if (!dataset) output.fail(errors.last());
+  if (!dataset) output.failToGrow(errors.last());
   place(*dataset, values.grid(), file.georeference);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   band.SetDescription(name.c_str());
   if (nodata) band.SetNoDataValue(*nodata);
   if (!classes.empty()) describe(band, classes);
-  if (writeBand(band, values, GDT_Byte) != CE_None) output.fail(errors.last());
-  if (!classes.empty() && !addOverviews(*dataset, values)) output.fail(errors.last());
+  if (writeBand(band, values, GDT_Byte) != CE_None) output.failToGrow(errors.last());
+  if (!classes.empty() && !addOverviews(*dataset, values)) output.failToGrow(errors.last());
   finish(std::move(dataset), output, file.path, errors);
+  target.commit();
 }
 
 }  // namespace talus::maps

@@ -8,6 +8,10 @@
 
 #include <talus/maps/terrain/elevation_map.hpp>
 
+namespace talus {
+class OutputFile;
+}
+
 namespace talus::maps {
 
 /// One band of a GeoTIFF.
@@ -21,6 +25,7 @@ struct Layer {
 struct GeoTiff {
   std::string path{};
   const Georeference* georeference = nullptr;  ///< null: local metres without a CRS
+  OutputFile* into = nullptr;  ///< null: a file of its own; else the caller commits it, as one of several
 };
 
 /// Writes layers on a common grid as a tiled, compressed GeoTIFF. The file replaces `path` atomically

@@ -56,7 +56,7 @@ void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& va
 
 }  // namespace
 
-int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes) {
+int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::string>& notes) {
   const int count = file.GetRasterCount();
   if (wish.band) {
     if (*wish.band >= 1 && *wish.band <= count) {

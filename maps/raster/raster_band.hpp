@@ -17,7 +17,7 @@ namespace talus::maps {
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Criteria for the choice of a band.
-struct BandWish {
+struct BandCriteria {
   std::string path{};                      ///< path in error messages
   std::optional<int> band{};               ///< selected by the user, from 1
   std::vector<std::string_view> words{};   ///< lower-case substrings of the description that select a band
@@ -27,7 +27,7 @@ struct BandWish {
 /// The selected band, else the first band whose description fits, else the first band. A choice among several
 /// bands is recorded in `notes`. @throws InputError for a band that does not exist, or for a colour image
 /// without a selected band
-int chooseBand(GDALDataset& file, const BandWish& wish, std::vector<std::string>& notes);
+int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::string>& notes);
 
 /// A rectangle of pixels, counted from the upper left corner.
 struct PixelBox {

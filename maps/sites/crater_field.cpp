@@ -57,7 +57,7 @@ std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options) 
   const double greatest = 1 / std::pow(options.greatest_diameter_m, 2);
   const auto count =
       static_cast<std::size_t>(options.density * width_m * height_m * std::max(0.0, least - greatest));
-  RandomRow random(options.seed);
+  RandomSequence random(options.seed);
   std::vector<Crater> craters(count);
   for (Crater& c : craters) {
     c.centre = {grid.south_west.x_m - margin_m + width_m * random(),

@@ -67,7 +67,7 @@ class DunePlain final : public Landscape {
         dunes_({.seed = mixed(seed + 2),
                 .wavelength_m = wavelength(grid),
                 .height_m = wavelength(grid) / 10,
-                .wind_rad = 2 * std::numbers::pi * RandomRow(mixed(seed + 3))()}),
+                .wind_rad = 2 * std::numbers::pi * RandomSequence(mixed(seed + 3))()}),
         outcrop_m_(1.5 * wavelength(grid)) {}
 
   Ground at(Point p) const override {

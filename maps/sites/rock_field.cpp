@@ -12,7 +12,7 @@ constexpr double kPatch_m = 8.0;  // side of a square with constant abundance
 constexpr int kSizes = 12;        // number of diameter intervals, in geometric progression
 
 // Random integer with the given mean: floor(mean) or floor(mean) + 1.
-int chance(double mean, RandomRow& random) {
+int chance(double mean, RandomSequence& random) {
   return static_cast<int>(mean + random());
 }
 
@@ -30,7 +30,7 @@ double rockDecay_per_m(double total_share) {
 std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>& abundance,
                             const RockOptions& options) {
   std::vector<Rock> rocks;
-  RandomRow random(options.seed);
+  RandomSequence random(options.seed);
   const double width_m = grid.width * grid.resolution_m;
   const double height_m = grid.height * grid.resolution_m;
   const double step = std::pow(options.greatest_diameter_m / options.least_diameter_m, 1.0 / kSizes);

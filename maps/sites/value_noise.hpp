@@ -15,9 +15,9 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
 
 /// Sequence of uniform random numbers in [0, 1) from a seed: mixed() of a counter. Each generator of a site
 /// has a sequence of its own.
-class RandomRow {
+class RandomSequence {
  public:
-  explicit RandomRow(std::uint64_t seed) noexcept : state_(seed) {}
+  explicit RandomSequence(std::uint64_t seed) noexcept : state_(seed) {}
 
   double operator()() noexcept { return static_cast<double>(mixed(state_++) >> 11) * 0x1.0p-53; }
 

@@ -1,4 +1,4 @@
-// RFC 7946, with one word of our own: "crs": "local" for map metres.
+// RFC 7946 with one extension: "crs": "local" for map coordinates in metres.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -23,8 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepestNesting =
-    100;  // ten serve all geometries; what walks through a value takes stack for each
+constexpr int kDeepestNesting = 100;  // geometries need ten levels; recursive functions use stack per level
 
 std::string typeOf(const json& object) {
   if (!object.is_object()) return "";
@@ -32,7 +31,7 @@ std::string typeOf(const json& object) {
   return type != object.end() && type->is_string() ? type->get<std::string>() : "";
 }
 
-// A tree of nlohmann::json takes up to 28 bytes for each byte of text ("{},{}"), the names in open objects some more.
+// nlohmann::json needs up to 28 bytes per byte of text ("{},{}"), plus memory for the names in open objects.
 constexpr double kMemoryPerByte = 32.0;
 
 void collect(const json& object, std::vector<std::reference_wrapper<const json>>& out) {
@@ -57,7 +56,7 @@ const json* memberOf(const json& object, const char* name) {
   return found == object.end() || found->is_null() ? nullptr : &*found;
 }
 
-// The word stands at the top, as the routes have it, or among a feature's properties.
+// "crs" is a member of the document, as in routes, or of the properties of a feature.
 bool saysLocal(const json& document) {
   const auto is_local = [](const json* object) {
     const json* crs = object == nullptr ? nullptr : memberOf(*object, "crs");
@@ -69,7 +68,7 @@ bool saysLocal(const json& document) {
          is_local(memberOf(features->front(), "properties"));
 }
 
-// The name of a "crs" at the top, as GeoJSON had it before RFC 7946: {"type":"name","properties":{"name":NAME}}.
+// Name in a top-level "crs" of GeoJSON before RFC 7946: {"type":"name","properties":{"name":NAME}}.
 std::optional<std::string> crsName(const json& document) {
   const json* crs = memberOf(document, "crs");
   if (crs == nullptr) return std::nullopt;
@@ -79,7 +78,7 @@ std::optional<std::string> crsName(const json& document) {
   return name != nullptr && name->is_string() ? name->get<std::string>() : crs->dump();
 }
 
-// The name comes from a file: no file and no network is asked for it.
+// The name comes from an untrusted file: no file or network access is permitted for its interpretation.
 OGRSpatialReference systemNamed(const std::string& crs) {
   const GdalErrors errors;
   OGRSpatialReference system;
@@ -89,7 +88,7 @@ OGRSpatialReference systemNamed(const std::string& crs) {
   return system;
 }
 
-// Files name WGS 84 on any body, since RFC 7946 has no other word.
+// WGS 84 is accepted on any body, because RFC 7946 defines no other system.
 void checkBody(const OGRSpatialReference& system, const std::string& of_map, const std::string& named,
                const std::string& path) {
   const std::string body = bodyName({system.GetSemiMajor(), 0.0});
@@ -112,7 +111,7 @@ void checkCrs(const json& document, const std::optional<Georeference>& of_map, c
   checkBody(system, of_map->body(), named, path);
 }
 
-// The last of two members of one name would silently win.
+// Refuses duplicate members of an object, of which the last would be used without notice.
 class OnceEach {
  public:
   explicit OnceEach(const std::string& path) : path_(path) {}

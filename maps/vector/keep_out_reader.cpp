@@ -1,11 +1,15 @@
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <ogr_geometry.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
+#include <talus/common/plausible.hpp>
 #include <talus/maps/grid/polygon_cover.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
 #include <talus/maps/terrain/place.hpp>
@@ -17,19 +21,32 @@ namespace {
 
 using nlohmann::json;
 
-/// Draws a document's features one by one and refuses each that would close no ground wherever the map lay.
+// Memory of GDAL's geometry, the ring and its edges per byte of a position of 16 bytes.
+constexpr double kMemoryPerWkbByte = 8.0;
+
+/// Rasterises the features of a file one by one. Refuses each feature that would exclude no ground on any
+/// map.
 class KeepOutReader {
  public:
-  KeepOutReader(const std::string& path, const json& document, const ElevationMap& map)
-      : path_(path), read_(document, map, path), keep_out_{.mask = Raster<std::uint8_t>(map.grid())} {}
+  KeepOutReader(const std::string& path, const ElevationMap& map)
+      : path_(path), keep_out_{.mask = Raster<std::uint8_t>(map.grid())} {}
 
-  KeepOut drawn(const json& document, const std::string& map_source) && {
-    if (typeOf(document) == "FeatureCollection") {
-      const json& features = listOf(document, "features");
-      for (std::size_t i = 0; i < features.size(); ++i) drawFeature(features[i], i + 1);
-    } else {
-      drawFeature(document, 1);
-    }
+  void drawDocument(const json& document, const ElevationMap& map) {
+    read_.emplace(document, map, path_);
+    if (typeOf(document) == "FeatureCollection")
+      for (const json& feature : listOf(document, "features")) drawFeature(feature);
+    else
+      drawFeature(document);
+  }
+
+  void drawFeature(const std::string& name, const OGRGeometry* drawn) {
+    begin(name);
+    if (drawn == nullptr) refuse("has no geometry", "write its polygon, or remove it");
+    requireMemory(kMemoryPerWkbByte * static_cast<double>(drawn->WkbSize()), path_);
+    drawGeometry(*drawn);
+  }
+
+  KeepOut drawn(const std::string& map_source) && {
     if (polygons_ == 0) throw InputError({path_, "holds no Polygon", "write the keep-out areas as polygons"});
     if (static_cast<int>(beside_.size()) == polygons_)
       throw InputError({path_, "no polygon overlaps map '" + map_source + "'",
@@ -56,19 +73,30 @@ class KeepOutReader {
     return *found;
   }
 
-  void drawFeature(const json& feature, std::size_t number) {
-    feature_ = "feature " + std::to_string(number);
-    const bool is_feature = typeOf(feature) == "Feature";
-    if (is_feature) {
-      if (const auto properties = feature.find("properties");
-          properties != feature.end() && properties->is_object())
-        if (const auto name = properties->find("name"); name != properties->end() && name->is_string())
-          feature_ += " '" + name->get<std::string>().substr(0, 40) + "'";
-    }
+  void begin(const std::string& name) {
+    feature_ =
+        "feature " + std::to_string(++features_) + (name.empty() ? "" : " '" + name.substr(0, 40) + "'");
     owner_ = feature_ + ": ";
+  }
+
+  static std::string nameOf(const json& feature) {
+    const auto properties = feature.find("properties");
+    if (properties == feature.end() || !properties->is_object()) return "";
+    const auto name = properties->find("name");
+    return name != properties->end() && name->is_string() ? name->get<std::string>() : "";
+  }
+
+  void drawFeature(const json& feature) {
+    const bool is_feature = typeOf(feature) == "Feature";
+    begin(is_feature ? nameOf(feature) : "");
     if (!is_feature) return drawGeometry(feature);
     if (!feature.contains("geometry")) refuse("has no geometry", "write its polygon, or remove it");
     drawGeometry(feature["geometry"]);
+  }
+
+  [[noreturn]] void refuseType(const std::string& type) const {
+    refuse(type.empty() ? "has no geometry" : type.substr(0, 40) + " is no Polygon and keeps nothing out",
+           "write it as a Polygon, or remove it");
   }
 
   void drawGeometry(const json& geometry) {
@@ -80,27 +108,72 @@ class KeepOutReader {
     } else if (type == "MultiPolygon") {
       for (const json& rings : listOf(geometry, "coordinates")) draw(rings);
     } else {
-      refuse(type.empty() ? "has no geometry" : type.substr(0, 40) + " is no Polygon and keeps nothing out",
-             "write it as a Polygon, or remove it");
+      refuseType(type);
     }
   }
 
+  void drawGeometry(const OGRGeometry& geometry) {
+    switch (wkbFlatten(geometry.getGeometryType())) {
+      case wkbPolygon:
+      case wkbTriangle:
+        return draw(*geometry.toPolygon());
+      case wkbMultiPolygon:
+      case wkbGeometryCollection:
+        for (const OGRGeometry* part : *geometry.toGeometryCollection()) drawGeometry(*part);
+        return;
+      default:
+        refuseType(OGRToOGCGeomType(geometry.getGeometryType()));
+    }
+  }
+
+  [[noreturn]] void refuseShortRing() const {
+    refuse("a ring of a polygon has fewer than four positions", "close it on its first position");
+  }
+
+  Ring ring(const OGRLinearRing& positions) const {
+    if (positions.getNumPoints() < 4) refuseShortRing();
+    Ring out(static_cast<std::size_t>(positions.getNumPoints()));
+    for (int i = 0; i < positions.getNumPoints(); ++i) {
+      const Point at{positions.getX(i), positions.getY(i)};
+      if (!plausible(at.x_m) || !plausible(at.y_m))
+        refuse("position " + std::to_string(i + 1) + " of a ring: " + kPlausible, "correct the position");
+      out[static_cast<std::size_t>(i)] = at;
+    }
+    return out;
+  }
+
+  void draw(const OGRPolygon& rings) {
+    if (rings.getExteriorRing() == nullptr) refuse("a polygon has no ring", "draw it again");
+    Polygon polygon = outside(ring(*rings.getExteriorRing()));
+    for (int i = 0; i < rings.getNumInteriorRings(); ++i)
+      polygon.holes.push_back(ring(*rings.getInteriorRing(i)));
+    draw(polygon);
+  }
+
   Ring ring(const json& positions) const {
-    if (!positions.is_array() || positions.size() < 4)
-      refuse("a ring of a polygon has fewer than four positions", "close it on its first position");
+    if (!positions.is_array() || positions.size() < 4) refuseShortRing();
     Ring out;
-    for (const json& position : positions) out.push_back(read_(position));
+    for (const json& position : positions) out.push_back((*read_)(position));
     return out;
   }
 
   void draw(const json& rings) {
     if (!rings.is_array() || rings.empty()) refuse("a polygon has no ring", "see RFC 7946");
-    Polygon polygon{.outer = ring(rings.front())};
+    Polygon polygon = outside(ring(rings.front()));
+    for (std::size_t i = 1; i < rings.size(); ++i) polygon.holes.push_back(ring(rings[i]));
+    draw(polygon);
+  }
+
+  Polygon outside(Ring ring) const {
+    Polygon polygon{.outer = std::move(ring)};
     if (!enclosesGround(polygon))
       refuse("a polygon encloses no ground",
              "its positions lie in one line or it runs back on itself: correct it");
-    for (std::size_t i = 1; i < rings.size(); ++i) polygon.holes.push_back(ring(rings[i]));
-    if (!enclosesGround(polygon))
+    return polygon;
+  }
+
+  void draw(const Polygon& polygon) {
+    if (!polygon.holes.empty() && !enclosesGround(polygon))
       refuse("the holes of a polygon cover all of it", "remove the hole that is as large as its ring");
     ++polygons_;
     if (!cover(polygon, keep_out_.mask)) beside_.push_back(feature_);
@@ -116,18 +189,22 @@ class KeepOutReader {
   }
 
   const std::string& path_;
-  PositionReader read_;
+  std::optional<PositionReader> read_{};
   KeepOut keep_out_;
   std::string feature_, owner_;
   std::vector<std::string> beside_;
+  std::size_t features_ = 0;
   int polygons_ = 0;
 };
 
 }  // namespace
 
 KeepOut readKeepOut(const std::string& path, const ElevationMap& map) {
-  const json document = readVector(path, map);
-  return KeepOutReader(path, document, map).drawn(document, map.source);
+  KeepOutReader reader(path, map);
+  const auto document = visitVector(
+      path, map, [&](const std::string& name, const OGRGeometry* drawn) { reader.drawFeature(name, drawn); });
+  if (document) reader.drawDocument(*document, map);
+  return std::move(reader).drawn(map.source);
 }
 
 }  // namespace talus::maps

@@ -6,9 +6,9 @@
 
 namespace talus::maps {
 
-/// A place as a user gives it, in map metres inside the map: "x,y", "lat,lon" with a trailing d, or the path
-/// of a GeoJSON file whose first point it is (longitude, latitude; map metres where the file says "crs":
-/// "local"). `name` opens the error line ("--start").
+/// Parses a place given by the user; returns map coordinates inside the map [m]. Accepts "x,y", "lat,lon"
+/// with a trailing d, or the path of a GeoJSON file, whose first point is used (longitude, latitude; map
+/// metres if the file has "crs": "local"). `name` begins the error message ("--start").
 /// @throws InputError
 Point readPlace(const std::string& text, const ElevationMap& map, const std::string& name);
 

@@ -25,8 +25,9 @@ namespace {
 
 using nlohmann::json;
 
-// A position of 16 bytes takes some 120 as JSON, and its text for a while.
+// A position of 16 bytes needs about 120 bytes as JSON, and temporarily memory for its text.
 constexpr double kMemoryPerWkbByte = 12.0;
+constexpr std::size_t kWkbBytesPerPosition = 16;
 
 bool beginsAsJson(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -35,35 +36,29 @@ bool beginsAsJson(const std::string& path) {
   return c == '{' || c == '[';
 }
 
-// GDAL's driver of GPX lists the points of routes and tracks once more.
+// Returns true for GDAL's GPX layers that repeat the points of routes and tracks.
 bool isCopy(const std::string& layer) {
   return layer == "route_points" || layer == "track_points";
 }
 
-// Reads layers of one file, each from its own CRS into the map's.
+// Reads layers of one file and transforms each from its CRS to that of the map.
 class FeatureReader {
  public:
-  FeatureReader(const ElevationMap& map, const std::string& path, const GdalErrors& errors)
-      : map_(map), path_(path), errors_(errors) {}
+  FeatureReader(const ElevationMap& map, const std::string& path, const FeatureVisitor& visit)
+      : map_(map), path_(path), visit_(visit) {}
 
   void read(OGRLayer& layer) {
     if (layer.GetGeomType() == wkbNone) return;
     const auto to_map = transformationOf(layer);
     for (const auto& feature : layer) {
-      const OGRGeometry* drawn = feature->GetGeometryRef();
-      features_.push_back({{"type", "Feature"},
-                           {"properties", {{"name", nameOf(*feature)}}},
-                           {"geometry", drawn == nullptr ? json() : inMetres(*drawn, to_map.get())}});
+      ++features_;
+      visit_(nameOf(*feature), inMetres(*feature, to_map.get()).get());
       refuseDamage();
     }
     refuseDamage();
   }
 
-  json document() && {
-    if (features_.empty())
-      throw InputError({path_, "contains no feature", "draw the places, lines or areas in it"});
-    return {{"type", "FeatureCollection"}, {"crs", "local"}, {"features", std::move(features_)}};
-  }
+  std::size_t features() const { return features_; }
 
  private:
   void refuseDamage() const {
@@ -77,11 +72,11 @@ class FeatureReader {
     return field < 0 ? "" : feature.GetFieldAsString(field);
   }
 
-  // None where both are local metres.
+  // Transformation to the map's CRS; null if both are in local metres.
   Transformation transformationOf(const OGRLayer& layer) const {
     const OGRSpatialReference* stated = const_cast<OGRLayer&>(layer).GetSpatialRef();
     const std::string name = stated != nullptr && stated->GetName() != nullptr ? stated->GetName() : "";
-    // GeoPackages without a CRS have an "Undefined geographic SRS".
+    // GeoPackages without a CRS contain an "Undefined geographic SRS".
     const bool usable = stated != nullptr && (stated->IsProjected() != 0 || stated->IsGeographic() != 0) &&
                         !name.starts_with("Undefined ");
     const std::string owner =
@@ -109,39 +104,69 @@ class FeatureReader {
     return made;
   }
 
-  json inMetres(const OGRGeometry& drawn, OGRCoordinateTransformation* to_map) {
-    bytes_ += static_cast<double>(drawn.WkbSize());
-    requireMemory(kMemoryPerWkbByte * bytes_, path_);
-    const std::unique_ptr<OGRGeometry> geometry(drawn.getLinearGeometry());
-    geometry->flattenTo2D();
-    if (to_map != nullptr && geometry->transform(to_map) != OGRERR_NONE)
+  std::unique_ptr<OGRGeometry> inMetres(OGRFeature& feature, OGRCoordinateTransformation* to_map) const {
+    std::unique_ptr<OGRGeometry> drawn(feature.StealGeometry());
+    if (!drawn) return drawn;
+    if (drawn->hasCurveGeometry()) drawn.reset(drawn->getLinearGeometry());
+    drawn->flattenTo2D();
+    if (to_map != nullptr && drawn->transform(to_map) != OGRERR_NONE)
       throw InputError(
           {path_, "has a position outside the range of the map's CRS: " + errors_.last(), "check its CRS"});
-    const char* options[] = {"COORDINATE_PRECISION=17", nullptr};
-    const std::unique_ptr<char, decltype(&CPLFree)> text(
-        OGR_G_ExportToJsonEx(OGRGeometry::ToHandle(geometry.get()), const_cast<char**>(options)), CPLFree);
-    return text ? json::parse(text.get(), nullptr, false) : json();
+    return drawn;
   }
 
   const ElevationMap& map_;
   const std::string& path_;
-  const GdalErrors& errors_;
-  json features_ = json::array();
-  double bytes_ = 0.0;
+  const FeatureVisitor& visit_;
+  const GdalErrors errors_{};
+  std::size_t features_ = 0;
 };
+
+json asJson(const OGRGeometry& drawn) {
+  const char* options[] = {"COORDINATE_PRECISION=17", nullptr};
+  const std::unique_ptr<char, decltype(&CPLFree)> text(
+      OGR_G_ExportToJsonEx(OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&drawn)),
+                           const_cast<char**>(options)),
+      CPLFree);
+  return text ? json::parse(text.get(), nullptr, false) : json();
+}
 
 }  // namespace
 
-json readVector(const std::string& path, const ElevationMap& map) {
+std::optional<json> visitVector(const std::string& path, const ElevationMap& map,
+                                const FeatureVisitor& visit) {
   requireReadableFile(path);
   if (beginsAsJson(path))
     if (json document = readGeoJson(path); !map.georeference || !namesProjectedCrs(document)) return document;
   const Dataset file = openVector(path);
-  const GdalErrors errors;
-  FeatureReader reader(map, path, errors);
+  FeatureReader reader(map, path, visit);
   for (OGRLayer* layer : file->GetLayers())
     if (!isCopy(layer->GetName())) reader.read(*layer);
-  return std::move(reader).document();
+  if (reader.features() == 0)
+    throw InputError({path, "contains no feature", "draw the places, lines or areas in it"});
+  return std::nullopt;
+}
+
+json readVector(const std::string& path, const ElevationMap& map) {
+  json features = json::array();
+  std::size_t bytes = 0;
+  auto document = visitVector(path, map, [&](const std::string& name, const OGRGeometry* drawn) {
+    bytes += drawn == nullptr ? 0 : drawn->WkbSize();
+    requireFewPositions(bytes / kWkbBytesPerPosition, path);
+    requireMemory(kMemoryPerWkbByte * static_cast<double>(bytes), path);
+    features.push_back({{"type", "Feature"},
+                        {"properties", {{"name", name}}},
+                        {"geometry", drawn == nullptr ? json() : asJson(*drawn)}});
+  });
+  if (document) return std::move(*document);
+  return {{"type", "FeatureCollection"}, {"crs", "local"}, {"features", std::move(features)}};
+}
+
+void requireFewPositions(std::size_t positions, const std::string& path) {
+  constexpr std::size_t kMost = 1'000'000;
+  if (positions > kMost)
+    throw InputError({path, "contains " + std::to_string(positions) + " positions, more than a million",
+                      "simplify its lines, as by ogr2ogr -simplify METRES OUT IN, or split it"});
 }
 
 bool isNamedAsVector(const std::string& path) {

@@ -20,9 +20,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kDocument = "DOCUMENT";
-constexpr const char* kDomain = "TALUS";  // of metadata: programs list the default one
+constexpr const char* kDomain = "TALUS";  // metadata domain; programs list only the default domain
 
-// A file in memory, removed in the end.
+// An in-memory file, removed by the destructor.
 struct MemoryFile {
   std::string name;
 
@@ -58,7 +58,7 @@ void setField(OGRFeature& feature, const std::string& name, const Json& value) {
     feature.SetField(field, value.get<double>());
 }
 
-// Positions in the CRS of the file.
+// Converts positions to the CRS of the file.
 class Placer {
  public:
   Placer(const std::string& driver, const ElevationMap& map, const std::string& path)
@@ -135,7 +135,7 @@ std::string vectorFile(const std::string& driver, const ElevationMap& map,
   const Placer placed(driver, map, path);
   GDALDriver& format = driverNamed(driver.c_str());
   const GdalErrors errors;
-  // Not the moment of writing: the same route is the same bytes.
+  // Fixed date instead of the current time: the same route gives the same bytes.
   const CPLConfigOptionSetter date("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z", false);
   const MemoryFile memory(driver == "GPKG" ? "gpkg" : driver == "GPX" ? "gpx" : "kml");
   {

@@ -19,15 +19,15 @@ using Clock = std::chrono::steady_clock;
 
 // Result of a run as sent through the pipe, followed by the progress. Both ends run the same program, so the
 // memory layout is identical.
-struct Answer {
+struct RunResult {
   RouteStatus status = RouteStatus::NoneFound;
   bool breached = false;
   double seconds = 0.0, cost_J = 0.0, lower_bound_J = 0.0, length_m = 0.0;
   int turns = 0;
-  DriveShape drive;
+  RouteShape drive;
   double clearance_cells = 0.0;
   double megabytes = 0.0;
-  SlipDrive went;
+  SlipTraverse went;
 };
 
 double lengthOf(const std::vector<maps::Point>& points) {
@@ -90,17 +90,17 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
   std::erase_if(progress, [&](const CostAtTime& at) { return at.cost_J < found.cost_J; });
   if (found.status == RouteStatus::Found) note(found.cost_J);
   const double seconds = elapsed();
-  const Answer result{.status = found.status,
-                      .breached = breached(asked, found),
-                      .seconds = seconds,
-                      .cost_J = found.cost_J,
-                      .lower_bound_J = found.lower_bound_J,
-                      .length_m = lengthOf(found.points),
-                      .turns = std::max(0, static_cast<int>(found.points.size()) - 2),
-                      .drive = shape(found.drive),
-                      .clearance_cells = clearance_cells(*asked.map, found.points),
-                      .megabytes = 0.0,
-                      .went = asked.world ? driven(*asked.world, found.points) : SlipDrive{}};
+  const RunResult result{.status = found.status,
+                         .breached = breached(asked, found),
+                         .seconds = seconds,
+                         .cost_J = found.cost_J,
+                         .lower_bound_J = found.lower_bound_J,
+                         .length_m = lengthOf(found.points),
+                         .turns = std::max(0, static_cast<int>(found.points.size()) - 2),
+                         .drive = shape(found.drive),
+                         .clearance_cells = clearance_cells(*asked.map, found.points),
+                         .megabytes = 0.0,
+                         .went = asked.world ? driven(*asked.world, found.points) : SlipTraverse{}};
   std::string bytes(sizeof result + progress.size() * sizeof(CostAtTime), '\0');
   std::memcpy(bytes.data(), &result, sizeof result);
   if (!progress.empty())
@@ -113,8 +113,8 @@ std::string answered(const BenchmarkPlan& plan, const BenchmarkJob& job) {
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job, const ProgressMonitor& watch) {
   const double longest_s = std::min(1e6, 10.0 * plan.time_limit_s + 60.0);  // time limit of the child process
   const ChildAnswer answer = inChild([&] { return answered(plan, job); }, {.seconds = longest_s}, watch);
-  if (answer.bytes.size() < sizeof(Answer)) return {};
-  Answer result;
+  if (answer.bytes.size() < sizeof(RunResult)) return {};
+  RunResult result;
   std::memcpy(&result, answer.bytes.data(), sizeof result);
   result.megabytes = answer.megabytes;
   return std::string(reinterpret_cast<const char*>(&result), sizeof result) +
@@ -126,9 +126,9 @@ BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes) {
   run.planner = job.planner;
   run.case_index = job.case_index;
   run.seed = job.seed;
-  run.crashed = bytes.size() < sizeof(Answer);
+  run.crashed = bytes.size() < sizeof(RunResult);
   if (run.crashed) return run;
-  Answer result;
+  RunResult result;
   std::memcpy(&result, bytes.data(), sizeof result);
   run.progress.resize((bytes.size() - sizeof result) / sizeof(CostAtTime));
   if (!run.progress.empty())

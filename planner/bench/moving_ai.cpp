@@ -14,10 +14,10 @@ struct Scenario {
   double optimum = 0.0;
 };
 
-std::shared_ptr<const costmap::DriveCost> flatCost() {
-  costmap::DriveCurve curve{};
+std::shared_ptr<const costmap::TravelCost> flatCost() {
+  costmap::TravelCurve curve{};
   curve.cost_J_per_m.fill(1.0F);
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
 }
 
 [[noreturn]] void refuse(const std::string& path, std::size_t line, const std::string& reason) {

@@ -15,8 +15,8 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCurve;
-using costmap::DriveTable;
+using costmap::TravelCurve;
+using costmap::TravelTable;
 
 constexpr double kSpeed_mps = 0.1;
 constexpr int kTerrains = 10;
@@ -152,12 +152,12 @@ double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t s
   return std::max(0.0, tailMean(parts, options.tail));
 }
 
-costmap::DriveGround believed(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
-                              const SlipWorldOptions& options) {
-  costmap::DriveGround made;
-  auto states = std::make_shared<DriveTable>();
-  for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-    const double gradient = DriveCurve::gradient(bin);
+costmap::GroundCost believed(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
+                             const SlipWorldOptions& options) {
+  costmap::GroundCost made;
+  auto states = std::make_shared<TravelTable>();
+  for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+    const double gradient = TravelCurve::gradient(bin);
     const double slip = believedSlip(world, ground, seen, gradient, options);
     const bool stands = slip >= 1.0;
     const double seconds = std::hypot(1.0, gradient) / (kSpeed_mps * (1.0 - slip));
@@ -175,7 +175,7 @@ costmap::DriveGround believed(const SlipWorld& world, const Ground& ground, std:
 std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, const Ground& ground,
                                                      const maps::Raster<float>& heights,
                                                      const SlipWorldOptions& options) {
-  std::vector<costmap::DriveGround> curves;
+  std::vector<costmap::GroundCost> curves;
   for (std::uint8_t k = 0; k < kTerrains; ++k) curves.push_back(believed(world, ground, k, options));
   const maps::Grid& grid = heights.grid();
   maps::Raster<CellCode> cells(grid);
@@ -189,9 +189,9 @@ std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, con
                    north = (height(column, row + 1) - height(column, row - 1)) / (2.0 * grid.resolution_m);
       cells[{column, row}] = CellCode({.dz_dx = east, .dz_dy = north, .curve = world.seen[{column, row}]});
     }
-  const costmap::DriveCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
+  const costmap::TravelCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
   return std::make_shared<costmap::CostGrid>(
-      costmap::flattened(cells, std::make_shared<costmap::DriveCost>(limits, curves)));
+      costmap::flattened(cells, std::make_shared<costmap::TravelCost>(limits, curves)));
 }
 
 }  // namespace
@@ -221,10 +221,10 @@ SlipWorld slipWorld(const SlipWorldOptions& options) {
   return world;
 }
 
-SlipDrive driven(const SlipWorld& world, const std::vector<maps::Point>& route) {
+SlipTraverse driven(const SlipWorld& world, const std::vector<maps::Point>& route) {
   constexpr double kStep_cells = 0.1;
   const maps::Grid& grid = world.map->grid();
-  SlipDrive drive{.reached = true};
+  SlipTraverse drive{.reached = true};
   const auto points = subdivided(route, kStep_cells * grid.resolution_m);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double dx = points[i].x_m - points[i - 1].x_m, dy = points[i].y_m - points[i - 1].y_m;

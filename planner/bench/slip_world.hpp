@@ -49,13 +49,13 @@ struct SlipWorld {
 SlipWorld slipWorld(const SlipWorldOptions& options);
 
 /// Result of driving a route in a slip world.
-struct SlipDrive {
+struct SlipTraverse {
   bool reached = false;   ///< false: the rover was immobilised, spinning or sliding: |slip| >= 1 on some cell
   double time_s = 0.0;    ///< at 0.1 m/s rim speed, to the goal or to the place of immobilisation
   double max_slip = 0.0;  ///< largest magnitude on the route, at most 1 [-]
 };
 
 /// Drives a route over the true terrains, cell by cell.
-SlipDrive driven(const SlipWorld& world, const std::vector<maps::Point>& route);
+SlipTraverse driven(const SlipWorld& world, const std::vector<maps::Point>& route);
 
 }  // namespace talus::planner

@@ -11,19 +11,19 @@
 namespace talus::planner {
 namespace {
 
-using Prices = DirectionalLowerBounds::Prices;
+using DirectionCosts = DirectionalLowerBounds::DirectionCosts;
 
 // Cost of a heading without an allowed motion.
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-Prices nothing() noexcept {
-  Prices prices{};
+DirectionCosts nothing() noexcept {
+  DirectionCosts prices{};
   prices.fill(kNone);
   return prices;
 }
 
 // Lowers each cost above (its neighbours' sum) / sqrt(2). Returns true if any cost changed.
-bool lowered(Prices& prices) noexcept {
+bool lowered(DirectionCosts& prices) noexcept {
   bool any = false;
   for (std::size_t k = 0; k < 8; ++k) {
     const float most = (prices[(k + 7) % 8] + prices[(k + 1) % 8]) * 0.70710677F;
@@ -34,7 +34,7 @@ bool lowered(Prices& prices) noexcept {
   return any;
 }
 
-Prices convex(Prices prices) noexcept {
+DirectionCosts convex(DirectionCosts prices) noexcept {
   for (int pass = 0; pass < 16; ++pass)
     if (!lowered(prices)) return prices;
   prices.fill(*std::min_element(prices.begin(), prices.end()));  // equal costs are convex, too
@@ -44,7 +44,7 @@ Prices convex(Prices prices) noexcept {
 // Costs of one row of cells, from column -1 to column `width`. Cells outside the map and cells without an
 // allowed heading have infinite costs.
 void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, int row,
-               std::vector<Prices>& cells) {
+               std::vector<DirectionCosts>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const maps::Cell at{static_cast<int>(i) - 1, row};
     cells[i] = nothing();
@@ -56,9 +56,9 @@ void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, i
 
 // Costs of the eight steps into a corner. `below` and `above` point to the western of the two cells on either
 // side.
-Prices stepsInto(const Prices* below, const Prices* above) noexcept {
+DirectionCosts stepsInto(const DirectionCosts* below, const DirectionCosts* above) noexcept {
   constexpr float root = 1.4142135F;
-  Prices into{};
+  DirectionCosts into{};
   into[kEast] = std::min(above[1][kWest], below[1][kWest]);
   into[kWest] = std::min(above[0][kEast], below[0][kEast]);
   into[kNorth] = std::min(above[0][kSouth], above[1][kSouth]);
@@ -76,7 +76,7 @@ template <typename Each>
 bool forEachCorner(const costmap::CostGrid& map, DirectionalLowerBounds& headings, const StopCheck& stop,
                    Each each) {
   const auto width = static_cast<std::size_t>(map.grid().width);
-  std::vector<Prices> below(width + 2), above(width + 2);
+  std::vector<DirectionCosts> below(width + 2), above(width + 2);
   fillCells(map, headings, -1, below);
   for (int row = 0; row <= map.grid().height; ++row) {
     if (stop()) return false;
@@ -95,7 +95,7 @@ std::shared_ptr<const EdgeLayer> admissibleEdges(const std::shared_ptr<const cos
   DirectionalLowerBounds headings(map->cost());
   const double side_m = map->grid().resolution_m;
   float least = kNone;
-  const bool seen = forEachCorner(*map, headings, stop, [&least](maps::Cell, const Prices& into) {
+  const bool seen = forEachCorner(*map, headings, stop, [&least](maps::Cell, const DirectionCosts& into) {
     least = std::min(least, *std::min_element(into.begin(), into.end()));
   });
   if (!seen || !(least > 0.0F)) return nullptr;
@@ -103,7 +103,7 @@ std::shared_ptr<const EdgeLayer> admissibleEdges(const std::shared_ptr<const cos
   const double unit_J = std::isfinite(least) ? static_cast<double>(least) * side_m / (kCheapest + 1) : 1.0;
   auto edges = std::make_shared<EdgeLayer>(
       map, EdgeUnits(unit_J, kCheapest), EdgeLayer::Unfilled{map->grid().width + 1, map->grid().height + 1});
-  const bool filled = forEachCorner(*map, headings, stop, [&](maps::Cell corner, const Prices& into) {
+  const bool filled = forEachCorner(*map, headings, stop, [&](maps::Cell corner, const DirectionCosts& into) {
     std::uint16_t* steps = edges->into(edges->padded().index(corner));
     for (std::size_t k = 0; k < 8; ++k) {
       steps[k] = EdgeLayer::kBlocked;

@@ -7,24 +7,24 @@
 namespace talus::planner {
 namespace {
 
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 
-constexpr int kMiddle = DriveCurve::kBins / 2;
+constexpr int kMiddle = TravelCurve::kBins / 2;
 constexpr double kBinWidth = 1.0 / 256.0;
 // A tilted line stays above this share of its level for every heading, so that every step has a positive
 // cost.
 constexpr double kLeastShare = 0.1;
 
-double valueAt(const DriveCurve& curve, int bin) noexcept {
+double valueAt(const TravelCurve& curve, int bin) noexcept {
   const int at = bin + kMiddle;
-  return at >= 0 && at < DriveCurve::kBins
+  return at >= 0 && at < TravelCurve::kBins
              ? static_cast<double>(curve.cost_J_per_m[static_cast<std::size_t>(at)])
              : kInfinity;
 }
 
 // Highest level of a line with this tilt that stays below the curve. The curve is linear between nodes, so
 // nodes suffice.
-double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
+double levelUnder(const TravelCurve& curve, int reach, double tilt) noexcept {
   double level = kInfinity;
   for (int bin = -reach; bin <= reach; ++bin)
     level = std::min(level, valueAt(curve, bin) - tilt * bin * kBinWidth);
@@ -32,12 +32,12 @@ double levelUnder(const DriveCurve& curve, int reach, double tilt) noexcept {
 }
 
 // Slope of the curve at level ground: of the chord from 4 bins below to 4 bins above.
-double tiltOf(const DriveCurve& curve) noexcept {
+double tiltOf(const TravelCurve& curve) noexcept {
   const double rise = valueAt(curve, 4) - valueAt(curve, -4);
   return std::isfinite(rise) ? rise / (8 * kBinWidth) : 0.0;
 }
 
-CostLowerBound lineUnder(const DriveCurve& curve, int reach) noexcept {
+CostLowerBound lineUnder(const TravelCurve& curve, int reach) noexcept {
   CostLowerBound best{std::max(levelUnder(curve, reach, 0.0), 0.0), 0.0};
   if (!std::isfinite(best.level_J_per_m)) return best;
   const double steepest = reach * kBinWidth;
@@ -51,7 +51,7 @@ CostLowerBound lineUnder(const DriveCurve& curve, int reach) noexcept {
 
 }  // namespace
 
-CostLowerBounds::CostLowerBounds(const costmap::DriveCost& cost)
+CostLowerBounds::CostLowerBounds(const costmap::TravelCost& cost)
     : lines_(cost.curves().size()), levels_(cost.curves().size()) {
   for (std::size_t k = 0; k < lines_.size(); ++k)
     for (std::size_t reach = 0; reach <= kReach; ++reach) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
@@ -17,10 +17,10 @@ struct CostLowerBound {
 /// Straight lines below each drive curve: level + tilt * gradient never exceeds the curve for gradients up to
 /// a given steepness. The tilt is the slope of the curve at level ground, halved until the line is positive
 /// for every heading. Only row 0 of a curve (no gradient across) is used: costs never decrease from row to
-/// row (DriveCurve), so a bound of row 0 bounds all rows.
+/// row (TravelCurve), so a bound of row 0 bounds all rows.
 class CostLowerBounds {
  public:
-  explicit CostLowerBounds(const costmap::DriveCost& cost);
+  explicit CostLowerBounds(const costmap::TravelCost& cost);
 
   /// Lower bound for an allowed cell, valid for every heading.
   CostLowerBound of(costmap::CellCode cell) const noexcept;
@@ -32,7 +32,7 @@ class CostLowerBounds {
   std::size_t curves() const noexcept { return lines_.size(); }
 
  private:
-  static constexpr int kReach = costmap::DriveCurve::kBins / 2;
+  static constexpr int kReach = costmap::TravelCurve::kBins / 2;
   static int reachOf(costmap::CellCode cell) noexcept;
 
   std::vector<std::array<CostLowerBound, kReach + 1>> lines_;  // by curve, then by steepness in bins

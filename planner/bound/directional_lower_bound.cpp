@@ -11,10 +11,10 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 
 constexpr double kBin = 1.0 / 256.0;  // gradient step of one bin of a curve
-constexpr int kMiddleBin = DriveCurve::kBins / 2;
+constexpr int kMiddleBin = TravelCurve::kBins / 2;
 constexpr double kOctagon = 0.92387;  // cos(pi/8), rounded down by more than the float error
 // Raising rounds: more rounds favour single headings and leave their neighbours cheap.
 constexpr int kRaises = 4;
@@ -23,18 +23,18 @@ constexpr double kRounding = 1.0 - 1e-6;  // costs are stored as floats
 constexpr double kLeastPriceShare = 0.1;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 
-double priceAt(const DriveCurve& curve, int bin, int row = 0) noexcept {
+double priceAt(const TravelCurve& curve, int bin, int row = 0) noexcept {
   const int at = bin + kMiddleBin;
-  return at >= 0 && at < DriveCurve::kBins ? static_cast<double>(curve.rows()[row * DriveCurve::kBins + at])
-                                           : kInfinity;
+  return at >= 0 && at < TravelCurve::kBins ? static_cast<double>(curve.rows()[row * TravelCurve::kBins + at])
+                                            : kInfinity;
 }
 
 // Lower bound of cost - tilt * gradient over all gradients along in [from, to] and gradients across >=
 // `across`. The cost is linear between nodes, so its minimum lies at a node; costs never decrease from row to
 // row.
-double leastIn(const DriveCurve& curve, double tilt, double from, double to, double across) noexcept {
+double leastIn(const TravelCurve& curve, double tilt, double from, double to, double across) noexcept {
   double least = kInfinity;
-  const int row = std::min(static_cast<int>(across * DriveCurve::kRowsPerUnit), curve.lastRow());
+  const int row = std::min(static_cast<int>(across * TravelCurve::kRowsPerUnit), curve.lastRow());
   for (int bin = static_cast<int>(std::floor(from / kBin)); bin <= static_cast<int>(std::ceil(to / kBin));
        ++bin)
     least = std::min(least, priceAt(curve, bin, row) - tilt * bin * kBin);
@@ -105,7 +105,7 @@ std::array<double, 8> raised(const ByDirection& limit) noexcept {
 }
 
 // Upper limit of the gauge in each direction, for one gradient. Empty if no direction is allowed.
-std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double dz_dx, double dz_dy,
+std::optional<ByDirection> limitsOf(const TravelCurve& curve, double tilt, double dz_dx, double dz_dy,
                                     double off_gradient) {
   const double bulge = 1.0 - std::cos(kPart / 2);
   const double slack = off_gradient + std::hypot(dz_dx, dz_dy) * bulge + 1e-9;
@@ -137,7 +137,7 @@ std::optional<ByDirection> limitsOf(const DriveCurve& curve, double tilt, double
 
 }  // namespace
 
-DirectionalLowerBounds::DirectionalLowerBounds(const costmap::DriveCost& cost)
+DirectionalLowerBounds::DirectionalLowerBounds(const costmap::TravelCost& cost)
     : cost_(cost), lines_(cost), squares_(cost.curves().size()) {}
 
 DirectionalLowerBounds::Square DirectionalLowerBounds::squareWith(std::size_t curve, double dz_dx,
@@ -155,7 +155,7 @@ DirectionalLowerBounds::Square DirectionalLowerBounds::squareWith(std::size_t cu
 // Uses the tilt with the highest sum of costs, among the tilts that leave every heading a positive cost.
 DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curve, double dz_dx,
                                                                 double dz_dy) const {
-  const DriveCurve& of = cost_.curves()[curve];
+  const TravelCurve& of = cost_.curves()[curve];
   const double chord = (priceAt(of, 4) - priceAt(of, -4)) / (8 * kBin);
   const double tilt = std::isfinite(chord) ? chord : 0.0;
   Square best = squareWith(curve, dz_dx, dz_dy, 0.0);
@@ -178,16 +178,16 @@ DirectionalLowerBounds::Square DirectionalLowerBounds::squareOf(std::size_t curv
   return best;
 }
 
-DirectionalLowerBounds::Prices DirectionalLowerBounds::steep(CellCode cell) const {
+DirectionalLowerBounds::DirectionCosts DirectionalLowerBounds::steep(CellCode cell) const {
   const CostLowerBound line = lines_.of(cell);
-  Prices prices{};
+  DirectionCosts prices{};
   for (std::size_t k = 0; k < 8; ++k)
     prices[k] = static_cast<float>(kOctagon * line.level_J_per_m +
                                    line.tilt_J_per_m * along(cell.dzDx(), cell.dzDy(), k));
   return prices;
 }
 
-DirectionalLowerBounds::Prices DirectionalLowerBounds::of(CellCode cell) {
+DirectionalLowerBounds::DirectionCosts DirectionalLowerBounds::of(CellCode cell) {
   const int x = cell.stepsX() + kReach, y = cell.stepsY() + kReach;
   if (x < 0 || y < 0 || x >= 2 * kReach || y >= 2 * kReach) return steep(cell);
   constexpr int kSquares = 2 * kReach / kSteps;
@@ -198,7 +198,7 @@ DirectionalLowerBounds::Prices DirectionalLowerBounds::of(CellCode cell) {
     return (steps / kSteps * kSteps - kReach + 0.5 * (kSteps - 1)) * CellCode::kStep;
   };
   if (!square.known) square = squareOf(cell.curve(), middle(x), middle(y));
-  Prices prices = square.own;
+  DirectionCosts prices = square.own;
   if (square.tilt_J_per_m != 0.0)
     for (std::size_t k = 0; k < 8; ++k)
       prices[k] += static_cast<float>(square.tilt_J_per_m * along(cell.dzDx(), cell.dzDy(), k));

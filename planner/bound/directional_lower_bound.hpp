@@ -17,22 +17,22 @@ namespace talus::planner {
 /// along the direction. The second term is linear in the direction, so the gauge reproduces it exactly.
 /// Directions are divided into sub-sectors of 45/8 degrees, gradients into squares of kSteps steps of
 /// CellCode. Over one sub-sector and one square, s stays in an interval and the gradient across is at least
-/// some c. Costs never decrease from row to row (DriveCurve), so H is at least its minimum over the bins of
+/// some c. Costs never decrease from row to row (TravelCurve), so H is at least its minimum over the bins of
 /// that interval in the row of c. Within a sub-sector, p w_k + q w_(k+1) is a sine of the angle and exceeds
 /// the larger of its end values by a factor of at most 1 / cos(half a sub-sector). The gauge is therefore
 /// below H if both ends of every sub-sector are below cos(half a sub-sector) times that minimum. The costs
 /// start equal for all headings; each round raises each cost by half of the increase that its directions and
 /// neighbours allow.
 ///
-/// Squares are computed at first use. Not thread-safe. The DriveCost must outlive the object.
+/// Squares are computed at first use. Not thread-safe. The TravelCost must outlive the object.
 class DirectionalLowerBounds {
  public:
-  using Prices = std::array<float, 8>;  ///< joules per metre, > 0, by GridHeading
+  using DirectionCosts = std::array<float, 8>;  ///< joules per metre, > 0, by GridHeading
 
-  explicit DirectionalLowerBounds(const costmap::DriveCost& cost);
+  explicit DirectionalLowerBounds(const costmap::TravelCost& cost);
 
   /// Costs for a cell with a drive curve; infinite if no heading is allowed.
-  Prices of(costmap::CellCode cell);
+  DirectionCosts of(costmap::CellCode cell);
 
  private:
   static constexpr int kParts = 8;    // sub-sectors of the 45 degrees between two headings
@@ -41,15 +41,15 @@ class DirectionalLowerBounds {
 
   struct Square {
     bool known = false;
-    Prices own{};  // without the term of the tilt
+    DirectionCosts own{};  // without the term of the tilt
     double tilt_J_per_m = 0.0;
   };
 
   Square squareOf(std::size_t curve, double dz_dx, double dz_dy) const;
   Square squareWith(std::size_t curve, double dz_dx, double dz_dy, double tilt_J_per_m) const;
-  Prices steep(costmap::CellCode cell) const;
+  DirectionCosts steep(costmap::CellCode cell) const;
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   CostLowerBounds lines_;
   std::vector<std::vector<Square>> squares_;  // by curve
 };

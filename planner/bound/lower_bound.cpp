@@ -30,16 +30,16 @@ std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place,
 // optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
 double planeBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                     double enough_J) {
-  constexpr int kHeadings = HeadingLimits::kHeadings;
+  constexpr int kHeadings = DirectionalCostBounds::kHeadings;
   const double length_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
   const costmap::Direction way = directionOf(places);
-  HeadingLimits of(map.cost());
-  HeadingLimits::Limits limits, least;
+  DirectionalCostBounds of(map.cost());
+  DirectionalCostBounds::Limits limits, least;
   least.fill(std::numeric_limits<float>::infinity());
   // Cost per metre of the direction `way`, composed of two headings; infinite if the headings do not enclose
   // `way`.
   const auto price = [&](int i, int j) {
-    const costmap::Direction a = HeadingLimits::heading(i), b = HeadingLimits::heading(j);
+    const costmap::Direction a = DirectionalCostBounds::heading(i), b = DirectionalCostBounds::heading(j);
     const double det = a.x * b.y - a.y * b.x, p = way.x * b.y - way.y * b.x, q = a.x * way.y - a.y * way.x;
     if (!(det > 1e-9) || p < 0.0 || q < 0.0) return kInfinity;
     return (p * static_cast<double>(least[static_cast<std::size_t>(i)]) +

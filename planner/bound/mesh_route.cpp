@@ -94,7 +94,7 @@ class Descent {
     std::optional<Step> best;
     forEachCell(at, [&](Cell cell) {
       const auto look = [&](const costmap::Direction& back) { consider(cell, at, back, below, best); };
-      for (int k = 0; k < HeadingLimits::kHeadings; ++k) look(HeadingLimits::heading(k));
+      for (int k = 0; k < DirectionalCostBounds::kHeadings; ++k) look(DirectionalCostBounds::heading(k));
       for (const double x : {0.0, 1.0})
         for (const double y : {0.0, 1.0}) {
           const double dx = cell.column + x - at.x_m, dy = cell.row + y - at.y_m, length = std::hypot(dx, dy);

@@ -14,7 +14,7 @@ constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;
 
 }  // namespace
 
-MeshSearch::MeshSearch(MeshPrices& prices, const Options& options)
+MeshSearch::MeshSearch(MeshCosts& prices, const Options& options)
     : prices_(prices),
       options_(options),
       values_(prices.mesh().nodes(), kFar),
@@ -74,13 +74,13 @@ void MeshSearch::expand(std::uint32_t node) {
 
 void MeshSearch::fromCorner(maps::Cell cell, std::size_t corner) {
   const std::uint32_t slot = prices_.slotOf(cell);
-  if (slot == MeshPrices::kNone) return;
+  if (slot == MeshCosts::kNone) return;
   change(slot);
-  const TrianglePrices& prices = prices_.of(slot);
+  const TriangleCosts& prices = prices_.of(slot);
   const CellMesh::Nodes nodes = prices_.mesh().nodesOf(cell);
   const std::size_t after = CellMesh::next(corner), before = (corner + 3) % 4;
   const float middle = values_[nodes[CellMesh::kMiddle]], own = values_[nodes[corner]];
-  const TrianglePrices::Values left{own, values_[nodes[after]], middle},
+  const TriangleCosts::Values left{own, values_[nodes[after]], middle},
       right{values_[nodes[before]], own, middle};
   float second = prices.second(corner, left, options_.way), first = prices.first(before, right, options_.way),
         third =
@@ -98,14 +98,14 @@ void MeshSearch::fromCorner(maps::Cell cell, std::size_t corner) {
 
 void MeshSearch::fromMiddle(maps::Cell cell) {
   const std::uint32_t slot = prices_.slotOf(cell);
-  if (slot == MeshPrices::kNone) return;
+  if (slot == MeshCosts::kNone) return;
   change(slot);
-  const TrianglePrices& prices = prices_.of(slot);
+  const TriangleCosts& prices = prices_.of(slot);
   const CellMesh::Nodes nodes = prices_.mesh().nodesOf(cell);
   const float middle = values_[nodes[CellMesh::kMiddle]];
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t first = nodes[k], second = nodes[CellMesh::next(k)];
-    const TrianglePrices::Values values{values_[first], values_[second], middle};
+    const TriangleCosts::Values values{values_[first], values_[second], middle};
     const Caps& caps = cells_[slot].caps[k];
     lower(first, std::min(prices.first(k, values, options_.way), middle + caps[capOf(kFirst, kThird)]));
     lower(second, std::min(prices.second(k, values, options_.way), middle + caps[capOf(kSecond, kThird)]));
@@ -113,7 +113,7 @@ void MeshSearch::fromMiddle(maps::Cell cell) {
 }
 
 void MeshSearch::cap(std::uint32_t slot, std::size_t triangle, std::size_t above,
-                     const TrianglePrices::Rise& rise) {
+                     const TriangleCosts::Rise& rise) {
   Cell& of = cells_[slot];
   of.capped = true;
   const std::size_t a = above == kFirst ? kSecond : kFirst, b = above == kThird ? kSecond : kThird;
@@ -128,9 +128,9 @@ bool MeshSearch::relax(std::uint32_t slot, std::size_t triangle) {
   const CellMesh::Nodes all = prices_.mesh().nodesOf(prices_.cellOf(slot));
   const std::array<std::uint32_t, 3> nodes{all[triangle], all[CellMesh::next(triangle)],
                                            all[CellMesh::kMiddle]};
-  const TrianglePrices& prices = prices_.of(slot);
+  const TriangleCosts& prices = prices_.of(slot);
   const Caps& caps = cells_[slot].caps[triangle];
-  const TrianglePrices::Values v{values_[nodes[kFirst]], values_[nodes[kSecond]], values_[nodes[kThird]]};
+  const TriangleCosts::Values v{values_[nodes[kFirst]], values_[nodes[kSecond]], values_[nodes[kThird]]};
   const bool first = lower(nodes[kFirst], std::min({prices.first(triangle, v, options_.way),
                                                     v.second + caps[capOf(kFirst, kSecond)],
                                                     v.middle + caps[capOf(kFirst, kThird)]}));
@@ -157,7 +157,7 @@ void MeshSearch::changeAround(std::uint32_t node) {
   for (const int row : {at.row, at.row - 1})
     for (const int column : {at.column, at.column - 1}) {
       if (!corner && !(row == at.row && column == at.column)) continue;
-      if (const std::uint32_t slot = prices_.knownSlotOf({column, row}); slot != MeshPrices::kNone)
+      if (const std::uint32_t slot = prices_.knownSlotOf({column, row}); slot != MeshCosts::kNone)
         change(slot);
     }
 }

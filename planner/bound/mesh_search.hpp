@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/planner/bound/mesh_prices.hpp>
+#include <talus/planner/bound/mesh_costs.hpp>
 #include <talus/planner/field/bucket_queue.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
@@ -16,7 +16,7 @@ namespace talus::planner {
 /// [tsitsiklis_1995]. Not thread-safe.
 class MeshSearch {
  public:
-  using Way = TrianglePrices::Way;
+  using Way = TriangleCosts::Way;
 
   struct Options {
     Way way = Way::FromNode;
@@ -25,7 +25,7 @@ class MeshSearch {
     double most_J;      ///< nodes on no route of at most this cost are not expanded [J]
   };
 
-  MeshSearch(MeshPrices& prices, const Options& options);
+  MeshSearch(MeshCosts& prices, const Options& options);
 
   static constexpr float kFar = 1e30F;  ///< value of a node that was not reached
   static constexpr std::uint64_t kEnd = ~std::uint64_t{0};
@@ -51,7 +51,7 @@ class MeshSearch {
     return 2 * node + (above < node ? above : above - 1);
   }
   /// Adds caps for the two other nodes of a triangle relative to node `above`.
-  void cap(std::uint32_t slot, std::size_t triangle, std::size_t above, const TrianglePrices::Rise& rise);
+  void cap(std::uint32_t slot, std::size_t triangle, std::size_t above, const TriangleCosts::Rise& rise);
   /// Lowers the nodes of a triangle to its costs and caps. Returns true if any node was lowered.
   bool relax(std::uint32_t slot, std::size_t triangle);
 
@@ -75,7 +75,7 @@ class MeshSearch {
   void changeAround(std::uint32_t node);
   void changed(std::uint32_t slot);
 
-  MeshPrices& prices_;
+  MeshCosts& prices_;
   Options options_;
   std::vector<float> values_, expanded_;  // expanded_: value of the node at its latest expansion
   std::vector<Cell> cells_;               // by slot

@@ -11,17 +11,17 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 using maps::Cell;
 using maps::Point;
 
 constexpr int kRounds = 6;
 
 // Lowest cost per metre of a cell over all headings, by curve and by the steepest gradient in bins. Rows with
-// a gradient across cost no less than row 0 (DriveCurve).
-class CheapestMetres {
+// a gradient across cost no less than row 0 (TravelCurve).
+class LowestCosts {
  public:
-  explicit CheapestMetres(const costmap::DriveCost& cost) : least_(cost.curves().size()) {
+  explicit LowestCosts(const costmap::TravelCost& cost) : least_(cost.curves().size()) {
     for (std::size_t k = 0; k < least_.size(); ++k) {
       const auto& row = cost.curves()[k].cost_J_per_m;
       double least = kInfinity;
@@ -40,18 +40,18 @@ class CheapestMetres {
     if (cell.curve() >= least_.size()) return kInfinity;
     const double steepest = std::hypot(cell.dzDx(), cell.dzDy()) * (1.0 + 1e-9);  // headings are rounded
     const int reach =
-        static_cast<int>(std::min(std::ceil(steepest * DriveCurve::kBinsPerUnit), double{kMiddle}));
+        static_cast<int>(std::min(std::ceil(steepest * TravelCurve::kBinsPerUnit), double{kMiddle}));
     return least_[cell.curve()][static_cast<std::size_t>(reach)];
   }
 
  private:
-  static constexpr int kMiddle = DriveCurve::kBins / 2;
+  static constexpr int kMiddle = TravelCurve::kBins / 2;
   std::vector<std::array<double, kMiddle + 1>> least_;
 };
 
 // Lowest cost per metre of the cells that a curve of length `length_m` between the two places can touch.
 // Infinite if no such cell has a curve; 0 when stopped.
-double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres, const Segment& places,
+double cheapestWithin(const costmap::CostGrid& map, const LowestCosts& metres, const Segment& places,
                       double length_m, const StopCheck& stop) {
   const maps::Grid& grid = map.grid();
   // Margin of half a cell diagonal per leg: distances are measured to cell centres.
@@ -79,9 +79,9 @@ double cheapestWithin(const costmap::CostGrid& map, const CheapestMetres& metres
   return least;
 }
 
-double cheapestOfAny(const costmap::DriveCost& cost) noexcept {
+double cheapestOfAny(const costmap::TravelCost& cost) noexcept {
   double least = kInfinity;
-  for (const DriveCurve& curve : cost.curves())
+  for (const TravelCurve& curve : cost.curves())
     for (const float value : curve.cost_J_per_m) least = std::min(least, static_cast<double>(value));
   return std::isfinite(least) ? std::max(least, 0.0) : 0.0;
 }
@@ -94,7 +94,7 @@ double straightBound_J(const costmap::CostGrid& map, const Segment& places, doub
 
 double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                            double known_J, const StopCheck& stop) {
-  const CheapestMetres metres(map.cost());
+  const LowestCosts metres(map.cost());
   const double straight_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
   double cheapest = cheapestOfAny(map.cost());
   for (int round = 0; round < kRounds && std::isfinite(known_J) && cheapest > 0.0; ++round) {

@@ -39,22 +39,22 @@ SubSolution::SubSolution(const Parts& parts, const StopCheck& stop)
   complete_ = settle(true);
 }
 
-const TrianglePrices* SubSolution::pricesOf(maps::Cell cell) const noexcept {
+const TriangleCosts* SubSolution::pricesOf(maps::Cell cell) const noexcept {
   const std::uint32_t slot = prices_.knownSlotOf(cell);
-  return slot == MeshPrices::kNone ? nullptr : &prices_.of(slot);
+  return slot == MeshCosts::kNone ? nullptr : &prices_.of(slot);
 }
 
 // The proof does not depend on these values.
 void SubSolution::seedStart() {
   const auto cell = mesh().grid().cellAt(parts_.places.from);
-  if (!cell || prices_.slotOf(*cell) == MeshPrices::kNone) return;
+  if (!cell || prices_.slotOf(*cell) == MeshCosts::kNone) return;
   for (const std::uint32_t node : mesh().nodesOf(*cell)) from_start_.lower(node, 0.0F);
 }
 
 // A route may end anywhere in the disc.
 void SubSolution::seedDisc() {
   for (const maps::Cell cell : cellsWithin(mesh().grid(), parts_.places.to, parts_.goal_tolerance_m))
-    if (prices_.slotOf(cell) != MeshPrices::kNone)
+    if (prices_.slotOf(cell) != MeshCosts::kNone)
       for (const std::uint32_t node : mesh().nodesOf(cell)) to_goal_.lower(node, 0.0F);
 }
 
@@ -63,13 +63,13 @@ void SubSolution::seedDisc() {
 void SubSolution::seedPlane() {
   const maps::Point goal = parts_.places.to;
   const auto cell = mesh().grid().cellAt(goal);
-  const std::uint32_t slot = cell ? prices_.slotOf(*cell) : MeshPrices::kNone;
-  if (slot == MeshPrices::kNone) return;
-  constexpr double sector = 2.0 * std::numbers::pi / HeadingLimits::kHeadings;
+  const std::uint32_t slot = cell ? prices_.slotOf(*cell) : MeshCosts::kNone;
+  if (slot == MeshCosts::kNone) return;
+  constexpr double sector = 2.0 * std::numbers::pi / DirectionalCostBounds::kHeadings;
   const double angle = std::atan2(goal.y_m - parts_.places.from.y_m, goal.x_m - parts_.places.from.x_m) +
                        2.0 * std::numbers::pi;
-  const int k = static_cast<int>(angle / sector) % HeadingLimits::kHeadings;
-  const costmap::Direction a = HeadingLimits::heading(k), b = HeadingLimits::heading(k + 1);
+  const int k = static_cast<int>(angle / sector) % DirectionalCostBounds::kHeadings;
+  const costmap::Direction a = DirectionalCostBounds::heading(k), b = DirectionalCostBounds::heading(k + 1);
   const auto& prices = prices_.of(slot).prices;
   const auto at_a = static_cast<double>(prices[static_cast<std::size_t>(k)]),
              at_b = static_cast<double>(prices[static_cast<std::size_t>(k) + 1]);
@@ -106,7 +106,7 @@ bool SubSolution::lowerExcess(bool all) {
       const std::uint32_t first = nodes[k], second = nodes[CellMesh::next(k)],
                           middle = nodes[CellMesh::kMiddle];
       if (inner(first) + inner(second) + inner(middle) < (all ? 1 : 3)) continue;
-      const auto fall = TrianglePrices::fall(k, {at(first), at(second), at(middle)});
+      const auto fall = TriangleCosts::fall(k, {at(first), at(second), at(middle)});
       if (prices_.of(slot).exceeds(fall, 1.0F + kSlack)) over.emplace_back(slot, k);
     }
   }
@@ -123,7 +123,7 @@ void SubSolution::cap(std::uint32_t slot, std::size_t triangle) {
   const CellMesh::Nodes all = mesh().nodesOf(prices_.cellOf(slot));
   const std::array<std::uint32_t, 3> nodes{all[triangle], all[CellMesh::next(triangle)],
                                            all[CellMesh::kMiddle]};
-  const TrianglePrices::Values values{at(nodes[0]), at(nodes[1]), at(nodes[2])};
+  const TriangleCosts::Values values{at(nodes[0]), at(nodes[1]), at(nodes[2])};
   for (std::size_t k = 0; k < 3; ++k) {
     const float wanted = std::max(from_start_.at(nodes[k]) - from_start_.at(nodes[k == 0 ? 1 : 0]), 0.0F);
     if (const auto rise = prices_.of(slot).lowered(triangle, k, values, wanted, 0.5F * kSlack))

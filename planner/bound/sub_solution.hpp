@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include <talus/planner/bound/mesh_prices.hpp>
+#include <talus/planner/bound/mesh_costs.hpp>
 #include <talus/planner/bound/mesh_route.hpp>
 #include <talus/planner/bound/mesh_search.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -14,7 +14,7 @@ namespace talus::planner {
 
 /// Subsolution of the Hamilton-Jacobi equation of the drive cost: a function over the nodes of a CellMesh,
 /// linear on each triangle, that approximates the cost to the goal from below. Along every heading the
-/// function changes per metre by at most the HeadingLimits of the cell. No route between two places, of any
+/// function changes per metre by at most the DirectionalCostBounds of the cell. No route between two places, of any
 /// shape, then costs less than the difference of the function's values. provenBy() verifies the resulting
 /// bound.
 ///
@@ -49,7 +49,7 @@ class SubSolution {
   /// True for an expanded node. The solution consists of the triangles with an inner node.
   bool inner(std::uint32_t node) const noexcept { return to_goal_.expanded(node); }
   /// Costs of a cell; null for cells not searched and cells without an allowed heading.
-  const TrianglePrices* pricesOf(maps::Cell cell) const noexcept;
+  const TriangleCosts* pricesOf(maps::Cell cell) const noexcept;
 
   /// Near-optimal route from start to goal over all headings, without turn costs; see meshRoute().
   Polyline way() const { return meshRoute(MotionCost(parts_.map), from_start_, mesh(), parts_.places); }
@@ -64,7 +64,7 @@ class SubSolution {
 
   Parts parts_;
   StopCheck stop_;
-  MeshPrices prices_;
+  MeshCosts prices_;
   MeshSearch from_start_, to_goal_;
   bool complete_ = false;
 };

@@ -18,7 +18,7 @@ double value(const SubSolution& u, std::uint32_t node) noexcept {
 
 // Largest ratio, in one cell, of the solution's fall over a side's length along a heading to the heading's
 // limit.
-double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const TrianglePrices& limits) noexcept {
+double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const TriangleCosts& limits) noexcept {
   static constexpr std::array<std::array<double, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   double worst = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -30,8 +30,8 @@ double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const Triangl
     const double a = value(u, nodes[k]) - value(u, nodes[CellMesh::kMiddle]),
                  b = value(u, nodes[l]) - value(u, nodes[CellMesh::kMiddle]);
     const double x = (a * by - b * ay) / det, y = (b * ax - a * bx) / det;
-    for (int h = 0; h < HeadingLimits::kHeadings; ++h) {
-      const costmap::Direction d = HeadingLimits::heading(h);
+    for (int h = 0; h < DirectionalCostBounds::kHeadings; ++h) {
+      const costmap::Direction d = DirectionalCostBounds::heading(h);
       const double fall = -(x * d.x + y * d.y);
       const auto limit = static_cast<double>(limits.prices[static_cast<std::size_t>(h)]);
       if (fall > worst * limit) worst = fall / limit;
@@ -76,7 +76,7 @@ Proof provenBy(const SubSolution& u, const SubSolution::Parts& parts) {
   double worst = 1.0;
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
-      const TrianglePrices* limits = u.pricesOf({column, row});
+      const TriangleCosts* limits = u.pricesOf({column, row});
       if (limits == nullptr) continue;
       const CellMesh::Nodes nodes = u.mesh().nodesOf({column, row});
       worst = std::max(worst, worstIn(u, nodes, *limits));

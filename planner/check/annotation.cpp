@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include <talus/costmap/cost/drive_state.hpp>
+#include <talus/costmap/cost/travel_state.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
@@ -98,7 +98,7 @@ class Annotator {
   // A turn in place, or the change of heading along an arc.
   void turn(double turn_rad, Point place) {
     const auto cell = grid_.cellAt(place);
-    const TurnPrices& prices =
+    const TurnCosts& prices =
         cell ? input_.kinematics.turnsOn(input_.map.at(*cell).curve()) : input_.kinematics.turns;
     const bool in_place = how_.curvature_1_m == 0.0;
     spend(in_place ? prices.in_place : prices.on_arc, std::abs(turn_rad));
@@ -246,7 +246,7 @@ class Annotator {
     max_slip_angle_rad_ = std::fmax(max_slip_angle_rad_, std::abs(vertex.slip_angle_rad));
   }
 
-  void spend(const TurnPrice& price, double times) {
+  void spend(const TurnCost& price, double times) {
     energy_J_ += price.energy_J * times;
     time_s_ += price.time_s * times;
   }
@@ -260,7 +260,7 @@ class Annotator {
   MotionCost cost_;
   std::size_t turns_ = 0;  // number of vertices up to the last turn or the beginning
   Motion how_;
-  costmap::DriveState state_;  // of the cell of the latest looked()
+  costmap::TravelState state_;  // of the cell of the latest looked()
   double energy_J_ = 0.0, time_s_ = 0.0, hazard_ = 0.0, length_m_ = 0.0, max_slip_ = 0.0,
          max_slope_rad_ = 0.0, max_slope_across_rad_ = 0.0, max_slip_angle_rad_ = 0.0;
 };
@@ -351,6 +351,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.cost = plan.cost_J;
   route.summary.lower_bound = plan.lower_bound_J;
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
+  route.summary.proof_s = plan.proof_s;
   route.vertices = std::move(annotator.vertices);
   tellRisk(route, input.map, input.watch);
   return route;

@@ -25,8 +25,8 @@ struct AnnotationInput {
 
 /// Converts a plan to a route for reports and controllers. The route has a vertex at each turn and at each
 /// entry into another cell; slope, slip and soil of a vertex apply until the next vertex. Energy and time are
-/// integrals of DriveCost::detail() along the plan. The risk is that of riskAlong(), or 1 - exp(-sum of
-/// hazard rate times length) on maps whose cost has no correlation length of the soil (SoilDoubt). If a stop
+/// integrals of TravelCost::detail() along the plan. The risk is that of riskAlong(), or 1 - exp(-sum of
+/// hazard rate times length) on maps whose cost has no correlation length of the soil (SoilUncertainty). If a stop
 /// ends the simulation of a long route, the risk is that of riskBoundAlong(), and the route is marked
 /// `interrupted`. A polyline that is not allowed is annotated, too: its cost is infinite, its energy and time
 /// include only the cells with finite values. A drive has an additional vertex at each chord of an arc,

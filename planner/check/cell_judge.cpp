@@ -12,7 +12,7 @@ namespace talus::planner {
 
 class CellJudge::Headings {
  public:
-  explicit Headings(const costmap::DriveCost& cost) : allowed(cost) {
+  explicit Headings(const costmap::TravelCost& cost) : allowed(cost) {
     constexpr int kHeadings = 64;
     for (int k = 0; k < kHeadings; ++k) {
       const double heading_rad = k * HeadingSet::kTurn / kHeadings;
@@ -24,10 +24,10 @@ class CellJudge::Headings {
   std::vector<HeadingCost> costs;
 };
 
-CellJudge::CellJudge(std::shared_ptr<const costmap::DriveCost> cost)
+CellJudge::CellJudge(std::shared_ptr<const costmap::TravelCost> cost)
     : cost_(std::move(cost)), level_J_per_m_(std::numeric_limits<float>::infinity()) {
   if (!cost_) throw std::invalid_argument("CellJudge: needs a drive cost");
-  for (const costmap::DriveCurve& curve : cost_->curves())
+  for (const costmap::TravelCurve& curve : cost_->curves())
     level_J_per_m_ = std::min(level_J_per_m_, curve.price(0.0, 0.0));
   headings_ = std::make_unique<Headings>(*cost_);
 }

@@ -27,7 +27,7 @@ struct CellJudgement {
 class CellJudge {
  public:
   /// Throws std::invalid_argument if the cost is null.
-  explicit CellJudge(std::shared_ptr<const costmap::DriveCost> cost);
+  explicit CellJudge(std::shared_ptr<const costmap::TravelCost> cost);
   ~CellJudge();
 
   /// Restriction and cost of a cell.
@@ -38,7 +38,7 @@ class CellJudge {
 
  private:
   class Headings;
-  std::shared_ptr<const costmap::DriveCost> cost_;
+  std::shared_ptr<const costmap::TravelCost> cost_;
   std::unique_ptr<Headings> headings_;
   float level_J_per_m_;
 };

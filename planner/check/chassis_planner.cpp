@@ -72,8 +72,10 @@ Plan planOnChassis(const Problem& problem, const Chassis& chassis,
   Problem open = problem;
   const auto start = problem.map->grid().cellAt(problem.start);
   std::string reason;
+  double proof_s = 0.0;
   for (int round = 0; round < most_rounds; ++round) {
     Plan plan = planner(open);
+    plan.proof_s = proof_s += plan.proof_s;
     if (plan.status != RouteStatus::Found) {
       if (round > 0 && plan.status != RouteStatus::Cancelled && plan.status != RouteStatus::TimedOut)
         return refused(RouteStatus::NoneFound, "no detour found where: " + reason + "; " + plan.reason);

@@ -50,7 +50,7 @@ struct Danger {
 
 /// Run-time monitor for an arbitrary path: violations(), plus every cell whose soil gives less drawbar pull
 /// than required with a probability above `quantile`, 0 < quantile < 1. The probability is that of the cost
-/// (DriveState::weak), for the ground that any wheel may stand on. Cells without a table of drive states
+/// (TravelState::weak), for the ground that any wheel may stand on. Cells without a table of drive states
 /// (tests) are checked by violations() only. Empty for a drivable route. Throws std::invalid_argument if the
 /// quantile is out of range or a point is not finite.
 std::vector<Danger> dangers(const costmap::CostGrid& map, const std::vector<maps::Point>& route,

@@ -230,7 +230,7 @@ bool drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRi
 
 RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
   RouteRiskOptions options{.cell_m = map.grid().resolution_m};
-  const costmap::SoilDoubt& doubt = map.cost().doubt();
+  const costmap::SoilUncertainty& doubt = map.cost().doubt();
   if (!(doubt.correlation_length_m > 0.0)) return options;
   options.correlation_length_m = doubt.correlation_length_m;
   options.entrapment = doubt.entrapment;

@@ -6,13 +6,13 @@
 
 namespace talus::planner {
 
-CostRange costRange(const costmap::DriveCost& cost) {
+CostRange costRange(const costmap::TravelCost& cost) {
   CostRange range;
-  constexpr int kBins = costmap::DriveCurve::kBins;
+  constexpr int kBins = costmap::TravelCurve::kBins;
   for (const auto& curve : cost.curves())
     for (int i = 0; i < (curve.lastRow() + 1) * kBins; ++i) {
       const auto value = static_cast<double>(curve.rows()[i]);
-      const double gradient = costmap::DriveCurve::gradient(i % kBins);
+      const double gradient = costmap::TravelCurve::gradient(i % kBins);
       // The node just beyond the limit counts, too: gradients between it and the last node within the limit
       // use its cost.
       if (!std::isfinite(value) || std::abs(gradient) >= cost.limits().max_along + 1.0 / 256) continue;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
@@ -11,6 +11,6 @@ struct CostRange {
   double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite if no motion is allowed
   double most_J_per_m = 0.0;
 };
-CostRange costRange(const costmap::DriveCost& cost);
+CostRange costRange(const costmap::TravelCost& cost);
 
 }  // namespace talus::planner

@@ -14,8 +14,8 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCost;
-using costmap::DriveCurve;
+using costmap::TravelCost;
+using costmap::TravelCurve;
 
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
@@ -49,7 +49,7 @@ int stepsWithin(double limit, double per_step) {
 
 // Packs a node coordinate >= 0 as an offset and a 16-bit interpolation weight.
 std::uint64_t placed(double place, int stride, int shift) {
-  const DriveCurve::Between at = DriveCurve::between(place);
+  const TravelCurve::Between at = TravelCurve::between(place);
   constexpr int kShares = 128;
   const int share = std::clamp(static_cast<int>(std::lround(at.share * kShares)), 1, kShares - 1);
   return static_cast<std::uint64_t>(at.whole * stride) |
@@ -58,7 +58,7 @@ std::uint64_t placed(double place, int stride, int shift) {
 
 }  // namespace
 
-EdgeUnits::Places EdgeUnits::places(const DriveCost::Limits& limits, double per_step, int shift) const {
+EdgeUnits::Places EdgeUnits::places(const TravelCost::Limits& limits, double per_step, int shift) const {
   const int most = per_step == 1.0 ? 2048 : 4096;  // range of CellCode's steps
   const int along = stepsWithin(limits.max_along, per_step),
             across = stepsWithin(limits.max_across, per_step);
@@ -72,17 +72,17 @@ EdgeUnits::Places EdgeUnits::places(const DriveCost::Limits& limits, double per_
   return all;
 }
 
-EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarsening) {
+EdgeUnits::EdgeUnits(const TravelCost& cost, double resolution_m, double coarsening) {
   const CostRange range = costRange(cost);
   const auto& limits = cost.limits();
   unit_J_ = unitFor(range, resolution_m) * coarsening;
   const auto most = [](double limit, double per_unit) {
     return static_cast<int>(std::ceil(std::min(limit, 2.0) * per_unit));
   };
-  reach_ = most(limits.max_along, DriveCurve::kBinsPerUnit);
+  reach_ = most(limits.max_along, TravelCurve::kBinsPerUnit);
   straight_ = places(limits, 1.0, 0);
   diagonal_ = places(limits, kDiagonal, width());
-  const int rows = most(limits.max_across, DriveCurve::kRowsPerUnit) + 1;
+  const int rows = most(limits.max_across, TravelCurve::kRowsPerUnit) + 1;
   const double straight_units = 0.5 * resolution_m / unit_J_;
   std::vector<std::uint16_t> halves(static_cast<std::size_t>(2 * reach_ + 1));
   for (const auto& curve : cost.curves()) {
@@ -96,9 +96,9 @@ EdgeUnits::EdgeUnits(const DriveCost& cost, double resolution_m, double coarseni
       }
       for (const double units : {straight_units, straight_units * std::numbers::sqrt2}) {
         for (std::size_t i = 0; i < halves.size(); ++i) {
-          const int bin = static_cast<int>(i) - reach_ + DriveCurve::kBins / 2;
-          const bool inside = bin >= 0 && bin < DriveCurve::kBins;
-          halves[i] = inUnits(inside ? curve.rows()[row * DriveCurve::kBins + bin] : kInfinite, units);
+          const int bin = static_cast<int>(i) - reach_ + TravelCurve::kBins / 2;
+          const bool inside = bin >= 0 && bin < TravelCurve::kBins;
+          halves[i] = inUnits(inside ? curve.rows()[row * TravelCurve::kBins + bin] : kInfinite, units);
         }
         for (std::size_t i = 0; i < halves.size(); ++i)
           pairs_.push_back(halves[i] | static_cast<std::uint32_t>(halves[halves.size() - 1 - i]) << 16);

@@ -7,14 +7,14 @@
 #include <cstdlib>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/planner/field/grid_heading.hpp>
 
 namespace talus::planner {
 
 /// Costs of half steps, from a cell's centre to its edge or corner, for all eight headings, as integer
 /// multiples of an energy unit, so that sums do not depend on their order. An edge is the sum of two half
-/// steps and fits in 16 bits. Headings refused by DriveCurve::price() have kBlocked; costs above kDearest are
+/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kDearest are
 /// stored as kDearest. Interpolation weights are rounded to 1/128, so a half step differs from the exact cost
 /// by at most one unit plus 1/256 of the difference of neighbouring nodes.
 class EdgeUnits {
@@ -26,7 +26,7 @@ class EdgeUnits {
 
   /// Units for cells of side resolution_m [m] and the given cost. `coarsening` >= 1 enlarges the unit (for
   /// huge maps).
-  EdgeUnits(const costmap::DriveCost& cost, double resolution_m, double coarsening = 1.0);
+  EdgeUnits(const costmap::TravelCost& cost, double resolution_m, double coarsening = 1.0);
 
   /// Unit only, for edges whose costs are computed elsewhere; halves() returns blocked headings only.
   EdgeUnits(double unit_J, std::uint32_t cheapest_edge) : unit_J_(unit_J), cheapest_edge_(cheapest_edge) {}
@@ -61,7 +61,7 @@ class EdgeUnits {
     std::vector<Place> along, across;  // by CellCode steps; `middle` is the index of zero
     int middle = 0;
   };
-  Places places(const costmap::DriveCost::Limits& limits, double per_step, int shift) const;
+  Places places(const costmap::TravelCost::Limits& limits, double per_step, int shift) const;
   int width() const noexcept { return 2 * reach_ + 2; }
 
   // Positions along and across of the headings from east to north-west.

@@ -12,9 +12,9 @@ using maps::Cell;
 
 // Lower bounds of paths outside the box between two cells of its rim. Stored as arrays: each improved rim
 // cell is compared with all rim cells.
-class Excursions {
+class RimDetours {
  public:
-  Excursions(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {
+  RimDetours(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {
     for (auto* values : {&column_, &row_}) values->reserve(cells);
     for (auto* values : {&before_, &now_}) values->reserve(cells);
   }
@@ -97,7 +97,7 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
   std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // index of the rim cell; kInner inside
   // Cost at which a cell was taken last: each queued cost is processed once.
   std::vector<std::uint32_t> taken(inside_.size(), CostToGo::kUnreached);
-  Excursions excursions(rim.size(), edges.units().cheapestEdge());
+  RimDetours excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {
     const std::size_t at = local(c);
     if (units >= inside_[at]) return;

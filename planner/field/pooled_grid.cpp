@@ -21,14 +21,14 @@ constexpr std::size_t kHeadings = 8;
 // Copies of all curves at several surcharge levels, each costlier than the previous by the same factor.
 class Levels {
  public:
-  explicit Levels(const costmap::DriveCost& cost)
+  explicit Levels(const costmap::TravelCost& cost)
       : curves_(cost.curves().size()),
         levels_(std::clamp<std::size_t>(kMostCurves / std::max<std::size_t>(curves_, 1), 1, 8)) {}
 
-  std::shared_ptr<const costmap::DriveCost> cost(const costmap::DriveCost& base) const {
-    std::vector<costmap::DriveCurve> all;
+  std::shared_ptr<const costmap::TravelCost> cost(const costmap::TravelCost& base) const {
+    std::vector<costmap::TravelCurve> all;
     for (std::size_t level = 0; level < levels_; ++level)
-      for (costmap::DriveCurve curve : base.curves()) {
+      for (costmap::TravelCurve curve : base.curves()) {
         const auto factor = static_cast<float>(std::pow(kSurchargeStep, static_cast<double>(level)));
         for (float& value : curve.cost_J_per_m) value *= factor;
         if (curve.crossing && level > 0) {
@@ -38,7 +38,7 @@ class Levels {
         }
         all.push_back(curve);
       }
-    return std::make_shared<costmap::DriveCost>(base.limits(), std::move(all));
+    return std::make_shared<costmap::TravelCost>(base.limits(), std::move(all));
   }
 
   std::uint8_t number(std::size_t curve, double surcharge) const {

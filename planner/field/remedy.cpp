@@ -78,7 +78,7 @@ std::string whyInvalid(const costmap::CostGrid& map, Point place, const HazardsO
 }  // namespace
 
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, Point place,
-                         const PlaceHelp& help) {
+                         const PlaceDiagnostics& help) {
   const std::string line = which + " " + text(place) + " " + whyInvalid(map, place, help.hazards);
   const MotionCost cost(std::make_shared<costmap::CostGrid>(map));
   const auto allowed = [&](Cell c) { return cost.allowed(map.grid().centre(c)); };

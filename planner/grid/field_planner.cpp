@@ -17,6 +17,7 @@
 #include <talus/planner/reach/obstruction_search.hpp>
 #include <talus/planner/refine/close_vertices.hpp>
 #include <talus/planner/refine/settled_vertices.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
@@ -119,7 +120,7 @@ HeadingSets& FieldPlanner::headingsOf(const Problem& problem) {
 // connected to that end.
 Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool from_there, bool to_there,
                              const StopCheck& stop) {
-  PlaceHelp help{.hazards = problem.hazards};
+  PlaceDiagnostics help{.hazards = problem.hazards};
   std::optional<Reach> other;
   if (from_there != to_there && problem.map->grid().size() <= kTriedCells) {
     HeadingSets& headings = headingsOf(problem);
@@ -227,6 +228,7 @@ std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const S
 void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop,
                                      bool on_grid, Plan& plan) {
   if (problem.map->grid().size() > kCorridorCells || stop()) return;
+  const AddedTime proof(plan.proof_s);
   const auto leaves = [&plan](double gap) { return plan.lower_bound_J < (1.0 - gap) * plan.cost_J; };
   if (!leaves(kProven)) return;
   const MotionCost cost(problem.map);
@@ -257,9 +259,12 @@ Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline
   plan.points = refined(problem, stage, std::move(rough), stop);
   plan.cost_J = cost.along(plan.points);
   const Segment ends{stage.from, stage.to};
-  const double bound_J = problem.prove ? bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J)
-                                       : straightBound_J(*problem.map, ends, stage.tolerance_m);
-  plan.lower_bound_J = std::min(plan.cost_J, bound_J);
+  const auto proven_J = [&] {
+    const AddedTime proof(plan.proof_s);
+    return bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J);
+  };
+  plan.lower_bound_J = std::min(
+      plan.cost_J, problem.prove ? proven_J() : straightBound_J(*problem.map, ends, stage.tolerance_m));
   return plan;
 }
 

@@ -55,6 +55,7 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
   const auto begin = std::chrono::steady_clock::now();
   Plan best;
   double bound_J = std::numeric_limits<double>::infinity();
+  double proof_s = 0.0;
   bool first = true, proven = true;
   for (const Candidate& goal : nearestFirst(problem)) {
     if (goal.bound_J >= best.cost_J) break;
@@ -68,6 +69,7 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
     Plan one = plan(towards(goal, problem, left_s > 0.0 ? left_s : problem.time_limit_s));
     if (endsAll(one.status)) return one;
     one.goal = goal.goal;
+    proof_s += one.proof_s;
     const bool found = one.status == RouteStatus::Found;
     proven = proven && (one.status == RouteStatus::NoRoute || one.status == RouteStatus::GoalInvalid);
     if (one.status != RouteStatus::GoalInvalid)
@@ -77,6 +79,7 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
   }
   if (best.status == RouteStatus::NoRoute && !proven) best.status = RouteStatus::NoneFound;
   if (best.status == RouteStatus::Found) best.lower_bound_J = std::min(bound_J, best.cost_J);
+  best.proof_s = proof_s;
   return best;
 }
 

@@ -9,6 +9,7 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/grid/many_headings.hpp>
+#include <talus/planner/grid/node_route.hpp>
 #include <talus/planner/route/cells_within.hpp>
 #include <talus/planner/route/heading_cost.hpp>
 
@@ -97,9 +98,8 @@ class Search {
  private:
   struct Reached {
     float cost_J = std::numeric_limits<float>::infinity();
-    std::uint32_t from = kStart;
+    std::uint32_t from = kNoNode;
   };
-  static constexpr std::uint32_t kStart = std::numeric_limits<std::uint32_t>::max();
 
   void reach(Cell cell, double cost_J, std::uint32_t from) {
     const std::size_t at = grid_.index(cell);
@@ -111,7 +111,7 @@ class Search {
 
   void begin(Point start) {
     for (const Cell cell : cellsWithin(grid_, start, kFar * grid_.resolution_m))
-      reach(cell, cost_({start, grid_.centre(cell)}), kStart);
+      reach(cell, cost_({start, grid_.centre(cell)}), kNoNode);
   }
 
   // The last leg, to the goal or to a cell within the tolerance.
@@ -144,15 +144,13 @@ class Search {
   }
 
   Polyline route(Point start) const {
-    if (last_ == kStart) return {};
-    Polyline points{goal_};
-    for (std::uint32_t at = last_; at != kStart; at = cells_[at].from)
-      points.push_back(
-          grid_.centre({static_cast<int>(at) % grid_.width, static_cast<int>(at) / grid_.width}));
-    points.push_back(start);
-    std::ranges::reverse(points);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    return points;
+    if (last_ == kNoNode) return {};
+    return nodeRoute(
+        {start, goal_}, last_, [this](std::uint32_t node) { return cells_[node].from; },
+        [this](std::uint32_t node) {
+          const int at = static_cast<int>(node);
+          return grid_.centre({at % grid_.width, at / grid_.width});
+        });
   }
 
   const MotionCost& cost_;
@@ -165,7 +163,7 @@ class Search {
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,
                       std::greater<>>
       open_;
-  std::uint32_t last_ = kStart;
+  std::uint32_t last_ = kNoNode;
   Point goal_{};
 };
 

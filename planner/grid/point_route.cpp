@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <talus/planner/bound/cheapest_metre.hpp>
+#include <talus/planner/grid/node_route.hpp>
 #include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/refine/edge_crossings.hpp>
 #include <talus/planner/refine/settled_vertices.hpp>
@@ -31,7 +32,6 @@ constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
 constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
 constexpr float kNotReached = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
 // A point of a cell: on a side (0 to 3) or inside (side -1).
 struct Spot {
@@ -242,12 +242,9 @@ class PointSearch {
 
   Polyline route() const {
     if (last_ == kNoNode) return {};
-    Polyline points{goal_};
-    for (std::uint32_t at = last_; at != kNoNode; at = from_[at]) points.push_back(place(at));
-    points.push_back(places_.from);
-    std::ranges::reverse(points);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    return points;
+    return nodeRoute(
+        {places_.from, goal_}, last_, [this](std::uint32_t node) { return from_[node]; },
+        [this](std::uint32_t node) { return place(node); });
   }
 
   const MotionCost& cost_;

@@ -9,6 +9,7 @@
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/refine/close_vertices.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/plan_end.hpp>
 
@@ -88,9 +89,12 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
             0.0};
   plan.cost_J = cost.along(plan.points);
   const Segment ends{leg.start, leg.goal};
-  plan.lower_bound_J = std::min(
-      plan.cost_J, leg.prove ? straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop)
-                             : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
+  const auto proven_J = [&] {
+    const AddedTime proof(plan.proof_s);
+    return straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop);
+  };
+  plan.lower_bound_J =
+      std::min(plan.cost_J, leg.prove ? proven_J() : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
   return withoutTipping(std::move(plan));
 }
 

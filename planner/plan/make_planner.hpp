@@ -7,9 +7,9 @@
 
 namespace talus::planner {
 
-/// One of Talus' own planners, without a shared library: the default, or the one of that name, configured
-/// with default settings; capabilities().planners lists the names. Throws std::invalid_argument for a name
-/// that is not on offer.
+/// Creates one of Talus' own planners with default settings, without a shared library: the planner of the
+/// given name, or the default if empty. capabilities().planners lists the names. Throws std::invalid_argument
+/// for an unknown name.
 std::unique_ptr<GlobalPlanner> makePlanner(const std::string& name = {});
 
 }  // namespace talus::planner

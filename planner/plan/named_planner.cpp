@@ -24,7 +24,7 @@ Plan NamedPlanner::plan(const Problem& problem) {
 Plan NamedPlanner::planOne(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return planField(problem);
   if (drives()) {
-    if (name() == DrivePlanner::kSampling) drive_.sample({.better = settings_.better});
+    if (name() == PosePlanner::kSampling) drive_.sample({.better = settings_.better});
     return drive_.plan(problem);
   }
   const auto field = [this](const Problem& leg) { return planField(leg); };

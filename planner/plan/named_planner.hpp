@@ -6,38 +6,39 @@
 
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
-#include <talus/planner/pose/drive_planner.hpp>
+#include <talus/planner/pose/pose_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 
 namespace talus::planner {
 
-/// Any planner on offer, by its name: the field, drives within a turning radius, or one of OMPL's improving
-/// on the field's route. What the field worked out for a map and a goal is kept from plan to plan. Not
-/// thread-safe: one object a thread; they may share a map.
+/// Planner selected by name: the field planner, drives with a turning radius, or an OMPL planner that
+/// improves the field's route. The field for a map and a goal is cached between plans. Not thread-safe: use
+/// one object per thread; objects may share a map.
 class NamedPlanner {
  public:
-  /// By samplingSettings(): a name of planner_names.hpp, of OMPL's also "NAME:cold:range=20". Throws std::invalid_argument as it does.
+  /// Name as for samplingSettings(): a name of planner_names.hpp; OMPL's planners also accept options, as in
+  /// "NAME:cold:range=20". Throws std::invalid_argument for an invalid name.
   explicit NamedPlanner(const std::string& name = {});
 
-  /// Whether it keeps headings and a turning radius.
+  /// Returns true if the planner honours headings and a turning radius.
   bool drives() const noexcept {
-    return settings_.planner == DrivePlanner::kName || settings_.planner == DrivePlanner::kSampling;
+    return settings_.planner == PosePlanner::kName || settings_.planner == PosePlanner::kSampling;
   }
 
-  /// The offered name.
+  /// The canonical name.
   const std::string& name() const noexcept { return settings_.planner; }
 
-  /// Calls back with every better cost in joules as it is found; sampling planners only, for routes without
-  /// via points.
+  /// Sets a callback for each improved cost [J]. Only sampling planners call it, for routes without via
+  /// points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
-  /// From this many cells on the field is settled in a tube only (TubePlanner), unless the problem requires
-  /// the whole: at twenty bytes a cell it would take more than 400 MB.
+  /// From this number of cells the field is computed in a tube only (TubePlanner), unless the problem
+  /// requires the whole field: at 20 bytes per cell the field would exceed 400 MB.
   static constexpr std::size_t kLarge = 20'000'000;
 
-  /// A route through all via points in order to the goal that costs least, or why there is none. Throws
-  /// std::invalid_argument without a map.
+  /// Returns the cheapest route found through all via points in order to the goal, or the reason why there is
+  /// none. Throws std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
  private:
@@ -46,7 +47,7 @@ class NamedPlanner {
 
   SamplingSettings settings_;
   FieldPlanner field_;
-  DrivePlanner drive_;
+  PosePlanner drive_;
   TubePlanner tube_;
 };
 

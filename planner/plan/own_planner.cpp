@@ -11,7 +11,7 @@ PlannerCapabilities OwnPlanner::capabilities() const {
 }
 
 void OwnPlanner::configure(const PlannerSettings& settings) {
-  RoutePlanner next(validated(settings).planner);  // throws before anything is changed
+  RoutePlanner next(validated(settings).planner);  // may throw; nothing is changed before
   planner_.emplace(std::move(next));
   settings_ = settings;
 }

@@ -8,7 +8,7 @@
 
 namespace talus::planner {
 
-/// Talus' own planners behind the interface that embedders use. Its routes are those of planRoute().
+/// Talus' own planners behind the interface for embedding. Routes are equal to those of planRoute().
 class OwnPlanner final : public GlobalPlanner {
  public:
   PlannerCapabilities capabilities() const override;
@@ -19,7 +19,7 @@ class OwnPlanner final : public GlobalPlanner {
   std::unique_ptr<GlobalPlanner> create() const override { return std::make_unique<OwnPlanner>(); }
 
  private:
-  std::optional<RoutePlanner> planner_;  // none: the default, made when first asked
+  std::optional<RoutePlanner> planner_;  // none: the default planner, created on first use
   PlannerSettings settings_;
   std::shared_ptr<const costmap::CostGrid> map_;
 };

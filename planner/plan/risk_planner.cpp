@@ -13,11 +13,11 @@
 namespace talus::planner {
 namespace {
 
-// Prices of the rover's loss in joules that are tried: from next to nothing to beyond any battery.
+// Range of the prices of losing the rover [J]: from negligible to beyond any battery.
 constexpr double kLeastPrice_J = 1e3;
 constexpr double kHighestPrice_J = 1e13;
 constexpr int kHalvings = 8;
-constexpr double kTime_s = 2.0;  // for all prices, where no time limit is set
+constexpr double kTime_s = 2.0;  // for all prices without a time limit
 
 Plan planUnder(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                const costmap::CostWeights& weights) {
@@ -39,15 +39,16 @@ double riskOf(const Route& route) {
   return route.vertices.empty() ? 0.0 : route.vertices.back().immobilisation_risk;
 }
 
-// Keeps the cheapest of the plans within the limit, and the least risk of all.
+// Stores the cheapest plan within the limit, and the least risk found.
 class RiskBoundedSearch {
  public:
   RiskBoundedSearch(const Problem& problem, NamedPlanner& planner, double max_risk)
       : problem_(problem), planner_(planner), max_risk_(max_risk) {}
 
-  // Whether the plan keeps the limit, by more worlds than its own number is drawn from, too; nothing where it found
-  // no route.
+  // Returns true if the plan meets the limit, also in a second simulation with more worlds; nothing if no
+  // route was found.
   std::optional<bool> taken(const Plan& plan) {
+    proof_s_ += plan.proof_s;
     if (plan.status != RouteStatus::Found) return std::nullopt;
     AnnotationInput input{.map = *problem_.map};
     input.watch = problem_.watch;
@@ -61,8 +62,8 @@ class RiskBoundedSearch {
     return surely;
   }
 
-  // Whether a route under a price on risk keeps the limit, of the field alone and, where asked for, of all corridors.
-  // In the time that is left; a first route is always sought.
+  // Returns true if a route under a price of risk meets the limit: the field route and, if requested, the
+  // best route of all corridors. Uses the remaining time; the first route is always planned.
   bool tried(double price_J) {
     bool kept = false;
     for (const bool prove : {false, true}) {
@@ -81,12 +82,13 @@ class RiskBoundedSearch {
   }
   bool late() const { return problem_.watch.stopped() || !(leftSeconds() > 0.0); }
 
-  // A search that a stop cut short has tried too few prices to say that none does.
+  // After a stop too few prices were tried for the result that no route meets the limit.
   Plan result(double lower_bound_J) const {
     const bool stopped = problem_.watch.stopped();
     if (best_ || doubtful_) {
       Plan plan = best_ ? *best_ : *doubtful_;
       plan.lower_bound_J = std::min(lower_bound_J, plan.cost_J);
+      plan.proof_s = proof_s_;
       plan.interrupted |= stopped;
       return plan;
     }
@@ -106,14 +108,15 @@ class RiskBoundedSearch {
   }
 
  private:
-  // With two standard errors to spare, so that the cheapest of many is not one whose number happens to be low.
+  // Requires a margin of two standard errors, so that the cheapest of many routes is not selected for a low
+  // random estimate.
   bool surelyKeeps(const Route& route) const {
-    if (!(problem_.map->cost().doubt().correlation_length_m > 0.0)) return true;  // nothing is drawn
+    if (!(problem_.map->cost().doubt().correlation_length_m > 0.0)) return true;  // no simulation
     const RouteRisk drawn = routeRisk(route, riskOptions(*problem_.map), problem_.watch);
     return drawn.immobilisation + 2.0 * drawn.standard_error <= max_risk_;
   }
 
-  // Of the time limit, from the beginning; without one, of kTime_s.
+  // Remaining time of the time limit, or of kTime_s without a limit.
   double leftSeconds() const {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begun_;
     return (std::isfinite(problem_.time_limit_s) ? problem_.time_limit_s : kTime_s) - spent.count();
@@ -124,9 +127,9 @@ class RiskBoundedSearch {
   double max_risk_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   bool any_ = false;
-  double least_risk_ = 1.0;
+  double least_risk_ = 1.0, proof_s_ = 0.0;
   std::optional<Plan> best_;
-  std::optional<Plan> doubtful_;  // within the limit by their own number only
+  std::optional<Plan> doubtful_;  // within the limit by the first estimate only
 };
 
 bool dominates(const RouteDemand& a, const RouteDemand& b) {
@@ -167,8 +170,9 @@ Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_ri
   if (own.status != RouteStatus::Found) return own;
   RiskBoundedSearch search(problem, planner, max_risk);
   if (*search.taken(own)) return search.result(own.lower_bound_J);
-  // The lowest price that is known to do and the highest that is known not to, in powers of ten. Where the highest
-  // does not do, a lower one may: the price counts all metres alike, the risk those together that fail together.
+  // Bisects log10 of the price between the lowest price that meets the limit and the highest that does not.
+  // If the highest price fails, a lower price may succeed: the price weights all metres equally, but failures
+  // of neighbouring metres are correlated in the risk.
   double enough = std::log10(kHighestPrice_J);
   double too_low = std::log10(kLeastPrice_J);
   search.tried(kHighestPrice_J);
@@ -197,7 +201,7 @@ std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<P
       if (plan.status != RouteStatus::Found && plan.status != RouteStatus::TimedOut &&
           plan.status != RouteStatus::NoneFound)
         return {};
-      if (plan.status != RouteStatus::Found) continue;  // the time limit of this one, or nothing sampled
+      if (plan.status != RouteStatus::Found) continue;  // time limit of this plan, or no sample
       const RouteDemand demand = demandOf(*problem.map, plan);
       keep(front, {.plan = std::move(plan), .demand = demand, .weights = weights});
       problem.watch.report((t * steps + r + 1.0) / (steps * steps));

@@ -12,41 +12,42 @@
 
 namespace talus::planner {
 
-/// The objectives of a route. Energy in joules, time in seconds, risk = probability of
-/// immobilisation.
+/// Objectives of a route: energy [J], time [s], probability of immobilisation [-].
 struct RouteDemand {
   double energy_J = 0.0;
   double time_s = 0.0;
   double risk = 0.0;
 };
 
-/// The demand of a plan on a map, integrated along it: of the route that annotated() makes of it, so that its risk is
-/// what a summary and `score` tell.
+/// Objectives of a plan on a map, from the route that annotated() returns for the plan. The risk therefore
+/// equals that of the summary and of `talus score`.
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 
-/// riskOptions() of a map for a limit and a seed: the limit's correlation length counts where the map's cost states
-/// none.
+/// riskOptions() of a map for a limit and a seed. The correlation length of the limit is used if the map's
+/// cost has none.
 RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed);
 
-/// Plans under a chance constraint: the cheapest route found whose probability of immobilisation, as demandOf() has
-/// it, is at most max_risk, in (0, 1); where it can be had, by two standard errors of routeRisk(), too. The plan
-/// without the constraint is the first that is tried; then the constraint enters the cost as a price on risk, raised
-/// until it is met and lowered as far as it still is (Lagrangian relaxation; a route that no price picks out is
-/// missed [everett_1963]), for two seconds where the problem sets no time limit. NoneFound with the least risk found
-/// when none keeps the limit; where the problem's watch was stopped before, `interrupted` or Cancelled. Cost and
-/// bound are of the map's own weights. Throws std::invalid_argument out of range.
+/// Plans under a chance constraint: returns the cheapest route found whose probability of immobilisation,
+/// according to demandOf(), is at most max_risk, in (0, 1); if possible with a margin of two standard errors
+/// of routeRisk(). The plan without the constraint is tried first. Then the risk enters the cost with a
+/// price, which is raised until the constraint is met and lowered as far as the constraint permits
+/// (Lagrangian relaxation; routes that are optimal for no price are missed [everett_1963]). The search takes
+/// two seconds if the problem has no time limit. Returns NoneFound with the least risk found if no route
+/// meets the limit; after a stop by the problem's watch the plan is `interrupted` or Cancelled. Cost and
+/// bound use the map's own weights. Throws std::invalid_argument if max_risk is out of range.
 Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk);
 
-/// One way to trade energy, time and risk.
+/// A Pareto-optimal route.
 struct ParetoRoute {
   Plan plan;
   RouteDemand demand;
-  costmap::CostWeights weights;  ///< that picked it
+  costmap::CostWeights weights;  ///< prices with which the route was planned
 };
 
-/// Routes of which none is better than another in energy, time and risk together, by rising energy: those
-/// that some prices of time and risk pick out for `planner`, among `steps` by `steps` prices. Empty when there is no
-/// route, and when the problem's watch was stopped: a part of the prices makes another set.
+/// Routes of which none is dominated in energy, time and risk, in order of increasing energy. The candidates
+/// are the routes of `planner` for `steps` x `steps` prices of time and risk. Empty if there is no route or
+/// if the problem's watch was stopped, because a part of the prices gives a different set. Throws
+/// std::invalid_argument if steps < 2.
 std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                                    int steps);
 

@@ -13,25 +13,25 @@
 
 namespace talus::planner {
 
-/// What planRoute() does, by one of Talus' own planners or by a plugin's in a child process. What the planner computed
-/// is kept for the next route over the map or a newer version of it. Not thread-safe.
+/// Runs planRoute() with one of Talus' own planners, or with a plugin in a child process. Computed data are
+/// cached for later routes on the map or a newer version of the map. Not thread-safe.
 class RoutePlanner {
  public:
-  /// One of Talus' own planners; empty: the default. Throws std::invalid_argument for a name that is not on offer.
+  /// Uses one of Talus' own planners; empty: the default. Throws std::invalid_argument for an unknown name.
   explicit RoutePlanner(const std::string& planner = {});
   explicit RoutePlanner(PluginPlanner plugin) : planner_(std::move(plugin)) {}
 
-  /// Of the planner, for reports.
+  /// Name of the planner for reports.
   const std::string& name() const noexcept;
 
-  /// Of one of Talus' own planners as such. A plugin refuses the rest of what it does not honour in its process.
+  /// Capabilities of the own planner. A plugin refuses unsupported fields in its own process.
   PlannerCapabilities capabilities() const;
 
-  /// planRoute(); the settings' planner is not read.
+  /// Plans as planRoute(); the planner named in the settings is ignored.
   Route plan(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request,
              const PlannerSettings& settings);
 
-  /// paretoSet() of the request without its risk limit; the chassis is kept.
+  /// Computes paretoSet() for the request without its risk limit; the chassis is honoured.
   std::vector<ParetoRoute> paretoRoutes(const std::shared_ptr<const costmap::CostGrid>& map,
                                         PlanRequest request, const PlannerSettings& settings, int steps);
 
@@ -43,7 +43,7 @@ class RoutePlanner {
   std::variant<std::unique_ptr<NamedPlanner>, PluginPlanner> planner_;
 };
 
-/// The request as the input of a search. Chassis and risk limit are not part of that.
+/// Converts a request to the input of a search, without chassis and risk limit.
 Problem problemOf(std::shared_ptr<const costmap::CostGrid> map, const PlanRequest& request,
                   const PlannerSettings& settings);
 

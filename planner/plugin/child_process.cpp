@@ -44,9 +44,9 @@ void limitMemory(std::uint64_t memory) {
                        [[maybe_unused]] pid_t parent) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it ended before the request
+  if (getppid() != parent) _exit(1);  // the parent ended before prctl()
 #endif
-  dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the program's own
+  dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is reserved for the program
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   for (const int number : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGINT, SIGTERM})
@@ -54,7 +54,7 @@ void limitMemory(std::uint64_t memory) {
   if (limits.memory > 0) limitMemory(limits.memory);
   try {
     sendAll(pipe, work());
-  } catch (...) {  // the border of the process: no answer is the answer
+  } catch (...) {  // an exception counts as Died
     _exit(1);
   }
   _exit(0);
@@ -79,7 +79,7 @@ ChildAnswer::End received(int pipe, const ChildLimits& limits, Clock::time_point
   }
 }
 
-// Waits for the end of a child whose pipe is closed, which need not be its end.
+// Waits for the end of a child after its pipe was closed; the child may continue to run.
 ChildAnswer::End awaited(pid_t child, const ChildLimits& limits, Clock::time_point begin,
                          const ProgressMonitor& watch) {
   siginfo_t ended{};

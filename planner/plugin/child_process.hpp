@@ -10,28 +10,29 @@
 
 namespace talus::planner {
 
-/// What work in a child process may take before it is ended.
+/// Resource limits of a child process, which is killed if it exceeds them.
 struct ChildLimits {
-  double seconds = std::numeric_limits<double>::infinity();     ///< of the clock, > 0
-  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of its answer
-  std::uint64_t memory = 0;                                     ///< bytes beyond what the parent has; 0: any
+  double seconds = std::numeric_limits<double>::infinity();     ///< wall time, > 0
+  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< size of the result
+  std::uint64_t memory = 0;                                     ///< bytes beyond the parent's; 0: no limit
 };
 
-/// How work in a child process ended.
+/// Result of a child process.
 struct ChildAnswer {
-  /// The work returned; a stop was requested; a limit was passed; or the process did not live to answer.
+  /// The work returned; a stop was requested; the time limit was exceeded; the result was too large; or the
+  /// process ended without a result.
   enum class End { Answered, Stopped, TooLate, TooMuch, Died };
   End end = End::Died;
-  std::string bytes;       ///< what the work returned; empty unless Answered
-  int signal = 0;          ///< that a dead process was ended by, 0 where it was none
-  int exit_code = 0;       ///< of a process that was ended by no signal
+  std::string bytes;       ///< result of the work; empty unless Answered
+  int signal = 0;          ///< signal that ended the process; 0: none
+  int exit_code = 0;       ///< if the process was ended by no signal
   double megabytes = 0.0;  ///< peak memory
 };
 
-/// Runs work in a child process and returns its answer: a crash, an abort or a run-away is a result. The child does not
-/// outlive a program that is ended at once, and what it prints goes to standard error. Call it while the
-/// program has no other threads. What the work throws counts as Died. Throws std::runtime_error when no
-/// process can be made.
+/// Runs work in a child process and returns its result; crashes, aborts and endless loops are reported as
+/// results. The child is killed if the parent is killed. Output of the child is redirected to standard error.
+/// Must be called while the program has no other threads. An exception in the work counts as Died. Throws
+/// std::runtime_error if no process can be created.
 ChildAnswer inChild(const std::function<std::string()>& work, const ChildLimits& limits,
                     const ProgressMonitor& watch = {});
 

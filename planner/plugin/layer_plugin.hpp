@@ -6,10 +6,11 @@
 
 namespace talus::planner {
 
-/// What a layer of somebody else's shared library (CostSource, plugin_export.hpp) adds over a grid, trusted in nothing: it
-/// is loaded and asked in a child process, which may take a minute and 4 GB. Cells that it does not know cost as its
-/// dearest of the grid where unknown ground is allowed. Throws InputError naming the file when it is no such plugin, was
-/// built for another interface, throws, crashes, or answers with another number of cells or an impossible value.
+/// Loads a cost layer from an external shared library (CostSource, plugin_export.hpp) and evaluates it on a
+/// grid. The library is untrusted: it runs in a child process with limits of one minute and 4 GB. Unknown
+/// cells cost as much as the most expensive cell of the grid if unknown ground is permitted. Throws
+/// InputError with the file name if the library is not a layer plugin, was built for another interface
+/// version, throws, crashes, or returns a wrong number of cells or an invalid value.
 costmap::CostLayer layerFrom(const std::string& file, const std::string& name, const maps::Grid& grid);
 
 }  // namespace talus::planner

@@ -14,27 +14,27 @@ namespace talus::planner {
 
 inline constexpr std::size_t kLongestPluginText = 1000;
 
-/// Memory that a child that runs a plugin may take beyond the program's own, bytes.
+/// Largest memory of a child process for a plugin, in addition to the program's own [bytes].
 inline constexpr std::uint64_t kMostPluginMemory = std::uint64_t{4} << 30;
 
-/// What planner and layer plugins share: how they are loaded (plugin_loader.cpp) and asked (plugin_planner.cpp).
+/// Functions shared by planner and layer plugins: loading (plugin_loader.cpp) and execution
+/// (plugin_planner.cpp).
 
-/// A shared library that was loaded by a child process first, which tells by a signal what loading it would do to this one.
-/// Throws InputError naming the file when it is missing, is no library, or ends the process that loads it.
+/// Opens a shared library. Throws InputError with the file name if the file is missing or cannot be loaded.
 boost::dll::shared_library openedLibrary(const std::string& path);
 
-/// A text of somebody else's as one line that is not long.
+/// Untrusted text as one line of limited length.
 std::string oneLine(std::string text);
 
-/// Throws the InputError of a plugin that does what it must not.
+/// Throws the InputError for a plugin that violates the interface.
 [[noreturn]] void failPlugin(const std::string& file, const std::string& what);
 
-/// Leads what this process prints, and the dynamic linker for it, nowhere.
+/// Redirects the output of this process and of the dynamic linker to /dev/null.
 void silenceStreams();
 
-/// What work with a plugin returns, done in a child process; its first byte says what it is, neither 'i' nor 'x'. What the plugin prints
-/// is lost. Empty where a stop was requested. Throws InputError naming the file when the work throws, crashes, passes a limit or answers
-/// nothing.
+/// Runs plugin work in a child process and returns its result; the first byte is a type code other than 'i'
+/// and 'x'. Output of the plugin is discarded. Empty after a stop. Throws InputError with the file name if
+/// the work throws, crashes, exceeds a limit or returns nothing.
 std::string answerOf(const std::string& file, const std::function<std::string()>& work,
                      const ChildLimits& limits, const ProgressMonitor& watch);
 

@@ -10,10 +10,10 @@
 
 namespace talus {
 
-/// Grows with every change of CostSource that an older plugin or program would misread.
+/// Incremented with every change of CostSource that is incompatible with older plugins or programs.
 inline constexpr int kLayerInterfaceVersion = 1;
 
-/// A layer of a map from any source, such as shadow, radio or hazards of one's own: costmap::CostLayer.
+/// A cost layer from an external source, such as shadow, radio or hazards: see costmap::CostLayer.
 class CostSource {
  public:
   virtual ~CostSource() = default;
@@ -25,9 +25,9 @@ class CostSource {
 
 }  // namespace talus
 
-/// Exports a planner from a shared library: write it once, in one source file, at namespace scope.
-/// `Type` is a class derived from talus::GlobalPlanner alone, default constructible without throwing.
-/// Symbols: talus_planner, the prototype object; talus_planner_interface, the version it was built against.
+/// Exports a planner from a shared library. Use once, in one source file, at namespace scope. `Type` is
+/// derived from talus::GlobalPlanner only and is default constructible without throwing. Symbols:
+/// talus_planner, the prototype object; talus_planner_interface, the interface version.
 #define TALUS_EXPORT_PLANNER(Type)                                                        \
   namespace talus::plugin_export {                                                        \
   static_assert(std::is_base_of_v<talus::GlobalPlanner, Type>, "not a GlobalPlanner");    \
@@ -39,7 +39,8 @@ class CostSource {
   BOOST_DLL_ALIAS(talus::plugin_export::prototype, talus_planner)                         \
   BOOST_DLL_ALIAS(talus::plugin_export::interface_version, talus_planner_interface)
 
-/// The same for a layer: `Type` is derived from talus::CostSource alone. Symbols: talus_layer, talus_layer_interface.
+/// Exports a layer: `Type` is derived from talus::CostSource only. Symbols: talus_layer,
+/// talus_layer_interface.
 #define TALUS_EXPORT_LAYER(Type)                                                          \
   namespace talus::layer_export {                                                         \
   static_assert(std::is_base_of_v<talus::CostSource, Type>, "not a CostSource");          \

@@ -22,16 +22,16 @@ namespace {
 
 constexpr char kCameThrough = 'k', kMemory = 'm';
 
-// What a library does while it is loaded, makes its planner and is unloaded, which a truncated or foreign one does not
-// survive and another never ends, is tried by a child first: it ends by a signal, or by the dynamic linker's own exit where
-// its tables are damaged, and has not come to its last line then. What it and the linker print is lost.
+// Loads a library, creates its planner and unloads the library, in a child process. A damaged or foreign
+// library may end the process, by a signal or by the dynamic linker's exit, or never return; kCameThrough is
+// then not returned. Output of library and linker is discarded.
 std::string tried(const std::function<void()>& load) {
   silenceStreams();
   try {
     load();
-  } catch (const std::bad_alloc&) {  // the parent, without a limit, would not meet it
+  } catch (const std::bad_alloc&) {  // without the memory limit the parent would not fail
     return {kMemory};
-  } catch (...) {  // told by the parent, which meets it too
+  } catch (...) {  // the parent gets and reports the same error
   }
   return {kCameThrough};
 }
@@ -74,7 +74,7 @@ void silenceStreams() {
 
 namespace {
 
-// Boost's own word for whatever hinders the dynamic linker is "Bad file descriptor".
+// Reason of the dynamic linker. Boost always reports "Bad file descriptor".
 std::string linkerReason(const std::string& path) {
   const char* said = ::dlerror();
   std::string reason = said != nullptr ? said : "it is none";
@@ -89,7 +89,7 @@ boost::dll::shared_library openedLibrary(const std::string& path) {
   if (!boost::dll::fs::is_regular_file(path, error))
     throw InputError({path, "no such file", "name a plugin's shared library (.so)"});
   boost::dll::shared_library library;
-  // A path without a folder would be searched for in the system's library folders instead.
+  // A path without a folder would be searched for in the system's library folders.
   const boost::dll::fs::path absolute = boost::dll::fs::absolute(path);
   library.load(absolute, error);
   if (error || !library.is_loaded())
@@ -111,8 +111,8 @@ void requireInterface(const boost::dll::shared_library& library, const std::stri
                       "rebuild the plugin against the installed talus"});
 }
 
-// A planner of a library, which stays loaded as long as it lives. What the planner does not honour is refused
-// here, so that no plugin can ignore it.
+// A planner of a shared library, which stays loaded for the lifetime of the planner. Fields of a request that
+// the planner does not honour are refused here, so that no plugin can ignore them.
 class Loaded final : public GlobalPlanner {
  public:
   Loaded(std::shared_ptr<boost::dll::shared_library> library, std::unique_ptr<GlobalPlanner> planner)
@@ -131,7 +131,7 @@ class Loaded final : public GlobalPlanner {
   }
 
  private:
-  // Declared in this order so that the planner goes before the code it runs.
+  // The planner must be destroyed before the library that contains its code.
   std::shared_ptr<boost::dll::shared_library> library_;
   std::unique_ptr<GlobalPlanner> planner_;
 };

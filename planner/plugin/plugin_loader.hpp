@@ -7,11 +7,12 @@
 
 namespace talus::planner {
 
-/// A planner from a shared library; the library stays loaded as long as the planner, or one that
-/// it created, lives. A field of a request that the planner does not honour is refused, whatever the plugin does.
-/// Throws talus::InputError naming the file when it is missing, is no library, exports no `talus_planner`, or
-/// was built for another interface version. A child process of 4 GiB loads and unloads it first: a library that ends it,
-/// or takes longer than `trial_s` seconds of the clock, > 0, is refused too.
+/// Creates the planner of a shared library. The library stays loaded for the lifetime of the planner and of
+/// planners that it created. Fields of a request that the planner does not honour are refused before the
+/// plugin is called. Throws talus::InputError with the file name if the file is missing, is not a library,
+/// exports no `talus_planner`, or was built for another interface version. The library is first loaded and
+/// unloaded in a child process of 4 GiB and refused if it ends the process or takes longer than `trial_s` > 0
+/// seconds of wall time.
 std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path, double trial_s = 10.0);
 
 }  // namespace talus::planner

@@ -14,6 +14,7 @@
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
+#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/plan_end.hpp>
 #include <talus/planner/route/polyline.hpp>
@@ -25,7 +26,7 @@ using maps::Point;
 
 constexpr double kSamePlace_m = 1e-6;
 
-// First byte of an answer: what follows.
+// Type codes: first byte of a result.
 constexpr char kText = 't', kRoute = 'r', kInput = 'i', kThrown = 'x', kNoMemory = 'm';
 
 }  // namespace
@@ -58,7 +59,7 @@ std::string bytesOf(const Route& route) {
   return bytes;
 }
 
-// What work with the plugin says, in the child; what it throws becomes words.
+// Runs plugin work in the child process; exceptions become text results.
 std::string said(const std::function<std::string()>& work) {
   silenceStreams();
   try {
@@ -132,7 +133,7 @@ bool near(Point a, Point b, double reach_m) {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) <= reach_m + kSamePlace_m;
 }
 
-// Which goal a route ends at; -1: none.
+// Index of the goal at which a route ends; -1: none.
 int goalOf(const Problem& problem, Point end) {
   if (near(end, problem.goal, problem.goal_tolerance_m)) return 0;
   for (std::size_t i = 0; i < problem.other_goals.size(); ++i)
@@ -153,9 +154,10 @@ std::string text(Point p) {
   return std::to_string(p.x_m) + ',' + std::to_string(p.y_m);
 }
 
-// Headings as the places themselves give them, whatever the plugin states, against those that were requested and the turning
-// radius; of a rover that turns in place, against neither. Chords stand for arcs: each may be off by half of what it turns,
-// for chords of up to 0.4 of the radius; a longer one counts as straight beyond that.
+// Compares the headings of the polyline, regardless of the headings stated by the plugin, with the requested
+// headings and the turning radius; no check for a rover that turns in place. Chords represent arcs: each
+// heading may deviate by half of the chord's change of heading, for chords of up to 0.4 of the radius; the
+// rest of a longer chord counts as straight.
 std::string motionAgainst(const Problem& problem, const std::vector<Point>& points) {
   const double radius_m = problem.kinematics.turning_radius_m;
   if (!(radius_m > 0.0) || points.size() < 2) return {};
@@ -187,7 +189,7 @@ std::string motionAgainst(const Problem& problem, const std::vector<Point>& poin
   return {};
 }
 
-// Why the route of a plugin is not handed out; empty where nothing is held against it.
+// Reason why the route of a plugin is refused; empty if the route is valid.
 std::string heldAgainst(const Problem& problem, const std::vector<Point>& points) {
   if (!near(points.front(), problem.start, 0.0)) return "it begins at " + text(points.front());
   if (goalOf(problem, points.back()) < 0) return "it ends at " + text(points.back());
@@ -249,7 +251,7 @@ Plan PluginPlanner::unchecked(const Problem& problem) const {
                           std::to_string(kMostVertices));
   if (head.status != RouteStatus::Found)
     return failedPlan(head.status == RouteStatus::NoRoute || head.status > RouteStatus::Cancelled
-                          ? RouteStatus::NoneFound  // its word is no proof of ours
+                          ? RouteStatus::NoneFound  // the plugin's status is no proof
                           : head.status,
                       name_ + ": " + bytes.substr(1 + sizeof head));
   Plan plan;
@@ -278,8 +280,11 @@ Plan PluginPlanner::plan(const Problem& problem) const {
   plan.cost_J = MotionCost(problem.map).along(plan.points);
   const Segment ends{plan.points.front(), plan.points.back()};
   const bool one_leg = problem.prove && problem.via.empty() && problem.other_goals.empty();
-  const double bound_J = one_leg ? LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch), plan.cost_J)
-                                 : straightBound_J(*problem.map, ends, 0.0);
+  const auto proven_J = [&] {
+    const AddedTime proof(plan.proof_s);
+    return LowerBound()(problem.map, ends, 0.0, StopCheck(problem.watch), plan.cost_J);
+  };
+  const double bound_J = one_leg ? proven_J() : straightBound_J(*problem.map, ends, 0.0);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   return plan;
 }

@@ -6,29 +6,31 @@
 
 namespace talus::planner {
 
-/// A planner of somebody else's shared library, trusted in nothing: it is loaded and plans in a child process, and
-/// its route is held against violations() and priced by MotionCost before anybody sees it. Not thread-safe.
+/// Planner of an external shared library. The library is untrusted: it is loaded and plans in a child
+/// process; its route is checked with violations() and priced by MotionCost. Not thread-safe.
 class PluginPlanner {
  public:
-  /// Vertices of a route, and its length in cells.
+  /// Upper limits of a route: number of vertices, and length in cells.
   static constexpr std::size_t kMostVertices = 100'000;
   static constexpr int kMostCells = 1'000'000;
 
-  /// Loads it once, in a child, to ask what it is. `planner`: one of those that it offers; empty: its default. Throws
-  /// InputError naming the file, as loadPlugin() does, and where it throws, crashes or has no such planner.
+  /// Loads the library once in a child process to read its capabilities. `planner`: one of the planners
+  /// offered; empty: the default. Throws InputError with the file name as loadPlugin(), and if the library
+  /// throws, crashes or has no such planner.
   explicit PluginPlanner(std::string file, std::string planner = {});
 
-  /// "PLANNER of PLUGIN", for reports.
+  /// "PLANNER of PLUGIN" for reports.
   const std::string& name() const noexcept { return name_; }
 
-  /// A route that keeps every constraint of the map between the places asked for; NoneFound with place and reason where
-  /// the check refuses it, or the plugin's own answer. `kinematics` is asked for where it has a turning radius or
-  /// forbids reversing; the check judges the polyline, whose places alone give its headings, with the chords of arcs held against
-  /// the turning radius and the headings requested. A stop ends the check. A time limit is enforced: a second beyond it the plugin is
-  /// ended. Throws InputError when it throws, crashes, takes too much memory, or returns no route that can be read.
+  /// Returns a route between the requested places that satisfies every constraint of the map, or the plugin's
+  /// own status. NoneFound with place and reason if the check refuses the route. `kinematics` is passed to
+  /// the plugin if it has a turning radius or forbids reversing. The check evaluates the polyline, whose
+  /// points alone define the headings, and compares chords of arcs with the turning radius and the requested
+  /// headings. A stop ends the check. The plugin is killed one second after the time limit. Throws InputError
+  /// if the plugin throws, crashes, takes too much memory, or returns an unreadable route.
   Plan plan(const Problem& problem) const;
 
-  /// What the plugin answers, as it is: points alone, finite, at least one where it found a route.
+  /// Unchecked result of the plugin: finite points only, and at least one point if a route was found.
   Plan unchecked(const Problem& problem) const;
 
  private:

@@ -4,12 +4,13 @@
 
 namespace talus::planner {
 
-/// Throws std::invalid_argument naming the first field of the request that is set and that a planner of these
-/// capabilities does not honour, or that leaves its range. Every planner that loadPlugin() or makePlanner()
-/// gives is asked through it.
+/// Throws std::invalid_argument with the name of the first field of the request that is set but not honoured
+/// by a planner of these capabilities, or out of range. Applied to every planner of loadPlugin() and
+/// makePlanner().
 void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers);
 
-/// The settings, once they keep their ranges. Throws std::invalid_argument naming field, value and bound.
+/// Returns the settings after checking their ranges. Throws std::invalid_argument with field, value and
+/// bound.
 const PlannerSettings& validated(const PlannerSettings& settings);
 
 }  // namespace talus::planner

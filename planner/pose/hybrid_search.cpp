@@ -15,7 +15,7 @@
 #include <talus/planner/pose/motion_set.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
 #include <talus/planner/pose/pose_table.hpp>
-#include <talus/planner/pose/turning_drive.hpp>
+#include <talus/planner/pose/turning_path.hpp>
 
 namespace talus::planner {
 namespace {
@@ -331,7 +331,7 @@ PosePlan HybridSearch::plan(const PoseProblem& problem) {
     for (const Pose& pose : sampled(plan.path, kJoint_cells * problem.map->grid().resolution_m))
       if (places.empty() || !(places.back() == pose.place)) places.push_back(pose.place);
     PosePath turning =
-        turningDrive(places, {problem.start_heading_rad, problem.goal_heading_rad}, search.cost());
+        turningPath(places, {problem.start_heading_rad, problem.goal_heading_rad}, search.cost());
     if (!turning.legs.empty() && search.cost()(turning) < search.cost()(shorter))
       shorter = std::move(turning);
   }

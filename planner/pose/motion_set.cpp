@@ -98,7 +98,7 @@ double MotionSet::quickCost(const Motion& motion, maps::Point from) const noexce
     sum += static_cast<double>(metre_J) * stretch.length_m;
   }
   if (motion.turn_rad == 0.0) return sum;
-  const TurnPrices& turns = kinematics_.turnsOn(code(0.0, 0.0).curve());
+  const TurnCosts& turns = kinematics_.turnsOn(code(0.0, 0.0).curve());
   if (motion.direction == 0) return sum + kinematics_.stop.cost_J + turns.in_place.cost_J * motion.turn_rad;
   return sum + turns.on_arc.cost_J * motion.turn_rad;
 }

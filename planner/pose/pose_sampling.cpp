@@ -15,8 +15,8 @@
 #include <talus/planner/pose/pose_sampling.hpp>
 #include <talus/planner/pose/pose_space.hpp>
 #include <talus/planner/route/stop_check.hpp>
-#include <talus/planner/sampling/drive_objective.hpp>
 #include <talus/planner/sampling/ompl_guard.hpp>
+#include <talus/planner/sampling/travel_objective.hpp>
 
 namespace talus::planner {
 namespace {
@@ -134,9 +134,9 @@ class Sampler : public ob::StateSampler {
 };
 
 // RRT* with a tree that initially contains a drive.
-class Planted : public og::RRTstar {
+class WarmStartedRrtStar : public og::RRTstar {
  public:
-  Planted(const ob::SpaceInformationPtr& space, std::vector<Pose> drive)
+  WarmStartedRrtStar(const ob::SpaceInformationPtr& space, std::vector<Pose> drive)
       : RRTstar(space), drive_(std::move(drive)) {
     setKNearest(true);  // curves are no metric: a radius search would return all nodes
     setAdmissibleCostToCome(false);
@@ -246,7 +246,7 @@ PosePlan improvedBySampling(const PoseProblem& problem, const PosePlan& known,
         });
   const StopCheck stop(problem.watch, problem.time_limit_s);
   withOmplSeed(settings.seed, [&] {
-    Planted planner(information, joints);
+    WarmStartedRrtStar planner(information, joints);
     planner.setRange(settings.range_cells * cell_m);
     planner.setProblemDefinition(definition);
     planner.setup();

@@ -24,7 +24,7 @@ class PythonMap {
   struct Ground {
     terramech::Rover rover;
     pybind11::object soils;  ///< a name or Soil, or a dict of class numbers to names or Soils
-    costmap::DrivePolicy policy{};
+    costmap::TravelPolicy policy{};
     double resolution_m = 1.0;
     maps::Point south_west{};
     int threads = 1;

@@ -24,9 +24,10 @@ terramech::Soil soilOf(const py::handle& given) {
   throw py::type_error("a true soil must be a name or a talus.Soil");
 }
 
-Belief beliefOf(const std::string& word) {
+SoilKnowledge beliefOf(const std::string& word) {
   std::string all;
-  for (const Belief belief : {Belief::Geometry, Belief::Prior, Belief::OnLine, Belief::PerfectKnowledge}) {
+  for (const SoilKnowledge belief : {SoilKnowledge::Geometry, SoilKnowledge::Prior, SoilKnowledge::OnLine,
+                                     SoilKnowledge::PerfectKnowledge}) {
     if (name(belief) == word) return belief;
     all += (all.empty() ? "" : ", ") + std::string(name(belief));
   }
@@ -42,7 +43,7 @@ Truth truthOf(const py::dict& soils,
   return truth;
 }
 
-TraverseSimulation simulate(const PythonMap& map, const SimulationSite::Parts& parts, Belief belief,
+TraverseSimulation simulate(const PythonMap& map, const SimulationSite::Parts& parts, SoilKnowledge belief,
                             const py::object& progress) {
   TraverseSimulation drive;
   inBackground(

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <talus/planner/reach/cell_chain.hpp>
-#include <talus/planner/reach/cell_drive.hpp>
+#include <talus/planner/reach/cell_crossing.hpp>
 
 namespace talus::planner {
 namespace {
@@ -13,9 +13,9 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-// Shares of a cone's width that are left out at both its ends: the first that leave a way are taken.
+// Shares by which a cone is narrowed at both ends; tried in order until a route is found.
 constexpr std::array kCuts{0.3, 0.1, 0.03, 0.01, 1e-3, 0.0};
-constexpr double kTouch = 1e-6;  // sides: as MotionCost takes two places to be one
+constexpr double kTouch = 1e-6;  // sides: distance within which MotionCost treats two places as equal
 
 using Ends = std::pair<InCell, InCell>;
 
@@ -49,8 +49,8 @@ class Layer {
   }
 
  private:
-  DriveCone cone(std::size_t k) const {
-    return DriveCone(chain_[k].headings, chain_[k].everywhere ? 0.0 : cut_);
+  HeadingCone cone(std::size_t k) const {
+    return HeadingCone(chain_[k].headings, chain_[k].everywhere ? 0.0 : cut_);
   }
   int exit(std::size_t k) const noexcept { return otherSide(chain_[k + 1].side); }
 
@@ -60,7 +60,7 @@ class Layer {
     return {onSide(chain_[k].side, ranges_[k].from), onSide(chain_[k].side, ranges_[k].to)};
   }
 
-  // The parts of the sides reached, from the start on, and the place of the last cell where to end.
+  // Computes the reachable range of each side from the start forwards, and the end point in the last cell.
   bool funnel() {
     const std::size_t last = chain_.size() - 1;
     ranges_.assign(chain_.size(), {});
@@ -78,8 +78,9 @@ class Layer {
     return true;
   }
 
-  // Where each side is crossed, from the end on: in the middle of what leads to the next place; where a cell is free to be
-  // driven in every direction, as near to straight on as keeps off the ends.
+  // Chooses the crossing point on each side from the end backwards: the middle of the range from which the
+  // next point is reachable. In cells in which every direction is drivable: the point straight across from
+  // the next point, limited to the middle half of the range.
   bool gates() {
     at_.assign(chain_.size(), 0.0);
     InCell target = end_;
@@ -100,8 +101,8 @@ class Layer {
     return true;
   }
 
-  // Headings on which the side before a link may be crossed: near to those of the straight ways on both sides of it, near to
-  // straight across, and in the middle of each arc.
+  // Candidate headings for crossing the side before a link: near the straight headings before and after the
+  // side, near the normal of the side, and the middle of each arc.
   std::vector<double> crossings(std::size_t k) const {
     const HeadingSet both = chain_[k - 1].headings.shared(chain_[k].headings);
     std::vector<double> headings;
@@ -125,7 +126,7 @@ class Layer {
   }
   InCell placeOut(std::size_t k) const { return onSide(exit(k), at_[k + 1]); }
 
-  // A gate at the end of the drive so far: on which heading, from which gate before, by which places.
+  // State of the drive at a crossing: heading, index of the previous crossing, and intermediate places.
   struct Passed {
     std::optional<double> heading_rad{};
     std::size_t before = 0;
@@ -191,14 +192,14 @@ class Layer {
   ChainMargins margins_;
   double cut_ = 0.0;
   std::size_t failed_ = 0;
-  std::vector<SideRange> ranges_;  // before each link
-  std::vector<double> at_;         // places on these sides
+  std::vector<SideRange> ranges_;  // ranges on the entry sides of the links
+  std::vector<double> at_;         // positions on these sides
   InCell end_;
 };
 
 }  // namespace
 
-std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const DriveCone& cone,
+std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const HeadingCone& cone,
                                      const Ends& from, const Segment& places, double tolerance_m,
                                      double slack) {
   const InCell goal = inCell(grid, cell, places.to);
@@ -211,7 +212,7 @@ std::optional<InCell> nearestReached(const maps::Grid& grid, Cell cell, const Dr
   const std::vector<InCell> part = cone.reachedPart(from.first, from.second, slack, inside);
   std::optional<InCell> nearest;
   double least = std::numeric_limits<double>::infinity();
-  bool left = true, right = true;  // of all sides: the goal lies within
+  bool left = true, right = true;  // over all sides: true if the goal lies inside
   const auto look = [&](InCell p) {
     const double off = std::hypot(p.x - goal.x, p.y - goal.y);
     if (off >= least || off > reach) return;

@@ -12,38 +12,40 @@
 
 namespace talus::planner {
 
-/// In sides of a cell: how far within what is allowed a drive that is laid keeps.
+/// Distance in sides of a cell by which a constructed drive stays inside the permitted limits.
 struct ChainMargins {
-  double slack = -1e-6;  ///< of cones
-  double apart = 1e-5;   ///< of gates from corners
+  double slack = -1e-6;  ///< margin of cones; negative values narrow them
+  double apart = 1e-5;   ///< distance of crossings from corners
 };
 
-/// A cell that a drive passes, the side it comes in by (-1: it begins there), and the headings it may use there.
+/// A cell on the drive, its entry side (-1: the drive begins there), and the headings permitted in the cell.
 struct ChainLink {
   maps::Cell cell;
   int side = -1;
   HeadingSet headings{};
-  bool everywhere = false;  ///< whether its turns may add up to every direction
+  bool everywhere = false;  ///< true if alternating headings can produce every direction
 };
 
-/// A drive along a chain of cells.
+/// Drive along a chain of cells.
 struct LaidChain {
-  Polyline points{};       ///< empty where there is none
-  std::size_t failed = 0;  ///< then the first link that could not be driven
+  Polyline points{};       ///< empty if none was found
+  std::size_t failed = 0;  ///< in this case: the first link that could not be driven
 };
 
-/// A drive through cells each of which has a side in common with the next, from a place of the first to one of the last, or to
-/// the place of the last that is nearest to it, within a tolerance; exact by MotionCost.
+/// Constructs a drive through cells of which each shares a side with the next cell. The drive leads from a
+/// place in the first cell to a place in the last cell, or to the nearest reachable place in the last cell
+/// within a tolerance. The drive is valid under MotionCost.
 ///
-/// How (ours). The parts of the sides that headings well within all cones reach are worked out from the start on, a funnel; the
-/// deeper within the cones, the more room is left to cross sides on headings of both their cells. From the goal backwards a
-/// place is chosen on each side from which the next is reached, in the middle of those.
+/// Method (ours). A forward pass computes the range of each side that is reachable with headings inside all
+/// cones. Narrower cones leave more freedom to cross a side with a heading permitted in both cells. A
+/// backward pass from the goal chooses on each side a point from which the next point is reachable, in the
+/// middle of the admissible range.
 LaidChain laidChain(const MotionCost& cost, const std::vector<ChainLink>& chain, const Segment& places,
                     double tolerance_m, const ChainMargins& margins = {});
 
-/// The place of a cell nearest to one of the map that is reached from the segment between two of its places, if it lies
-/// within the tolerance; the place itself where the tolerance is 0.
-std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const DriveCone& cone,
+/// Place in the cell, reachable from the segment between two places of the cell, that is nearest to
+/// `places.to`, if within the tolerance; `places.to` itself if the tolerance is 0.
+std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const HeadingCone& cone,
                                      const std::pair<InCell, InCell>& from, const Segment& places,
                                      double tolerance_m, double slack);
 

@@ -16,35 +16,37 @@ namespace {
 
 using maps::Cell;
 
-constexpr double kLeastSpare_rad = 4e-3;  // less, and it takes too many turns to get everywhere in a cell
-constexpr int kRepeats = 64;              // of the search, each with one cell restricted further
+constexpr double kLeastSpare_rad = 4e-3;  // cells with less spare angle need too many turns to reach every
+                                          // place
+constexpr int kRepeats = 64;              // maximum number of searches, each with one more restricted cell
 
-// In sides of a cell: what a search takes for reached. A route keeps within it; a proof goes beyond.
+// Thresholds of a search, in sides of a cell. A route stays inside the exact limits; a proof exceeds them.
 struct Extent {
   ChainMargins margins{};
-  double least = 1e-7;       // parts that are followed are longer
-  double ends = -1e-6;       // slack of cones at start and goal
-  double outwards = 1e-3;    // cosine of a crossing's heading to straight out, at least
-  double within_rad = 1e-3;  // so far inside its arc a crossing's heading is
+  double least = 1e-7;       // shorter ranges are not followed
+  double ends = -1e-6;       // margin of cones at start and goal
+  double outwards = 1e-3;    // least cosine between the heading of a crossing and the normal
+  double within_rad = 1e-3;  // distance of a crossing's heading from the ends of its arc
 };
 constexpr Extent kOfRoutes{};
-// MotionCost takes what lies within 1e-6 of a side to lie on it: proofs take ends wider. Shorter parts are rounding.
+// MotionCost treats places within 1e-6 of a side as on the side; proofs therefore widen the ends. Shorter
+// ranges are rounding.
 constexpr Extent kOfProofs{.margins = {.slack = 0.0, .apart = 0.0},
                            .least = 1e-9,
                            .ends = 1e-5,
                            .outwards = 1e-6,
                            .within_rad = 0.0};
 
-// How a cell may be driven: with all its headings, on one arc of them, or not at all.
+// Permitted headings in a cell: all, one arc of them, or none.
 enum class Use { Whole, OneArc, Never };
 
-// A part of a side of a cell where a way comes in; of the first nodes the start itself.
+// A range of a side through which a path enters a cell; the first nodes represent the start.
 struct Node {
   Cell cell;
   int side = -1;
   SideRange range{};
   int parent = -1;
-  int arc = -1;  // of the headings of the parent's cell that the way takes there; -1: all
+  int arc = -1;  // index of the arc of headings used in the parent's cell; -1: all
 };
 
 class Search {
@@ -91,8 +93,8 @@ class Search {
     }
   }
 
-  // Whether the goal is reached; where a route is sought, along ways that can be driven. Blocked: one that could not be restricts
-  // a cell from now on.
+  // Searches for the goal. Without a proof, drives must be constructible: returns Blocked if a drive failed,
+  // after a cell was restricted for the next search.
   End follow(const Extent& extent) {
     extent_ = extent;
     proof_ = &extent == &kOfProofs;
@@ -131,19 +133,22 @@ class Search {
     const auto known = use_.find(map_.grid().index(cell));
     return proof_ || known == use_.end() ? Use::Whole : known->second;
   }
-  bool everywhere(Cell cell, const DriveCone& cone) const {
+  bool everywhere(Cell cell, const HeadingCone& cone) const {
     if (proof_) return cone.everywhere();
     return cone.everywhere() && cone.spare_rad() > kLeastSpare_rad && useOf(cell) == Use::Whole;
   }
-  bool byArcs(Cell cell, const DriveCone& cone) const { return cone.everywhere() && !everywhere(cell, cone); }
+  bool byArcs(Cell cell, const HeadingCone& cone) const {
+    return cone.everywhere() && !everywhere(cell, cone);
+  }
 
-  // The parts of a node that no way reached before, as nodes. Ground that is free to go everywhere is passed once.
+  // Ranges of a node that no earlier path reached, as nodes. Cells in which every direction is drivable are
+  // expanded once.
   std::vector<int> fresh(int popped) {
     const Node node = nodes_[static_cast<std::size_t>(popped)];
     const std::size_t cell = map_.grid().index(node.cell);
     const HeadingSet& own = headings_.of(map_.at(node.cell));
     if (own.empty() || useOf(node.cell) == Use::Never) return {};
-    if (everywhere(node.cell, DriveCone(own))) {
+    if (everywhere(node.cell, HeadingCone(own))) {
       if (passed_[cell]) return {};
       pass(cell);
       return {popped};
@@ -172,34 +177,34 @@ class Search {
     return {onSide(node.side, node.range.from), onSide(node.side, node.range.to)};
   }
 
-  // Whether a way that came in here may end in this cell.
+  // Returns true if a path that entered through this node can end in its cell.
   bool endsIn(int k) const {
     const Node& node = nodes_[static_cast<std::size_t>(k)];
     const InCell goal = inCell(map_.grid(), node.cell, places_.to);
     const double reach = 0.5 + tolerance_m_ / map_.grid().resolution_m + 1e-5;
     if (std::max(std::abs(goal.x - 0.5), std::abs(goal.y - 0.5)) > reach) return false;
     const HeadingSet& own = headings_.of(map_.at(node.cell));
-    const DriveCone cone(own);
-    const auto reached = [&](const DriveCone& by) {
+    const HeadingCone cone(own);
+    const auto reached = [&](const HeadingCone& by) {
       return nearestReached(map_.grid(), node.cell, by, ends(node), places_, tolerance_m_, extent_.ends)
           .has_value();
     };
     if (!byArcs(node.cell, cone)) return reached(cone);
     for (const HeadingArc& arc : own.arcs())
-      if (reached(DriveCone(HeadingSet({arc})))) return true;
+      if (reached(HeadingCone(HeadingSet({arc})))) return true;
     return false;
   }
 
   void expand(int k, double spent) {
     const Cell cell = nodes_[static_cast<std::size_t>(k)].cell;
     const HeadingSet& own = headings_.of(map_.at(cell));
-    const DriveCone cone(own);
+    const HeadingCone cone(own);
     if (!byArcs(cell, cone)) return expandBy(k, spent, cone, -1);
     for (std::size_t arc = 0; arc < own.arcs().size(); ++arc)
-      expandBy(k, spent, DriveCone(HeadingSet({own.arcs()[arc]})), static_cast<int>(arc));
+      expandBy(k, spent, HeadingCone(HeadingSet({own.arcs()[arc]})), static_cast<int>(arc));
   }
 
-  void expandBy(int k, double spent, const DriveCone& cone, int arc) {
+  void expandBy(int k, double spent, const HeadingCone& cone, int arc) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const HeadingSet& own = headings_.of(map_.at(node.cell));
     const auto [a, b] = ends(node);
@@ -229,9 +234,10 @@ class Search {
     return range.to <= kCorner || range.from >= 1.0 - kCorner;
   }
 
-  // Of a side only the corner at its end is reached: a drive goes on from there if it gets there on a heading, the cone's
-  // first or last, that all cells around allow; then into each of them that such a heading leads into.
-  void overCorner(int k, double spent, const DriveCone& cone, int side, bool at_end) {
+  // Handles a side of which only the end corner is reached. A drive passes the corner if it arrives on the
+  // first or last heading of the cone and all cells around the corner permit the heading. The drive then
+  // enters each cell into which such a heading leads.
+  void overCorner(int k, double spent, const HeadingCone& cone, int side, bool at_end) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const bool meridian = side == Side::West || side == Side::East;
     const int beside = meridian ? (at_end ? Side::North : Side::South) : (at_end ? Side::East : Side::West);
@@ -252,7 +258,7 @@ class Search {
            spent);
   }
 
-  bool comesOver(const Node& node, const DriveCone& cone, const HeadingSet& all, InCell corner, int side,
+  bool comesOver(const Node& node, const HeadingCone& cone, const HeadingSet& all, InCell corner, int side,
                  int beside) const {
     const auto [a, b] = ends(node);
     for (const double heading : cone.ends_rad()) {
@@ -265,7 +271,8 @@ class Search {
     return false;
   }
 
-  // The heading of both sets nearest to straight out of the side, if one leads out.
+  // Heading of both sets that is nearest to the outward normal of the side; nothing if no common heading
+  // leads out.
   std::optional<double> crossing(const HeadingSet& own, const HeadingSet& other, int side) const {
     const double out = outwards_rad(side);
     if (own.all() && other.all()) return out;
@@ -275,8 +282,8 @@ class Search {
     return std::cos(heading - out) > extent_.outwards ? std::optional(heading) : std::nullopt;
   }
 
-  // The drive that ends in a node's cell. Where it cannot be laid, the cell that stopped it is restricted: Blocked; Exhausted where
-  // that is not possible.
+  // Constructs the drive that ends in the cell of a node. On failure, restricts the cell that blocked the
+  // drive and returns Blocked, or Exhausted if no restriction is possible.
   End lay(int last) {
     std::vector<ChainLink> chain;
     int arc = -1;
@@ -285,7 +292,7 @@ class Search {
       const HeadingSet& own = headings_.of(map_.at(node.cell));
       chain.push_back({node.cell, node.side,
                        arc < 0 ? own : HeadingSet({own.arcs()[static_cast<std::size_t>(arc)]}),
-                       arc < 0 && everywhere(node.cell, DriveCone(own))});
+                       arc < 0 && everywhere(node.cell, HeadingCone(own))});
       arc = node.arc;
     }
     std::ranges::reverse(chain);
@@ -297,7 +304,7 @@ class Search {
     const Cell cell = chain[laid.failed].cell;
     Use& use = use_[map_.grid().index(cell)];
     if (use == Use::Never) return End::Exhausted;
-    const bool whole = use == Use::Whole && DriveCone(headings_.of(map_.at(cell))).everywhere();
+    const bool whole = use == Use::Whole && HeadingCone(headings_.of(map_.at(cell))).everywhere();
     use = whole ? Use::OneArc : Use::Never;
     return End::Blocked;
   }
@@ -317,7 +324,7 @@ class Search {
   std::vector<Node> nodes_;
   std::priority_queue<std::pair<double, int>> queue_;
   std::unordered_map<std::size_t, SideCover> cover_;
-  std::unordered_set<std::size_t> corners_;  // passed over, in which sense
+  std::unordered_set<std::size_t> corners_;  // corners passed, with their direction
   std::unordered_map<std::size_t, Use> use_;
 };
 

@@ -11,34 +11,38 @@
 
 namespace talus::planner {
 
-/// What cellRoute() may do: both limits are counts, so that the answer does not depend on the machine.
+/// Limits of cellRoute(). Both are independent of run time, so that results do not depend on the machine.
 struct CellRouteLimits {
-  /// Ways into a cell that are followed, some 2 us each.
+  /// Largest number of expanded entries into cells, about 2 us each.
   std::size_t ways = 4'000'000;
-  /// Where a way may pass; everywhere if empty. Cells from which the goal is out of reach only cost work.
+  /// Cells that a path may enter; all cells if empty. Excluding cells from which the goal is out of reach
+  /// saves work.
   std::function<bool(maps::Cell)> worth{};
 };
 
-/// What cellRoute() found.
+/// Result of cellRoute().
 struct CellRoute {
-  Polyline points{};          ///< empty where none was found
-  bool out_of_reach = false;  ///< whether that is a proof: nothing joins the places, whatever the headings
-  std::size_t cells = 0;      ///< then: so many cells some drive from the start may enter
-  maps::Point last{};         ///< then: the middle of that of them which is nearest to the goal
-  std::size_t ways = 0;       ///< followed
-  bool all_ways = false;      ///< whether no way was left out for the limit or a stop
+  Polyline points{};          ///< empty if no route was found
+  bool out_of_reach = false;  ///< true if proven that no route exists with any headings
+  std::size_t cells = 0;      ///< if out_of_reach: number of cells reachable from the start
+  maps::Point last{};         ///< if out_of_reach: centre of the reachable cell nearest to the goal
+  std::size_t ways = 0;       ///< number of expanded entries
+  bool all_ways = false;      ///< false if a limit or a stop ended the search
 };
 
-/// Some route of any headings between two places, for maps whose only routes the eight headings of the grid miss, or the proof that there is
-/// none where Reach, which keeps one part a side only, leaves it open. The straight line where it is allowed, else a way from cell
-/// to cell that crosses each side on a heading of both cells and within a cell drives the two allowed headings on both sides of
-/// where it has to go, in turns. Not a good route: it is to be refined.
+/// Finds a route with arbitrary headings between two places, or proves that none exists. Used on maps whose
+/// only routes are not on the eight grid headings, and where Reach, which stores one range per side, is
+/// undecided. Returns the straight line if permitted. Otherwise the route passes from cell to cell, crosses
+/// each side with a heading permitted in both cells, and inside a cell alternates between the permitted
+/// headings on both sides of the required direction. The route is not optimal and must be refined.
 ///
-/// How (ours). Dijkstra over the sides of cells: a node is a part of a side that is reached in one way; what another way
-/// reached before is taken off, so that every part is followed once. The drive through the cells that lead to the goal is laid by laidChain();
-/// where that fails, the cell that stopped it is driven on single arcs of headings from then on, and not at all if that fails, too. Where no way leads to the
-/// goal, the search is repeated with whole cones, closed sides and corners, which a drive passes over on a heading that all cells
-/// around allow: if that does not reach the goal either, nothing does. Parts of less than 1e-9 of a side are rounding there.
+/// Method (ours). Dijkstra's algorithm over the sides of cells: a node is a range of a side reached by one
+/// path; ranges reached before are removed, so that each range is expanded once. laidChain() constructs the
+/// drive through the cells that lead to the goal. If the construction fails, the blocking cell is restricted
+/// to single arcs of headings, and excluded if the construction fails again. If no path leads to the goal,
+/// the search is repeated with complete cones and closed sides, and with corners, which a drive may pass on a
+/// heading permitted in all cells around. If this search does not reach the goal either, no route exists.
+/// Ranges below 1e-9 of a side are treated as rounding in this search.
 CellRoute cellRoute(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
                     const CellRouteLimits& limits = {}, const StopCheck& stop = {});
 

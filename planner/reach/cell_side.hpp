@@ -12,31 +12,32 @@
 
 namespace talus::planner {
 
-/// The sides of a cell: places on one go from 0 to 1, northwards or eastwards, so that both its cells count alike.
+/// Sides of a cell. Positions on a side run from 0 to 1, northwards or eastwards, and are therefore equal in
+/// both adjacent cells.
 struct Side {
   enum : int { West, East, South, North };
 };
 
-/// The same side as its other cell names it.
+/// The side as seen from the adjacent cell.
 constexpr int otherSide(int side) noexcept {
   return side ^ 1;
 }
 
-/// The cell beyond a side.
+/// The adjacent cell across a side.
 constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
   constexpr std::array<int, 4> kColumns{-1, 1, 0, 0}, kRows{0, 0, -1, 1};
   return {cell.column + kColumns[static_cast<std::size_t>(side)],
           cell.row + kRows[static_cast<std::size_t>(side)]};
 }
 
-/// The heading straight out of a side.
+/// Heading of the outward normal of a side.
 constexpr double outwards_rad(int side) noexcept {
   constexpr std::array<double, 4> kHeadings{std::numbers::pi, 0.0, 1.5 * std::numbers::pi,
                                             0.5 * std::numbers::pi};
   return kHeadings[static_cast<std::size_t>(side)];
 }
 
-/// A place in a cell, in sides of the cell from its south-west corner.
+/// A place in a cell, in cell sides from the south-west corner of the cell.
 struct InCell {
   double x = 0.0;
   double y = 0.0;
@@ -52,7 +53,7 @@ constexpr InCell operator*(double s, InCell a) noexcept {
   return {s * a.x, s * a.y};
 }
 
-/// A place of the map in sides of a cell, and back.
+/// Converts between map coordinates and places in a cell.
 inline InCell inCell(const maps::Grid& grid, maps::Cell cell, maps::Point p) noexcept {
   return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
           (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
@@ -62,7 +63,7 @@ inline maps::Point onMap(const maps::Grid& grid, maps::Cell cell, InCell p) noex
           grid.south_west.y_m + (cell.row + p.y) * grid.resolution_m};
 }
 
-/// The place `at`, 0 to 1, on a side.
+/// Place at position `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
   return side == Side::West    ? InCell{0.0, at}
          : side == Side::East  ? InCell{1.0, at}
@@ -70,7 +71,7 @@ constexpr InCell onSide(int side, double at) noexcept {
                                : InCell{at, 1.0};
 }
 
-/// From one place of a side to another; empty where from > to.
+/// A closed range of positions on a side; empty if from > to.
 struct SideRange {
   double from = 2.0;
   double to = -1.0;
@@ -84,17 +85,18 @@ struct SideRange {
   }
 };
 
-/// Whether a drive that turns within a set of headings gets everywhere on free ground of one kind. The set must not be empty.
+/// Returns true if headings of the set can be combined to every direction on ground of one kind. The set must
+/// not be empty.
 inline bool leadsEverywhere(const HeadingSet& headings) noexcept {
   return headings.all() || 0.5 * HeadingSet::kTurn - headings.widestGap().width_rad > 0.0;
 }
 
-/// Where a drive that turns within a set of headings gets from a place on free ground of one kind: everywhere, or into a
-/// cone of directions no wider than half a turn. The set must not be empty.
-class DriveCone {
+/// Directions in which a drive that alternates between headings of a set can move on ground of one kind: all
+/// directions, or a cone of at most half a turn. The set must not be empty.
+class HeadingCone {
  public:
-  /// `cut`, 0 to 0.5, is the share of the cone's width that is left out at both its ends.
-  explicit DriveCone(const HeadingSet& headings, double cut = 0.0) noexcept {
+  /// `cut`, 0 to 0.5, is the share of the cone's width removed at each end.
+  explicit HeadingCone(const HeadingSet& headings, double cut = 0.0) noexcept {
     const auto [last, gap] = headings.widestGap();
     spare_rad_ = 0.5 * HeadingSet::kTurn - gap;
     everywhere_ = spare_rad_ > 0.0;
@@ -104,28 +106,28 @@ class DriveCone {
     ends_rad_ = {begin, end};
   }
 
-  /// Its first and its last heading, counter-clockwise; of no use where it leads everywhere.
+  /// First and last heading of the cone, counter-clockwise; meaningless if everywhere().
   const std::array<double, 2>& ends_rad() const noexcept { return ends_rad_; }
 
   bool everywhere() const noexcept { return everywhere_; }
 
-  /// By how much [rad] the widest gap between headings is narrower than half a turn: where it is little above 0, a drive
-  /// gets everywhere in many turns only.
+  /// Half a turn minus the widest gap between headings [rad]. A value little above 0 requires many turns to
+  /// reach every place.
   double spare_rad() const noexcept { return spare_rad_; }
 
-  /// The part of a side that is reached from somewhere on the segment between two places of the cell. `slack`, in
-  /// sides, widens the cone.
+  /// Range of a side that is reachable from the segment between two places of the cell. `slack` widens the
+  /// cone [sides].
   SideRange reached(InCell a, InCell b, int side, double slack) const noexcept {
     return clipped(side, slack, {least(left_of_begin_, a, b), least(right_of_end_, a, b)}, 1.0);
   }
 
-  /// The part of a side from where a place of the cell is reached.
+  /// Range of a side from which a place of the cell is reachable.
   SideRange reaching(InCell place, int side, double slack) const noexcept {
     return clipped(side, slack, {-dot(left_of_begin_, place), -dot(right_of_end_, place)}, -1.0);
   }
 
-  /// The part of the cell that is reached from the segment between two places of it, `inside` sides away from its own
-  /// sides: corners in order, none where it is empty.
+  /// Polygon of the cell that is reachable from the segment between two places of the cell, limited to places
+  /// at least `inside` [sides] away from the border: corners in order, no corners if empty.
   std::vector<InCell> reachedPart(InCell a, InCell b, double slack, double inside) const {
     const double far = 1.0 - inside;
     std::vector<InCell> part{{inside, inside}, {far, inside}, {far, far}, {inside, far}};
@@ -144,7 +146,7 @@ class DriveCone {
     return part;
   }
 
-  /// Whether `to` is reached from somewhere on the segment from a to b.
+  /// Returns true if `to` is reachable from the segment from a to b.
   bool joins(InCell a, InCell b, InCell to, double slack) const noexcept {
     return everywhere_ || (dot(left_of_begin_, to) >= least(left_of_begin_, a, b) - slack &&
                            dot(right_of_end_, to) >= least(right_of_end_, a, b) - slack);
@@ -156,7 +158,7 @@ class DriveCone {
     return std::min(dot(normal, a), dot(normal, b));
   }
 
-  // Places p of a side with sign * normal . p >= least - slack for both normals.
+  // Positions p on a side with sign * (normal . p) >= least - slack for both normals.
   SideRange clipped(int side, double slack, std::array<double, 2> least, double sign) const noexcept {
     SideRange range{0.0, 1.0};
     if (everywhere_) return range;

@@ -12,15 +12,15 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCost;
-using costmap::DriveCurve;
 using costmap::Hazard;
+using costmap::TravelCost;
+using costmap::TravelCurve;
 using maps::Cell;
 
 constexpr double kNone = std::numeric_limits<double>::max();
 constexpr float kBlocked = std::numeric_limits<float>::infinity();
 
-// Floods from all cells of a queue over their eight neighbours; next(from, to) says whether to go on.
+// Flood fill from all cells of a queue over eight neighbours; next(from, to) decides on each step.
 template <typename Next>
 void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
   for (; !open.empty(); open.pop_front()) {
@@ -31,15 +31,16 @@ void flood(const maps::Grid& grid, std::deque<Cell> open, Next next) {
   }
 }
 
-// A row that ends where the limit along the heading ends it goes on as it ends, uphill and downhill; one that the soil ends does not.
+// Extends a row beyond the limit along the heading with its last values, uphill and downhill, if the limit
+// ends the row; a row that ends earlier because of the soil is not extended.
 void levelBeyond(float* row, double limit, double most) {
-  constexpr int kMiddle = DriveCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
-  const int at_limit = static_cast<int>(limit * DriveCurve::kBinsPerUnit);
+  constexpr int kMiddle = TravelCurve::kBins / 2, kCut = 4;  // nodes: tables end so near to their limit
+  const int at_limit = static_cast<int>(limit * TravelCurve::kBinsPerUnit);
   for (const int way : {-1, 1}) {
     int last = 0;
     const auto inside = [&](int k) {
-      return kMiddle + way * k >= 0 && kMiddle + way * k < DriveCurve::kBins &&
-             k <= most * DriveCurve::kBinsPerUnit;
+      return kMiddle + way * k >= 0 && kMiddle + way * k < TravelCurve::kBins &&
+             k <= most * TravelCurve::kBinsPerUnit;
     };
     while (inside(last + 1) && row[kMiddle + way * (last + 1)] < kBlocked) ++last;
     if (last < at_limit || last > at_limit + kCut || !(row[kMiddle] < kBlocked)) continue;
@@ -47,59 +48,60 @@ void levelBeyond(float* row, double limit, double most) {
   }
 }
 
-DriveCurve withoutPitch(DriveCurve curve, double limit, double most) {
+TravelCurve withoutPitch(TravelCurve curve, double limit, double most) {
   levelBeyond(curve.cost_J_per_m.data(), limit, most);
   if (!curve.crossing) return curve;
   auto rows = std::make_shared<std::vector<float>>(*curve.crossing);
-  for (std::size_t row = 0; row < rows->size(); row += DriveCurve::kBins)
+  for (std::size_t row = 0; row < rows->size(); row += TravelCurve::kBins)
     levelBeyond(rows->data() + row, limit, most);
   curve.crossing = std::move(rows);
   return curve;
 }
 
-DriveCurve withoutRoll(DriveCurve curve, double limit) {
+TravelCurve withoutRoll(TravelCurve curve, double limit) {
   if (!curve.crossing) return curve;
   const auto kept = static_cast<std::size_t>(
-      std::min(limit * DriveCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
+      std::min(limit * TravelCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
   curve.crossing = std::make_shared<std::vector<float>>(
       curve.crossing->begin(),
-      curve.crossing->begin() + static_cast<std::ptrdiff_t>((kept + 1) * DriveCurve::kBins));
+      curve.crossing->begin() + static_cast<std::ptrdiff_t>((kept + 1) * TravelCurve::kBins));
   return curve;
 }
 
-// Ground of any strength: every node costs as much, but those at which the rover tips.
-DriveCurve withoutSoil(const DriveCost::Limits& limits) {
+// Curve of ground with unlimited strength: equal cost at all nodes except those at which the rover tips.
+TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   const int rows =
-      limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * DriveCurve::kRowsPerUnit) + 2 : 1;
+      limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 2 : 1;
   auto costs = std::make_shared<std::vector<float>>();
   for (int row = 0; row < rows; ++row)
-    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      const terramech::Gradient gradient{DriveCurve::gradient(bin),
-                                         static_cast<double>(row) / DriveCurve::kRowsPerUnit};
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      const terramech::Gradient gradient{TravelCurve::gradient(bin),
+                                         static_cast<double>(row) / TravelCurve::kRowsPerUnit};
       const bool tips = limits.stance && limits.stance->stabilityMargin_rad(demandOf(gradient)) < 0.0;
       costs->push_back(tips ? kBlocked : 1.0F);
     }
-  DriveCurve curve;
-  std::copy_n(costs->begin(), DriveCurve::kBins, curve.cost_J_per_m.begin());
+  TravelCurve curve;
+  std::copy_n(costs->begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
   if (rows > 1) curve.crossing = std::move(costs);
   return curve;
 }
 
-// The gradient at which the slope asks for all that the soil gives at the limit; any where states are not kept.
-double soilHoldsTo(const DriveCost& cost, std::size_t curve) {
+// Gradient at which the slope requires the complete pull that the soil provides at the limit; unlimited if
+// the cost has no states.
+double soilHoldsTo(const TravelCost& cost, std::size_t curve) {
   if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
-  const auto at = static_cast<std::size_t>(
-      std::clamp(DriveCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * DriveCurve::kBinsPerUnit),
-                 0, DriveCurve::kBins - 1));
+  const auto at = static_cast<std::size_t>(std::clamp(
+      TravelCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * TravelCurve::kBinsPerUnit), 0,
+      TravelCurve::kBins - 1));
   const auto margin = static_cast<double>((*cost.states()[curve])[at].pull_margin);
   return std::isfinite(margin) ? cost.limits().max_along + std::max(margin, 0.0) : kNone;
 }
 
-std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveCost& cost) {
-  DriveCost::Limits limits = cost.limits();
-  std::vector<DriveCurve> curves = cost.curves();
+std::shared_ptr<const TravelCost> costWithout(Constraint constraint, const TravelCost& cost) {
+  TravelCost::Limits limits = cost.limits();
+  std::vector<TravelCurve> curves = cost.curves();
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    DriveCurve& curve = curves[k];
+    TravelCurve& curve = curves[k];
     if (constraint == Constraint::Pitch)
       curve = withoutPitch(std::move(curve), limits.max_along, soilHoldsTo(cost, k));
     if (constraint == Constraint::Roll) curve = withoutRoll(std::move(curve), limits.max_across);
@@ -108,25 +110,25 @@ std::shared_ptr<const DriveCost> costWithout(Constraint constraint, const DriveC
   }
   if (constraint == Constraint::Pitch || constraint == Constraint::Slope) limits.max_along = kNone;
   if (constraint == Constraint::Roll || constraint == Constraint::Slope) limits.max_across = kNone;
-  return std::make_shared<const DriveCost>(limits, std::move(curves));
+  return std::make_shared<const TravelCost>(limits, std::move(curves));
 }
 
 }  // namespace
 
-LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards)
+LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards, bool across)
     : map_(map),
+      across_(across),
       kinds_(map.grid().size()),
       solid_(map.grid().size(), Hazard::None),
       ground_(map.grid().size()) {
+  findGround();
+  edges_.emplace(map, hazards, [this](Cell cell, double gradient) { return refuses(cell, gradient); });
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Cell cell{static_cast<int>(i) % map.grid().width, static_cast<int>(i) / map.grid().width};
     kinds_[i] = kindOf(cell, hazards);
-    if (kinds_[i] == Kind::Fixed && hazards)
-      solid_[i] =
-          static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
+    if (kinds_[i] == Kind::Fixed && hazards) solid_[i] = solidOf(cell, hazards);
   }
   settleNear();
-  findGround();
 }
 
 LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) const {
@@ -136,12 +138,38 @@ LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) con
   if (!hazards) return Kind::Fixed;
   const Hazard found = hazards(cell);
   if (has(found, Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks)) return Kind::Fixed;
-  if (has(found, Hazard::Slope)) return Kind::Steep;
+  if (edges_->at(cell) == StepEdges::Kind::Sheer) return Kind::Fixed;
+  if (has(found, Hazard::Slope) || edges_->at(cell) == StepEdges::Kind::Slope) return Kind::Steep;
   if (has(found, Hazard::Step | Hazard::Roughness)) return Kind::Fixed;
   return has(found, Hazard::Unknown) ? Kind::Unseen : Kind::Near;
 }
 
-// A cell that is kept clear counts to what is nearest: what stands there, unseen ground, or the rim of the map.
+// The roughness at a sheer step is attributed to the step.
+Hazard LiftedGround::solidOf(Cell cell, const HazardsOf& hazards) const {
+  const auto found =
+      static_cast<Hazard>(static_cast<std::uint8_t>(hazards(cell)) & static_cast<std::uint8_t>(kSolid));
+  if (edges_->at(cell) != StepEdges::Kind::Sheer) return found;
+  constexpr Hazard kDeclared = Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks;
+  return static_cast<Hazard>(static_cast<std::uint8_t>(found) & static_cast<std::uint8_t>(kDeclared)) |
+         Hazard::Step;
+}
+
+bool LiftedGround::isSteep(CellCode code) const noexcept {
+  const TravelCost::Limits& limits = map_.cost().limits();
+  return std::hypot(code.dzDx(), code.dzDy()) > std::hypot(limits.max_along, limits.max_across);
+}
+
+bool LiftedGround::refuses(Cell cell, double gradient) const noexcept {
+  const TravelCost::Limits& limits = map_.cost().limits();
+  if (gradient > std::min(limits.max_along, limits.max_across)) return true;
+  const std::uint8_t ground = ground_[map_.grid().index(cell)];
+  if (ground >= map_.cost().curves().size()) return false;
+  const TravelCurve& curve = map_.cost().curves()[ground];
+  return !(curve.price(gradient, 0.0) < kBlocked) || !(curve.price(-gradient, 0.0) < kBlocked);
+}
+
+// Assigns each cell of a clearance to the nearest cause: an obstacle, unobserved ground, or the rim of the
+// map.
 void LiftedGround::settleNear() {
   const maps::Grid& grid = map_.grid();
   std::deque<Cell> sources;
@@ -168,8 +196,9 @@ void LiftedGround::findGround() {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const std::size_t i = grid.index({column, row});
-      if (kinds_[i] != Kind::Open) continue;
-      ground_[i] = map_.at({column, row}).curve();
+      const std::uint8_t curve = map_.at({column, row}).curve();
+      if (curve >= map_.cost().curves().size()) continue;
+      ground_[i] = curve;
       known[i] = true;
       sources.push_back({column, row});
     }
@@ -185,6 +214,8 @@ void LiftedGround::findGround() {
 bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell) const noexcept {
   const Kind kind = kinds_[cell];
   switch (constraint) {
+    case Constraint::Roll:
+      return across_ && kind == Kind::Steep;
     case Constraint::Pitch:
     case Constraint::Slope:
       return kind == Kind::Steep;
@@ -195,7 +226,6 @@ bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell
       return kind == Kind::Unseen;
     case Constraint::Rim:
       return kind == Kind::Rim;
-    case Constraint::Roll:
     case Constraint::Soil:
       return false;
   }
@@ -209,14 +239,52 @@ std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constr
   bool any = false;
   for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = isFreed(constraint, kinds, i);
   if (of_cells && !any) return nullptr;
+  const auto freed = [&](Cell cell, CellCode code) {
+    const std::size_t i = grid.index(cell);
+    if (!isFreed(constraint, kinds, i)) return code;
+    if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
+    const bool stays = constraint == Constraint::Hazard && has(solid_[i], Hazard::Step) && isSteep(code);
+    return stays ? code : code.withCurve(ground_[i]);
+  };
   return std::make_shared<const costmap::CostGrid>(
-      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}},
-                     .code =
-                         [&](Cell cell, CellCode code) {
-                           const std::size_t i = grid.index(cell);
-                           return isFreed(constraint, kinds, i) ? code.withCurve(ground_[i]) : code;
-                         },
-                     .cost = [&] { return costWithout(constraint, map_.cost()); }}));
+      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
+                       return costWithout(constraint, map_.cost());
+                     }}));
+}
+
+std::shared_ptr<const costmap::CostGrid> LiftedGround::withoutSlopesAndSteps() const {
+  const maps::Grid& grid = map_.grid();
+  const auto isStep = [this](std::size_t i) { return isFreed(Constraint::Hazard, Hazard::Step, i); };
+  bool any = false;
+  for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = has(solid_[i], Hazard::Step) && isStep(i);
+  if (!any) return nullptr;
+  const auto freed = [&](Cell cell, CellCode code) {
+    const std::size_t i = grid.index(cell);
+    if (!isStep(i) && !isFreed(Constraint::Slope, kSolid, i)) return code;
+    if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
+    return code.withCurve(ground_[i]);
+  };
+  return std::make_shared<const costmap::CostGrid>(
+      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
+                       return costWithout(Constraint::Slope, map_.cost());
+                     }}));
+}
+
+bool slopesAcross(const costmap::CostGrid& map, const Segment& line) {
+  const double dx = line.to.x_m - line.from.x_m, dy = line.to.y_m - line.from.y_m,
+               length_m = std::hypot(dx, dy);
+  if (!(length_m > 0.0)) return false;
+  const int pieces = 1 + static_cast<int>(length_m / map.grid().resolution_m);
+  double along = 0.0, across = 0.0;
+  for (int k = 0; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    const auto cell = map.grid().cellAt({line.from.x_m + share * dx, line.from.y_m + share * dy});
+    if (!cell) continue;
+    const CellCode code = map.at(*cell);
+    along += std::abs(code.dzDx() * dx + code.dzDy() * dy);
+    across += std::abs(code.dzDy() * dx - code.dzDx() * dy);
+  }
+  return across > along;
 }
 
 }  // namespace talus::planner

@@ -2,33 +2,44 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/planner/reach/step_edges.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 
-/// A map without one of its constraints, to tell which of them closes a way. What refuses a cell whole counts to
-///   Pitch    ground steeper than any heading may stand, with the edges and roughness of the same cells; and what the limit
-///            along the heading refuses, as far as soil holds at the limit
-///   Roll     what the limit across the heading refuses, likewise
-///   Soil     what soil, motors and policy refuse within both limits, where the rover does not tip
-///   Rim      the clearance kept from the map's rim
-///   Slope    what Pitch, Roll and Soil refuse
-///   Hazard   rocks, keep-out areas, impassable classes, edges, rough ground, and the clearance around them
+/// A map without one of its constraints, to determine which constraint blocks a route. Completely refused
+/// cells are assigned to
+///   Pitch    ground steeper than permitted in any heading, including the bends at its edges (StepEdges::Kind::Slope),
+///            and headings refused by the limit along the heading, as far as the soil holds at the limit
+///   Roll     headings refused by the limit across the heading and, if the route leads across the slope
+///            (slopesAcross()), also the ground of Pitch
+///   Soil     refused by soil, motors and policy within both limits, where the rover does not tip
+///   Rim      the clearance from the rim of the map
+///   Slope    refused by Pitch, Roll or Soil
+///   Hazard   rocks, keep-out areas, impassable classes, steps, rough ground, and the clearance around them
 ///   Unknown  unobserved ground and the clearance around it
-/// Where the limit along the heading is lifted, soil is taken to hold as far as its pull exceeds the slope's demand
-/// at the limit. Cells freed are ground as the nearest that is not refused whole, on their own slope. Ours.
+/// A sheer step and the tilt of the plane fitted over the step are one constraint: without it a cell has the
+/// gradient of the surrounding ground (StepEdges::settled()), and remains refused if that gradient is steeper
+/// than permitted in any heading. Without the limit along the heading, the soil is assumed to hold as far as
+/// its pull exceeds the slope's demand at the limit. Freed cells have the ground of the nearest cell that is
+/// not completely refused, on their own slope. Ours.
 class LiftedGround {
  public:
-  /// Without hazards every cell refused whole counts to Hazard.
-  LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards);
+  /// Without `hazards` every completely refused cell is assigned to Hazard. `across`: the blocked route leads
+  /// across slopes rather than up or down (slopesAcross()).
+  LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards, bool across = false);
 
-  /// Null where the constraint refuses no cell whole and no heading. Of Hazard only cells of these kinds alone, and
-  /// their clearance.
+  /// Map without the constraint; null if the constraint refuses no cell and no heading. For Hazard only cells
+  /// of the given kinds, and their clearance, are freed.
   std::shared_ptr<const costmap::CostGrid> without(Constraint constraint,
                                                    costmap::Hazard kinds = kSolid) const;
+  /// Map without Slope and Hazard::Step; null if no cell is refused because of a step.
+  std::shared_ptr<const costmap::CostGrid> withoutSlopesAndSteps() const;
 
   /// The hazards of Constraint::Hazard.
   static constexpr costmap::Hazard kSolid = costmap::Hazard::KeepOut | costmap::Hazard::Obstacle |
@@ -39,13 +50,22 @@ class LiftedGround {
   enum class Kind : std::uint8_t { Open, Steep, Fixed, Unseen, Rim, Near };
   Kind kindOf(maps::Cell cell, const HazardsOf& hazards) const;
   bool isFreed(Constraint constraint, costmap::Hazard kinds, std::size_t cell) const noexcept;
+  bool isSteep(costmap::CellCode code) const noexcept;
+  bool refuses(maps::Cell cell, double gradient) const noexcept;
+  costmap::Hazard solidOf(maps::Cell cell, const HazardsOf& hazards) const;
   void settleNear();
   void findGround();
 
   const costmap::CostGrid& map_;
+  bool across_;
   std::vector<Kind> kinds_;
-  std::vector<costmap::Hazard> solid_;  // of kSolid, of the cell or what it is kept clear of
-  std::vector<std::uint8_t> ground_;    // number of the nearest cell that is open
+  std::vector<costmap::Hazard> solid_;  // hazards of kSolid, of the cell or of the cell that requires the
+                                        // clearance
+  std::vector<std::uint8_t> ground_;    // index of the nearest open cell
+  std::optional<StepEdges> edges_;
 };
+
+/// Returns true if the ground between two places slopes more across the connecting line than along it.
+bool slopesAcross(const costmap::CostGrid& map, const Segment& line);
 
 }  // namespace talus::planner

@@ -12,8 +12,8 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-// The cells of two sets that the fewest king's moves part, by a flood from the first over the whole map; none where a
-// set is empty, or when stopped.
+// The cells of two sets with the fewest king's moves between them, by a flood fill from the first set over
+// the whole map; nothing if a set is empty or after a stop.
 std::optional<std::pair<Cell, Cell>> closest(const maps::Grid& grid, const Reach& from, const Reach& to,
                                              const StopCheck& stop) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -111,7 +111,7 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
     found.last = map.grid().centre(gap->first);
     found.first = map.grid().centre(gap->second);
   }
-  // From the side that fewer cells lead to, until it meets the other.
+  // Searches from the side with fewer cells, until the search meets the other side.
   const auto opens = [&](const costmap::CostGrid& lifted) {
     HeadingSets free(lifted.cost());
     Reach reach = backwards ? Reach(lifted, free, Reach::Sense::To, places.to, tolerance_m, stop, &from_start)
@@ -127,7 +127,7 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop) {
   if (stop() || map.grid().size() > kTriedCells) return;
-  const LiftedGround ground(map, hazards);
+  const LiftedGround ground(map, hazards, slopesAcross(map, {found.last, found.first}));
   for (const Constraint constraint :
        {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll,
         Constraint::Rim, Constraint::Slope}) {
@@ -142,6 +142,13 @@ void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsO
       if (found.hazard || stop()) break;
       const auto lifted = ground.without(Constraint::Hazard, kind);
       if (lifted && opens(*lifted)) found.hazard = kind;
+    }
+  }
+  if (!found.lifting && !stop()) {
+    const auto lifted = ground.withoutSlopesAndSteps();
+    if (lifted && opens(*lifted)) {
+      found.lifting = Constraint::Slope;
+      found.hazard = costmap::Hazard::Step;
     }
   }
   found.tried = !stop();
@@ -160,6 +167,8 @@ std::string text(const Obstruction& obstruction, const Segment& places) {
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
                      " lead to the goal; " + where;
+  if (obstruction.lifting == Constraint::Slope && obstruction.hazard)
+    return line + "; slopes and steps together close every way, neither alone: choose another goal";
   if (obstruction.hazard) return line + "; " + remedy(*obstruction.hazard);
   if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
   return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal"

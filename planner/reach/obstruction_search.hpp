@@ -10,21 +10,23 @@
 
 namespace talus::planner {
 
-/// Where two places are cut off from each other: the sets reached from one and leading to the other, and, by building both
-/// anew without each constraint in turn (LiftedGround), which of them does it. On maps above kTriedCells none is lifted. Stopped, or where a
-/// set is empty, it has the places themselves in place of the cells that come closest.
+/// Finds the obstruction between two places: the set reachable from the start, the set from which the goal is
+/// reachable, and the constraints that separate them. Each constraint is tested by recomputing both sets
+/// without the constraint (LiftedGround), on maps of up to kTriedCells only. After a stop, or if a set is
+/// empty, the places themselves are returned instead of the closest cells.
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
                                const Segment& places, double tolerance_m, const HazardsOf& hazards = {},
                                const StopCheck& stop = {});
 
-/// Whether a map joins the two places.
+/// Returns true if the map connects the two places.
 using OpensOn = std::function<bool(const costmap::CostGrid& map)>;
 
-/// Only the search for the constraint, on an obstruction whose sets are known. Stopped, or on maps above kTriedCells, none is tried.
+/// Tests the constraints of an obstruction whose sets are known. After a stop, or on maps above kTriedCells,
+/// no constraint is tested.
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop = {});
 
-/// One line: how many cells, where they come closest, what to change.
+/// One line: number of cells, closest cells, and the constraint to change.
 std::string text(const Obstruction& obstruction, const Segment& places);
 
 inline constexpr std::size_t kTriedCells = 4'000'000;

@@ -5,9 +5,10 @@ namespace {
 
 using maps::Cell;
 
-// In sides of a cell. MotionCost takes what lies within 1e-6 of a side to lie on it: ends are taken that wide.
+// In sides of a cell: margin at start and goal, because MotionCost treats places within 1e-6 of a side as on
+// the side.
 constexpr double kEnds = 1e-5;
-// Ranges that grow by less do not count as grown: rounding.
+// Smaller growth of a range is rounding.
 constexpr double kRounding = 1e-9;
 
 enum : std::uint8_t { kSeen = 1, kOpen = 2 };
@@ -67,7 +68,7 @@ void Reach::begin(Cell cell, const InCell* place) {
   enqueue(index);
 }
 
-SideRange Reach::exits(const Entries& entries, const DriveCone& cone, int side) const noexcept {
+SideRange Reach::exits(const Entries& entries, const HeadingCone& cone, int side) const noexcept {
   if (entries.anywhere) return {0.0, 1.0};
   SideRange all;
   for (int from = 0; from < 4; ++from) {
@@ -93,17 +94,18 @@ void Reach::spread(Cell cell) {
   const HeadingSet& own = headingsOf(cell);
   const auto found = cones_.find(map_.grid().index(cell));
   const Entries* entries =
-      found == cones_.end() ? nullptr : &found->second;  // stays where it is when others come
+      found == cones_.end() ? nullptr : &found->second;  // the reference stays valid when entries are added
   for (int side = 0; side < 4; ++side) {
     if (!map_.grid().contains(beyond(cell, side)) || !mayCross(cell, own, side)) continue;
-    const SideRange range = entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, DriveCone(own), side);
+    const SideRange range =
+        entries == nullptr ? SideRange{0.0, 1.0} : exits(*entries, HeadingCone(own), side);
     if (!range.empty()) enter(beyond(cell, side), otherSide(side), range);
   }
 }
 
 void Reach::enter(Cell cell, int side, const SideRange& range) {
   const std::size_t index = map_.grid().index(cell);
-  if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, and free to go everywhere
+  if (seen_[index] != 0 && !cones_.contains(index)) return;  // entered before, without restriction
   if (leadsEverywhere(headingsOf(cell))) return enqueue(index);
   Entries& entries = cones_[index];
   SideRange& known = entries.sides[static_cast<std::size_t>(side)];
@@ -117,7 +119,7 @@ bool Reach::reaches(maps::Point place, double tolerance_m) {
     if (!holds(cell)) continue;
     const auto found = cones_.find(map_.grid().index(cell));
     if (tolerance_m > 0.0 || found == cones_.end() || found->second.anywhere) return true;
-    const DriveCone cone(headingsOf(cell));
+    const HeadingCone cone(headingsOf(cell));
     const InCell to = inCell(map_.grid(), cell, place);
     const Entries& entries = found->second;
     if (entries.has_place && cone.joins(entries.place, entries.place, to, kEnds)) return true;

@@ -13,40 +13,43 @@
 
 namespace talus::planner {
 
-/// The cells that some drive enters on its way from a place, or from which some drive gets to it, whatever its headings
-/// and turns: never too few, so that a place outside is proven to be out of reach.
+/// Cells that can be entered by a drive from a place, or from which a drive can reach the place, for any
+/// headings and turns. The set is never too small: a cell outside the set is proven to be unreachable.
 ///
-/// How (ours). Within a cell a drive that turns at will gets from a place to every place in the directions that its
-/// allowed headings add up to (DriveCone). It crosses a side only on a heading that both cells allow, in the part of the
-/// side that this cone reaches from the parts where it came in. Parts of a side are kept as one range, their hull, and
-/// taken as whole once they have grown kGrowths times; growth below 1e-9 of a side is rounding. A drive over a corner passes the corner of a cell beside it on the
-/// same heading, a drive along a side belongs to both cells: MotionCost asks for all of them. Work and memory are in
-/// proportion to the cells reached.
+/// Method (ours). Inside a cell a drive can move from a place in all directions that are combinations of the
+/// permitted headings (HeadingCone). The drive crosses a side only with a heading permitted in both cells, in
+/// the range that the cone reaches from the entry ranges. The ranges of a side are stored as one hull, which
+/// is replaced by the complete side after kGrowths growths; growth below 1e-9 of a side is rounding. A drive
+/// over a corner also passes the corner of an adjacent cell with the same heading, and a drive along a side
+/// belongs to both cells, because MotionCost checks all these cells. Work and memory are proportional to the
+/// number of reached cells.
 class Reach {
  public:
   enum class Sense { From, To };
 
-  /// From a place inside the map, or to it and all places within the tolerance.
-  /// With `other`, of the opposite sense over the same cells or fewer, it ends where a cell of both joins their ways.
+  /// Computes the cells reachable from a place inside the map, or the cells from which the place or the
+  /// tolerance around it can be reached. With `other`, of the opposite sense over the same cells or fewer,
+  /// the computation ends as soon as a common cell connects both.
   Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
         double tolerance_m = 0.0, const StopCheck& stop = {}, const Reach* other = nullptr);
 
-  /// Whether a drive may enter the cell.
+  /// Returns true if a drive may enter the cell.
   bool holds(maps::Cell cell) const noexcept {
     return map_.grid().contains(cell) && seen_[map_.grid().index(cell)] != 0;
   }
 
-  /// Whether a drive may come within the tolerance of a place.
+  /// Returns true if a drive may come within the tolerance of a place.
   bool reaches(maps::Point place, double tolerance_m);
 
   std::size_t cells() const noexcept { return cells_; }
-  /// Whether some drive gets from the one's place to the other's: through a cell that both hold and in which it turns at will.
+  /// True if a drive from one place to the place of `other` exists, through a common cell in which every
+  /// direction is drivable.
   bool joined() const noexcept { return joined_; }
-  /// False where it was stopped: it proves nothing then.
+  /// False after a stop; the set then proves nothing.
   bool complete() const noexcept { return complete_; }
 
  private:
-  // Where a cell with a cone was entered: by side, and the place it began at.
+  // Entries into a cell with a cone: ranges by side, and the place at which the drive began.
   struct Entries {
     std::array<SideRange, 4> sides{};
     bool has_place = false;
@@ -57,7 +60,7 @@ class Reach {
 
   void begin(maps::Cell cell, const InCell* place);
   void spread(maps::Cell cell);
-  SideRange exits(const Entries& entries, const DriveCone& cone, int side) const noexcept;
+  SideRange exits(const Entries& entries, const HeadingCone& cone, int side) const noexcept;
   void enter(maps::Cell cell, int side, const SideRange& range);
   void enqueue(std::size_t index);
   const HeadingSet& headingsOf(maps::Cell cell);

@@ -7,11 +7,12 @@
 
 namespace talus::planner {
 
-/// The parts of one side of a cell that were reached, each part once.
+/// Union of the reached ranges of one side of a cell.
 class SideCover {
  public:
-  /// Those parts of a range longer than `least` [sides, >= 0] that were not covered so far; they are from now on. What is
-  /// shorter is not, so that growth in small steps is heard when it adds up.
+  /// Returns the parts of a range that are longer than `least` [sides, >= 0] and not yet covered, and covers
+  /// them. Shorter parts are not covered, so that several short extensions are returned once their total
+  /// exceeds `least`.
   std::vector<SideRange> added(const SideRange& range, double least) {
     std::vector<SideRange> fresh;
     double at = range.from;
@@ -38,7 +39,7 @@ class SideCover {
     parts_.insert(parts_.erase(first, end), range);
   }
 
-  std::vector<SideRange> parts_;  // in order, apart
+  std::vector<SideRange> parts_;  // sorted, disjoint
 };
 
 }  // namespace talus::planner

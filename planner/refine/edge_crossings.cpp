@@ -15,12 +15,12 @@ namespace talus::planner {
 namespace {
 
 using costmap::CellCode;
-using costmap::DriveCost;
-using costmap::DriveCurve;
+using costmap::TravelCost;
+using costmap::TravelCurve;
 
 constexpr float kNoCost = std::numeric_limits<float>::infinity();
 constexpr int kBinBits = 9;
-static_assert(DriveCurve::kBins == 1 << kBinBits);
+static_assert(TravelCurve::kBins == 1 << kBinBits);
 
 // Headings and lengths of consecutive motions.
 struct Motions {
@@ -28,7 +28,7 @@ struct Motions {
   const float* length;
 };
 
-void pricesByScalar(const DriveCost& cost, CellCode cell, float here, const Motions& motions, int count,
+void pricesByScalar(const TravelCost& cost, CellCode cell, float here, const Motions& motions, int count,
                     float* paid) noexcept {
   for (int i = 0; i < count; ++i)
     paid[i] = here + HeadingCost(cost, motions.x[i], motions.y[i])(cell) * motions.length[i];
@@ -41,14 +41,14 @@ __attribute__((target("avx2"))) inline __m128i lanes(__m256d mask) noexcept {
   return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
 }
 
-// DriveCurve::between(): the previous node, whether the coordinate differs from the node (-1), and the weight
+// TravelCurve::between(): the previous node, whether the coordinate differs from the node (-1), and the weight
 // of the next node.
 struct Betweens {
   __m128i whole, off;
   __m128 share;
 };
 __attribute__((target("avx2"))) inline Betweens betweens(__m256d place) noexcept {
-  const __m256d same = _mm256_set1_pd(DriveCurve::kSame);
+  const __m256d same = _mm256_set1_pd(TravelCurve::kSame);
   const __m128i whole = _mm256_cvttpd_epi32(_mm256_add_pd(place, same));
   const __m256d rest = _mm256_sub_pd(place, _mm256_cvtepi32_pd(whole));
   const __m128i off = lanes(_mm256_cmp_pd(rest, same, _CMP_GT_OQ));
@@ -73,19 +73,19 @@ __attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m12
 }
 
 // The operations of HeadingCost for four motions at a time.
-__attribute__((target("avx2"))) void pricesByVector(const DriveCost& cost, CellCode cell, float here,
+__attribute__((target("avx2"))) void pricesByVector(const TravelCost& cost, CellCode cell, float here,
                                                     const Motions& motions, int count, float* paid) noexcept {
   const __m256d steps_x = _mm256_set1_pd(cell.stepsX()), steps_y = _mm256_set1_pd(cell.stepsY());
   const __m256d most_along = _mm256_set1_pd(cost.limits().max_along),
                 most_across = _mm256_set1_pd(cost.limits().max_across);
   const __m256d no_sign = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7fffffffffffffff));
-  const DriveCurve& curve = cost.curves()[cell.curve()];
+  const TravelCurve& curve = cost.curves()[cell.curve()];
   const float* prices = curve.rows();
   const __m128i last_row = _mm_set1_epi32(curve.lastRow());
-  const __m256d bins_per_unit = _mm256_set1_pd(DriveCurve::kBinsPerUnit),
-                rows_per_unit = _mm256_set1_pd(DriveCurve::kRowsPerUnit),
-                middle = _mm256_set1_pd(DriveCurve::kBins / 2),
-                last_place = _mm256_set1_pd(DriveCurve::kLastPlace);
+  const __m256d bins_per_unit = _mm256_set1_pd(TravelCurve::kBinsPerUnit),
+                rows_per_unit = _mm256_set1_pd(TravelCurve::kRowsPerUnit),
+                middle = _mm256_set1_pd(TravelCurve::kBins / 2),
+                last_place = _mm256_set1_pd(TravelCurve::kLastPlace);
   const __m128 no_cost = _mm_set1_ps(kNoCost);
   for (int i = 0; i < count; i += EdgeCrossings::kVector) {
     const __m256d x = _mm256_loadu_pd(motions.x + i), y = _mm256_loadu_pd(motions.y + i);
@@ -122,15 +122,15 @@ constexpr auto pricesByVector = pricesByScalar;
 #endif
 
 // Largest steepness up to which the curve and the limits allow every heading.
-double freeUpTo(const DriveCost& cost, const DriveCurve& curve) noexcept {
+double freeUpTo(const TravelCost& cost, const TravelCurve& curve) noexcept {
   double reach = std::min(
-      {cost.limits().max_along, cost.limits().max_across, DriveCurve::gradient(DriveCurve::kBins - 1)});
+      {cost.limits().max_along, cost.limits().max_across, TravelCurve::gradient(TravelCurve::kBins - 1)});
   for (int row = 0; row <= curve.lastRow(); ++row)
-    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      if (curve.rows()[row * DriveCurve::kBins + bin] < kNoCost) continue;
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      if (curve.rows()[row * TravelCurve::kBins + bin] < kNoCost) continue;
       // The smallest gradient that reads this node, or slightly less.
-      const double along = (std::abs(bin - DriveCurve::kBins / 2) - 1) / 256.0;
-      const double across = (row - 1.0) / DriveCurve::kRowsPerUnit;
+      const double along = (std::abs(bin - TravelCurve::kBins / 2) - 1) / 256.0;
+      const double across = (row - 1.0) / TravelCurve::kRowsPerUnit;
       reach = std::min(reach, row > 0 ? std::hypot(std::max(along, 0.0), across) : along);
     }
   return reach;
@@ -152,12 +152,12 @@ EdgeSpot edgeSpot(int side, int k, int points) noexcept {
   }
 }
 
-EdgeCrossings::EdgeCrossings(const DriveCost& cost, int points, Kernels kernels)
+EdgeCrossings::EdgeCrossings(const TravelCost& cost, int points, Kernels kernels)
     : cost_(cost),
       points_(points),
       padded_((3 * points + kVector - 1) / kVector * kVector),
       vectors_(vectorsRun(kernels)) {
-  for (const DriveCurve& curve : cost.curves()) free_up_to_.push_back(freeUpTo(cost, curve));
+  for (const TravelCurve& curve : cost.curves()) free_up_to_.push_back(freeUpTo(cost, curve));
   const auto add = [this](End end, double x, double y, double length) {
     ends_.push_back(end);
     x_.push_back(x * CellCode::kStep);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/planner/route/kernels.hpp>
 
 namespace talus::planner {
@@ -21,7 +21,7 @@ struct EdgeSpot {
 EdgeSpot edgeSpot(int side, int k, int points) noexcept;
 
 /// All straight motions across a cell from a point of its edge to the points of the other three sides, and
-/// their DriveCost by heading, in joules for cells of 1 m. Refers to the DriveCost, which must outlive the
+/// their TravelCost by heading, in joules for cells of 1 m. Refers to the TravelCost, which must outlive the
 /// object. Immutable.
 class EdgeCrossings {
  public:
@@ -31,7 +31,7 @@ class EdgeCrossings {
     int k;
   };
 
-  EdgeCrossings(const costmap::DriveCost& cost, int points, Kernels kernels = Kernels::Best);
+  EdgeCrossings(const costmap::TravelCost& cost, int points, Kernels kernels = Kernels::Best);
 
   /// Points per side.
   int points() const noexcept { return points_; }
@@ -59,7 +59,7 @@ class EdgeCrossings {
     return static_cast<std::size_t>((side * points_ + k) * padded_);
   }
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   int points_;
   int padded_;  // count() rounded up to whole vectors
   bool vectors_;

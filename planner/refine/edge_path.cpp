@@ -51,9 +51,9 @@ struct Straight {
   HeadingCost cost;
   double length;
 
-  Straight(const costmap::DriveCost& drive, double dx, double dy) noexcept
+  Straight(const costmap::TravelCost& drive, double dx, double dy) noexcept
       : Straight(drive, dx, dy, std::sqrt(dx * dx + dy * dy)) {}
-  Straight(const costmap::DriveCost& drive, double dx, double dy, double far) noexcept
+  Straight(const costmap::TravelCost& drive, double dx, double dy, double far) noexcept
       : cost(drive, far > 0.0 ? costmap::Direction{dx / far, dy / far} : costmap::Direction{1.0, 0.0}),
         length(far) {}
 
@@ -65,7 +65,7 @@ struct Straight {
   }
 };
 
-void choose(const costmap::DriveCost& drive, const Passage& passage, Choice& from, const Choice& to) {
+void choose(const costmap::TravelCost& drive, const Passage& passage, Choice& from, const Choice& to) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(from.count); ++a) {
     from.best[a] = kInfinity;
     for (std::size_t b = 0; b < static_cast<std::size_t>(to.count); ++b) {
@@ -87,7 +87,7 @@ std::vector<Passage> passagesOf(const costmap::CostGrid& map, const EdgePath& pa
   return passages;
 }
 
-void slideOnce(const costmap::DriveCost& drive, const std::vector<Passage>& passages, double step,
+void slideOnce(const costmap::TravelCost& drive, const std::vector<Passage>& passages, double step,
                std::vector<Choice>& choices, EdgePath& path) {
   const std::size_t n = path.turns.size();
   choices[n - 1] = choiceAround(path.turns[n - 1], kEnd);

@@ -6,13 +6,13 @@
 namespace talus::planner {
 
 std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, double radius_m) {
-  constexpr double kTouch = 2e-6;  // sides: MotionCost takes what lies so near to a side to lie on it
+  constexpr double kTouch = 2e-6;  // sides: MotionCost treats places this close to a side as on the side
   const double x = (place.x_m - grid.south_west.x_m) / grid.resolution_m;
   const double y = (place.y_m - grid.south_west.y_m) / grid.resolution_m;
   const double reach = radius_m / grid.resolution_m + kTouch;
   std::vector<maps::Cell> cells;
   if (!(std::isfinite(x) && std::isfinite(y))) return cells;
-  // On the map, or one cell off it: far places would not fit an int.
+  // Clamps to the map plus one cell, because distant coordinates would overflow an int.
   const auto first = [reach](double at, int count) {
     return static_cast<int>(std::clamp(std::floor(at - reach), 0.0, static_cast<double>(count)));
   };

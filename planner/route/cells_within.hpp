@@ -6,7 +6,8 @@
 
 namespace talus::planner {
 
-/// The cells that a disc about a place touches, closed cells both: of a place on a side two, on a corner four.
+/// Cells that intersect a closed disc around a place; cells are closed. A place on a side has two cells, on a
+/// corner four.
 std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, double radius_m);
 
 }  // namespace talus::planner

@@ -8,29 +8,30 @@
 namespace talus::planner {
 namespace {
 
-// An angle in [0, 2 pi); what rounding leaves just below a full turn is none.
+// Wraps an angle to [0, 2 pi); values less than 1e-9 below a full turn are rounding and become 0.
 double turned(double angle) noexcept {
   const double full = 2.0 * std::numbers::pi;
   const double rest = angle - full * std::floor(angle / full);
   return full - rest < 1e-9 ? 0.0 : rest;
 }
 
-// Three pieces: lengths in radii, sides +1 left, 0 straight, -1 right.
+// A path of three pieces: lengths in radii; sides +1 left, 0 straight, -1 right.
 struct Word {
   std::array<double, 3> length{};
   std::array<int, 3> side{};
   double total() const noexcept { return length[0] + length[1] + length[2]; }
 };
 
-// Start at the origin looking at `alpha`, end at (d, 0) looking at `beta`, both from the line between them.
+// Start at the origin with heading `alpha`, end at (d, 0) with heading `beta`, both relative to the
+// connecting line.
 struct Ends {
   double d, alpha, beta;
   double sin_alpha = std::sin(alpha), cos_alpha = std::cos(alpha);
   double sin_beta = std::sin(beta), cos_beta = std::cos(beta);
 };
 
-// Turn, straight, turn. With the centres of both circles known, `along` and `across` is the way from the
-// first to the last, and the straight piece its length (outer tangent) or the leg beside 2 (inner tangent).
+// Turn, straight, turn. (along, across) is the vector between the centres of both circles. The straight piece
+// has the same length (outer tangent) or is the other leg to 2 radii (inner tangent).
 Word turnStraightTurn(const Ends& e, int first, int last) noexcept {
   Word none{.length = {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
   const double along = e.d - last * e.sin_beta + first * e.sin_alpha;
@@ -46,14 +47,15 @@ Word turnStraightTurn(const Ends& e, int first, int last) noexcept {
           .side = {first, 0, last}};
 }
 
-// Turn, turn the other way by more than half a circle, turn as before.
+// Turn, turn the other way by more than half a circle, turn the first way.
 Word threeTurns(const Ends& e, int side) noexcept {
   Word none{.length = {std::numeric_limits<double>::infinity(), 0.0, 0.0}};
   const double along = e.d - side * e.sin_beta + side * e.sin_alpha;
   const double across = side * e.cos_beta - side * e.cos_alpha;
   const double apart = std::hypot(along, across);
   if (apart > 4.0) return none;
-  // The middle circle touches both, on the side that makes the middle turn more than half a circle.
+  // Centre of the middle circle, which touches both others, on the side for which the middle turn exceeds
+  // half a circle.
   const double corner = side * std::acos(apart / 4.0), heading = std::atan2(across, along);
   const double to_middle = heading + corner, from_last = heading + std::numbers::pi - corner;
   const double first = turned(side * (to_middle - e.alpha) + std::numbers::pi / 2);

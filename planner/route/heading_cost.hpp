@@ -5,19 +5,19 @@
 #include <cstddef>
 #include <limits>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
-/// DriveCost::costPerMetre with the heading fixed, for loops over many cells. Same bits as the original; it
-/// points into the DriveCost, which must outlive it.
+/// TravelCost::costPerMetre() for a fixed heading, for loops over many cells. Bit-identical to the original.
+/// Holds pointers into the TravelCost, which must outlive the object.
 class HeadingCost {
  public:
-  HeadingCost(const costmap::DriveCost& cost, costmap::Direction heading) noexcept
+  HeadingCost(const costmap::TravelCost& cost, costmap::Direction heading) noexcept
       : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
 
-  /// By the heading's unit vector times CellCode::kStep.
-  HeadingCost(const costmap::DriveCost& cost, double x, double y) noexcept
+  /// From the heading's unit vector times CellCode::kStep.
+  HeadingCost(const costmap::TravelCost& cost, double x, double y) noexcept
       : curves_(cost.curves().data()),
         curve_count_(cost.curves().size()),
         max_along_(cost.limits().max_along),
@@ -25,7 +25,7 @@ class HeadingCost {
         x_(x),
         y_(y) {}
 
-  /// Joules a horizontal metre; infinite when not allowed.
+  /// Cost per horizontal metre [J/m]; infinite if not permitted.
   float operator()(costmap::CellCode cell) const noexcept {
     if (cell.curve() >= curve_count_) return kBlocked;
     const double along = cell.stepsX() * x_ + cell.stepsY() * y_;
@@ -37,7 +37,7 @@ class HeadingCost {
  private:
   static constexpr float kBlocked = std::numeric_limits<float>::infinity();
 
-  const costmap::DriveCurve* curves_;
+  const costmap::TravelCurve* curves_;
   std::size_t curve_count_;
   double max_along_, max_across_;
   double x_, y_;  // unit vector times the gradient step

@@ -15,57 +15,60 @@ double wrapped(double angle_rad) noexcept {
   return turned < 0.0 ? turned + HeadingSet::kTurn : turned;
 }
 
-using costmap::DriveCurve;
+using costmap::TravelCurve;
 
-// Gradients along the heading at which the cost becomes finite or infinite in some row: the nodes to both sides, and the limit.
-std::vector<double> limitsAlong(const costmap::DriveCost& cost, const DriveCurve& curve) {
-  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, DriveCurve::gradient(0),
-                             DriveCurve::gradient(DriveCurve::kBins - 1)};
+// Gradients along the heading at which the cost becomes finite or infinite in some row: adjacent nodes, and
+// the limits.
+std::vector<double> limitsAlong(const costmap::TravelCost& cost, const TravelCurve& curve) {
+  std::vector<double> limits{cost.limits().max_along, -cost.limits().max_along, TravelCurve::gradient(0),
+                             TravelCurve::gradient(TravelCurve::kBins - 1)};
   const auto finite = [&](int row, int bin) {
-    return std::isfinite(curve.rows()[static_cast<std::size_t>(row * DriveCurve::kBins + bin)]);
+    return std::isfinite(curve.rows()[static_cast<std::size_t>(row * TravelCurve::kBins + bin)]);
   };
-  for (int bin = 1; bin < DriveCurve::kBins; ++bin) {
+  for (int bin = 1; bin < TravelCurve::kBins; ++bin) {
     bool changes = false;
     for (int row = 0; row <= curve.lastRow(); ++row)
       changes = changes || finite(row, bin) != finite(row, bin - 1);
     if (!changes) continue;
-    limits.push_back(DriveCurve::gradient(bin - 1));
-    limits.push_back(DriveCurve::gradient(bin));
+    limits.push_back(TravelCurve::gradient(bin - 1));
+    limits.push_back(TravelCurve::gradient(bin));
   }
   return limits;
 }
 
-// Gradients across it, as magnitudes, beyond which fewer gradients along are allowed, and the limit.
-std::vector<double> limitsAcross(const costmap::DriveCost& cost, const DriveCurve& curve) {
+// Magnitudes of gradients across the heading at which the permitted gradients along the heading change, and
+// the limit.
+std::vector<double> limitsAcross(const costmap::TravelCost& cost, const TravelCurve& curve) {
   std::vector<double> limits{cost.limits().max_across};
   const auto finite = [](float value) { return std::isfinite(value); };
   for (int row = 0; row < curve.lastRow(); ++row) {
-    const float* here = curve.rows() + row * DriveCurve::kBins;
-    if (std::equal(here, here + DriveCurve::kBins, here + DriveCurve::kBins,
+    const float* here = curve.rows() + row * TravelCurve::kBins;
+    if (std::equal(here, here + TravelCurve::kBins, here + TravelCurve::kBins,
                    [&](float a, float b) { return finite(a) == finite(b); }))
       continue;
-    limits.push_back(static_cast<double>(row) / DriveCurve::kRowsPerUnit);
-    limits.push_back((row + 1.0) / DriveCurve::kRowsPerUnit);
+    limits.push_back(static_cast<double>(row) / TravelCurve::kRowsPerUnit);
+    limits.push_back((row + 1.0) / TravelCurve::kRowsPerUnit);
   }
   return limits;
 }
 
-// How near to the flat, as a gradient, some pair of gradients along and across is refused: a node that is refuses all pairs less than a
-// node's distance away, and the limits and the end of the table what lies beyond them.
-double gentlest(const costmap::DriveCost& cost, const DriveCurve& curve) {
-  constexpr double kBin = 1.0 / DriveCurve::kBinsPerUnit, kRow = 1.0 / DriveCurve::kRowsPerUnit;
+// Least gradient at which some combination of gradients along and across is refused. A refused node refuses
+// all combinations within the distance of one node; the limits and the end of the table refuse all
+// combinations beyond them.
+double gentlest(const costmap::TravelCost& cost, const TravelCurve& curve) {
+  constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
   double least = std::min({cost.limits().max_along, cost.limits().max_across,
-                           DriveCurve::gradient(DriveCurve::kBins - 1) - kBin});
+                           TravelCurve::gradient(TravelCurve::kBins - 1) - kBin});
   for (int row = 0; row <= curve.lastRow(); ++row)
-    for (int bin = 0; bin < DriveCurve::kBins; ++bin) {
-      if (std::isfinite(curve.rows()[row * DriveCurve::kBins + bin])) continue;
-      least = std::min(least, std::hypot(std::max(0.0, std::abs(DriveCurve::gradient(bin)) - kBin),
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      if (std::isfinite(curve.rows()[row * TravelCurve::kBins + bin])) continue;
+      least = std::min(least, std::hypot(std::max(0.0, std::abs(TravelCurve::gradient(bin)) - kBin),
                                          std::max(0.0, (row - 1) * kRow)));
     }
   return least;
 }
 
-// Headings at which the gradient along or across takes one of these values.
+// Headings at which the gradient along or across equals one of the limits.
 std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::CellCode cell) {
   const double steepest = std::hypot(cell.dzDx(), cell.dzDy()), up = std::atan2(cell.dzDy(), cell.dzDx());
   std::vector<double> angles;
@@ -100,7 +103,7 @@ HeadingSet::HeadingSet(std::vector<HeadingArc> arcs) {
     else
       arcs_.push_back(arc);
   }
-  // The last may reach round to the first ones.
+  // The last arc may overlap the first arcs across 2 pi.
   while (arcs_.size() > 1 &&
          arcs_.back().from_rad + arcs_.back().width_rad >= arcs_.front().from_rad + kTurn) {
     const double end = arcs_.front().from_rad + arcs_.front().width_rad + kTurn;
@@ -137,7 +140,7 @@ double HeadingSet::nearest(double heading_rad, double inside_rad) const noexcept
   for (const HeadingArc& arc : arcs_) {
     const double inside = std::min(inside_rad, 0.5 * arc.width_rad);
     const double ahead = wrapped(heading_rad - arc.from_rad);
-    // Between the ends, or the end that is nearer round the circle.
+    // Inside the arc, or its end that is nearer on the circle.
     double at = std::clamp(ahead, inside, arc.width_rad - inside);
     if (ahead > arc.width_rad && kTurn - ahead < ahead - arc.width_rad) at = inside;
     const double off = std::abs(std::remainder(arc.from_rad + at - heading_rad, kTurn));
@@ -155,15 +158,15 @@ HeadingSet HeadingSet::reversed() const {
   return HeadingSet(std::move(opposite));
 }
 
-HeadingSets::Limits::Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve)
+HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve)
     : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentlest(cost, curve)) {}
 
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell) {
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};
   return allowedHeadings(cost, cell, {cost, cost.curves()[cell.curve()]});
 }
 
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell,
                            const HeadingSets::Limits& limits) {
   const auto finite = [&](double heading) {
     return std::isfinite(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));

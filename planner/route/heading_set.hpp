@@ -7,46 +7,46 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
-/// Headings from one to another, both included, counter-clockwise.
+/// A closed interval of headings, counter-clockwise.
 struct HeadingArc {
   double from_rad = 0.0;   ///< counter-clockwise from x, [0, 2 pi)
   double width_rad = 0.0;  ///< [0, 2 pi]
 };
 
-/// A set of headings: closed arcs in order of their beginnings that do not touch.
+/// A set of headings: closed, disjoint arcs in order of their beginnings.
 class HeadingSet {
  public:
   HeadingSet() = default;
-  /// Arcs in any order that may touch, each in the ranges of HeadingArc.
+  /// Arcs in any order, which may overlap, each in the ranges of HeadingArc.
   explicit HeadingSet(std::vector<HeadingArc> arcs);
-  /// A copy whose arcs lie in memory of the resource, which must outlive it.
+  /// A copy with its arcs in memory of the resource, which must outlive the copy.
   HeadingSet(const HeadingSet& other, std::pmr::memory_resource* memory) : arcs_(other.arcs_, memory) {}
 
   const std::pmr::vector<HeadingArc>& arcs() const noexcept { return arcs_; }
   bool empty() const noexcept { return arcs_.empty(); }
   bool all() const noexcept { return arcs_.size() == 1 && arcs_[0].width_rad >= kTurn; }
 
-  /// The arc that lies clockwise of the widest gap between arcs, to its end, and that gap's width: the headings of a
-  /// drive that turns within the set add up to every direction if the gap is narrower than half a turn, else to
-  /// those from `end + gap` counter-clockwise to `end`. The set must not be empty.
+  /// Widest gap between arcs: its width, and the end of the arc clockwise of it. Combinations of headings of
+  /// the set yield every direction if the gap is narrower than half a turn; otherwise the directions from
+  /// `end + gap` counter-clockwise to `end`. The set must not be empty.
   struct Gap {
     double end_rad;
     double width_rad;
   };
   Gap widestGap() const noexcept;
 
-  /// The headings of both sets.
+  /// Intersection of two sets.
   HeadingSet shared(const HeadingSet& other) const;
 
-  /// The heading of the set, at least `inside_rad` from the ends of its arc or in the arc's middle, that is nearest to
-  /// one given. The set must not be empty.
+  /// Heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc, or in the
+  /// middle of a narrower arc. The set must not be empty.
   double nearest(double heading_rad, double inside_rad) const noexcept;
 
-  /// The headings opposite to these.
+  /// The opposite headings.
   HeadingSet reversed() const;
 
   static constexpr double kTurn = 6.283185307179586;
@@ -55,11 +55,12 @@ class HeadingSet {
   std::pmr::vector<HeadingArc> arcs_;
 };
 
-/// allowedHeadings() of cells, kept by code; cells of the curve number `free`, if any, allow every heading. A large map has
-/// millions of codes: their sets lie in an arena, which is freed at once. Not thread-safe; the DriveCost must outlive it.
+/// Cache of allowedHeadings() by cell code. Cells of curve number `free`, if given, permit every heading.
+/// Large maps have millions of codes; their sets are allocated in an arena, which is freed at once. Not
+/// thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
  public:
-  explicit HeadingSets(const costmap::DriveCost& cost, std::optional<std::uint8_t> free = {})
+  explicit HeadingSets(const costmap::TravelCost& cost, std::optional<std::uint8_t> free = {})
       : cost_(cost),
         free_(free),
         sets_(*new (arena_.allocate(sizeof(Sets), alignof(Sets))) Sets(&arena_)),
@@ -72,23 +73,25 @@ class HeadingSets {
     if (cell.curve() < gentle_.size() &&
         cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() < gentle_[cell.curve()])
       return all_;
-    Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing, kRecent values
+    Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing to kRecent slots
     if (recent.set != nullptr && recent.bits == cell.bits()) return *recent.set;
     const HeadingSet& set = known(cell);
     recent = {cell.bits(), &set};
     return set;
   }
 
-  /// Gradients along, and sizes of gradients across, at which a curve's cost may become finite or infinite.
+  /// Gradients along, and magnitudes of gradients across, at which the cost of a curve may become finite or
+  /// infinite.
   struct Limits {
-    Limits(const costmap::DriveCost& cost, const costmap::DriveCurve& curve);
+    Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve);
     std::vector<double> along, across;
-    /// On cells less steep than this all headings are allowed; 0: on none.
+    /// All headings are permitted on cells below this gradient; 0: on no cell.
     double gentle;
   };
 
  private:
-  // A code and its set, which stays where it is in sets_: neighbouring cells are asked for again and again.
+  // Code and set of a recent cell, since neighbouring cells are requested repeatedly. Sets in sets_ keep
+  // their address.
   struct Recent {
     std::uint32_t bits = 0;
     const HeadingSet* set = nullptr;
@@ -99,22 +102,22 @@ class HeadingSets {
 
   using Sets = std::pmr::unordered_map<std::uint32_t, HeadingSet>;
 
-  const costmap::DriveCost& cost_;
+  const costmap::TravelCost& cost_;
   std::optional<std::uint8_t> free_;
   std::pmr::monotonic_buffer_resource arena_;
-  Sets&
-      sets_;  // with all that it holds in the arena, and never destroyed: that took 0.5 s of a plan that was stopped
+  Sets& sets_;  // allocated in the arena and never destroyed: destruction delayed a stopped plan by 0.5 s
   std::vector<std::optional<Limits>> limits_;
-  std::vector<double> gentle_;  // Limits::gentle of each curve, squared; 0 until the curve was asked for
+  std::vector<double> gentle_;  // squared Limits::gentle of each curve; 0 until computed
   const HeadingSet all_{{{0.0, HeadingSet::kTurn}}};
   std::vector<Recent> recent_;
 };
 
-/// Every heading for which the drive cost of a cell is finite. Between two neighbouring headings at which the gradient
-/// along or across passes a node of the cost's table, the cost is finite or infinite throughout; so it is enough to ask
-/// once between each two, and at each. Arcs are widened by 1e-7 rad: no heading is missed by rounding.
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell);
-HeadingSet allowedHeadings(const costmap::DriveCost& cost, costmap::CellCode cell,
+/// Headings for which the drive cost of a cell is finite. Between two adjacent headings at which the gradient
+/// along or across passes a node of the cost table, the cost is either finite or infinite; one evaluation
+/// between each pair and one at each heading are sufficient. Arcs are widened by 1e-7 rad, so that rounding
+/// excludes no permitted heading.
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell);
+HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell,
                            const HeadingSets::Limits& limits);
 
 }  // namespace talus::planner

@@ -2,16 +2,17 @@
 
 #include <cmath>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 
 namespace talus::planner {
 
-/// The angle from one heading to another the shorter way, (-pi, pi], left > 0.
+/// Smaller angle between two headings, (-pi, pi]; left > 0.
 inline double turnBetween_rad(costmap::Direction from, costmap::Direction to) noexcept {
   return std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
 }
 
-/// Whether a property holds for headings between two, the shorter way, at most `apart_rad` > 0 apart; both ends are left out.
+/// Returns true if `holds` is true at headings between two headings, on the smaller angle, in steps of at
+/// most `apart_rad` > 0; both ends are excluded.
 template <typename Holds>
 bool holdsBetween(costmap::Direction from, costmap::Direction to, double apart_rad, Holds holds) {
   const double turn_rad = turnBetween_rad(from, to);

@@ -2,11 +2,11 @@
 
 namespace talus::planner {
 
-/// Which of two twins of a loop runs. Both give the same bits; the scalar one is for machines without
-/// vectors, and for tests that compare the two.
+/// Selects one of two implementations of a loop with bit-identical results. The scalar version is for
+/// machines without AVX2 and for tests.
 enum class Kernels { Best, Scalar };
 
-/// Whether the vector twin (SSE 4.1 and AVX2) runs on this machine.
+/// Returns true if the vector implementation (SSE 4.1 and AVX2) is selected and supported.
 #if defined(__x86_64__)
 inline bool vectorsRun(Kernels kernels) noexcept {
   return kernels == Kernels::Best && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("sse4.1");

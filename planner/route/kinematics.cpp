@@ -26,7 +26,7 @@ void set(ob::State* state, const Pose& pose) {
   se2->setYaw(std::remainder(pose.heading_rad, 2.0 * std::numbers::pi));
 }
 
-// Both ends as states of a space, freed with it.
+// Both ends as states of a space; freed by the destructor.
 struct States {
   States(const ob::StateSpace& of, const std::pair<Pose, Pose>& ends)
       : space(of), from(of.allocState()), to(of.allocState()) {
@@ -45,7 +45,7 @@ struct States {
   ob::State* to;
 };
 
-// Segments in units of the radius, signed; `side` is +1 left, 0 straight, -1 right.
+// Appends a segment of signed length in radii; `side` is +1 left, 0 straight, -1 right.
 void append(std::vector<Arc>& arcs, double length, int side, double radius_m) {
   if (std::abs(length) > 1e-12) arcs.push_back({length * radius_m, side / radius_m});
 }
@@ -89,7 +89,7 @@ std::vector<Arc> ShortestCurves::forward(const Pose& from, const Pose& to) const
 
 Pose after(const Pose& from, const Arc& arc) noexcept {
   const double turn = arc.length_m * arc.curvature_1_m;
-  // Chord of the arc: length times sinc(turn / 2), at the mean heading.
+  // Chord of the arc: length * sinc(turn / 2), at the mean heading.
   const double half = 0.5 * turn;
   const double chord = std::abs(half) < 1e-9 ? arc.length_m : arc.length_m * std::sin(half) / half;
   const double mean = from.heading_rad + half;
@@ -101,7 +101,7 @@ std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics
   return ShortestCurves(kinematics)(from, to);
 }
 
-Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::DriveCost& cost) {
+Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost) {
   const terramech::Rover& rover = model.rover();
   if (rover.steering == terramech::Steering::Ackermann && rover.turning_radius_m <= 0.0)
     throw std::invalid_argument(

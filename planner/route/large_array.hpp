@@ -16,13 +16,13 @@ struct FreeMemory {
   void operator()(void* memory) const noexcept { std::free(memory); }
 };
 
-/// An array of plain numbers, not initialised: each page is touched first by the thread that fills it.
+/// An uninitialised array of trivial values: each page is first touched by the thread that fills it.
 template <typename T>
 using LargeArray = std::unique_ptr<T[], FreeMemory>;
 
-/// Allocates memory for so many. Large arrays request huge pages: pages of 4 KiB cost more to touch
-/// first and to give back than the edges of a map take to be priced, and giving back is work that a cancelled
-/// plan waits for. Throws std::bad_alloc.
+/// Allocates an array of `count` values. Large arrays request huge pages: first access and release of 4 KiB
+/// pages would take longer than the computation of a map's edge costs, and a cancelled plan waits for the
+/// release. Throws std::bad_alloc.
 template <typename T>
 LargeArray<T> makeLargeArray(std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -33,7 +33,7 @@ LargeArray<T> makeLargeArray(std::size_t count) {
   LargeArray<T> array(static_cast<T*>(std::aligned_alloc(unit, bytes)));
   if (!array) throw std::bad_alloc();
 #if defined(__linux__)
-  if (large) madvise(array.get(), bytes, MADV_HUGEPAGE);  // where it is refused, small pages do
+  if (large) madvise(array.get(), bytes, MADV_HUGEPAGE);  // falls back to small pages
 #endif
   return array;
 }

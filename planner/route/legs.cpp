@@ -7,7 +7,7 @@
 namespace talus::planner {
 namespace {
 
-// The reason of a leg's failure calls its ends by what they are of the whole: a via point is no start and no goal.
+// Replaces "start" and "goal" in the reason of a failed leg by the number of the via point.
 std::string ofTheWhole(std::string reason, std::size_t leg, std::size_t legs) {
   const auto rename = [&reason](const std::string& end, std::size_t via) {
     if (reason.starts_with(end + ' ')) reason.replace(0, end.size(), "via point " + std::to_string(via));
@@ -17,7 +17,7 @@ std::string ofTheWhole(std::string reason, std::size_t leg, std::size_t legs) {
   return reason;
 }
 
-// At a via point.
+// Cost of the turn at a via point.
 double turnBetween(const Problem& problem, const Polyline& a, const Polyline& b) {
   if (!problem.map || a.size() < 2 || b.size() < 2) return 0.0;
   return MotionCost(problem.map)
@@ -44,6 +44,7 @@ Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& 
     whole.cost_J += part.cost_J + turnBetween(problem, whole.points, part.points);
     append(whole.points, part.points);
     whole.lower_bound_J += part.lower_bound_J;
+    whole.proof_s += part.proof_s;
     problem.watch.report(static_cast<double>(i + 1) / static_cast<double>(stops.size()));
   }
   return whole;

@@ -6,11 +6,10 @@
 
 namespace talus::planner {
 
-/// Plans through the via points leg by leg. Each leg is the problem without via points from where the leg
-/// before it ended to the next stop, which is met exactly but for the last, whose tolerance is the problem's.
-/// Costs and lower bounds add up; the first leg that is not Found is the answer; its
-/// reason calls a via point by its number, from 1. Progress goes to the
-/// problem's watch.
+/// Plans through the via points leg by leg. Each leg starts at the end of the previous leg and ends at the
+/// next stop, without tolerance except for the last leg, which uses the problem's tolerance. Costs and lower
+/// bounds are summed. The first leg that is not Found is returned; its reason names the via point by its
+/// number, from 1. Progress is reported to the problem's watch.
 Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& leg)>& plan_leg);
 
 }  // namespace talus::planner

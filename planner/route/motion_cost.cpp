@@ -12,10 +12,9 @@
 namespace talus::planner {
 namespace {
 
-constexpr double kTouch =
-    1e-6;  // cells: nearer than this to an edge is on it; coordinates of 1e7 m leave 1e-8
+constexpr double kTouch = 1e-6;  // cells: closer coordinates are on the edge; rounding at 1e7 m is 1e-8
 
-// A point in cells from the south-west corner.
+// A point in cells from the south-west corner of the map.
 struct InCells {
   double x, y;
 };
@@ -25,7 +24,7 @@ InCells inCells(const maps::Grid& grid, maps::Point p) noexcept {
           (p.y_m - grid.south_west.y_m) / grid.resolution_m};
 }
 
-// Cells are neither so many nor so small that squares overflow: std::hypot costs as much as five cells.
+// Coordinates cannot overflow when squared; std::hypot would cost as much as five cells.
 double lengthOf(InCells delta) noexcept {
   return std::sqrt(delta.x * delta.x + delta.y * delta.y);
 }
@@ -34,8 +33,7 @@ bool onEdge(double coordinate) noexcept {
   return std::abs(coordinate - std::round(coordinate)) < kTouch;
 }
 
-// One axis of the walk through the cells: which cell, and at which share t of the segment the next one
-// begins.
+// One axis of the traversal: current cell, and share t of the segment at which the next cell begins.
 struct Axis {
   int cell;
   int step;
@@ -60,12 +58,12 @@ bool insideWithBorder(const maps::Grid& grid, InCells p) noexcept {
   return p.x >= 0 && p.y >= 0 && p.x <= grid.width && p.y <= grid.height;
 }
 
-// Sum over the cells crossed of share of the segment times cost per metre.
+// Sum of (share of the segment) * (cost per metre) over the crossed cells.
 class Walk {
  public:
   Walk(const costmap::CostGrid& map, const HeadingCost& cost) noexcept : map_(map), cost_(cost) {}
 
-  // `length` is that of delta.
+  // `length` is that of delta
   double operator()(InCells from, InCells delta, double length) const noexcept {
     Axis x(from.x, delta.x), y(from.y, delta.y);
     const double corner = kTouch / length;
@@ -97,8 +95,8 @@ class Walk {
   const HeadingCost& cost_;
 };
 
-// A segment on the line between two columns (or rows) pays for the dearer side; the map's border has one
-// side.
+// Cost of a segment on the line between two columns (or rows): that of the more expensive side. On the border
+// of the map only one side exists.
 double alongEdge(const maps::Grid& grid, const Walk& walk, InCells from, InCells delta,
                  double length) noexcept {
   const bool vertical = std::abs(delta.x) <= kTouch;
@@ -132,7 +130,7 @@ double MotionCost::operator()(const Segment& motion) const noexcept {
 
 namespace {
 
-// Whether the heading may enter every cell that the point touches.
+// Returns true if every cell at the point permits the heading.
 bool touchesOnlyAllowed(const costmap::CostGrid& map, InCells p, costmap::Direction heading) noexcept {
   const double reach = 2 * kTouch;
   for (const double dx : {-reach, reach})
@@ -153,7 +151,8 @@ bool MotionCost::headingAllowed(maps::Point place, costmap::Direction heading) c
   return cell && std::isfinite(map_->cost().costPerMetre(map_->at(*cell), heading));
 }
 
-// A turn on an edge or corner must not slip between cells: both its headings need all cells it touches.
+// A turn on an edge or corner must not pass between blocked cells: all cells at the point must permit both
+// headings.
 bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexcept {
   const InCells p = inCells(map_->grid(), end);
   if (!onEdge(p.x) && !onEdge(p.y)) return true;
@@ -171,7 +170,7 @@ costmap::Direction directionOf(const Segment& motion) noexcept {
 double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept {
   const auto cell = map_->grid().cellAt(place);
   if (!cell) return 0.0;
-  const costmap::DriveCost& cost = map_->cost();
+  const costmap::TravelCost& cost = map_->cost();
   const costmap::CellCode code = map_->at(*cell);
   const double radian_J = cost.turn(code).cost_J;
   if (radian_J == 0.0 && !cost.mayTip(code)) return 0.0;

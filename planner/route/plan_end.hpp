@@ -9,7 +9,7 @@
 
 namespace talus::planner {
 
-/// A plan without a route, and why.
+/// A plan without a route, with status and reason.
 inline Plan failedPlan(RouteStatus status, std::string reason) {
   Plan plan;
   plan.status = status;
@@ -17,13 +17,13 @@ inline Plan failedPlan(RouteStatus status, std::string reason) {
   return plan;
 }
 
-/// The same for work that was stopped.
+/// The failed plan for a stopped search: Cancelled or TimedOut.
 inline Plan cancelledPlan(const StopCheck& stop) {
   if (stop.cancelled()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
   return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; increase it");
 }
 
-/// The plan, or NoneFound where a turn between its legs tips the rover: its cost is infinite then.
+/// Returns the plan, or NoneFound if its cost is infinite because a turn between legs tips the rover.
 inline Plan withoutTipping(Plan plan) {
   if (plan.status != RouteStatus::Found || std::isfinite(plan.cost_J)) return plan;
   return failedPlan(RouteStatus::NoneFound,

@@ -53,7 +53,7 @@ constexpr std::array kRefused{
     Refused{"STRIDE", kBlind},
 };
 
-// "Informed-RRT*" and "informedrrtstar" are the same name.
+// Normalised name: "Informed-RRT*" and "informedrrtstar" are equal.
 std::string plain(std::string_view name) {
   std::string result;
   for (const char c : name) {
@@ -64,7 +64,7 @@ std::string plain(std::string_view name) {
   return result;
 }
 
-// "; the nearest is 'field'" where a name is near.
+// "; the nearest is 'field'", or an empty text without a similar name.
 std::string suggestion(const std::string& word) {
   std::vector<std::string> plain_names;
   for (const std::string& name : plannerNames()) plain_names.push_back(plain(name));

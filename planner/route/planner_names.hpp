@@ -6,13 +6,13 @@
 
 namespace talus::planner {
 
-/// Names of the planners on offer, the default first: "field", "hybrid" (drives that keep a turning radius)
-/// and OMPL's by their class names.
+/// Names of the available planners, default first: "field", "hybrid" (drives with a turning radius), and
+/// OMPL's planners by class name.
 const std::vector<std::string>& plannerNames();
 
-/// The offered name that the user means: case, '-', '_' and blanks do not matter and "RRT*" is "RRTstar";
-/// empty is the default. Throws std::invalid_argument with the reason for a planner of OMPL that is not right
-/// on this ground, and for an unknown one with the nearest name, where there is one.
+/// Canonical planner name for user input: ignores case, '-', '_' and blanks; "RRT*" is "RRTstar"; empty is
+/// the default. Throws std::invalid_argument with the reason for an OMPL planner that is unsuitable for this
+/// ground, and with the nearest name, if any, for an unknown planner.
 std::string plannerName(std::string_view asked);
 
 }  // namespace talus::planner

@@ -29,7 +29,7 @@ double length_m(const Polyline& points) noexcept {
 }
 
 std::vector<Polyline> cutFromEnd(const Polyline& points, double piece_m, double offset_m) {
-  double before_m = length_m(points);  // of the way not walked yet
+  double before_m = length_m(points);  // length of the remaining path
   const double shortest_m = piece_m / 2;
   std::vector<Polyline> backwards{{points.back()}};
   double walked_m = 0.0, next_m = offset_m;
@@ -73,10 +73,10 @@ std::pair<Polyline, Polyline> splitAt(const Polyline& points, double left_m) {
 
 Polyline cutWithin(Polyline points, maps::Point goal, double tolerance_m) {
   if (!(tolerance_m > 0.0) || points.empty()) return points;
-  const double reach_m = tolerance_m * (1.0 - 1e-9);  // so that rounding leaves the end inside
+  const double reach_m = tolerance_m * (1.0 - 1e-9);  // keeps the end inside despite rounding
   const auto apart_m = [&](maps::Point p) { return std::hypot(p.x_m - goal.x_m, p.y_m - goal.y_m); };
   const auto inside = std::ranges::find_if(points, [&](maps::Point p) { return apart_m(p) <= reach_m; });
-  // A leg may also pass through the circle between two places outside it.
+  // A leg may also intersect the circle between two points outside it.
   for (auto to = points.begin() + 1; to != points.end() && to <= inside; ++to) {
     const maps::Point from = *(to - 1);
     const double dx = to->x_m - from.x_m, dy = to->y_m - from.y_m, square = dx * dx + dy * dy;

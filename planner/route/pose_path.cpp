@@ -10,7 +10,7 @@ namespace talus::planner {
 namespace {
 
 constexpr double kChord_cells = 0.5;
-constexpr double kBend_rad = 0.1;  // a chord leaves its arc by 0.1^2/8 of the radius at most
+constexpr double kBend_rad = 0.1;  // the distance of a chord from its arc is at most 0.1^2/8 of the radius
 
 int chordsOf(const Arc& arc, double step_m) noexcept {
   const double bend = std::abs(arc.length_m * arc.curvature_1_m) / kBend_rad;
@@ -64,7 +64,7 @@ std::vector<PosePath::Leg> PoseCost::direct(const Pose& from, const Pose& to, bo
   return legs;
 }
 
-const TurnPrices& PoseCost::turnsAt(maps::Point place) const noexcept {
+const TurnCosts& PoseCost::turnsAt(maps::Point place) const noexcept {
   const auto cell = cost_.map().grid().cellAt(place);
   return cell ? kinematics_.turnsOn(cost_.map().at(*cell).curve()) : kinematics_.turns;
 }
@@ -89,7 +89,7 @@ double PoseCost::arc(const Pose& from, const Arc& arc) const noexcept {
   return sum;
 }
 
-// Rounding along a drive moves a place on an edge to either side: a turn there needs both.
+// Accumulated rounding may move a place to either side of an edge, so that a turn there needs both cells.
 double PoseCost::turnInPlace(const Pose& from, double turn_rad) const noexcept {
   if (!cost_.map().grid().cellAt(from.place)) return kInfinity;
   const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn_rad) / kBend_rad)));
@@ -135,8 +135,8 @@ std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map) {
   return poses;
 }
 
-DriveShape shape(const PosePath& path) noexcept {
-  DriveShape shape;
+RouteShape shape(const PosePath& path) noexcept {
+  RouteShape shape;
   int last = 0;
   for (const auto& leg : path.legs) {
     const int now = direction(leg);

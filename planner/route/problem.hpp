@@ -15,42 +15,43 @@
 
 namespace talus::planner {
 
-/// The input of a planner.
+/// Input of a planner.
 struct Problem {
-  std::shared_ptr<const costmap::CostGrid> map;  ///< the version to plan on; pinned while planning runs
+  std::shared_ptr<const costmap::CostGrid> map;  ///< version of the map; fixed during planning
   maps::Point start;
   maps::Point goal;
-  std::vector<maps::Point> other_goals{};  ///< a route may end at any of these as well: NamedPlanner's does
-  double goal_tolerance_m = 0.0;           ///< a route may end this far from the goal, >= 0
+  std::vector<maps::Point> other_goals{};  ///< alternative ends of the route, for NamedPlanner
+  double goal_tolerance_m = 0.0;           ///< permitted distance of the end from the goal, >= 0
   std::vector<maps::Point> via{};          ///< to be passed in this order
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
   std::uint64_t seed = 1;                                         ///< same seed, same route
-  int threads = 1;                                                ///< >= 1; the answer does not depend on it
-  /// Also work out the best lower bound and look for other corridors, for some times the time of a field; else a simple bound.
+  int threads = 1;                                                ///< >= 1; does not affect the result
+  /// Also compute an improved lower bound and search other corridors, which takes a multiple of the time of a
+  /// field; otherwise a simple bound.
   bool prove = false;
-  /// Why cells are refused whole, to name what closes a way; none: all of it counts as hazards. Planned only as long as it lives.
+  /// Causes of completely refused cells, to name the obstruction; none: all are assigned to hazards. Must
+  /// outlive planning.
   HazardsOf hazards{};
-  bool whole_field = false;  ///< settle the whole map even where it is large (NamedPlanner)
+  bool whole_field = false;  ///< compute the complete field even on large maps (NamedPlanner)
   ProgressMonitor watch{};
-  /// Which way the rover looks; for planners of drives, any if none.
+  /// Heading at the start, for planners of drives; none: any.
   std::optional<double> start_heading_rad{};
-  std::optional<double> goal_heading_rad{};  ///< the same on arrival
-  Kinematics kinematics{};                   ///< what planners of drives keep
+  std::optional<double> goal_heading_rad{};  ///< heading at the goal; none: any
+  Kinematics kinematics{};                   ///< motion constraints, for planners of drives
 };
 
-/// What a planner answers: the bare polyline; annotated() makes a Route of it.
+/// Result of a planner: a polyline, which annotated() converts to a Route.
 struct Plan {
   RouteStatus status = RouteStatus::NoneFound;
-  std::string reason;               ///< why there is no route and what to do about it; empty when Found
+  std::string reason;               ///< reason and remedy if there is no route; empty when Found
   std::vector<maps::Point> points;  ///< start, turns, goal
-  double cost_J = std::numeric_limits<double>::infinity();  ///< exact, by MotionCost
-  double lower_bound_J = 0.0;                               ///< no route costs less
-  std::size_t goal = 0;  ///< which goal it ends at: 0 is Problem::goal, then the other goals in order
-  bool interrupted =
-      false;  ///< a stop was requested before the work was done: the best route and bound so far
-  std::optional<Obstruction>
-      obstruction{};  ///< of NoRoute, where two required places are cut off from each other
-  PosePath drive{};   ///< of planners of drives: `points` are its chords; no legs for the others
+  double cost_J = std::numeric_limits<double>::infinity();  ///< exact cost by MotionCost
+  double lower_bound_J = 0.0;                               ///< no route has a lower cost
+  double proof_s = 0.0;      ///< time used for Problem::prove: lower bound and search of other corridors
+  std::size_t goal = 0;      ///< index of the reached goal: 0 is Problem::goal, then the other goals in order
+  bool interrupted = false;  ///< a stop was requested; route and bound are the best so far
+  std::optional<Obstruction> obstruction{};  ///< if NoRoute, and two required places are disconnected
+  PosePath drive{};  ///< planners of drives: `points` are its chords; otherwise without legs
 };
 
 }  // namespace talus::planner

@@ -48,7 +48,7 @@ void addVertices(Json& properties, const Route& route) {
   add("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin);
   properties["category"] =
       values(route, [](const RouteVertex& vertex) { return terramech::name(vertex.category); });
-  // Totals that JSON readers should not confuse with these arrays stand under "summary".
+  // The totals are in "summary", to avoid confusion with these arrays.
   add("energy_J", &RouteVertex::energy_J);
   add("time_s", &RouteVertex::time_s);
   add("immobilisation_risk", &RouteVertex::immobilisation_risk);

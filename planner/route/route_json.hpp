@@ -11,33 +11,32 @@
 
 namespace talus::planner {
 
-/// A file that a route was made from.
+/// An input file of a route.
 struct RouteInput {
-  std::string file;  ///< its name without the folder
+  std::string file;  ///< name without folder
   std::string
-      path{};  ///< as it was given to the planner, relative to its folder; empty where the route has none
-  std::string sha256{};  ///< of its content, hexadecimal
+      path{};  ///< as given to the planner, relative to its working folder; empty if the route has none
+  std::string sha256{};  ///< SHA-256 of the content, hexadecimal
 };
 
-/// What it takes to make a route again.
+/// Data needed to reproduce a route.
 struct RouteOrigin {
-  std::vector<RouteInput> files;  ///< that were read
+  std::vector<RouteInput> files;  ///< files that were read
   std::uint64_t seed = 1;
-  std::string rover{};               ///< its name
-  std::vector<std::string> soils{};  ///< names of those that the map's classes stand for
-  std::string command{};  ///< the call that makes the route, for a shell; empty where there is none
+  std::string rover{};               ///< name of the rover
+  std::vector<std::string> soils{};  ///< names of the soils of the map's classes
+  std::string command{};             ///< shell command that creates the route; empty if unknown
 };
 
-/// The origin as the "inputs" of a route's file.
+/// The origin as "inputs" of a route file.
 nlohmann::ordered_json originJson(const RouteOrigin& origin);
 
-/// The summary fields of a route, with its status; null where there is no route, with why ("obstruction") where that is
-/// known.
+/// Summary fields of a route with its status; null without a route, with the cause ("obstruction") if known.
 nlohmann::ordered_json summaryJson(const Route& route);
 
-/// The route as a GeoJSON FeatureCollection: longitude, latitude and elevation where the map has a CRS, else
-/// map metres and "crs": "local"; a LineString needs two positions, so a standstill is repeated. Layout: docs
-/// of `talus plan`.
+/// The route as a GeoJSON FeatureCollection: longitude, latitude and elevation if the map has a CRS,
+/// otherwise map coordinates [m] and "crs": "local". A LineString needs two positions; the position of a
+/// single-vertex route is repeated. Layout: docs of `talus plan`.
 nlohmann::ordered_json routeGeoJson(const Route& route, const maps::ElevationMap& map,
                                     const RouteOrigin& origin);
 

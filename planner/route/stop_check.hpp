@@ -8,14 +8,14 @@
 
 namespace talus::planner {
 
-/// Whether long work should end: a stop was requested or the time limit passed. Cheap; copyable.
+/// Checks whether long work must end: a stop was requested or the time limit passed. Cheap to call; copyable.
 class StopCheck {
  public:
   StopCheck() = default;
   StopCheck(const ProgressMonitor& watch)
       : watch_(watch) {}  // NOLINT: a ProgressMonitor alone is a StopCheck without a time limit
 
-  /// Starts the clock: time_limit_s from now on, infinite for none.
+  /// Starts the clock with time_limit_s; infinite means no limit.
   StopCheck(const ProgressMonitor& watch, double time_limit_s)
       : watch_(watch), limited_(std::isfinite(time_limit_s)) {
     using std::chrono::duration;

@@ -6,17 +6,17 @@
 
 namespace talus::planner {
 
-/// What is left of a time limit that parts of the work share; the clock starts with the object.
+/// Remaining time of a limit shared by several stages of work; the clock starts at construction.
 class TimeLeft {
  public:
   explicit TimeLeft(double limit_s) : limit_s_(limit_s) {}
 
-  /// Seconds, < 0 once the limit has passed; infinite without a limit.
+  /// Remaining seconds; negative after the limit, infinite without a limit.
   double left_s() const {
     return limit_s_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
-  /// The part of it for one of so many shares; never 0, which is no time limit.
+  /// Equal share of the remaining time for one of `shares` stages; always > 0, because 0 would mean no limit.
   double share_s(std::size_t shares = 1) const {
     return std::max(left_s() / static_cast<double>(shares), 1e-9);
   }

@@ -6,13 +6,13 @@
 #include <ompl/geometric/PathGeometric.h>
 
 #include <talus/planner/route/polyline.hpp>
-#include <talus/planner/sampling/drive_objective.hpp>
 #include <talus/planner/sampling/map_space.hpp>
 #include <talus/planner/sampling/map_validity.hpp>
 #include <talus/planner/sampling/ompl_guard.hpp>
 #include <talus/planner/sampling/ompl_planner.hpp>
 #include <talus/planner/sampling/ompl_run.hpp>
 #include <talus/planner/sampling/region_sampler.hpp>
+#include <talus/planner/sampling/travel_objective.hpp>
 
 namespace talus::planner {
 namespace {
@@ -49,7 +49,7 @@ ob::SpaceInformationPtr spaceOf(const Problem& leg, const std::shared_ptr<const 
 }
 
 ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInformationPtr& space,
-                                      const DriveObjective::Parts& parts) {
+                                      const TravelObjective::Parts& parts) {
   auto definition = std::make_shared<ob::ProblemDefinition>(space);
   ob::ScopedState<MapSpace> start(space);
   ob::ScopedState<MapSpace> goal(space);
@@ -58,7 +58,7 @@ ob::ProblemDefinitionPtr definitionOf(const Problem& leg, const ob::SpaceInforma
   // OMPL requires a distance below the threshold, so 0 would never be reached.
   const double threshold_m = std::max(leg.goal_tolerance_m, 1e-9 * leg.map->grid().resolution_m);
   definition->setStartAndGoalStates(start, goal, threshold_m);
-  definition->setOptimizationObjective(std::make_shared<DriveObjective>(space, parts));
+  definition->setOptimizationObjective(std::make_shared<TravelObjective>(space, parts));
   return definition;
 }
 
@@ -147,6 +147,7 @@ Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& k
   planner->solve(doneWhen(leg, settings, cost));
   Plan plan = explained(priced(*definition, cost->motion()), leg, *cost, settings);
   plan.lower_bound_J = std::max(known.lower_bound_J, region->toGoal(leg.start));
+  plan.proof_s = known.proof_s;
   return plan;
 }
 

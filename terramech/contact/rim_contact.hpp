@@ -39,17 +39,17 @@ struct RimForces {
 /// Gauss-Legendre rule in t with s = t^Power, where s is the fraction of the arc from an end of contact to
 /// the stress peak. The power makes sigma ~ s^n smooth at the end of contact.
 template <std::size_t N, int Power>
-struct RimRule {
+struct RimQuadrature {
   static constexpr auto kPoints = gaussLegendre<N>();
   static constexpr double s(double t) { return Power == 3 ? t * t * t : t * t; }
   static constexpr double slope(double t) { return Power == 3 ? 3.0 * t * t : 2.0 * t; }
   static double inverse(double s) { return Power == 3 ? std::cbrt(s) : std::sqrt(s); }
   static_assert(Power == 2 || Power == 3);
 };
-using FineRimRule = RimRule<24, 3>;  ///< relative error <= 1e-9 for any n in use
+using FineRimRule = RimQuadrature<24, 3>;  ///< relative error <= 1e-9 for any n in use
 /// Relative error 1e-6 for driven wheels; for fits, which solve the contact millions of times.
-using QuickRimRule = RimRule<8, 2>;
-using BrakedRimRule = RimRule<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
+using QuickRimRule = RimQuadrature<8, 2>;
+using BrakedRimRule = RimQuadrature<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
 
 namespace detail {
 

@@ -266,6 +266,7 @@ Slope loadSlope(const RefinedModel& model,
 }  // namespace
 
 double SensorNoise::slipStd(double slip) const {
+  // (T2)
   return std::hypot(slip_absolute, std::min(slip_relative * std::abs(slip), std::max(1.0 + slip, 0.0)));
 }
 

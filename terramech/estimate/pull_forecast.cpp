@@ -16,7 +16,7 @@ namespace {
 constexpr double kLightest = 1e-3;
 
 // Recursive weighted mean and variance.
-class Spread {
+class RunningMoments {
  public:
   void add(double value, double weight) {
     weight_ += weight;
@@ -32,12 +32,12 @@ class Spread {
   double squares_ = 0.0;
 };
 
-struct Reply {
+struct SolvedWheel {
   double pull_over_load = 0.0;
   double sinkage_over_radius = 1.0;
 };
 
-Reply reply(const Wheel& wheel, const Soil& soil, const WheelOperation& operation) {
+SolvedWheel reply(const Wheel& wheel, const Soil& soil, const WheelOperation& operation) {
   try {
     const WheelForces f = equilibrium(soil, wheel, operation);
     return {f.drawbar_pull_N / operation.load_N, f.sinkage_m / wheel.radius_m};
@@ -67,7 +67,7 @@ Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilP
   const SoilClass any;
   const SoilObjective objective(any, {noise, 0.0});
   const double lightest = kLightest / static_cast<double>(posterior.draws.size());
-  Spread pull;
+  RunningMoments pull;
   for (const SoilDraw& d : posterior.draws) {
     if (d.weight < lightest) continue;
     const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, {wheel, sample}));
@@ -83,10 +83,10 @@ PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
   range.above("reference_slip", options.reference_slip, 0.0);
   range.within("reference_slip", options.reference_slip, {0.0, 1.0});
   range.atLeast("draws", options.draws, 1);
-  Spread reference, most, slip_of_most, sinkage;
+  RunningMoments reference, most, slip_of_most, sinkage;
   for (const ContactSoil* drawn : evenly(posterior.draws, options.draws)) {
     const Soil soil = soilOf(*drawn);
-    const Reply at = reply(wheel, soil, {.load_N = options.load_N, .slip = options.reference_slip});
+    const SolvedWheel at = reply(wheel, soil, {.load_N = options.load_N, .slip = options.reference_slip});
     reference.add(at.pull_over_load, 1.0);
     sinkage.add(at.sinkage_over_radius, 1.0);
     double best = -1e9;

@@ -31,7 +31,7 @@ Bands standardised(Bands edges, int band, double mean, double std, int known_ban
   return band == 0 ? Bands{-kInfinity, low} : band == 1 ? Bands{low, high} : Bands{high, kInfinity};
 }
 
-void check(const ConditionBelief& belief) {
+void check(const ConditionEstimate& belief) {
   const RangeCheck range{"category belief"};
   range.finite("drawbar_pull_over_load", belief.mean.drawbar_pull_over_load);
   range.finite("sinkage_over_radius", belief.mean.sinkage_over_radius);
@@ -41,7 +41,7 @@ void check(const ConditionBelief& belief) {
 }
 
 /// Category of a pair of bands of DP/W and z/r, with the torque and slip of the mean.
-Category categoryOf(const ConditionBelief& belief, const CategoryThresholds& t, int pull_band,
+Category categoryOf(const ConditionEstimate& belief, const CategoryThresholds& t, int pull_band,
                     int sinkage_band) {
   WheelCondition condition = belief.mean;
   condition.drawbar_pull_over_load = pull_band == 0   ? t.dp_low - 1.0
@@ -73,7 +73,7 @@ double probability(const NormalRectangle& q) {
   return sum * panel;
 }
 
-CategoryProbability categoryProbability(const ConditionBelief& belief, const CategoryThresholds& t) {
+CategoryProbability categoryProbability(const ConditionEstimate& belief, const CategoryThresholds& t) {
   check(belief);
   validate(t);
   const double pull = belief.mean.drawbar_pull_over_load, sinkage = belief.mean.sinkage_over_radius;

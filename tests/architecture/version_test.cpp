@@ -27,8 +27,8 @@ TEST(VersionTest, FilesAgreeWithCMake) {
 
 TEST(VersionTest, PythonPackageReadsItFromCMake) {
   EXPECT_EQ(stated("pyproject.toml", R"(\n(version) *=)"), "");
-  EXPECT_EQ(stated("pyproject.toml", R"(dynamic = \["(version)"\])"), "version");
-  EXPECT_EQ(stated("planner/python/wheel/wheel_backend.py", R"(\nVERSION = .*"(CMakeLists.txt)")"),
+  EXPECT_EQ(stated("pyproject.toml", R"x(dynamic = \["(version)"\])x"), "version");
+  EXPECT_EQ(stated("planner/python/wheel/wheel_backend.py", R"x(\nVERSION = .*"(CMakeLists.txt)")x"),
             "CMakeLists.txt");
 }
 

@@ -3,7 +3,8 @@
 
 Needs   apt-get install grass-core python3-skimage python3-gdal  (what is missing is left out, and said)
 Run     tests/benchmark/compare_gis.py build/release/cli/talus DEM START GOAL [options of talus for map, rover, soil]
-Prints  cost under Talus' cost function, how far above Talus', cells that may not be driven, seconds of CPU
+Prints  cost under Talus' cost function, how far above Talus' with its proof, cells that may not be driven, seconds of CPU,
+        and the seconds of Talus over those of each other
 
 r.walk gets the elevation, skimage.graph.MCP_Geometric the mean of the energy per metre up and down the steepest
 slope; both see only cells that Talus lets the rover climb and descend straight on. START and GOAL are x,y.
@@ -118,27 +119,35 @@ def main(talus, dem, start_text, goal_text, *options):
     with tempfile.TemporaryDirectory() as folder:
         layers = os.path.join(folder, "layers.tif")
         run([talus, "costmap", dem, "-o", os.path.join(folder, "map.ot"), "--geotiff", layers, "--quiet", *options])
-        begin = cpu_s()
-        own = json.loads(run([talus, "plan", dem, f"--start={start_text}", f"--goal={goal_text}", "--json",
-                              "--quiet", "--threads", "1", *options]))
-        print(f"{'planner':<14}{'cost J':>14}{'above %':>10}{'refused':>9}{'CPU s':>8}")
-        print(f"{'talus':<14}{own['cost']:>14.6g}{0.0:>10.2f}{0:>9}{cpu_s() - begin:>8.2f}")
+        print(f"{'planner':<18}{'cost J':>14}{'above %':>10}{'refused':>9}{'CPU s':>8}")
+        own, own_s = None, {}
+        for name, how in {"talus": [], "talus --no-proof": ["--no-proof"]}.items():
+            begin = cpu_s()
+            planned = json.loads(run([talus, "plan", dem, f"--start={start_text}", f"--goal={goal_text}", "--json",
+                                      "--quiet", "--threads", "1", *how, *options]))
+            own, own_s[name] = own or planned, cpu_s() - begin
+            above = 100 * (planned["cost"] / own["cost"] - 1)
+            print(f"{name:<18}{planned['cost']:>14.6g}{above:>10.2f}{0:>9}{own_s[name]:>8.2f}")
         peers = {"skimage MCP": lambda: by_skimage(Map(layers), start, goal)}
         if shutil.which("grass"):
             peers["r.walk -k"] = lambda: by_grass(folder, start, goal)
         else:
-            print(f"{'r.walk -k':<14}left out: grass is not installed")
+            print(f"{'r.walk -k':<18}left out: grass is not installed")
+        ratios = {}
         for name, plan in peers.items():
             path, spent = attempt(name.split()[0], plan, start, goal, folder)
             if spent is None:
-                print(f"{name:<14}{path}")
+                print(f"{name:<18}{path}")
                 continue
             answer = scored(talus, dem, options, path)
             cost, refused = answer.get("cost"), len(answer["violations"])
             if refused:
-                print(f"{name:<14}{'-':>14}{'-':>10}{refused:>9}{spent:>8.2f}")
+                print(f"{name:<18}{'-':>14}{'-':>10}{refused:>9}{spent:>8.2f}")
             else:
-                print(f"{name:<14}{cost:>14.6g}{100 * (cost / own['cost'] - 1):>10.2f}{0:>9}{spent:>8.2f}")
+                print(f"{name:<18}{cost:>14.6g}{100 * (cost / own['cost'] - 1):>10.2f}{0:>9}{spent:>8.2f}")
+            ratios[name] = [f"{seconds / spent:.3f}" for seconds in own_s.values()]
+        for name, (proven, unproven) in ratios.items():
+            print(f"CPU of talus over {name}: {proven}, without proof {unproven}")
 
 
 if __name__ == "__main__":

@@ -29,11 +29,11 @@ using namespace talus;
 using namespace talus::planner;
 using MapPointer = std::shared_ptr<const costmap::CostGrid>;
 
-std::shared_ptr<const costmap::DriveCost> driveCost() {
-  std::vector<costmap::DriveCurve> curves(5);
+std::shared_ptr<const costmap::TravelCost> driveCost() {
+  std::vector<costmap::TravelCurve> curves(5);
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-      const double g = costmap::DriveCurve::gradient(bin);
+    for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
+      const double g = costmap::TravelCurve::gradient(bin);
       curves[k].cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
           (1.0 + static_cast<double>(k)) * (10.0 + 100.0 * std::fmax(g, 0.0) + 400.0 * g * g));
     }
@@ -44,8 +44,8 @@ std::shared_ptr<const costmap::DriveCost> driveCost() {
         rows->push_back(level * static_cast<float>(1.0 + 0.02 * row));
     curves[k].crossing = std::move(rows);
   }
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.3, .max_across = 0.3},
-                                              curves);
+  return std::make_shared<costmap::TravelCost>(
+      costmap::TravelCost::Limits{.max_along = 0.3, .max_across = 0.3}, curves);
 }
 
 // Waves of twenty lengths from 9 to 600 cells, soils in patches, one cell in fifty blocked.

@@ -29,7 +29,7 @@ Compared compared(const terramech::Soil& soil, const terramech::Rover& rover) {
       {.rover = rover, .classes = {{.number = 0, .soil = soil}}, .policy = {.allow_dangerous = true}});
   costmap::GroundBelief belief = model.prior(0);
   belief.pull.std = 0.0;
-  const costmap::DriveCost cost(model.limits(), std::vector<costmap::DriveGround>{model.ground(0, belief)});
+  const costmap::TravelCost cost(model.limits(), std::vector<costmap::GroundCost>{model.ground(0, belief)});
   const terramech::SlopeEquilibrium exact(soil, rover);
   Compared out;
   for (double steep = 0.02; steep < std::min(model.limits().max_along, model.limits().max_across);
@@ -39,7 +39,7 @@ Compared compared(const terramech::Soil& soil, const terramech::Rover& rover) {
     for (int degree = 0; degree <= 180; ++degree) {
       const costmap::Direction towards{std::cos(degree * kDegree), std::sin(degree * kDegree)};
       const double along = cell.dzDx() * towards.x, across = -cell.dzDx() * towards.y;
-      const costmap::DriveState said = cost.detail(cell, towards);
+      const costmap::TravelState said = cost.detail(cell, towards);
       const terramech::SlopeState want = exact.at({along, across});
       const bool allowed = said.refusal == Refusal::None;
       const double spare = want.holds() ? std::min(want.pull_reserve, want.side_reserve) : 0.0;

@@ -6,7 +6,7 @@
 namespace talus::cli {
 namespace bad_map_test {
 
-TEST(BadInput, ElevationMaps) {
+TEST(BadInput, InvalidElevationMapsAreRejectedWithOneLine) {
   const BadFiles files;
   expectRefused(
       files,
@@ -45,7 +45,7 @@ TEST(BadInput, ElevationMaps) {
 }
 
 // Nobody writes into it: whoever opened it would wait.
-TEST(BadInput, FifosAreRefused) {
+TEST(BadInput, FifosAndDevicesAreRejected) {
   const BadFiles files;
   ASSERT_EQ(::mkfifo((files.folder() / "pipe").c_str(), 0600), 0);
   const auto ground = [](std::vector<std::string> words) {

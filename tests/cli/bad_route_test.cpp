@@ -13,7 +13,7 @@ Words plan(const std::string& map, const Words& more) {
   return words;
 }
 
-TEST(BadInput, Plan) {
+TEST(BadInput, InvalidPlanCallsAreRejectedWithOneLine) {
   const BadFiles files;
   expectRefused(
       files,
@@ -66,7 +66,7 @@ TEST(BadInput, Plan) {
       });
 }
 
-TEST(BadInput, SoilsAndRovers) {
+TEST(BadInput, InvalidSoilsAndRoversAreRejectedWithOneLine) {
   const BadFiles files;
   std::vector<BadCall> calls;
   for (const char* option : {"--soil", "--rover", "--soils"}) {
@@ -84,7 +84,7 @@ TEST(BadInput, SoilsAndRovers) {
   expectRefused(files, calls);
 }
 
-TEST(BadInput, Bench) {
+TEST(BadInput, InvalidBenchCallsAreRejectedWithOneLine) {
   const BadFiles files;
   expectRefused(files,
                 {
@@ -116,7 +116,7 @@ TEST(BadInput, Bench) {
                 });
 }
 
-TEST(BadInput, View) {
+TEST(BadInput, InvalidViewCallsAreRejectedWithOneLine) {
   const BadFiles files;
   expectRefused(files,
                 {

@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace bad_telemetry_test {
 
-TEST(BadInput, Telemetry) {
+TEST(BadInput, InvalidTelemetryIsRejectedWithOneLine) {
   std::vector<BadCall> calls{
       {{"estimate"}, 2, "talus estimate --help"},
       {{"estimate", "words.csv", "--method", "foo"}, 2, "foo not in"},
@@ -29,7 +29,7 @@ TEST(BadInput, Telemetry) {
 }
 
 // Property: every table of wheels is read in the units of its columns, and says so; nothing is written of one that cannot be.
-TEST(BadInput, AKnownColumnInAnotherUnit) {
+TEST(BadInput, KnownColumnInAnotherUnitIsRejectedByEveryCommand) {
   const Folder folder;
   folder.write("t.csv",
                "load_N,slip,torque_Nm,sinkage_mm,wheel_radius_m,wheel_width_m\n80,0.2,2,12,0.1,0.1\n");
@@ -59,7 +59,7 @@ TEST(BadInput, AKnownColumnInAnotherUnit) {
   }
 }
 
-TEST(BadInput, ColumnsOfTables) {
+TEST(BadInput, InvalidColumnMappingsAreRejected) {
   const Folder folder;
   folder.write("t.csv", "Fz;slip_pct;T;z\n80;20;2;0,012\n");
   folder.write("columns", "load_N=Fz\n\n# remark\nslip=slip_pct:percent\nload_N=T\n");
@@ -81,7 +81,7 @@ TEST(BadInput, ColumnsOfTables) {
   EXPECT_THAT(line({}), testing::HasSubstr("no column load_N"));
 }
 
-TEST(BadInput, MapsOfBeliefs) {
+TEST(BadInput, InvalidTraversabilityMapCallsAreRejectedWithOneLine) {
   const std::vector<std::string> site{"good.asc",   "--resolution", "1",   "--soil",
                                       "sandy_loam", "--rover",      "fido"};
   const auto with = [&site](const char* command, const std::vector<std::string>& more) {
@@ -111,7 +111,7 @@ TEST(BadInput, MapsOfBeliefs) {
                             });
 }
 
-TEST(BadInput, SitesAndPlugins) {
+TEST(BadInput, InvalidSitesAndPluginsAreRejectedWithOneLine) {
   expectRefused(BadFiles(),
                 {
                     {{"generate"}, 2, "KIND"},

@@ -4,7 +4,7 @@
 namespace talus::cli {
 namespace bad_wheel_test {
 
-TEST(BadInput, Wheel) {
+TEST(BadInput, InvalidWheelCallsAreRejectedWithOneLine) {
   const auto wheel = [](const std::vector<std::string>& more) {
     std::vector<std::string> words{"wheel", "--soil", "clay", "--rover", "fido"};
     words.insert(words.end(), more.begin(), more.end());

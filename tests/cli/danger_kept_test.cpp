@@ -124,7 +124,7 @@ std::string pulls(const Ground& ground, double x_m, double y_m, double pull, int
 }
 const std::string kPulls = "time_s,x_m,y_m,slope_rad,load_N,slip,drawbar_pull_N\n";
 
-TEST_P(DangerKept, OneWeakCellAmongStrongOnes) {
+TEST_P(DangerKept, OneWeakCellAmongStrongOnesStaysDangerous) {
   const Ground ground(GetParam(), 0.0);
   std::string text = kPulls;
   int time_s = 0;
@@ -136,7 +136,7 @@ TEST_P(DangerKept, OneWeakCellAmongStrongOnes) {
   EXPECT_TRUE(ground.refused("new.ot", "x_m,y_m\n16.5,20.5\n25.5,20.5\n"));
 }
 
-TEST_P(DangerKept, ASecondClassInOneBlockHasItsOwnReadings) {
+TEST_P(DangerKept, ClassesInOneBlockHaveSeparateReadings) {
   const Ground ground(GetParam(), 0.0, "sand");
   for (const bool second_first : {false, true}) {
     int time_s = 0;
@@ -164,7 +164,7 @@ void clearDrives(std::string& map) {
   ASSERT_EQ(at, end);
 }
 
-TEST_P(DangerKept, ThreeWeakAndSixtyStrongInEitherOrder) {
+TEST_P(DangerKept, FewWeakReadingsOutweighManyStrongOnesInEitherOrder) {
   const Ground ground(GetParam(), 0.0);
   std::string files[2];
   for (const int first : {0, 1}) {
@@ -198,7 +198,7 @@ std::string rowOf(const Ground& ground, const Reading& r, double time_s, double 
 }
 
 // Up or down a slope of 14 degrees: no ground of the map becomes better by slip that hardly changes.
-TEST_P(DangerKept, ASlipSensorStuckNearZeroOnAClimb) {
+TEST_P(DangerKept, StuckSlipSensorOnAClimbRaisesNothing) {
   const double gradient = std::tan(14.0 * std::numbers::pi / 180.0);
   const Ground ground(GetParam(), gradient);
   for (const double slip : {0.0, 0.02, -0.01})
@@ -215,7 +215,7 @@ TEST_P(DangerKept, ASlipSensorStuckNearZeroOnAClimb) {
 }
 
 // Two rows in a trap within a quiet drive: no spike, for whichever of the columns are there.
-TEST_P(DangerKept, AWheelInATrap) {
+TEST_P(DangerKept, TrapOfTwoRowsLowersTheEstimate) {
   const Ground ground(GetParam(), 0.0);
   for (const bool with_torque : {true, false})
     for (const double sinkage : {0.54, kSilent}) {
@@ -239,7 +239,7 @@ TEST_P(DangerKept, AWheelInATrap) {
 }
 
 // Wheels sunk nearly to the axle at little slip, everywhere: a datum that is off, or drift.
-TEST_P(DangerKept, DeepWheelsAtLittleSlip) {
+TEST_P(DangerKept, DeepSinkageAtLowSlipIsNotSafe) {
   const Ground ground(GetParam(), 0.0);
   for (const double heading : {0.0, std::numbers::pi})
     for (const double torque : {0.15, kSilent}) {
@@ -254,7 +254,7 @@ TEST_P(DangerKept, DeepWheelsAtLittleSlip) {
     }
 }
 
-TEST_P(DangerKept, SinkageThatIsReadOnceAfterManyRowsWithout) {
+TEST_P(DangerKept, SingleDeepSinkageReadingIsNotSafe) {
   const Ground ground(GetParam(), 0.0);
   for (const bool deep_first : {false, true}) {
     std::string text = kDrive;
@@ -270,7 +270,7 @@ TEST_P(DangerKept, SinkageThatIsReadOnceAfterManyRowsWithout) {
 }
 
 // Five rows at one place, weak or strong: what they change lies within two correlation lengths.
-TEST_P(DangerKept, FiveRowsOfOneBlockChangeTheirSurroundingsOnly) {
+TEST_P(DangerKept, ReadingsOfOneBlockAffectOnlyItsSurroundings) {
   const Ground ground(GetParam(), 0.1);
   for (const double pull : {-0.3, 0.0, 0.6}) {
     int time_s = 0;
@@ -281,7 +281,7 @@ TEST_P(DangerKept, FiveRowsOfOneBlockChangeTheirSurroundingsOnly) {
 }
 
 // A jump of the pose onto weaker ground: sand, on which nobody drove.
-TEST_P(DangerKept, ADriveThatAJumpMovesOntoWeakGround) {
+TEST_P(DangerKept, PoseJumpOntoWeakGroundRaisesNothing) {
   const Ground ground(GetParam(), 0.22, "mars_drift");
   for (const double jump_m : {20.0, 12.0})
     for (const bool back : {false, true}) {
@@ -299,7 +299,7 @@ TEST_P(DangerKept, ADriveThatAJumpMovesOntoWeakGround) {
 }
 
 // A rover that stood: slip 0.98 on a slope that the soil does not hold, no column slope_rad.
-TEST_P(DangerKept, ARoverThatStoodProvesNoStrength) {
+TEST_P(DangerKept, StationaryRoverRaisesNothing) {
   for (const double gradient : {0.15, 0.3, 0.45}) {
     const Ground ground(GetParam(), gradient);
     std::string text = "time_s,x_m,y_m,heading_rad,load_N,slip\n";

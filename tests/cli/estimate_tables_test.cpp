@@ -41,7 +41,7 @@ std::string rowsOf(const std::string& name, const Soil& soil, const Wheel& wheel
   return text;
 }
 
-TEST(EstimateTables, RowsOfTwoWheelSizesOnOneSoilAreEachTakenWithTheirOwn) {
+TEST(EstimateTables, RowsOfTwoWheelSizesUseTheirOwnSize) {
   // Property: exact rows of a small and a large wheel give the soil; each read with the other's size would
   // not.
   const Folder folder;
@@ -74,7 +74,7 @@ TEST(EstimateTables, RowsOfTwoWheelSizesOnOneSoilAreEachTakenWithTheirOwn) {
   EXPECT_EQ(json::parse(assessed.out).size(), 18u);
 }
 
-TEST(EstimateTables, SeveralSoilsInOneAreNamedByTheirColumn) {
+TEST(EstimateTables, RowsOfSeveralSoilsNameTheSeparatingColumn) {
   // Property: two soils of unlike stiffness and strength are told apart by the column of words that divides
   // them; one soil under two names is not.
   const Folder folder;
@@ -91,7 +91,7 @@ TEST(EstimateTables, SeveralSoilsInOneAreNamedByTheirColumn) {
   EXPECT_THAT(said(firm), testing::Not(HasSubstr("all values of soil")));
 }
 
-TEST(EstimateTables, PlatesWithoutAWidthAreRoundByTheirForce) {
+TEST(EstimateTables, PlatesWithoutWidthAreRoundWithAreaFromForce) {
   // Closed form: F = p pi d^2/4 of plates of 60 and 100 mm on k_c = 5e3, k_phi = 1e6, n = 1.1; a wheel
   // pressed in has no such area.
   const Folder folder;

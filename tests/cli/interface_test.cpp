@@ -119,7 +119,8 @@ std::vector<Call> calls() {
       {"update",
        {"map.ot", "t.csv", "-o", "map2.ot"},
        {"number /rows_used", "number /rows_rejected", "number /cells_changed", "number /categories_changed"}},
-      {"plan", words(route, {"-o", "route.geojson"}), words(kRouteFields, {"number /seconds/plan"})},
+      {"plan", words(route, {"-o", "route.geojson"}),
+       words(kRouteFields, {"number /seconds/plan", "number /seconds/proof"})},
       {"score", words(kGround, {"--path", "route.geojson"}), words(kRouteFields, {"array /violations"})},
       {"explain",
        words(kGround, {"--at", "20,15", "--heading", "0.5"}),
@@ -135,7 +136,7 @@ bool isOfKind(const json& value, const std::string& kind) {
   return kind == "any" || kind == value.type_name();
 }
 
-TEST(Interface, EveryCommandPrintsTheFieldsThatOthersRelyOn) {
+TEST(Interface, EveryCommandPrintsItsDocumentedJsonFields) {
   for (const Call& call : calls()) {
     SCOPED_TRACE(call.name);
     const Ran ran = runTalus(words({"--json", call.name}, call.words), site().path());
@@ -152,14 +153,14 @@ TEST(Interface, EveryCommandPrintsTheFieldsThatOthersRelyOn) {
   }
 }
 
-TEST(Interface, GlobalOptionsMayStandBehindTheSubcommandAndQuietIsSilent) {
+TEST(Interface, GlobalOptionsAreAcceptedAfterTheSubcommandAndQuietIsSilent) {
   const Ran before = runTalus({"--json", "info", "dem.asc", "--resolution", "1"}, site().path());
   const Ran after = runTalus({"info", "dem.asc", "--resolution", "1", "--json", "--quiet"}, site().path());
   EXPECT_EQ(before.out, after.out);
   EXPECT_EQ(after.err, "");
 }
 
-TEST(Interface, TablesKeepTheirColumnsAndGetThePromisedOnes) {
+TEST(Interface, TablesKeepTheirColumnsAndGetTheDocumentedOnes) {
   const Folder folder;
   folder.write("cases.csv", kCases);
   ASSERT_EQ(runTalus({"wheel", "--cases", "cases.csv", "-o", "out.csv"}, folder.path()).code, 0);
@@ -178,7 +179,7 @@ TEST(Interface, TablesKeepTheirColumnsAndGetThePromisedOnes) {
 }
 
 // Property: whoever presses Ctrl-C gets 130 and no half file, whatever was going on.
-TEST(Interface, AnInterruptEndsLongWorkWith130AndNoFile) {
+TEST(Interface, InterruptEndsWithCode130AndWritesNoFile) {
   std::string drive = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n";
   for (int k = 0; k < 60000; ++k)
     drive +=

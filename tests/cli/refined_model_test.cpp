@@ -39,7 +39,7 @@ class RefinedModelCommands : public ::testing::Test {
   Folder folder_;
 };
 
-TEST_F(RefinedModelCommands, PlanAndCostmapTakeAModelAndKeepIt) {
+TEST_F(RefinedModelCommands, PlanAndCostmapApplyAndStoreAModel) {
   folder_.write("model.yaml", std::string(kSoil) +
                                   "model: wong-reece\neffects: [{name: bulldozing, parameters: [0.15]}]\n");
   const auto energy = [&](const std::vector<std::string>& ground) {
@@ -72,7 +72,7 @@ std::vector<std::string> simulatedTraverse(const std::vector<std::string>& groun
   return words;
 }
 
-TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
+TEST_F(RefinedModelCommands, TracedEffectImprovesPredictionOfTheNextTraverse) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
   folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.3]}]\n");
   // Who does not know the effect may be held on the way (exit 1); its rows show it all the same.
@@ -107,7 +107,7 @@ TEST_F(RefinedModelCommands, TheFirstTraverseMendsTheNext) {
     EXPECT_NE(model.find(name), std::string::npos) << name;
 }
 
-TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
+TEST_F(RefinedModelCommands, TraverseOnMatchingGroundYieldsNoEffect) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
   folder_.write("truth.yaml", "{}\n");
   ASSERT_EQ(talus(simulatedTraverse({"--soil", "soil.yaml", "--telemetry", "t.csv"})).code, 0);
@@ -116,7 +116,7 @@ TEST_F(RefinedModelCommands, ATraverseOverGroundAsBelievedShowsNothing) {
   EXPECT_TRUE(nlohmann::json::parse(traced.out)["effects"].empty()) << traced.out;
 }
 
-TEST_F(RefinedModelCommands, RefusesModelsThatCannotPlan) {
+TEST_F(RefinedModelCommands, ModelsThatCannotPlanAreRejected) {
   folder_.write("linear.yaml", std::string(kSoil) + "model: linear-formula\n");
   folder_.write("nosoil.yaml", "model: wong-reece\n");
   for (const char* model : {"linear.yaml", "nosoil.yaml", "missing.yaml"}) {

@@ -55,7 +55,7 @@ std::string outputOf(const Command& command, const Folder& folder) {
 
 class Tutorial : public testing::TestWithParam<std::string> {};
 
-TEST_P(Tutorial, DoesWhatItStates) {
+TEST_P(Tutorial, CommandsProduceTheStatedOutput) {
   const fs::path source = TALUS_SOURCE_DIR;
   const Folder folder;
   fs::create_directory(folder.path() / "bin");
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Docs, Tutorial,
                          [](const auto& one) { return one.param; });
 
 // Property: each option that a page of the repository gives a call of the program is one that the call's --help has.
-TEST(Documents, NameOnlyOptionsThatExist) {
+TEST(Documents, DocumentedOptionsExist) {
   const std::regex call("talus ([a-z]+)( [^`\n]*)?"), option("--[a-z][a-z-]*");
   std::map<std::string, std::string> helps;
   int options = 0;
@@ -105,7 +105,7 @@ TEST(Documents, NameOnlyOptionsThatExist) {
 }
 
 // Property: no page of docs/tutorials is left out.
-TEST(Tutorials, AreAllRun) {
+TEST(Tutorials, EveryTutorialIsTested) {
   EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / "docs/tutorials"), {}), 6);
 }
 

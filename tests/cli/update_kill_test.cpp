@@ -62,7 +62,7 @@ class Site {
 
 // Killed at any moment and called again: the drive counts once, in the map and in the journal. The number of kills is
 // TALUS_KILLS, 40 if not set.
-TEST(UpdateCommand, KilledAtAnyMomentTheRetryCountsTheDriveOnce) {
+TEST(UpdateCommand, DriveIsCountedOnceAfterRetryWhenKilledAtAnyMoment) {
   const Site site;
   ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "whole.ot"}, site.folder.path()).code, 0);
   const std::string whole = site.content("whole.ot");
@@ -96,7 +96,7 @@ TEST(UpdateCommand, KilledAtAnyMomentTheRetryCountsTheDriveOnce) {
   }
 }
 
-TEST(UpdateCommand, AFailedOneLeavesTheJournalAsItWas) {
+TEST(UpdateCommand, FailedUpdateLeavesTheJournalUnchanged) {
   const Site site;
   EXPECT_EQ(
       runTalus({"update", "map.ot", "t.csv", "-o", "no/out.ot", "--journal", "e.db"}, site.folder.path())
@@ -114,7 +114,7 @@ TEST(UpdateCommand, AFailedOneLeavesTheJournalAsItWas) {
 }
 
 // A drive is known by what it holds, not by the name of its file.
-TEST(UpdateCommand, TheSameDriveTwiceCountsOnceAndIsTold) {
+TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
   const Site site;
   site.folder.write("copy.csv", site.content("t.csv"));
   ASSERT_EQ(
@@ -128,7 +128,7 @@ TEST(UpdateCommand, TheSameDriveTwiceCountsOnceAndIsTold) {
 }
 
 // What a killed update left beside its map goes with the next; that of a process that still runs stays.
-TEST(UpdateCommand, ClearsWhatAKilledOneLeft) {
+TEST(UpdateCommand, TemporaryFilesOfAKilledUpdateAreRemoved) {
   const Site site;
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
@@ -143,7 +143,7 @@ TEST(UpdateCommand, ClearsWhatAKilledOneLeft) {
 }
 
 // Two updates in turn, each a process that reads the file of the one before, and one replay of both.
-TEST(UpdateCommand, DrivesInTurnAreTheJournalAtOnce) {
+TEST(UpdateCommand, SequentialUpdatesEqualOneReplay) {
   const Site site;
   std::string text = "time_s,x_m,y_m,slope_rad,load_N,slip\n";
   for (int row = 0; row < 60; ++row)
@@ -160,7 +160,7 @@ TEST(UpdateCommand, DrivesInTurnAreTheJournalAtOnce) {
   EXPECT_TRUE(site.content("both.ot") == site.content("again.ot"));
 }
 
-TEST(UpdateCommand, TwoAtOnceShareAJournal) {
+TEST(UpdateCommand, ConcurrentUpdatesShareAJournal) {
   const Site site;
   const pid_t a = site.start("evidence.db", "a.ot"), b = site.start("evidence.db", "b.ot");
   int first = -1, second = -1;

@@ -103,7 +103,7 @@ void expectPlainLines(const fs::path& file) {
   }
 }
 
-TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
+TEST(Words, WordCheckDetectsFigurativePhrases) {
   EXPECT_NE(complaint("found by field, within 10.4 % of the cheapest there can be"), "");
   EXPECT_NE(complaint("k_c and k_phi cannot be told apart"), "");
   EXPECT_EQ(complaint("found by field; proven optimality gap <= 10.4 %"), "");
@@ -111,14 +111,14 @@ TEST(Words, TheListIsSearchedAsAPersonWouldRead) {
               testing::ElementsAre("one two", "four"));
 }
 
-TEST(Words, OfMessagesArePlain) {
+TEST(Words, MessagesContainNoFigurativeWords) {
   for (const std::string module : {"terramech", "maps", "costmap", "planner", "cli", "tests/reproduce"})
     for (const fs::path& file : filesBelow(module, {".cpp", ".hpp"}))
       for (const std::string& literal : stringLiterals(fileContent(file)))
         EXPECT_EQ(promised().contains(literal) ? "" : complaint(literal), "") << file;
 }
 
-TEST(Words, OfPagesAndDocumentsArePlain) {
+TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
   for (const fs::path& file : filesBelow("cli/page", {".js", ".html"})) expectPlainLines(file);
   for (const std::string folder :
        {"docs", "common", "terramech", "maps", "costmap", "planner", "cli", "examples", "tests"})
@@ -193,7 +193,7 @@ void expectHelp(const std::string& help, const std::string& call) {
   EXPECT_EQ(complaint(help), "") << call;
 }
 
-TEST(Words, HelpFitsThePageAndShowsTwoExamples) {
+TEST(Words, HelpFitsTheLineWidthWithTwoExamples) {
   const auto names = calls();
   EXPECT_EQ(names.size(), 20U);
   expectHelp(runTalus({"--help"}).out, "");

@@ -14,12 +14,12 @@ std::uint64_t checksumOf(const std::string& bytes) {
 }
 
 // Printed in: xxHash's specification, XXH3 64 bits of the empty string, seed 0.
-TEST(Checksum, IsXxh3) {
+TEST(Checksum, EmptyInputMatchesXxh3) {
   EXPECT_EQ(Checksum().value(), 0x2d06800538d394c2ULL);
 }
 
 // Property: how the bytes are divided does not matter, and a value may be asked for in between.
-TEST(Checksum, IsOfTheBytesNotOfTheirPieces) {
+TEST(Checksum, ChecksumIsIndependentOfDivision) {
   std::string bytes;
   for (int i = 0; i < 1000; ++i) bytes += static_cast<char>(i * 31);
   for (const std::size_t piece : {1U, 7U, 8U, 255U, 256U, 257U}) {
@@ -33,7 +33,7 @@ TEST(Checksum, IsOfTheBytesNotOfTheirPieces) {
 }
 
 // Property: every flipped bit shows, at all lengths for which the algorithm has a branch of its own.
-TEST(Checksum, ShowsEveryFlippedBit) {
+TEST(Checksum, EveryFlippedBitChangesTheChecksum) {
   for (const std::size_t size : {1U, 3U, 8U, 16U, 128U, 240U, 300U}) {
     const std::string bytes(size, 'a');
     for (std::size_t bit = 0; bit < 8 * size; ++bit) {

@@ -3,7 +3,7 @@
 namespace talus {
 namespace input_error_test {
 
-TEST(InputError, IsOneLineOfWhereReasonAndRemedy) {
+TEST(InputError, MessageHasPlaceReasonAndRemedyOnOneLine) {
   EXPECT_STREQ(InputError({"a.csv:3", "no slip", "add it"}).what(), "a.csv:3: no slip; add it");
   EXPECT_STREQ(InputError({"a.csv", "is empty", ""}).what(), "a.csv: is empty");
 }

@@ -4,7 +4,7 @@
 namespace talus {
 namespace memory_budget_test {
 
-TEST(MemoryBudget, RefusesWhatExceedsItAndSaysHowMuch) {
+TEST(MemoryBudget, RequestAboveTheBudgetIsRejectedWithItsSize) {
   setMemoryBudget(std::uint64_t{2} << 30U);
   EXPECT_NO_THROW(requireMemory(1e8, "a.npy"));
   try {
@@ -18,7 +18,7 @@ TEST(MemoryBudget, RefusesWhatExceedsItAndSaysHowMuch) {
   setMemoryBudget(0);
 }
 
-TEST(MemoryBudget, UnsetItIsHalfOfWhatIsFree) {
+TEST(MemoryBudget, DefaultBudgetRejectsExcessiveRequests) {
   EXPECT_NO_THROW(requireMemory(1e3, "small"));
   EXPECT_THROW(requireMemory(1e15, "no machine has this"), InputError);
 }

@@ -15,13 +15,13 @@ TEST(EditDistance, CountsInsertedDeletedReplacedAndSwappedLetters) {
   EXPECT_EQ(editDistance("", "plan"), 4U);
 }
 
-TEST(NearestName, FindsTheWordWithFewestEdits) {
+TEST(NearestName, FindsTheNameWithFewestEdits) {
   EXPECT_EQ(nearestName("plam", kKnown), "plan");
   EXPECT_EQ(nearestName("lpan", kKnown), "plan");
   EXPECT_EQ(nearestName("explan", kKnown), "explain");
 }
 
-TEST(NearestName, SaysNothingWhenNothingIsNear) {
+TEST(NearestName, DistantNameYieldsNoSuggestion) {
   EXPECT_EQ(nearestName("calibrate", kKnown), "");
   EXPECT_EQ(nearestName("", kKnown), "");
   EXPECT_EQ(nearestName("plan", {}), "");

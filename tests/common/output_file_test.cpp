@@ -55,7 +55,7 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
-TEST(OutputFile, AppearsWholeAndReplacesWhatWasThere) {
+TEST(OutputFile, CommitReplacesTheFileAtomically) {
   const Folder folder;
   writeFile(folder / "a.json", "old");
   writeFile(folder / "a.json", "new");
@@ -63,7 +63,7 @@ TEST(OutputFile, AppearsWholeAndReplacesWhatWasThere) {
   EXPECT_THAT(folder.names(), ElementsAre("a.json"));
 }
 
-TEST(OutputFile, LeavesNothingWhenNotCommitted) {
+TEST(OutputFile, UncommittedFileIsRemoved) {
   const Folder folder;
   {
     const OutputFile file(folder / "a.png");
@@ -73,7 +73,7 @@ TEST(OutputFile, LeavesNothingWhenNotCommitted) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(OutputFile, FollowsALinkInsteadOfReplacingIt) {
+TEST(OutputFile, SymbolicLinkIsFollowed) {
   const Folder folder;
   folder.write("real", "old");
   fs::create_symlink(folder / "real", folder / "link");
@@ -82,7 +82,7 @@ TEST(OutputFile, FollowsALinkInsteadOfReplacingIt) {
   EXPECT_EQ(fileContent(folder / "real"), "new");
 }
 
-TEST(OutputFile, LeavesADeviceAndAFifoWhatTheyAre) {
+TEST(OutputFile, DevicesAndFifosAreNotReplaced) {
   const Folder folder;
   writeFile("/dev/null", "gone");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
@@ -92,7 +92,7 @@ TEST(OutputFile, LeavesADeviceAndAFifoWhatTheyAre) {
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }
 
-TEST(OutputFile, KeepsThePermissionsOfWhatItReplaces) {
+TEST(OutputFile, PermissionsAreKept) {
   const Folder folder;
   folder.write("a", "old");
   fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
@@ -101,7 +101,7 @@ TEST(OutputFile, KeepsThePermissionsOfWhatItReplaces) {
 }
 
 // What an end by a signal does last.
-TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
+TEST(OutputFile, UnfinishedFilesAreRemovedOnRequest) {
   const Folder folder;
   writeFile(folder / "whole", "x");
   const OutputFile half(folder / "half");
@@ -110,11 +110,11 @@ TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
   EXPECT_THAT(folder.names(), ElementsAre("whole"));
 }
 
-TEST(OutputFile, ANameThatIsTooLongIsRefused) {
+TEST(OutputFile, NameAboveTheLengthLimitIsRejected) {
   EXPECT_THAT(refusal(std::string(5000, 'a')), HasSubstr("File name too long"));
 }
 
-TEST(OutputFile, RefusalSaysWhereAndWhy) {
+TEST(OutputFile, ErrorNamesPathAndReason) {
   const Folder folder;
   EXPECT_THAT(refusal(folder / "no/a.json"), HasSubstr("no does not exist; make it first"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("is a directory"));

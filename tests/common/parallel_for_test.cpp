@@ -7,7 +7,7 @@
 namespace talus {
 namespace parallel_for_test {
 
-TEST(ParallelFor, CallsEachOnceWhateverTheThreads) {
+TEST(ParallelFor, EachIndexIsCalledOnceForAnyThreadCount) {
   for (std::size_t count : {0U, 1U, 5U, 1000U})
     for (int threads : {1, 2, 7}) {
       std::vector<std::atomic<int>> calls(count);
@@ -16,7 +16,7 @@ TEST(ParallelFor, CallsEachOnceWhateverTheThreads) {
     }
 }
 
-TEST(ParallelFor, ThrowsHereWhatACallThrows) {
+TEST(ParallelFor, ExceptionIsRethrownAndStopsTheLoop) {
   // Property: on whichever thread it happens, and nothing new is begun after it.
   for (int threads : {1, 2, 7}) {
     std::atomic<int> calls{0};

@@ -7,7 +7,7 @@
 namespace talus {
 namespace parallel_rows_test {
 
-TEST(ParallelRows, EveryRowOnceWhateverTheThreads) {
+TEST(ParallelRows, EachRowIsVisitedOnceForAnyThreadCount) {
   for (int rows : {0, 1, 64, 65, 1000})
     for (int threads : {1, 2, 7}) {
       std::vector<std::atomic<int>> visits(static_cast<std::size_t>(rows));
@@ -18,7 +18,7 @@ TEST(ParallelRows, EveryRowOnceWhateverTheThreads) {
     }
 }
 
-TEST(ParallelRows, ReportsFromTheCallersThreadAndStops) {
+TEST(ParallelRows, ProgressIsReportedOnTheCallingThreadAndStops) {
   std::stop_source source;
   const auto caller = std::this_thread::get_id();
   std::atomic<int> strips{0};

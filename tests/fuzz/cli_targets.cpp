@@ -5,9 +5,9 @@
 
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/drive_options.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/route_reader.hpp>
@@ -26,7 +26,7 @@ void readOptions(const std::string& bytes) {
   std::uint64_t seed = 0, memory = 0;
   int threads = 0;
   cli::addGroundOptions(app, plan.ground);
-  cli::addDriveOptions(app, plan.drive);
+  cli::addMotionOptions(app, plan.drive);
   cli::addOutput(app, "-o,--output", plan.output, "");
   app.add_option("--start", plan.start);
   app.add_option("--seed", seed)->check(cli::notNegative());

@@ -66,7 +66,7 @@ TEST_P(Fuzz, SeedsAreAccepted) {
 }
 
 // Property: no bytes end the reader by anything but an error of input.
-TEST_P(Fuzz, ChangedFilesAreReadOrRefused) {
+TEST_P(Fuzz, MutatedFilesAreReadOrRejected) {
   const char* more = std::getenv("TALUS_FUZZ_CHANGES");
   const int changes = more ? std::atoi(more) : 100;
   std::mt19937 random(7);

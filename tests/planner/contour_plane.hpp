@@ -14,8 +14,8 @@ inline std::shared_ptr<const costmap::CostGrid> contourPlane(double contour_rad,
                                                            .dz_dy = gradient * std::cos(contour_rad),
                                                            .curve = 0}));
   return std::make_shared<costmap::CostGrid>(costmap::flattened(
-      cells, std::make_shared<costmap::DriveCost>(
-                 costmap::DriveCost::Limits{.max_along = 0.05, .max_across = 0.6}, std::vector{curve({})})));
+      cells, std::make_shared<costmap::TravelCost>(
+                 costmap::TravelCost::Limits{.max_along = 0.05, .max_across = 0.6}, std::vector{curve({})})));
 }
 
 }  // namespace talus::planner::testing

@@ -20,10 +20,10 @@ struct Ground {
   double steepest = 0.3;
 };
 
-inline costmap::DriveCurve curve(const Ground& ground) {
-  costmap::DriveCurve made;
-  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-    const double g = (bin - costmap::DriveCurve::kBins / 2) / 256.0;
+inline costmap::TravelCurve curve(const Ground& ground) {
+  costmap::TravelCurve made;
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
+    const double g = (bin - costmap::TravelCurve::kBins / 2) / 256.0;
     const double cost = ground.factor * (10.0 + 100.0 * std::max(g, 0.0) + 400.0 * g * g);
     made.cost_J_per_m[static_cast<std::size_t>(bin)] =
         static_cast<float>(std::abs(g) <= ground.steepest ? cost : std::numeric_limits<double>::infinity());
@@ -33,7 +33,7 @@ inline costmap::DriveCurve curve(const Ground& ground) {
 
 /// Curve k costs k + 1 times curve 0.
 /// The curve where crossing a slope costs `dearer` of itself more a row, and is refused beyond some rows.
-inline costmap::DriveCurve crossed(costmap::DriveCurve curve, double dearer, int rows) {
+inline costmap::TravelCurve crossed(costmap::TravelCurve curve, double dearer, int rows) {
   auto all = std::make_shared<std::vector<float>>();
   for (int row = 0; row <= rows + 1; ++row)
     for (const float level : curve.cost_J_per_m)
@@ -44,13 +44,13 @@ inline costmap::DriveCurve crossed(costmap::DriveCurve curve, double dearer, int
 }
 
 /// Curve 0 is crossed for nothing, the others cost more the steeper they are crossed.
-inline std::shared_ptr<const costmap::DriveCost> driveCost(costmap::DriveCost::Limits limits = {}) {
-  std::vector<costmap::DriveCurve> curves;
+inline std::shared_ptr<const costmap::TravelCost> driveCost(costmap::TravelCost::Limits limits = {}) {
+  std::vector<costmap::TravelCurve> curves;
   for (int k = 0; k < 5; ++k) {
-    const costmap::DriveCurve level = curve({.factor = 1.0 + k});
+    const costmap::TravelCurve level = curve({.factor = 1.0 + k});
     curves.push_back(k == 0 ? level : crossed(level, 0.02 * k, 20 - 2 * k));
   }
-  return std::make_shared<costmap::DriveCost>(limits, curves);
+  return std::make_shared<costmap::TravelCost>(limits, curves);
 }
 
 /// A map as drawn, north on top, cells of a metre, south-west corner at 0,0:
@@ -85,25 +85,26 @@ inline std::shared_ptr<const costmap::CostGrid> plane(
   maps::Raster<costmap::CellCode> cells(
       {.width = side, .height = side, .resolution_m = 1.0, .south_west = {}},
       costmap::CellCode({gradient.x, gradient.y, 0}));
-  costmap::DriveGround ground{.curve = {}, .states = {}};
+  costmap::GroundCost ground{.curve = {}, .states = {}};
   ground.curve.cost_J_per_m.fill(10.0F);
   ground.turns.at_vertex.cost_J = turn_J;
   return std::make_shared<costmap::CostGrid>(costmap::flattened(
-      cells, std::make_shared<costmap::DriveCost>(
-                 costmap::DriveCost::Limits{.max_along = 0.9, .max_across = 0.9, .stance = std::move(stance)},
-                 std::vector{ground})));
+      cells,
+      std::make_shared<costmap::TravelCost>(
+          costmap::TravelCost::Limits{.max_along = 0.9, .max_across = 0.9, .stance = std::move(stance)},
+          std::vector{ground})));
 }
 
 /// The same map where a radian at a vertex costs so much.
 inline std::shared_ptr<const costmap::CostGrid> withTurns(const std::shared_ptr<const costmap::CostGrid>& map,
                                                           double turn_J) {
-  std::vector<costmap::DriveGround> grounds;
+  std::vector<costmap::GroundCost> grounds;
   for (const auto& curve : map->cost().curves()) {
     grounds.push_back({.curve = curve, .states = {}});
     grounds.back().turns.at_vertex.cost_J = turn_J;
   }
   costmap::CostGrid::Content content = map->content();
-  content.cost = std::make_shared<costmap::DriveCost>(map->cost().limits(), grounds);
+  content.cost = std::make_shared<costmap::TravelCost>(map->cost().limits(), grounds);
   return std::make_shared<const costmap::CostGrid>(std::move(content));
 }
 

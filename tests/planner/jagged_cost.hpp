@@ -10,18 +10,19 @@
 namespace talus::planner::testing {
 
 /// Curves of many shapes: bends, jumps and holes, not only valleys.
-inline std::shared_ptr<const costmap::DriveCost> jaggedCost() {
+inline std::shared_ptr<const costmap::TravelCost> jaggedCost() {
   std::mt19937 random(7);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
-  std::vector<costmap::DriveCurve> curves;
+  std::vector<costmap::TravelCurve> curves;
   for (int k = 0; k < 6; ++k) {
-    costmap::DriveCurve made = curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
+    costmap::TravelCurve made = curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
     for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
-    if (k > 3) made.cost_J_per_m[static_cast<std::size_t>(costmap::DriveCurve::kBins / 2 + 7 * k)] = INFINITY;
+    if (k > 3)
+      made.cost_J_per_m[static_cast<std::size_t>(costmap::TravelCurve::kBins / 2 + 7 * k)] = INFINITY;
     curves.push_back(k % 2 == 0 ? made : crossed(made, 0.05 * k, 22 - k));
   }
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{.max_along = 0.5, .max_across = 0.4},
-                                              curves);
+  return std::make_shared<costmap::TravelCost>(
+      costmap::TravelCost::Limits{.max_along = 0.5, .max_across = 0.4}, curves);
 }
 
 }  // namespace talus::planner::testing

@@ -7,9 +7,9 @@
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/SpaceInformation.h>
 
-#include <talus/planner/sampling/drive_objective.hpp>
 #include <talus/planner/sampling/map_space.hpp>
 #include <talus/planner/sampling/map_validity.hpp>
+#include <talus/planner/sampling/travel_objective.hpp>
 
 namespace talus::planner::testing {
 
@@ -19,7 +19,7 @@ struct OmplGround {
   std::shared_ptr<const ImprovableRegion> region;
   ompl::base::SpaceInformationPtr space;
   std::shared_ptr<MapMotionValidator> motions;
-  std::shared_ptr<DriveObjective> objective;
+  std::shared_ptr<TravelObjective> objective;
   ompl::base::ProblemDefinitionPtr definition;
 
   OmplGround(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& ends)
@@ -28,8 +28,8 @@ struct OmplGround {
             ImprovableRegion::Parts{.map = map, .start = ends.from, .goal = ends.to, .known_route = {}})),
         space(std::make_shared<ompl::base::SpaceInformation>(std::make_shared<MapSpace>(map->grid()))),
         motions(std::make_shared<MapMotionValidator>(space, cost)),
-        objective(
-            std::make_shared<DriveObjective>(space, DriveObjective::Parts{.cost = cost, .region = region})) {
+        objective(std::make_shared<TravelObjective>(space,
+                                                    TravelObjective::Parts{.cost = cost, .region = region})) {
     space->setStateValidityChecker(std::make_shared<MapValidityChecker>(space, cost));
     space->setMotionValidator(motions);
     space->setup();

@@ -60,7 +60,7 @@ bool nearTrack(const TraverseSimulation& drive, const maps::Point& place) {
   return false;
 }
 
-TEST(Reliability, OfCellsSaidToBeOfACategory) {
+TEST(Reliability, CategoryProbabilitiesAreNotOptimistic) {
   const auto map = hills();
   Truth truth;
   truth.spread = 0.1;
@@ -72,9 +72,9 @@ TEST(Reliability, OfCellsSaidToBeOfACategory) {
   std::array<Table, 3> tables;
   for (std::size_t i = 0; i < 60; ++i) {
     const TrueWorld world = site.trueWorld(i);
-    const auto known = site.believed(Belief::PerfectKnowledge, world);
-    auto learned = site.believed(Belief::OnLine, world);
-    const TraverseSimulation drive = simulateTraverse(learned, world, site.options(Belief::OnLine, i));
+    const auto known = site.believed(SoilKnowledge::PerfectKnowledge, world);
+    auto learned = site.believed(SoilKnowledge::OnLine, world);
+    const TraverseSimulation drive = simulateTraverse(learned, world, site.options(SoilKnowledge::OnLine, i));
     for (int row = 0; row < 60; ++row)
       for (int column = 0; column < 60; ++column) {
         const maps::Cell cell{column, row};

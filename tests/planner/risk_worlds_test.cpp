@@ -61,11 +61,11 @@ RiskyGround riskyGround(double steepest) {
       cells[{column, row}] =
           costmap::CellCode({.dz_dx = (ground.most_pull - steepest * ground.pull_std) * share, .curve = 0});
     }
-  const costmap::DriveCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
+  const costmap::TravelCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
   ground.map = std::make_shared<costmap::CostGrid>(costmap::flattened(
-      cells, std::make_shared<costmap::DriveCost>(
+      cells, std::make_shared<costmap::TravelCost>(
                  limits, std::vector{model.ground(0, model.prior(0))},
-                 costmap::SoilDoubt{
+                 costmap::SoilUncertainty{
                      .correlation_length_m = kCorrelation_m, .entrapment = 1.0, .shared = {ground.shared}})));
   return ground;
 }
@@ -171,7 +171,7 @@ double spread(double share, int worlds) {
   return 3.3 * std::sqrt(share * (1.0 - share) / worlds);
 }
 
-TEST(RiskWorlds, PlannedRiskIsTheShareOfRoversStuck) {
+TEST(RiskWorlds, PlannedRiskEqualsTheShareOfImmobilisedRovers) {
   for (const double steepest : {1.0, 1.5, 3.0}) {
     const RiskyGround ground = riskyGround(steepest);
     NamedPlanner planner;
@@ -195,7 +195,7 @@ TEST(RiskWorlds, PlannedRiskIsTheShareOfRoversStuck) {
 
 // Property: under a chance constraint the share of rovers stuck keeps the limit, where without one it does
 // not.
-TEST(RiskWorlds, TheChanceConstraintHoldsInDrawnWorlds) {
+TEST(RiskWorlds, ChanceConstraintIsMetInSimulatedWorlds) {
   constexpr double kLimit = 0.03;
   constexpr int kWorlds = 10000;
   const RiskyGround ground = riskyGround(1.0);

@@ -7,14 +7,14 @@
 namespace talus::planner::testing {
 
 /// The cost of the tests where only gradients along the heading within a band are allowed.
-inline std::shared_ptr<const costmap::DriveCost> onlyAlong(double least, double most) {
-  costmap::DriveCurve allowed = curve({});
-  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-    const double along = costmap::DriveCurve::gradient(bin);
+inline std::shared_ptr<const costmap::TravelCost> onlyAlong(double least, double most) {
+  costmap::TravelCurve allowed = curve({});
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
+    const double along = costmap::TravelCurve::gradient(bin);
     if (along < least || along > most)
       allowed.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
   }
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{allowed});
+  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{allowed});
 }
 
 /// Nine by nine cells of a metre that fall southwards on the whole and may be driven down only: every cell has a cone.

@@ -8,14 +8,14 @@ namespace figure_parts_test {
 using namespace cli;
 
 // Closed form: mean and standard deviation of 2, 4, 4, 4, 5, 5, 7, 9 are 5 and 2.
-TEST(FigureParts, MeanAndStandardDeviation) {
+TEST(FigureParts, MeanAndStdMatchClosedForm) {
   MeanAndStd of;
   for (const double value : {2, 4, 4, 4, 5, 5, 7, 9}) of.add(value);
   EXPECT_DOUBLE_EQ(of.mean(), 5.0);
   EXPECT_NEAR(of.std(), 2.0, 1e-12);
 }
 
-TEST(FigureParts, SeriesAreMadeByName) {
+TEST(FigureParts, SeriesHelpersSetNamesAndValues) {
   const Series ramp = straight("ramp", 1.0, 2.0, 5.0);
   EXPECT_EQ(ramp.x, (std::vector<double>{0.0, 5.0}));
   EXPECT_EQ(ramp.y, (std::vector<double>{1.0, 11.0}));
@@ -27,7 +27,7 @@ TEST(FigureParts, SeriesAreMadeByName) {
 }
 
 // Closed form: the ordinary least-squares line through the cloud that is drawn, in kPa, by its normal equations.
-TEST(FigureParts, TheLineDrawnIsThatOfThePointsDrawn) {
+TEST(FigureParts, DrawnLineIsTheLeastSquaresFitOfTheDrawnPoints) {
   terramech::ThesisRun run = clayRun(5, 0.05);
   const FittedPoints fitted = fittedPoints(run, run.soil.shear_modulus_m, "clay");
   const auto n = static_cast<double>(fitted.cloud.x.size());
@@ -43,14 +43,14 @@ TEST(FigureParts, TheLineDrawnIsThatOfThePointsDrawn) {
 }
 
 // Property: a reading keeps the load and slip that it was asked for, and more slip gives more torque.
-TEST(FigureParts, AWheelIsDrivenAsAsked) {
+TEST(FigureParts, SampleHasTheGivenLoadAndSlip) {
   const auto slow = drive(middle(0), 80.0, 0.2), fast = drive(middle(0), 80.0, 0.6);
   EXPECT_EQ(slow.load_N, 80.0);
   EXPECT_EQ(slow.slip, 0.2);
   EXPECT_GT(fast.torque_Nm, slow.torque_Nm);
 }
 
-TEST(FigureParts, AClayRunHasMuchCohesion) {
+TEST(FigureParts, ClayRunHasHighCohesion) {
   const terramech::ThesisRun run = clayRun(3, 0.05);
   EXPECT_EQ(run.soil_class, 1);
   EXPECT_GT(run.soil.cohesion_Pa, 6500.0);

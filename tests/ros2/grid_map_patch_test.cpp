@@ -22,7 +22,7 @@ grid_map::GridMap seen(double x_m, double y_m, grid_map::Index start = {0, 0}) {
   return map;
 }
 
-TEST(GridMap, HeightsArriveWhereTheirCellsLieWhateverTheStartIndex) {
+TEST(GridMap, HeightsAreAssignedToTheirCellsForAnyStartIndex) {
   const auto map = smallSite();
   for (const grid_map::Index& start :
        {grid_map::Index{0, 0}, grid_map::Index{5, 3}, grid_map::Index{11, 7}}) {
@@ -42,7 +42,7 @@ TEST(GridMap, HeightsArriveWhereTheirCellsLieWhateverTheStartIndex) {
   }
 }
 
-TEST(GridMap, IsCutAtTheEdgeOfTheMap) {
+TEST(GridMap, PatchIsClippedToTheMap) {
   auto map = smallSite();
   const auto patch = patchOf(seen(-5.0, 3.0, {2, 1}), "elevation", map.grid());
   ASSERT_TRUE(patch);
@@ -52,7 +52,7 @@ TEST(GridMap, IsCutAtTheEdgeOfTheMap) {
   EXPECT_FALSE(patchOf(seen(500.0, 10.0), "elevation", map.grid()));
 }
 
-TEST(GridMap, UnobservedCellsChangeNothing) {
+TEST(GridMap, UnobservedCellsAreUnchanged) {
   auto map = smallSite();
   grid_map::GridMap gaps = seen(4.0, 10.0);
   gaps.get("elevation").setConstant(NAN);
@@ -65,7 +65,7 @@ TEST(GridMap, UnobservedCellsChangeNothing) {
   EXPECT_EQ((map.elevation().elevation_m[*map.grid().cellAt({5.25, 10.75})]), 0.25F);
 }
 
-TEST(GridMap, GoesOutAndComesBackBitForBit) {
+TEST(GridMap, MapRoundTripsExactly) {
   auto map = smallSite();
   map.patch(*patchOf(seen(-2.0, 4.0), "elevation", map.grid()));  // steep, and in a corner
   const grid_map::GridMap out = gridMapOf(map, "map");
@@ -83,7 +83,7 @@ TEST(GridMap, GoesOutAndComesBackBitForBit) {
   EXPECT_GT(out.get("drawbar_pull")(open(0), open(1)), 0.0F);
 }
 
-TEST(GridMap, WhatDoesNotFitIsRefusedInOneLine) {
+TEST(GridMap, InvalidMessagesAreRejectedWithOneLine) {
   const auto map = smallSite();
   const auto refused = [&](const grid_map::GridMap& given, const char* layer, const char* word) {
     try {

@@ -84,7 +84,7 @@ Message plane(double gradient) {
   return messageOf(map);
 }
 
-TEST_F(Nav2LayerTest, CostsFollowTheJudgement) {
+TEST_F(Nav2LayerTest, CellCostsFollowTheTraversabilityMap) {
   start();
   Costmap2D master = costmap(0.5);
   draw(master);
@@ -116,7 +116,7 @@ TEST_F(Nav2LayerTest, CostsFollowTheJudgement) {
   EXPECT_NEAR(gentle, 251.0 * static_cast<double>(dearest / level - 1.0F) / 19.0, 1.0);
 }
 
-TEST_F(Nav2LayerTest, GroundRefusedInSomeHeadingsIsTheDearestThatIsNoObstacle) {
+TEST_F(Nav2LayerTest, PartiallyRefusedCellHasTheHighestNonLethalCost) {
   start();
   node_->log.clear();
   Costmap2D master = costmap(0.5);
@@ -132,7 +132,7 @@ TEST_F(Nav2LayerTest, GroundRefusedInSomeHeadingsIsTheDearestThatIsNoObstacle) {
   EXPECT_FALSE(seen.contains(253));            // which would be lethal for the rover's middle
 }
 
-TEST_F(Nav2LayerTest, CellsOfAnotherSizeHaveTheWorstThatTheyTouch) {
+TEST_F(Nav2LayerTest, CellsOfAnotherSizeHaveTheMaximumOfOverlappingCells) {
   start();
   for (const double resolution_m : {0.25, 1.0, 0.7}) {
     Costmap2D master = costmap(resolution_m), same = costmap(0.5);
@@ -156,7 +156,7 @@ TEST_F(Nav2LayerTest, CellsOfAnotherSizeHaveTheWorstThatTheyTouch) {
   }
 }
 
-TEST_F(Nav2LayerTest, WhatStandsIsLoweredNowhereAndCellsOffTheMapStay) {
+TEST_F(Nav2LayerTest, ExistingCostsAreNeverLoweredAndOutsideCellsKept) {
   start();
   Costmap2D lethal = costmap(0.5, LETHAL_OBSTACLE);
   draw(lethal);
@@ -166,7 +166,7 @@ TEST_F(Nav2LayerTest, WhatStandsIsLoweredNowhereAndCellsOffTheMapStay) {
   EXPECT_TRUE(std::all_of(off.getCharMap(), off.getCharMap() + 100, [](unsigned char c) { return c == 17; }));
 }
 
-TEST_F(Nav2LayerTest, UnknownGroundIsLethalUnlessItIsLeftToOthers) {
+TEST_F(Nav2LayerTest, UnknownGroundIsLethalUnlessDisabled) {
   const auto unseen = [&](bool refuse) {
     talus::costmap::MapLayers layers;
     layers.elevation.elevation_m = talus::maps::Raster<float>(smallSite().grid(), NAN);
@@ -186,7 +186,7 @@ TEST_F(Nav2LayerTest, UnknownGroundIsLethalUnlessItIsLeftToOthers) {
   EXPECT_EQ(unseen(false), 5);
 }
 
-TEST_F(Nav2LayerTest, BoundsHoldWhatChangedAndAllOfAWindowThatMoves) {
+TEST_F(Nav2LayerTest, BoundsContainTheChangedCellsAndAllAfterReset) {
   start();
   const Bounds first = bounds();
   EXPECT_LE(first.min_x, -5.0);
@@ -204,7 +204,7 @@ TEST_F(Nav2LayerTest, BoundsHoldWhatChangedAndAllOfAWindowThatMoves) {
   EXPECT_LE(bounds().min_x, -5.0);
 }
 
-TEST_F(Nav2LayerTest, BadParametersAndMessagesAreOneLine) {
+TEST_F(Nav2LayerTest, InvalidParametersAndMessagesYieldOneLine) {
   node_->parameters["ground.full_cost_ratio"] = 1.0;
   EXPECT_THROW(start(), std::invalid_argument);
   node_->parameters["ground.full_cost_ratio"] = 20.0;

@@ -68,7 +68,7 @@ class Nav2 : public testing::Test {
   std::vector<PoseStamped> via_;
 };
 
-TEST_F(Nav2, PlansAroundAWallWithHeadings) {
+TEST_F(Nav2, PathAvoidsAWallAndHasHeadings) {
   start();
   const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
   ASSERT_GT(path.poses.size(), 50U);
@@ -89,7 +89,7 @@ TEST_F(Nav2, PlansAroundAWallWithHeadings) {
 }
 
 #ifdef TALUS_NAV2_MAIN
-TEST_F(Nav2, PassesViaPointsInOrder) {
+TEST_F(Nav2, ViaPointsArePassedInOrder) {
   start();
   via_ = {pose(3.0, 20.0), pose(20.0, 20.0)};
   const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
@@ -131,7 +131,7 @@ TEST_F(Nav2, EachFailureHasItsTypedException) {
   expect<nav2_core::PlannerException>([&] { plan(pose(0.0, 8.0), pose(5.0, 8.0)); }, "not active");
 }
 
-TEST_F(Nav2, ACancelEndsAPlanThatHasNoEnd) {
+TEST_F(Nav2, CancelRequestEndsPlanning) {
   node_->parameters["talus.planner"] = std::string("RRTstar");
   node_->parameters["talus.time_limit_s"] = 86400.0;
   start();
@@ -141,7 +141,7 @@ TEST_F(Nav2, ACancelEndsAPlanThatHasNoEnd) {
   EXPECT_EQ(looks, 4);
 }
 
-TEST_F(Nav2, BadParametersAreOneLine) {
+TEST_F(Nav2, InvalidParametersYieldOneLine) {
   const auto refused = [&](const std::string& name, std::any value, const std::string& word) {
     node_->parameters["talus.map_file"] = file_;
     node_->parameters[name] = std::move(value);
@@ -159,7 +159,7 @@ TEST_F(Nav2, BadParametersAreOneLine) {
   refused("talus.path_spacing_m", 0.0, "path_spacing_m must be > 0");
 }
 
-TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
+TEST_F(Nav2, ReceivedHeightsChangeTheNextPlan) {
   start();
   const auto before = plan(pose(15.0, 8.0), pose(25.0, 8.0));
   EXPECT_LE(before.poses.size(), 22U);  // straight
@@ -178,7 +178,7 @@ TEST_F(Nav2, HeightsThatArriveChangeTheNextPlan) {
   EXPECT_EQ(node_->log.front(), "talus: grid map: frame 'odom', must be 'map'");
 }
 
-TEST_F(Nav2, ARouteIsDrawnInTheColoursOfItsCategories) {
+TEST_F(Nav2, RouteMarkerHasTheCategoryColours) {
   start();
   const auto path = plan(pose(0.0, 8.0), pose(25.0, 8.0));
   const auto& sent =
@@ -193,7 +193,7 @@ TEST_F(Nav2, ARouteIsDrawnInTheColoursOfItsCategories) {
   for (const auto& colour : sent[0].colors) EXPECT_GT(colour.g, colour.r);  // level ground is safe
 }
 
-TEST_F(Nav2, GoalsInQuickSuccessionWhileTheMapChangesEachHaveAnAnswer) {
+TEST_F(Nav2, ConcurrentGoalsAndMapUpdatesAllReturnAPlan) {
   start();
   std::atomic<bool> over{false};
   std::jthread messages([&] {
@@ -206,7 +206,7 @@ TEST_F(Nav2, GoalsInQuickSuccessionWhileTheMapChangesEachHaveAnAnswer) {
   EXPECT_TRUE(node_->log.empty());
 }
 
-TEST_F(Nav2, DeactivatingEndsThePlanThatRuns) {
+TEST_F(Nav2, DeactivationEndsARunningPlan) {
   node_->parameters["talus.planner"] = std::string("RRTstar");
   node_->parameters["talus.time_limit_s"] = 86400.0;
   start();

@@ -42,7 +42,7 @@ class PatchedMapTest : public testing::Test {
   std::unique_ptr<PatchedMap> site_;
 };
 
-TEST_F(PatchedMapTest, HeightsOfAMessageAreTheMapsWhateverItsStartIndex) {
+TEST_F(PatchedMapTest, MessageHeightsAreAssignedForAnyStartIndex) {
   grid_map::GridMap ring({"elevation"});
   ring.setGeometry({6.0, 4.0}, 0.5, {20.0, 10.0});
   ring.setStartIndex({5, 3});
@@ -57,7 +57,7 @@ TEST_F(PatchedMapTest, HeightsOfAMessageAreTheMapsWhateverItsStartIndex) {
     for (const double y : {8.25, 11.75}) EXPECT_NEAR(heightAt(x, y), 0.01 * x + 0.001 * y, 1e-6);
 }
 
-TEST_F(PatchedMapTest, WhatCannotBeUsedIsRefusedInOneLine) {
+TEST_F(PatchedMapTest, InvalidMessagesAreRejectedWithOneLine) {
   const auto good = plateau({2.0, 2.0}, {20.0, 10.0}, 0.1F);
   const auto with = [&](auto change) {
     auto message = good;
@@ -91,14 +91,14 @@ TEST_F(PatchedMapTest, WhatCannotBeUsedIsRefusedInOneLine) {
   EXPECT_FLOAT_EQ(heightAt(20.0, 10.0), 0.1F);
 }
 
-TEST_F(PatchedMapTest, NaNEverywhereAndGroundOffTheMapChangeNothing) {
+TEST_F(PatchedMapTest, NanAndOutsideHeightsLeaveTheMapUnchanged) {
   const auto before = site_->published();
   site_->see(plateau({6.0, 4.0}, {20.0, 10.0}, NAN), now_);
   site_->see(plateau({6.0, 4.0}, {500.0, 10.0}, 1.0F), now_);
   EXPECT_EQ(site_->published(), before);
 }
 
-TEST_F(PatchedMapTest, AnyStampCountsWhereNoAgeIsGiven) {
+TEST_F(PatchedMapTest, WithoutAgeLimitAnyTimestampIsAccepted) {
   talus::costmap::writeMap(smallSite(), file_);
   PatchedMap patient(file_, {.frame = "map", .max_age_s = 0.0});
   std::filesystem::remove(file_);

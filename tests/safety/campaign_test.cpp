@@ -42,7 +42,7 @@ void expectSound(const std::vector<Result>& results) {
 // In four parts, which run beside each other.
 class SafetyCampaign : public testing::TestWithParam<int> {};
 
-TEST_P(SafetyCampaign, NoRouteOfFiftyIsRefused) {
+TEST_P(SafetyCampaign, RoutesPassTheIndependentSafetyCheck) {
   const Folder folder("safety_campaign");
   Campaign campaign(placesIn(folder), (folder.path() / "results.csv").string());
   const auto first = static_cast<std::uint64_t>(GetParam()) * 3 * Campaign::routesPerSite();
@@ -57,7 +57,7 @@ TEST_P(SafetyCampaign, NoRouteOfFiftyIsRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, SafetyCampaign, testing::Range(1, 4));
 
-TEST(SafetyCampaignFile, GoesOnWhereItWasStopped) {
+TEST(SafetyCampaignFile, InterruptedCampaignResumes) {
   const Folder folder("safety_resume");
   const std::string file = (folder.path() / "results.csv").string();
   const auto fail = [](const std::string& text) { ADD_FAILURE() << text; };

@@ -35,7 +35,7 @@ class DamageFolder {
 // In two parts, which run beside each other.
 class DamagedFiles : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(DamagedFiles, NoRouteOfAHundredIsLessSafeThanOnTheWholeFile) {
+TEST_P(DamagedFiles, RoutesOnDamagedFilesAreNoLessSafe) {
   const DamageFolder folder;
   DamageCampaign campaign(folder.places(), (folder.path() / "damage.csv").string());
   const std::uint64_t first = GetParam() * DamageCampaign::kPerSite;
@@ -52,7 +52,7 @@ TEST_P(DamagedFiles, NoRouteOfAHundredIsLessSafeThanOnTheWholeFile) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, DamagedFiles, testing::Values(0, 1));
 
-TEST(Damage, EveryKindOccursAndTheSameNumberGivesTheSameBytes) {
+TEST(Damage, DamageIsReproducibleAndCoversEveryKind) {
   std::string bytes;
   for (int k = 0; k < 20000; ++k) bytes += static_cast<char>(1 + k % 250);
   std::set<std::string> kinds;
@@ -67,7 +67,7 @@ TEST(Damage, EveryKindOccursAndTheSameNumberGivesTheSameBytes) {
 }
 
 // The checker sees what the program would have to miss: a route over the whole site's obstacle is charged.
-TEST(Damage, ARouteThatIsLessSafeIsCharged) {
+TEST(Damage, UnsafeRouteIsDetected) {
   const DamageFolder folder;
   DamagedSite site(folder.places(), 1);
   // The line goes straight across the site, through what is closed and steep there.

@@ -93,19 +93,19 @@ std::vector<JournalRow> moment(Place middle, double slip, double gradient, doubl
 
 using Causes = std::set<std::string>;
 
-TEST(SafetyJudge, SoundGroundIsNotCharged) {
+TEST(SafetyJudge, SafeGroundHasNoFault) {
   EXPECT_EQ(causes(plain(), kEast), Causes{});
   EXPECT_EQ(causes(plain(0.1), kEast), Causes{});
 }
 
-TEST(SafetyJudge, ASlopeBeyondThePullIsCharged) {
+TEST(SafetyJudge, SlopeBeyondTheDrawbarPullIsAFault) {
   EXPECT_TRUE(causes(plain(0.32), kEast).contains("pull"));
   EXPECT_TRUE(causes(plain(0.4), kEast).contains("category"));
 }
 
 const Route kNorth = line({10.1, 5}, {10.1, 15});
 
-TEST(SafetyJudge, ASlopeBeyondTheSideForceIsCharged) {
+TEST(SafetyJudge, CrossSlopeBeyondTheSideForceIsAFault) {
   EXPECT_EQ(causes(plain(0.2), kNorth), Causes{});
   EXPECT_EQ(causes(plain(0.4), kNorth), Causes{"side force"});
   // Property: neither side and neither way is easier.
@@ -121,7 +121,7 @@ TEST(SafetyJudge, ASlopeBeyondTheSideForceIsCharged) {
 }
 
 // Closed form: the weight on a plane in three dimensions, part by part.
-TEST(SafetyJudge, TheDemandIsTheWeightOnThePlane) {
+TEST(SafetyJudge, DemandEqualsTheWeightComponentsOnThePlane) {
   for (const double a : {-0.4, 0.0, 0.3})
     for (const double c : {-0.5, 0.0, 0.2}) {
       const double t = std::sqrt(1 + a * a), n = std::sqrt(1 + a * a + c * c);
@@ -134,7 +134,7 @@ TEST(SafetyJudge, TheDemandIsTheWeightOnThePlane) {
 }
 
 // Property: what holds gives the demand, and ground that is weaker by its reserve just does.
-TEST(SafetyJudge, TheReserveIsWhatTheGroundMayLose) {
+TEST(SafetyJudge, ReserveIsTheTolerablePullDeficit) {
   const Site site = plain();
   const Belief belief(site, {});
   for (const Judge::Planar gradient : {Judge::Planar{0.15, 0.0}, Judge::Planar{0.1, 0.1},
@@ -149,19 +149,19 @@ TEST(SafetyJudge, TheReserveIsWhatTheGroundMayLose) {
   }
 }
 
-TEST(SafetyJudge, TiltIsChargedInItsDirection) {
+TEST(SafetyJudge, PitchAndRollLimitsAreDirectional) {
   EXPECT_TRUE(causes(plain(0.5), kEast).contains("pitch"));
   EXPECT_EQ(causes(plain(0.5), kNorth), (Causes{"roll", "side force"}));
 }
 
-TEST(SafetyJudge, HolesAndTheMapsEdgeAreCharged) {
+TEST(SafetyJudge, NoDataAndLeavingTheMapAreFaults) {
   Site site = plain();
   setCells(site.elevation_m, {20, 20}, {20, 20}, std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(causes(site, kEast).contains("unknown ground"));
   EXPECT_TRUE(causes(plain(), line({5, 10}, {25, 10})).contains("outside the map"));
 }
 
-TEST(SafetyJudge, TheWidthCountsBesideTheLine) {
+TEST(SafetyJudge, RoverWidthIsChecked) {
   Site site = plain();
   // The line runs at y = 10.1; these cells begin 0.4 m to its left, the outer wheels reach 0.61 m.
   setCells(site.classes.value(), {20, 21}, {20, 21}, 9.0);
@@ -169,13 +169,13 @@ TEST(SafetyJudge, TheWidthCountsBesideTheLine) {
   EXPECT_EQ(causes(site, line({5, 9.85}, {15, 9.85})), Causes{});
 }
 
-TEST(SafetyJudge, KeepOutIsCharged) {
+TEST(SafetyJudge, KeepOutAreaIsAFault) {
   Site site = plain();
   site.keep_out = {{{10.0, 10.4}, {10.5, 10.4}, {10.2, 11.0}, {10.0, 10.4}}};
   EXPECT_TRUE(causes(site, kEast).contains("width over refused ground"));
 }
 
-TEST(SafetyJudge, HalfTheWheelsInATrapPullLess) {
+TEST(SafetyJudge, TrapUnderHalfTheWheelsReducesPull) {
   // Dust under the left wheels alone, on a slope that loam climbs and dust does not.
   Site site = plain(0.17);
   setCells(site.classes.value(), {0, 21}, {39, 39}, 2.0);
@@ -183,14 +183,14 @@ TEST(SafetyJudge, HalfTheWheelsInATrapPullLess) {
   EXPECT_TRUE(causes(site, kEast).contains("pull"));
 }
 
-TEST(SafetyJudge, AnEdgeUnderTheRoverIsCharged) {
+TEST(SafetyJudge, EdgeUnderTheRoverIsAFault) {
   Site site = plain();
   for (int row = 0; row < 40; ++row) setCells(site.elevation_m, {20, row}, {39, row}, 0.8);
   EXPECT_TRUE(causes(site, kEast).contains("relief"));
 }
 
 // Of a sheer edge of 0.32 m, above the clearance of 0.3 m, the plane under the rover leaves less than the limit.
-TEST(SafetyJudge, ASheerStepIsChargedThatThePlaneHides) {
+TEST(SafetyJudge, VerticalStepHiddenByThePlaneIsAFault) {
   Site site = plain();
   site.rover.clearance_m = 0.3;
   for (int row = 0; row < 40; ++row) setCells(site.elevation_m, {20, row}, {39, row}, 0.32);
@@ -199,7 +199,7 @@ TEST(SafetyJudge, ASheerStepIsChargedThatThePlaneHides) {
   EXPECT_EQ(causes(plain(0.1), kEast), Causes{});
 }
 
-TEST(SafetyJudge, EvidenceOfWeakGroundIsCharged) {
+TEST(SafetyJudge, EvidenceOfWeakGroundIsAFault) {
   // Wheels that slipped 0.5 on the flat, where loam pulls 0.15: it was so much weaker there.
   std::vector<JournalRow> rows;
   for (int k = 0; k < 4; ++k)
@@ -211,7 +211,7 @@ TEST(SafetyJudge, EvidenceOfWeakGroundIsCharged) {
   EXPECT_TRUE(causes(plain(0.18), kEast, rows).contains("pull"));
 }
 
-TEST(SafetyJudge, OnePlaceDoesNotRaiseABelief) {
+TEST(SafetyJudge, EvidenceOfOnePlaceDoesNotRaiseTheEstimate) {
   const Site site = plain(0.32);
   std::vector<JournalRow> rows;
   for (int k = 0; k < 20; ++k)
@@ -223,7 +223,7 @@ TEST(SafetyJudge, OnePlaceDoesNotRaiseABelief) {
   EXPECT_LE(Belief(site, rows).at(1, {10.0, 10.1}).mean, 0.0);
 }
 
-TEST(SafetyBelief, AnswersAsOneGaussianOverOnePlace) {
+TEST(SafetyBelief, SinglePlacePosteriorMatchesClosedForm) {
   const Site site = plain();
   const auto rows = moment({10.0, 10.0}, 0.5, 0.0, 1.0);
   std::vector<JournalRow> one(rows.begin(), rows.begin() + 1);
@@ -238,7 +238,7 @@ TEST(SafetyBelief, AnswersAsOneGaussianOverOnePlace) {
   EXPECT_NEAR(here.deviation, std::sqrt(prior * variance / (prior + variance)), 1e-9);
 }
 
-TEST(SafetyRisk, IsTheChanceOfOneDoubtfulClass) {
+TEST(SafetyRisk, RiskIsBetweenIndependentAndFullyCorrelatedBounds) {
   // A slope 0.05 less than the pull, under a class that is unsure by 0.05 as a whole and by 0.05 from place to place.
   const Site site = plain(0.21);
   const double reserve =

@@ -16,7 +16,7 @@ Raster made(double (*height)(double, double)) {
   return z;
 }
 
-TEST(SafetyPlane, APlaneIsFoundToRounding) {
+TEST(SafetyPlane, FittedPlaneIsRecovered) {
   const Raster z = made([](double x, double y) { return 3.0 + 0.21 * x - 0.13 * y; });
   for (const Cell cell : {Cell{8, 8}, Cell{0, 0}, Cell{19, 3}}) {
     const Plane plane = planeUnder(z, cell, 0.8);
@@ -28,7 +28,7 @@ TEST(SafetyPlane, APlaneIsFoundToRounding) {
   }
 }
 
-TEST(SafetyPlane, AStepIsLeftOver) {
+TEST(SafetyPlane, StepLeavesItsResidualRelief) {
   const Raster z = made([](double x, double) { return x > 104.0 ? 1.0 : 0.0; });
   // Closed form: over 3x3 cells, heights 0, 0, 1 leave 1/6, -1/3, 1/6 of the step.
   const Plane plane = planeUnder(z, {7, 8}, 0.1);
@@ -36,7 +36,7 @@ TEST(SafetyPlane, AStepIsLeftOver) {
   EXPECT_NEAR(plane.relief_m, 0.5, 1e-9);
 }
 
-TEST(SafetyPlane, UnknownWhereTheCellOrItsDiscHasNoData) {
+TEST(SafetyPlane, CellOrDiscWithoutDataIsUnknown) {
   Raster z = made([](double, double) { return 0.0; });
   z.values[static_cast<std::size_t>(8 * z.width + 8)] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(planeUnder(z, {8, 8}, 0.8).known);

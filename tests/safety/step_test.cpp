@@ -16,7 +16,7 @@ Raster made(double cell_m, double (*height)(double, double)) {
   return z;
 }
 
-TEST(SafetyStep, ASheerStepOnASlopeHasItsHeight) {
+TEST(SafetyStep, VerticalStepOnASlopeHasItsHeight) {
   const Raster z = made(0.25, [](double x, double y) { return 0.3 * x + 0.1 * y + (x > 3.0 ? 0.4 : 0.0); });
   const StepSpan span{.radius_m = 0.7, .wheel_m = 0.25};
   // Closed form: the edge lies between columns 11 and 12.
@@ -27,13 +27,13 @@ TEST(SafetyStep, ASheerStepOnASlopeHasItsHeight) {
   EXPECT_NEAR(stepUnder(z, {0, 0}, span), 0.0, 1e-9) << "a corner of the map";
 }
 
-TEST(SafetyStep, WithinAWheelHeightsAddUp) {
+TEST(SafetyStep, HeightDifferencesWithinTheWheelSpanAddUp) {
   const Raster z = made(0.1, [](double x, double) { return 0.4 * std::clamp((x - 1.05) / 0.3, 0.0, 1.0); });
   EXPECT_NEAR(stepUnder(z, {10, 8}, {.radius_m = 0.0, .wheel_m = 0.3}), 0.4, 1e-9);
   EXPECT_NEAR(stepUnder(z, {10, 8}, {.radius_m = 0.0, .wheel_m = 0.1}), 0.4 / 3, 1e-9);
 }
 
-TEST(SafetyStep, BesideAHoleTheOtherSideCounts) {
+TEST(SafetyStep, NextToNoDataTheOppositeSlopeIsUsed) {
   Raster z = made(0.5, [](double x, double) { return 0.4 * x; });
   for (int row = 0; row < z.height; ++row)
     z.values[static_cast<std::size_t>(row * z.width + 9)] = std::numeric_limits<double>::quiet_NaN();

@@ -11,7 +11,7 @@
 namespace safety {
 namespace {
 
-TEST(SafetyWheel, ReferenceCases) {
+TEST(SafetyWheel, ForcesMatchTheReferenceCases) {
   std::ifstream file(SAFETY_EQUILIBRIA);
   std::string line;
   std::getline(file, line);
@@ -36,7 +36,7 @@ TEST(SafetyWheel, ReferenceCases) {
   EXPECT_EQ(cases, 53);
 }
 
-TEST(SafetyWheel, TheCurveKeepsToTheModelBetweenItsRows) {
+TEST(SafetyWheel, InterpolatedCurveMatchesTheModel) {
   const Rover rover{.mass_kg = 176, .gravity_m_s2 = 3.71, .wheel_radius_m = 0.125, .wheel_width_m = 0.16};
   const Soil sand{.cohesion_Pa = 1040,
                   .friction_angle_rad = 0.4887,
@@ -56,7 +56,7 @@ TEST(SafetyWheel, TheCurveKeepsToTheModelBetweenItsRows) {
 
 // Property: no angle is the straight wheel, and the rim drags the soil against the way: pull, side force and torque
 // stay within what the shear strength carries.
-TEST(SafetyWheel, AnAngleBeginsAtTheStraightWheel) {
+TEST(SafetyWheel, SlipAngleForcesAreContinuousAtZeroAndMonotone) {
   const Soil sand{.cohesion_Pa = 1040,
                   .friction_angle_rad = 0.4887,
                   .sinkage_exponent = 1.1,
@@ -76,7 +76,7 @@ TEST(SafetyWheel, AnAngleBeginsAtTheStraightWheel) {
   }
 }
 
-TEST(SafetyWheel, GroundThatCarriesNoWheelSaysSo) {
+TEST(SafetyWheel, SoilWithoutBearingCapacityIsReported) {
   const Soil dust{.friction_angle_rad = 0.4, .frictional_modulus = 500};
   EXPECT_FALSE(drive(dust, {}).carried);
 }

@@ -45,7 +45,7 @@ inline terramech::Soil testDust() {
 }
 
 /// Sand as class 1 (the default), dust as class 2.
-inline std::shared_ptr<const GroundModel> testGround(const DrivePolicy& policy = {}) {
+inline std::shared_ptr<const GroundModel> testGround(const TravelPolicy& policy = {}) {
   return std::make_shared<GroundModel>(GroundModel::Parts{
       .rover = testRover(),
       .classes = {GroundClass{.number = 1, .soil = testSand()}, GroundClass{.number = 2, .soil = testDust()}},

@@ -37,7 +37,7 @@ inline MapLayers drawn(const std::vector<std::string>& rows, double rise = 0.0) 
 
 /// The map of a drawing, sand as class 1 and dust as class 2.
 inline TraversabilityMap mapOf(const std::vector<std::string>& rows, double rise = 0.0,
-                               const DrivePolicy& policy = {}) {
+                               const TravelPolicy& policy = {}) {
   return TraversabilityMap(drawn(rows, rise), testGround(policy), {});
 }
 

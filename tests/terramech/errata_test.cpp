@@ -60,7 +60,7 @@ TEST(Errata, EntryAngleIsAnArccosine) {
   EXPECT_GT(std::abs(std::atan(0.5) - std::acos(0.5)), 0.5);
 }
 
-TEST(Errata, SinkageOverRadiusGoesWithTheSquareOfTheAngle) {
+TEST(Errata, SinkageIsQuadraticInEntryAngleForSmallAngles) {
   const double theta_1 = 0.05;
   EXPECT_NEAR(sinkage_m(kThesisWheel, theta_1) / 0.1 / (0.5 * theta_1 * theta_1), 1.0, 1e-3);
 }
@@ -99,7 +99,7 @@ TEST(Errata, PeakAngleIsNotHalfTheEntryAngle) {
   EXPECT_NEAR(0.43 + 0.32 * 0.8, 0.686, 1e-12);
 }
 
-TEST(Errata, MobilisationIsFarFromOne) {
+TEST(Errata, MobilisationTermsDifferFromOneOverTable21) {
   // App. D.2 sets B to 1 and A(i_max) to 1; over Table 2.1 the median of A at slip 0.8 is about 0.66, of B at
   // 0.2 about 0.42.
   ThesisRuns runs(1);

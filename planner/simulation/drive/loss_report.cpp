@@ -17,7 +17,7 @@ std::string rounded(double value) {
 std::string believedThere(const LossScene& scene) {
   std::optional<costmap::GroundBelief> weakest;
   std::uint8_t category = 0;
-  for (const costmap::WheelReading& wheel : scene.seen.wheels) {
+  for (const costmap::TelemetryReading& wheel : scene.seen.wheels) {
     const auto cell = scene.map.grid().cellAt(wheel.place);
     const auto ground = cell ? scene.map.ground(*cell) : std::nullopt;
     if (!ground || (weakest && ground->pull.value >= weakest->pull.value)) continue;
@@ -32,7 +32,7 @@ std::string believedThere(const LossScene& scene) {
 std::string readings(const LossScene& scene) {
   const double radius_m = scene.map.model().rover().wheel.radius_m;
   double slip = std::nan(""), sinkage = std::nan("");
-  for (const costmap::WheelReading& wheel : scene.seen.wheels) {
+  for (const costmap::TelemetryReading& wheel : scene.seen.wheels) {
     slip = std::fmax(slip, wheel.slip);
     sinkage = std::fmax(sinkage, wheel.sinkage_m / radius_m);
   }
@@ -43,7 +43,7 @@ std::string readings(const LossScene& scene) {
 
 std::string causeOfLoss(const LossScene& scene) {
   int undeclared = 0;
-  for (const TrueWorld::WheelState& wheel : scene.step.wheels)
+  for (const TrueWorld::SimulatedWheel& wheel : scene.step.wheels)
     undeclared += scene.world.inPatch(wheel.place) ? 1 : 0;
   const std::string stop = scene.why_it_stopped.empty()
                                ? scene.step.slides ? "slid without an alarm" : "spun without an alarm"

@@ -11,10 +11,10 @@ namespace talus::planner {
 struct LossScene {
   const costmap::TraversabilityMap& map;
   const TrueWorld& world;
-  const TrueWorld::Step& step;  ///< last step attempted
-  const WheelLook& seen;        ///< latest readings of the wheels
-  maps::Point believed;         ///< estimated position of the rover
-  std::string why_it_stopped;   ///< reason of the alarm; empty without an alarm
+  const TrueWorld::Step& step;    ///< last step attempted
+  const WheelMeasurements& seen;  ///< latest readings of the wheels
+  maps::Point believed;           ///< estimated position of the rover
+  std::string why_it_stopped;     ///< reason of the alarm; empty without an alarm
 };
 
 /// One-line description: reason of the stop, number of wheels on ground that no class shows, estimate of the

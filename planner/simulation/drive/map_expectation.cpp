@@ -5,7 +5,7 @@
 
 namespace talus::planner {
 
-costmap::DriveState MapExpectation::at(const maps::Point& place, const costmap::Direction& heading) const {
+costmap::TravelState MapExpectation::at(const maps::Point& place, const costmap::Direction& heading) const {
   const auto cell = map_.grid().cellAt(place);
   if (!cell) return {};
   const auto grid = map_.published();
@@ -14,12 +14,12 @@ costmap::DriveState MapExpectation::at(const maps::Point& place, const costmap::
                              heading);
 }
 
-costmap::DriveState MapExpectation::ofClass(const maps::Point& place,
-                                            const costmap::Direction& heading) const {
+costmap::TravelState MapExpectation::ofClass(const maps::Point& place,
+                                             const costmap::Direction& heading) const {
   const auto cell = map_.grid().cellAt(place);
   if (!cell) return {};
-  costmap::DriveState state = at(place, heading);
-  const costmap::DriveState of_class = map_.published()->cost().detail(onSlope(classCurve(*cell)), heading);
+  costmap::TravelState state = at(place, heading);
+  const costmap::TravelState of_class = map_.published()->cost().detail(onSlope(classCurve(*cell)), heading);
   state.slip = std::min(state.slip, of_class.slip);
   state.sinkage_m = std::min(state.sinkage_m, of_class.sinkage_m);
   return state;

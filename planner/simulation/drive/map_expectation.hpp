@@ -13,7 +13,7 @@ class MapExpectation {
   MapExpectation(const costmap::TraversabilityMap& map, costmap::CellCode slope) : map_(map), slope_(slope) {}
 
   /// Predicted state at a place; of the place's class if the cell is refused; zeros outside the map.
-  costmap::DriveState at(const maps::Point& place, const costmap::Direction& heading) const;
+  costmap::TravelState at(const maps::Point& place, const costmap::Direction& heading) const;
 
   /// Predicted readings of a wheel at a place, assuming ground no weaker than its class, so that ground just
   /// estimated as weak still raises the alarm. `middle`: the rover's centre, whose slip applies to all
@@ -22,7 +22,7 @@ class MapExpectation {
                            const costmap::Direction& heading) const;
 
  private:
-  costmap::DriveState ofClass(const maps::Point& place, const costmap::Direction& heading) const;
+  costmap::TravelState ofClass(const maps::Point& place, const costmap::Direction& heading) const;
   costmap::CellCode onSlope(std::uint8_t curve) const;
   std::uint8_t classCurve(maps::Cell cell) const noexcept;
 

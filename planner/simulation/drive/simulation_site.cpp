@@ -49,7 +49,7 @@ void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& l
 
 }  // namespace
 
-std::string_view name(Belief belief) noexcept {
+std::string_view name(SoilKnowledge belief) noexcept {
   constexpr std::string_view kNames[] = {"geometry", "along-only", "prior", "online", "clairvoyant"};
   return kNames[static_cast<int>(belief)];
 }
@@ -63,35 +63,37 @@ TrueWorld SimulationSite::trueWorld(std::size_t i) const {
           map_.model().rover(), classIndices(map_)};
 }
 
-costmap::TraversabilityMap SimulationSite::believed(Belief belief, const TrueWorld& world) const {
+costmap::TraversabilityMap SimulationSite::believed(SoilKnowledge belief, const TrueWorld& world) const {
   costmap::GroundModel::Parts parts = map_.model().parts();
   costmap::MapLayers layers{map_.elevation(), map_.surface().classes(), {}, {}, declaredHazards(map_)};
   layers.costs = map_.surface().costLayers();
-  if (belief == Belief::Geometry)
+  if (belief == SoilKnowledge::Geometry)
     for (costmap::GroundClass& ground : parts.classes) {
       ground.soil = parts_.firm;
       ground.effects.clear();
     }
-  parts.prices_crossing = belief != Belief::AlongOnly;
-  if (belief == Belief::PerfectKnowledge) tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
+  parts.prices_crossing = belief != SoilKnowledge::AlongOnly;
+  if (belief == SoilKnowledge::PerfectKnowledge)
+    tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),
           {.footprint_radius_m = map_.surface().footprintRadius_m(), .threads = 1}};
 }
 
-SimulationOptions SimulationSite::options(Belief belief, std::size_t i) const {
+SimulationOptions SimulationSite::options(SoilKnowledge belief, std::size_t i) const {
   SensorOptions sensors = parts_.sensors;
   sensors.seed = parts_.seed + i;
-  if (belief == Belief::PerfectKnowledge) sensors.pose_drift = 0.0;  // the position is known exactly, too
+  if (belief == SoilKnowledge::PerfectKnowledge)
+    sensors.pose_drift = 0.0;  // the position is known exactly, too
   return {.start = parts_.start,
           .goal = parts_.goal,
           .goal_tolerance_m = map_.grid().resolution_m,
-          .senses = belief == Belief::OnLine,
+          .senses = belief == SoilKnowledge::OnLine,
           .sensors = sensors,
           .planner = parts_.planner};
 }
 
-WorldResult SimulationSite::world(Belief belief, std::size_t i, const ProgressMonitor& watch) const {
+WorldResult SimulationSite::world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch) const {
   const TrueWorld truth = trueWorld(i);
   costmap::TraversabilityMap map = believed(belief, truth);
   const std::vector<std::uint8_t> before = categoriesOf(map);

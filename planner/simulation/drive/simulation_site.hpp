@@ -15,7 +15,7 @@
 namespace talus::planner {
 
 /// Soil knowledge of the planner.
-enum class Belief {
+enum class SoilKnowledge {
   Geometry,          ///< slopes and hazards only, the same firm soil everywhere; telemetry is not used
   AlongOnly,         ///< as Prior, but without the costs of cross-slope driving; for comparison
   Prior,             ///< the soils of the map; telemetry is not used
@@ -23,12 +23,12 @@ enum class Belief {
   PerfectKnowledge,  ///< the true soils, including all patches
 };
 
-/// All values of Belief in order.
-inline constexpr std::array kBeliefs{Belief::Geometry, Belief::AlongOnly, Belief::Prior, Belief::OnLine,
-                                     Belief::PerfectKnowledge};
+/// All values of SoilKnowledge in order.
+inline constexpr std::array kBeliefs{SoilKnowledge::Geometry, SoilKnowledge::AlongOnly, SoilKnowledge::Prior,
+                                     SoilKnowledge::OnLine, SoilKnowledge::PerfectKnowledge};
 
 /// Names in calls and JSON: "geometry", "along-only", "prior", "online", `"clairvoyant"`.
-std::string_view name(Belief belief) noexcept;
+std::string_view name(SoilKnowledge belief) noexcept;
 
 /// Result of one world.
 struct WorldResult {
@@ -38,9 +38,9 @@ struct WorldResult {
 
 /// Range of world numbers for one soil knowledge.
 struct WorldRange {
-  Belief belief = Belief::OnLine;  ///< soil knowledge of the planner
-  std::size_t first = 0;           ///< number of the first world
-  std::size_t count = 1;           ///< number of worlds
+  SoilKnowledge belief = SoilKnowledge::OnLine;  ///< soil knowledge of the planner
+  std::size_t first = 0;                         ///< number of the first world
+  std::size_t count = 1;                         ///< number of worlds
 };
 
 /// A site as mapped, its true soils, and a drive across the site; draws any number of random worlds.
@@ -52,7 +52,7 @@ class SimulationSite {
     Truth truth;              ///< true soils
     maps::Point start;        ///< map coordinates [m]
     maps::Point goal;         ///< map coordinates [m]
-    terramech::Soil firm;     ///< soil of all ground with Belief::Geometry
+    terramech::Soil firm;     ///< soil of all ground with SoilKnowledge::Geometry
     std::uint64_t seed = 1;   ///< world i is drawn with seed + i
     SensorOptions sensors{};  ///< sensors of the rover; their seed is replaced by that of the world
     std::function<Plan(const Problem&)> planner{};  ///< called for every route; empty: FieldPlanner
@@ -62,7 +62,7 @@ class SimulationSite {
   SimulationSite(const costmap::TraversabilityMap& map, Parts parts);
 
   /// Simulates world number i with the given soil knowledge; the result depends on nothing else.
-  WorldResult world(Belief belief, std::size_t i, const ProgressMonitor& watch = {}) const;
+  WorldResult world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch = {}) const;
 
   /// Results of worlds first to first + count - 1 in order, independent of their division into ranges. Fewer
   /// when stopped.
@@ -71,9 +71,9 @@ class SimulationSite {
   /// The true soils of world number i.
   TrueWorld trueWorld(std::size_t i) const;
   /// The planner's map before the drive.
-  costmap::TraversabilityMap believed(Belief belief, const TrueWorld& world) const;
+  costmap::TraversabilityMap believed(SoilKnowledge belief, const TrueWorld& world) const;
   /// Options of the traverse simulation in world number i.
-  SimulationOptions options(Belief belief, std::size_t i) const;
+  SimulationOptions options(SoilKnowledge belief, std::size_t i) const;
 
  private:
   const costmap::TraversabilityMap& map_;

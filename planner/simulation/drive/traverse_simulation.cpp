@@ -136,8 +136,8 @@ class Drive {
                                  .across = gradient({-heading.y, heading.x}),
                                  .dug_m = dug_m_});
     if (step.stuck && !options_.senses) return FollowEnd::Stuck;
-    const WheelAlarm::Heard heard =
-        options_.senses ? alarm_.hear(seen_, expectations(step, heading)) : WheelAlarm::Heard{};
+    const WheelAlarm::AlarmCheck heard =
+        options_.senses ? alarm_.hear(seen_, expectations(step, heading)) : WheelAlarm::AlarmCheck{};
     const bool learned = learn(heard.reason.has_value());
     if (heard.reason) return retreat(step, heard);
     if (step.slides) return FollowEnd::Stuck;
@@ -165,7 +165,7 @@ class Drive {
 
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
     if (!options_.on_step) return;
-    const costmap::DriveState state = MapExpectation(map_, ground()).at(believed(), heading);
+    const costmap::TravelState state = MapExpectation(map_, ground()).at(believed(), heading);
     const double slope = gradient(heading);
     options_.on_step(
         {.time_s = result_.time_s,
@@ -199,7 +199,7 @@ class Drive {
   std::vector<WheelExpectation> expectations(const TrueWorld::Step& step, const Direction& heading) const {
     const MapExpectation map(map_, ground());
     std::vector<WheelExpectation> of_wheels;
-    for (const TrueWorld::WheelState& wheel : step.wheels)
+    for (const TrueWorld::SimulatedWheel& wheel : step.wheels)
       of_wheels.push_back(map.ofWheel(sensors_.believed(wheel.place), believed(), heading));
     return of_wheels;
   }
@@ -215,7 +215,7 @@ class Drive {
     result_.energy_J += step.energy_J_per_m * surface_m;
     result_.time_s += surface_m / step.speed_mps;
     result_.length_m += length_m;
-    for (const TrueWorld::WheelState& wheel : step.wheels) ruts_.press(wheel.place);
+    for (const TrueWorld::SimulatedWheel& wheel : step.wheels) ruts_.press(wheel.place);
     ruts_.moved(length_m);
     sensors_.moved(length_m);
   }
@@ -223,7 +223,8 @@ class Drive {
   void arriveAt(const maps::Point& place, const TrueWorld::Step& step) {
     here_ = place;
     double deepest = 0.0;
-    for (const TrueWorld::WheelState& wheel : step.wheels) deepest = std::max(deepest, wheel.forces.sinkage);
+    for (const TrueWorld::SimulatedWheel& wheel : step.wheels)
+      deepest = std::max(deepest, wheel.forces.sinkage);
     result_.track.push_back(
         {place, result_.time_s, result_.energy_J, step.slip, deepest * map_.model().rover().wheel.radius_m});
   }
@@ -303,13 +304,13 @@ class Drive {
 
   // Drives back in its own ruts by at least the keep-out radius, until the rover stands on sound ground,
   // where it may turn. The ground that raised the alarm is refused afterwards.
-  FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
+  FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& heard) {
     tell(*heard.reason);
     why_it_stopped_ = *heard.reason;
     const double radius_m = map_.model().rover().wheel.radius_m;
     const double spun_m = stopped.stuck ? options_.stall_detection_m * stopped.slip : 0.0;
     result_.energy_J += std::max(stopped.torque_Nm, 0.0) * spun_m / radius_m;
-    for (const TrueWorld::WheelState& wheel : stopped.wheels) ruts_.press(wheel.place);
+    for (const TrueWorld::SimulatedWheel& wheel : stopped.wheels) ruts_.press(wheel.place);
     ruts_.turnBack();
     double hole_m = std::exchange(dug_m_, 0.0) + kDugPerMetre * spun_m;
     const double from_m = result_.length_m;
@@ -324,7 +325,7 @@ class Drive {
   }
 
   // Refuses the ground under wheels that sank and the two foremost wheels, but not under the rover itself.
-  void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::Heard& heard) {
+  void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& heard) {
     ++result_.alarms;
     const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
     for (std::size_t w = 0; w < stopped.wheels.size(); ++w) {
@@ -377,7 +378,7 @@ class Drive {
   double since_sensing_m_ = 0.0;
   double dug_m_ = 0.0;         // depth of the holes in which the wheels stand
   TrueWorld::Step last_step_;  // last step attempted
-  WheelLook seen_;             // readings of the wheels before the last step
+  WheelMeasurements seen_;     // readings of the wheels before the last step
   std::string why_it_stopped_;
   bool held_ = false;
   bool downhill_ = false;  // slides, and leaves by the fall line

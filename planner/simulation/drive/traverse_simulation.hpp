@@ -31,7 +31,7 @@ enum class Outcome {
 std::string_view name(Outcome outcome) noexcept;
 
 /// One step of a drive: the map's prediction and the true state.
-struct DriveStep {
+struct TraverseStep {
   double time_s = 0.0;                   ///< at the beginning of the step
   maps::Point place;                     ///< true position [m]
   costmap::Direction heading;            ///< heading of the motion
@@ -62,11 +62,11 @@ struct SimulationOptions {
   double sensing_interval_m = 0.5;  ///< distance between two updates of the map from readings, > 0
   int max_replans = 60;             ///< more replans end the drive with GaveUp
   std::uint64_t seed = 1;           ///< not used; SensorOptions::seed seeds the sensors
-  std::function<void(const DriveStep&)> on_step = {};  ///< called before every step driven forward
-  bool record = false;                                 ///< keep the wheels' readings
-  std::function<void(double time_s)> on_learned = {};  ///< called after the map changed
-  ProgressMonitor watch = {};                          ///< stops the simulation
-  std::function<Plan(const Problem&)> planner = {};    ///< called for every route; empty: FieldPlanner
+  std::function<void(const TraverseStep&)> on_step = {};  ///< called before every step driven forward
+  bool record = false;                                    ///< keep the wheels' readings
+  std::function<void(double time_s)> on_learned = {};     ///< called after the map changed
+  ProgressMonitor watch = {};                             ///< stops the simulation
+  std::function<Plan(const Problem&)> planner = {};       ///< called for every route; empty: FieldPlanner
 };
 
 /// State at one point of a simulated drive.
@@ -80,7 +80,7 @@ struct TrackPoint {
 
 /// Event of the drive: "planned", "reversed", "turned downhill", the reason of an alarm ("slips", "slides",
 /// "sinks"), "soil weaker than estimated", or the name of the outcome.
-struct DriveEvent {
+struct TraverseEvent {
   double time_s = 0.0;             ///< since the start
   std::string text;                ///< name of the event
   std::vector<maps::Point> route;  ///< the planned route, of "planned" only
@@ -88,9 +88,9 @@ struct DriveEvent {
 
 /// Reading of one wheel at one time, including noise and faults.
 struct WheelRecord {
-  std::size_t wheel = 0;          ///< foremost wheels first
-  double heading_rad = 0.0;       ///< of the rover
-  costmap::WheelReading reading;  ///< as given to the map
+  std::size_t wheel = 0;              ///< foremost wheels first
+  double heading_rad = 0.0;           ///< of the rover
+  costmap::TelemetryReading reading;  ///< as given to the map
 };
 
 /// Result of a traverse simulation.
@@ -102,10 +102,10 @@ struct TraverseSimulation {
   double length_m = 0.0;  ///< distance driven, including reversing
   double max_slip = 0.0;  ///< largest slip of a forward step [-]
   int replans = 0;
-  int alarms = 0;                    ///< alarms after which the rover reversed and refused ground
-  std::vector<TrackPoint> track;     ///< positions after every step
-  std::vector<DriveEvent> events;    ///< events in order of time
-  std::vector<WheelRecord> records;  ///< if SimulationOptions::record is set
+  int alarms = 0;                     ///< alarms after which the rover reversed and refused ground
+  std::vector<TrackPoint> track;      ///< positions after every step
+  std::vector<TraverseEvent> events;  ///< events in order of time
+  std::vector<WheelRecord> records;   ///< if SimulationOptions::record is set
 };
 
 /// Drives a rover over a true world with the map as its knowledge, and updates the map: the simulated

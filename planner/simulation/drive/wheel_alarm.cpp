@@ -18,7 +18,7 @@ double medianOf(std::deque<double> values) {
 }  // namespace
 
 // Excess sinkage over the wheel radius, minus the wheel's own datum (the median of earlier excesses).
-double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::WheelReading& reading,
+double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::TelemetryReading& reading,
                                  const WheelExpectation& expected) {
   if (std::isnan(reading.sinkage_m) || reading.pass > 1) return 0.0;
   std::deque<double>& before = excess_[wheel];
@@ -29,13 +29,14 @@ double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::WheelReading&
   return excess - datum;
 }
 
-WheelAlarm::Heard WheelAlarm::hear(const WheelLook& look, const std::vector<WheelExpectation>& expected) {
-  Heard heard;
+WheelAlarm::AlarmCheck WheelAlarm::hear(const WheelMeasurements& look,
+                                        const std::vector<WheelExpectation>& expected) {
+  AlarmCheck heard;
   excess_.resize(std::max(excess_.size(), look.wheels.size()));
   std::size_t slipping = 0, reading_slip = 0;
   double expected_angle_rad = 0.0;
   for (std::size_t w = 0; w < look.wheels.size(); ++w) {
-    const costmap::WheelReading& reading = look.wheels[w];
+    const costmap::TelemetryReading& reading = look.wheels[w];
     reading_slip += std::isnan(reading.slip) ? 0U : 1U;
     // The threshold is at least the limit: downhill, slip below the limit is traction even if the expected
     // slip is negative, and a rover that stops there must climb back.

@@ -35,15 +35,15 @@ class WheelAlarm {
   WheelAlarm(const AlarmLimits& limits, double wheel_radius_m) : limits_(limits), radius_m_(wheel_radius_m) {}
 
   /// Result of one set of readings.
-  struct Heard {
+  struct AlarmCheck {
     std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"; empty without an alarm
     std::vector<bool> sank;             ///< for each wheel: true if its sinkage exceeds the limit
   };
   /// `expected`: one entry per wheel of `look`.
-  Heard hear(const WheelLook& look, const std::vector<WheelExpectation>& expected);
+  AlarmCheck hear(const WheelMeasurements& look, const std::vector<WheelExpectation>& expected);
 
  private:
-  double excessSinkage(std::size_t wheel, const costmap::WheelReading& reading,
+  double excessSinkage(std::size_t wheel, const costmap::TelemetryReading& reading,
                        const WheelExpectation& expected);
 
   AlarmLimits limits_;

@@ -28,21 +28,21 @@ const std::vector<std::string_view>& sensorFaultNames() {
   return names;
 }
 
-terramech::Telemetry telemetryOf(const WheelLook& look) {
-  using Field = double (*)(const costmap::WheelReading&, double heading_rad);
+terramech::Telemetry telemetryOf(const WheelMeasurements& look) {
+  using Field = double (*)(const costmap::TelemetryReading&, double heading_rad);
   constexpr std::pair<const char*, Field> kColumns[] = {
-      {"time_s", [](const costmap::WheelReading& r, double) { return r.time_s; }},
-      {"x_m", [](const costmap::WheelReading& r, double) { return r.place.x_m; }},
-      {"y_m", [](const costmap::WheelReading& r, double) { return r.place.y_m; }},
-      {"heading_rad", [](const costmap::WheelReading&, double heading_rad) { return heading_rad; }},
-      {"slope_rad", [](const costmap::WheelReading& r, double) { return std::atan(r.gradient); }},
-      {"roll_rad", [](const costmap::WheelReading& r, double) { return std::atan(r.across); }},
-      {"slip", [](const costmap::WheelReading& r, double) { return r.slip; }},
-      {"slip_angle_rad", [](const costmap::WheelReading& r, double) { return r.slip_angle_rad; }},
-      {"load_N", [](const costmap::WheelReading& r, double) { return r.load_N; }},
-      {"torque_Nm", [](const costmap::WheelReading& r, double) { return r.torque_Nm; }},
-      {"sinkage_m", [](const costmap::WheelReading& r, double) { return r.sinkage_m; }},
-      {"pass_index", [](const costmap::WheelReading& r, double) { return static_cast<double>(r.pass); }}};
+      {"time_s", [](const costmap::TelemetryReading& r, double) { return r.time_s; }},
+      {"x_m", [](const costmap::TelemetryReading& r, double) { return r.place.x_m; }},
+      {"y_m", [](const costmap::TelemetryReading& r, double) { return r.place.y_m; }},
+      {"heading_rad", [](const costmap::TelemetryReading&, double heading_rad) { return heading_rad; }},
+      {"slope_rad", [](const costmap::TelemetryReading& r, double) { return std::atan(r.gradient); }},
+      {"roll_rad", [](const costmap::TelemetryReading& r, double) { return std::atan(r.across); }},
+      {"slip", [](const costmap::TelemetryReading& r, double) { return r.slip; }},
+      {"slip_angle_rad", [](const costmap::TelemetryReading& r, double) { return r.slip_angle_rad; }},
+      {"load_N", [](const costmap::TelemetryReading& r, double) { return r.load_N; }},
+      {"torque_Nm", [](const costmap::TelemetryReading& r, double) { return r.torque_Nm; }},
+      {"sinkage_m", [](const costmap::TelemetryReading& r, double) { return r.sinkage_m; }},
+      {"pass_index", [](const costmap::TelemetryReading& r, double) { return static_cast<double>(r.pass); }}};
   terramech::Telemetry rows{
       .source = "simulation", .numbers = {}, .words = {{"wheel", {}}}, .lines = {}, .rejected = {}};
   for (const auto& [name, field] : kColumns) rows.numbers.push_back({name, {}});
@@ -82,13 +82,13 @@ bool SimulatedSensors::drops() {
   return options_.noise && std::uniform_real_distribution<double>(0.0, 1.0)(random_) < options_.dropout;
 }
 
-WheelLook SimulatedSensors::look(const TrueWorld::Step& step, const Moment& moment) {
+WheelMeasurements SimulatedSensors::look(const TrueWorld::Step& step, const Moment& moment) {
   const double radius_m = rover_.wheel.radius_m, noise = options_.noise ? 1.0 : 0.0;
-  WheelLook look{.heading_rad = std::atan2(moment.heading.y, moment.heading.x),
-                 .slip_angle_rad = step.slip_angle_rad + noise * kAngleNoise_rad * normal_(random_),
-                 .wheels = {}};
+  WheelMeasurements look{.heading_rad = std::atan2(moment.heading.y, moment.heading.x),
+                         .slip_angle_rad = step.slip_angle_rad + noise * kAngleNoise_rad * normal_(random_),
+                         .wheels = {}};
   const double slip = step.slip + noise * kSlipNoise * normal_(random_);
-  for (const TrueWorld::WheelState& wheel : step.wheels) {
+  for (const TrueWorld::SimulatedWheel& wheel : step.wheels) {
     const double own_slip = slip + noise * kEncoderNoise * normal_(random_);
     const double torque = wheel.forces.torque * (1.0 + noise * kTorqueNoise * normal_(random_));
     const double sinkage = wheel.forces.sinkage * (1.0 + noise * kSinkageNoise * normal_(random_));
@@ -108,7 +108,7 @@ WheelLook SimulatedSensors::look(const TrueWorld::Step& step, const Moment& mome
   return look;
 }
 
-void SimulatedSensors::spoil(costmap::WheelReading& reading, std::size_t wheel) {
+void SimulatedSensors::spoil(costmap::TelemetryReading& reading, std::size_t wheel) {
   const double radius_m = rover_.wheel.radius_m;
   const bool mine = wheel == faulty_wheel_;
   const double displaced_m = driven_m_ - displaced_from_m_;

@@ -46,16 +46,17 @@ struct SensorOptions {
 };
 
 /// Readings of all wheels of a rover at one time.
-struct WheelLook {
+struct WheelMeasurements {
   double heading_rad = 0.0;     ///< of the rover
   double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, as measured by visual
                                 ///< odometry
-  std::vector<costmap::WheelReading> wheels;  ///< foremost wheels first, at estimated positions; NaN: missing
+  std::vector<costmap::TelemetryReading>
+      wheels;  ///< foremost wheels first, at estimated positions; NaN: missing
 };
 
 /// Readings as rows of telemetry for DriveIntake, with wheels named w1, w2, ... A wheel without slip has no
 /// row.
-terramech::Telemetry telemetryOf(const WheelLook& look);
+terramech::Telemetry telemetryOf(const WheelMeasurements& look);
 
 /// Sensors of one rover on one drive: noise, dropouts, a drifting position and at most one fault. The faulty
 /// wheel is drawn at random. Deterministic for a given seed.
@@ -78,13 +79,13 @@ class SimulatedSensors {
     double dug_m = 0.0;          ///< depth of the holes dug on the spot
   };
   /// Readings of the wheels, including noise and faults.
-  WheelLook look(const TrueWorld::Step& step, const Moment& moment);
+  WheelMeasurements look(const TrueWorld::Step& step, const Moment& moment);
 
   /// Number of the wheel with the fault.
   std::size_t faultyWheel() const noexcept { return faulty_wheel_; }
 
  private:
-  void spoil(costmap::WheelReading& reading, std::size_t wheel);
+  void spoil(costmap::TelemetryReading& reading, std::size_t wheel);
   bool drops();
 
   SensorOptions options_;

@@ -27,17 +27,17 @@ double slopeOutOf(double dug_m, double radius_m) {
 }
 
 struct LoadedTable {
-  const WheelTable* table;
+  const SimulatedWheelTable* table;
   double load;   // relative to the load on level ground
   double share;  // share of the rover's weight
 };
 
 // Required force over the normal force; `across` is a magnitude.
-struct Demand {
+struct RequiredForce {
   double along, across;
 };
 
-Demand demandOf(double along, double across) {
+RequiredForce demandOf(double along, double across) {
   const double run = std::hypot(1.0, along);
   return {along * std::sqrt(1.0 + along * along + across * across) / run, std::abs(across) / run};
 }
@@ -50,14 +50,15 @@ struct Balance {
 };
 
 // Forces along and across the direction of travel of wheels turned uphill by the slip angle of a sheet.
-Demand given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
+RequiredForce given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
   double pull = 0.0, hold = 0.0;
   for (const LoadedTable& w : wheels) {
-    const WheelTable::Row forces = w.table->row(row, w.load, sheet);
+    const SimulatedWheelTable::Row forces = w.table->row(row, w.load, sheet);
     pull += w.share * forces.pull;
     hold += w.share * forces.hold;
   }
-  const double c = std::cos(WheelTable::angle_rad(sheet)), s = std::sin(WheelTable::angle_rad(sheet));
+  const double c = std::cos(SimulatedWheelTable::angle_rad(sheet)),
+               s = std::sin(SimulatedWheelTable::angle_rad(sheet));
   return {pull * c - hold * s, hold * c + pull * s};
 }
 
@@ -69,13 +70,15 @@ struct Steady {
 };
 
 std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double along, std::size_t sheet) {
-  Demand before{};
-  for (std::size_t row = 0; row < WheelTable::kRows && WheelTable::slip(row) <= kHighestSlip; ++row) {
-    const Demand now = given(wheels, row, sheet);
+  RequiredForce before{};
+  for (std::size_t row = 0;
+       row < SimulatedWheelTable::kRows && SimulatedWheelTable::slip(row) <= kHighestSlip; ++row) {
+    const RequiredForce now = given(wheels, row, sheet);
     if (now.along >= along) {
       if (row == 0) return Steady{-1.0, now.across, now.along <= along};
       const double t = (along - before.along) / (now.along - before.along);
-      return Steady{WheelTable::slip(row - 1) + t * (WheelTable::slip(row) - WheelTable::slip(row - 1)),
+      return Steady{SimulatedWheelTable::slip(row - 1) +
+                        t * (SimulatedWheelTable::slip(row) - SimulatedWheelTable::slip(row - 1)),
                     before.across + t * (now.across - before.across), true};
     }
     before = now;
@@ -85,17 +88,17 @@ std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double alon
 
 // Smallest slip angle at which the wheels hold the rover, interpolated between two sheets with an
 // equilibrium.
-Balance balanced(const std::vector<LoadedTable>& wheels, const Demand& demand) {
+Balance balanced(const std::vector<LoadedTable>& wheels, const RequiredForce& demand) {
   std::optional<Steady> before;
-  for (std::size_t sheet = 0; sheet < WheelTable::kAngles; ++sheet) {
+  for (std::size_t sheet = 0; sheet < SimulatedWheelTable::kAngles; ++sheet) {
     const auto now = steady(wheels, demand.along, sheet);
     if (sheet == 0 && !now) return {};
     if (now && !now->brakes) break;
     if (now && now->hold >= demand.across) {
       const double t = before ? (demand.across - before->hold) / (now->hold - before->hold) : 1.0;
-      const double from = sheet == 0 ? 0.0 : WheelTable::angle_rad(sheet - 1);
+      const double from = sheet == 0 ? 0.0 : SimulatedWheelTable::angle_rad(sheet - 1);
       return {before ? before->slip + t * (now->slip - before->slip) : now->slip,
-              from + t * (WheelTable::angle_rad(sheet) - from), false, false};
+              from + t * (SimulatedWheelTable::angle_rad(sheet) - from), false, false};
     }
     before = now;
   }
@@ -130,8 +133,8 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
   tables_.resize(soils_.size());
   for (std::size_t i = 0; i < soils_.size(); ++i)
     if (occurs[i])
-      tables_[i] = Tables{.fresh = WheelTable(soils_[i], rover_, effects_),
-                          .rut = WheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
+      tables_[i] = Tables{.fresh = SimulatedWheelTable(soils_[i], rover_, effects_),
+                          .rut = SimulatedWheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
@@ -147,7 +150,7 @@ std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const n
 // Axles are evenly spaced over the wheelbase. On a cross slope, load moves to the lower wheels by the moment
 // of the weight's component across the slope, as along the slope; no wheel carries less than a tenth of its
 // share.
-std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) const {
+std::vector<TrueWorld::SimulatedWheel> TrueWorld::standing(const Motion& motion) const {
   const int axles = std::max(rover_.wheel_count / 2, 2);
   std::vector<double> along_m;
   for (int wheel = 0; wheel < 2 * axles; ++wheel)
@@ -157,7 +160,7 @@ std::vector<TrueWorld::WheelState> TrueWorld::standing(const Motion& motion) con
                leaning = std::copysign(demandOf(motion.gradient, motion.across).across, motion.across) * 2.0 *
                          rover_.centre_of_mass_height_m / rover_.track_m,
                moved = std::clamp(leaning, -0.9, 0.9), less = run / std::hypot(run, motion.across);
-  std::vector<WheelState> wheels;
+  std::vector<SimulatedWheel> wheels;
   for (std::size_t w = 0; w < along_m.size(); ++w) {
     const double side = w % 2 == 0 ? 1.0 : -1.0, across_m = side * 0.5 * rover_.track_m;
     const maps::Point place{motion.place.x_m + along_m[w] * motion.heading.x - across_m * motion.heading.y,
@@ -174,15 +177,15 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   Step step;
   step.wheels = standing(motion);
   double load_N = 0.0;
-  for (const WheelState& w : step.wheels) load_N += w.load_N;
+  for (const SimulatedWheel& w : step.wheels) load_N += w.load_N;
   std::vector<LoadedTable> wheels;
-  for (const WheelState& w : step.wheels) {
+  for (const SimulatedWheel& w : step.wheels) {
     const Tables& ground = *tables_[soilAt(w.place)];
     wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
                       .load = w.load_N / terramech::wheelLoad_N(rover_),
                       .share = w.load_N / load_N});
   }
-  Demand demand = demandOf(motion.gradient, motion.across);
+  RequiredForce demand = demandOf(motion.gradient, motion.across);
   demand.along += slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
   const Balance balance = balanced(wheels, demand);
   step.stuck = balance.stuck;
@@ -210,7 +213,7 @@ terramech::TurnEffort TrueWorld::turn(const costmap::Direction& from, const Moti
   const terramech::Soil& soil = soils_[soilAt(motion.place)];
   const Step flat = drive({.place = motion.place, .heading = to, .ruts = motion.ruts});
   double sinkage = 0.0;
-  for (const WheelState& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
+  for (const SimulatedWheel& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
   const double rolling = flat.stuck ? 0.0 : flat.energy_J_per_m - rover_.hotel_power_W / flat.speed_mps;
   const terramech::TurnEfforts efforts = terramech::turnEfforts(
       rover_, {.lateral_resistance = std::tan(soil.friction_angle_rad),

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost/drive_cost.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/maps/grid/grid.hpp>
 #include <talus/planner/simulation/worlds/ruts.hpp>
-#include <talus/planner/simulation/worlds/wheel_table.hpp>
+#include <talus/planner/simulation/worlds/simulated_wheel_table.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
@@ -54,24 +54,24 @@ class TrueWorld {
   TrueWorld(const WorldSoils& soils, const terramech::Rover& rover, maps::Raster<std::uint8_t> class_index);
 
   /// State of a wheel during a step.
-  struct WheelState {
-    maps::Point place;       ///< position of the wheel [m]
-    double load_N = 0.0;     ///< normal load
-    int passes = 0;          ///< earlier wheel passes at the place
-    WheelTable::Row forces;  ///< normalised forces and sinkage
+  struct SimulatedWheel {
+    maps::Point place;                ///< position of the wheel [m]
+    double load_N = 0.0;              ///< normal load
+    int passes = 0;                   ///< earlier wheel passes at the place
+    SimulatedWheelTable::Row forces;  ///< normalised forces and sinkage
   };
 
   /// Steady state of the rover during one step.
   struct Step {
-    bool stuck = false;              ///< no slip gives the required pull, or the rover slides
-    bool slides = false;             ///< no slip angle up to 45 deg holds the rover on the slope
-    double slip = 0.0;               ///< -1 to 0.98 [-]; 0.98 if stuck
-    double slip_angle_rad = 0.0;     ///< from the wheels' planes to the direction of travel, left positive
-    double energy_J_per_m = 0.0;     ///< drive and hotel energy per metre of surface along the direction of
-                                     ///< travel
-    double speed_mps = 0.0;          ///< speed of travel along the surface
-    double torque_Nm = 0.0;          ///< sum over all wheels
-    std::vector<WheelState> wheels;  ///< foremost wheels first
+    bool stuck = false;           ///< no slip gives the required pull, or the rover slides
+    bool slides = false;          ///< no slip angle up to 45 deg holds the rover on the slope
+    double slip = 0.0;            ///< -1 to 0.98 [-]; 0.98 if stuck
+    double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, left positive
+    double energy_J_per_m = 0.0;  ///< drive and hotel energy per metre of surface along the direction of
+                                  ///< travel
+    double speed_mps = 0.0;       ///< speed of travel along the surface
+    double torque_Nm = 0.0;       ///< sum over all wheels
+    std::vector<SimulatedWheel> wheels;  ///< foremost wheels first
   };
 
   /// Steady state of the rover for a motion.
@@ -93,10 +93,10 @@ class TrueWorld {
 
  private:
   struct Tables {
-    WheelTable fresh, rut;
+    SimulatedWheelTable fresh, rut;
   };
 
-  std::vector<WheelState> standing(const Motion& motion) const;
+  std::vector<SimulatedWheel> standing(const Motion& motion) const;
 
   terramech::Rover rover_;
   maps::Raster<std::uint8_t> class_index_;

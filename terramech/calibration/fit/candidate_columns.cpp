@@ -24,13 +24,20 @@ Eigen::VectorXd whole(const Trial& trial, Eigen::VectorXd column) {
   return column.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
+/// Whether a form with this first parameter acts in one sense only: from 0 up, or at a depth. Of a factor, which is 1 where
+/// nothing acts, either sense is within its bounds.
+bool isOneSided(const EffectParameter& first) {
+  const bool is_factor = first.low > 0.0 && first.low < 1.0 && first.high > 1.0;
+  return first.low >= 0.0 && !is_factor;
+}
+
 Contender libraryContender(const Candidate& candidate, const ModelOnRows& at) {
   const RefinedModel grown = withCandidate(at.model, candidate);
   std::vector<FittedParameter> free;
   for (std::size_t part = at.model.effects.size(); part < grown.effects.size(); ++part)
     for (const FittedParameter& p : parametersOf(grown, static_cast<int>(part))) free.push_back(p);
   const auto count = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(free.size()));
-  const Eigen::VectorXd all = whole(at.trial, change(grown, at));
+  const Eigen::VectorXd all = whole(at.trial, change(grown, at));  // (T27)
   Contender c;
   c.added.columns.resize(all.size(), count);
   c.added.columns.col(0) = all;
@@ -42,7 +49,7 @@ Contender libraryContender(const Candidate& candidate, const ModelOnRows& at) {
     setValue(moved, free[k], value(grown, free[k]) + kStep * rangeOf(grown, free[k]).scale);
     c.added.columns.col(static_cast<Eigen::Index>(k)) = (whole(at.trial, change(moved, at)) - all) / kStep;
   }
-  c.positive = !free.empty() && findEffect(candidate.parts.front().name)->parameters.front().low >= 0.0;
+  c.positive = !free.empty() && isOneSided(findEffect(candidate.parts.front().name)->parameters.front());
   return c;
 }
 
@@ -74,6 +81,7 @@ Eigen::MatrixXd curveColumns(const Effect& curve, const ModelOnRows& at) {
   }
   Eigen::MatrixXd columns(at.trial.rows() * kChannels, basis.cols());
   for (Eigen::Index k = 0; k < basis.cols(); ++k)
+    // (T28)
     columns.col(k) = whole(at.trial, at.whitening.rowByRow(basis.col(k).asDiagonal() * by_value));
   return columns;
 }
@@ -116,7 +124,7 @@ LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whi
     if (!prior) continue;
     // value() of log_stiffness is 0 and its prior a step from here.
     linear.prior.mean[k] = (prior->value - value(fitted, p)) / scale;
-    linear.prior.precision[k] = scale * scale / (prior->std * prior->std);
+    linear.prior.precision[k] = scale * scale / (prior->std * prior->std);  // (T26)
   }
   return linear;
 }

@@ -7,25 +7,26 @@
 
 namespace talus::terramech {
 
-/// A model on rows, with what it solved there.
+/// A model evaluated on the rows of a trial.
 struct ModelOnRows {
   const RefinedModel& model;
   const Trial& trial;
   const Whitening& whitening;
-  const Eigen::MatrixXd& level;  ///< its readings, rows x kChannels
+  const Eigen::MatrixXd& level;  ///< predictions of the model, rows x kChannels
   const Eigen::VectorXd& sinkage_m;
   const SolvedContacts& solved;
 };
 
-/// What a candidate does to first order, whitened row by row: the change at its typical size and the derivatives
-/// by its other parameters, or the values of a curve at its knots.
+/// Linearised contribution of a candidate, whitened row by row: the change at its typical size and the
+/// derivatives by its other parameters, or the derivatives by a curve's values at its knots.
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
 
-/// What a plan lets a fit move, to first order about a model that was fitted, in steps of rangeOf().scale.
+/// Linearised change of the predictions by the free parameters of a plan at a fitted model, in steps of
+/// rangeOf().scale.
 LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whitening& whitening,
                        const FitPlan& plan, SolvedContacts& solved);
 
-/// A model with a candidate's parts behind its effects.
+/// The model with the parts of a candidate appended to its effects.
 RefinedModel withCandidate(const RefinedModel& model, const Candidate& candidate);
 
 }  // namespace talus::terramech

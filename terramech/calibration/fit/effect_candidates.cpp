@@ -328,7 +328,7 @@ void addProducts(const Trial& trial, std::vector<Candidate>& all) {
     if (own.size() <= kMostOwn)
       others.insert(others.end(), own.begin() + static_cast<long>(a) + 1, own.end());
     for (const std::string& other : others) {
-      const std::string product = own[a] + '*' + other;
+      const std::string product = own[a] + '*' + other;  // (T30)
       const auto knots = quantileKnots(covariateValues(trial, product, {}), 2);
       if (knots.size() == 2) addCurves(trial, product, knots, all);
     }
@@ -374,14 +374,14 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
     const std::size_t independent = independentValues(trial, x);
     std::size_t coarser = 1;
     for (int most : {2, 4, 7}) {
-      const auto knots = quantileKnots(x, most);
+      const auto knots = quantileKnots(x, most);  // (T29)
       if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows() ||
           3 * knots.size() > independent)
         continue;
       coarser = knots.size();
       addCurves(trial, name, knots, all);
     }
-    if (name == "time_s" || name == "heading_rad" || isOwnColumn(name))
+    if (name == "time_s" || name == "heading_rad" || (name != "sinkage_m" && isOwnColumn(name)))
       for (const auto& knots : stepsOf(x))
         if (coarser > 2) addCurves(trial, name, knots, all);
   }

@@ -10,26 +10,29 @@
 
 namespace talus::terramech {
 
-/// Every effect of the library that the columns of a trial allow, at its typical size, with starts where it
-/// is nonlinear; sensor effects also for one group of a text column. `sinkage_m` is the model's.
+/// All effects of the library that the columns of a trial permit, at their typical size, with several start
+/// values for nonlinear effects; sensor effects also for single groups of a text column. `sinkage_m` is the
+/// model's sinkage.
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
-/// Flat curves of every covariate in each measured channel alone, through stiffness and through strength: a line,
-/// splines of 4 and 7 knots, of what is fixed in runs with three runs a knot at least; of time, heading and columns of one's own steps; of text columns a constant for each
-/// group; lines over products of a column of one's own with another, with slip, load or speed ("A*B").
+/// Curves of every covariate, initially zero, in each measured channel alone, through stiffness and through
+/// strength: a line and splines of 4 and 7 knots. Columns constant within runs need at least three runs per
+/// knot. Further candidates: steps of time, heading and additional columns; for text columns a constant per
+/// group; and lines over products ("A*B") of an additional column with slip, load, speed or, for at most six
+/// additional columns, another additional column.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
-/// Whether a covariate is the product of two columns.
+/// Returns true if a covariate is a product of two columns.
 bool isProduct(const std::string& covariate);
 
-/// Whether a numeric column is none that every table may have (stateColumns()).
+/// Returns true for a numeric column that is not one of stateColumns().
 bool isOwnColumn(const std::string& column);
 
-/// GainDistribution::further_questions of a search in the columns that a screening kept: ln((kept + dropped) / kept).
+/// GainDistribution::further_questions for a search in screened columns: ln((kept + dropped) / kept).
 double furtherQuestions(const Trial& trial);
 
-/// The coarsest question to a column of one's own: in each measured channel alone a spline of 4 knots, or of a text
-/// column a constant for each group.
+/// The coarsest candidates of an additional column: a spline of 4 knots in each measured channel alone; for a
+/// text column a constant per group.
 std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& column);
 
 }  // namespace talus::terramech

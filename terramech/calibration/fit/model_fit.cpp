@@ -54,7 +54,7 @@ class FitPoint {
         residual_(residualOf(start, solved)) {
     for (std::size_t k = 0; k < plan.free.size(); ++k) {
       prior_.push_back(terramech::priorOf(start, plan, k));
-      if (prior_.back()) prior_.back()->std /= std::sqrt(plan.misfit);
+      if (prior_.back()) prior_.back()->std /= std::sqrt(plan.misfit);  // (T23)
     }
   }
 
@@ -210,7 +210,7 @@ FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
       continue;
     plan.free.push_back({-1, static_cast<int>(k)});
   }
-  constexpr double kTypicalSizes = 50.0;
+  constexpr double kTypicalSizes = 50.0;  // (T25)
   for (std::size_t k = 0; k < model.effects.size(); ++k) {
     const int effect = static_cast<int>(k);
     const std::vector<FittedParameter> own = parametersOf(model, effect);
@@ -235,7 +235,7 @@ void giveDefaultDeviations(RefinedModel& model) {
 
 double misfitOf(const Eigen::VectorXd& white, const Trial& trial) {
   const auto readings = static_cast<double>(trial.measured.array().isFinite().count());
-  return std::max(1.0, white.squaredNorm() / std::max(readings, 1.0));
+  return std::max(1.0, white.squaredNorm() / std::max(readings, 1.0));  // (T22)
 }
 
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect) {
@@ -313,6 +313,7 @@ Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& tri
   search.linearise(normal, gradient);
   normal.diagonal().array() += 1e-9;
   const Eigen::VectorXd s = search.scales();
+  // (T24)
   return s.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * s.asDiagonal();
 }
 

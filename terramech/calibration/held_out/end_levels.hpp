@@ -7,26 +7,28 @@
 #include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/io/model_file.hpp>
 
-/// How far a model holds beyond the rows that it comes from: the outermost level of a column is held out and told by
-/// the others.
+/// Extrapolation error of a model: the outermost level of a column is held out and predicted from the other
+/// levels.
 namespace talus::terramech {
 
-/// Whether the refined model has effects that the base lacks.
+/// Returns true if the refined model has effects that the base lacks.
 bool hasCorrections(const TraceResult& result);
 
-/// Both ends of slip, slip angle, load and of the columns of effects, where they have three levels: the outermost
-/// level where there are at most eight, else the outermost tenth of the rows; then, where there are effects, the levels that
-/// hold at most half of the rows, or the outermost half. Parameters are fitted again without them.
+/// Errors at both ends of slip, slip angle, load and the columns of effects, for columns with at least three
+/// levels. The held-out end is the outermost level if there are at most eight levels, otherwise the outermost
+/// tenth of the rows. If there are effects, ends of up to half of the rows are also held out: the levels with
+/// at most half of the rows, or the outermost half. Parameters are refitted without the held-out rows.
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 
-/// An extrapolation is earned: beyond the trained rows an effect follows its law as far as that foretold held-out ends of
-/// its column, and acts from there on as it does there; at their edge where it foretold none.
+/// Limits the extrapolation of effects. Outside the trained rows an effect follows its formula as far as it
+/// predicted held-out ends of its column, and is constant beyond; without a predicted end it is constant from
+/// the edge of the rows.
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
-/// What predictions need to know of the rows: the range of each column, and by how much the error grows beyond it,
-/// at the rate that the end levels showed above the floor (in proportion to the distance, by least squares over the rows of
-/// the ends of a side; ours).
+/// Ranges of the columns for predictions, and the growth of the error outside each range: the rate by which
+/// the errors at the end levels exceed the floor, proportional to the distance, by least squares over the
+/// rows of the ends on one side (ours).
 std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<EndLevel>& ends,
                                         const ChannelErrors& floor);
 

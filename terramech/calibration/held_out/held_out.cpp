@@ -9,7 +9,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Those of one model on all rows, and on those of each group.
+/// Errors of one model on all rows, and on the rows of each group.
 class Tally {
  public:
   explicit Tally(const std::vector<std::string>& columns) : columns_(columns) {}

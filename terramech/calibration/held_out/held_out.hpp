@@ -8,10 +8,10 @@
 
 namespace talus::terramech {
 
-/// Errors under one way to hold rows out, the refined model's within result.scope.
+/// Errors on held-out rows for one partition; those of the refined model within result.scope.
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds);
 
-/// Whole levels of the column of each effect that was found, in turn.
+/// Holds out whole levels of the column of each found effect, one effect after another.
 std::vector<HeldOut> holdOutLevels(const TraceResult& result, const TraceOptions& options);
 
 }  // namespace talus::terramech

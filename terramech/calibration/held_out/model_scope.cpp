@@ -14,7 +14,7 @@ namespace {
 bool isWorse(const EndLevel& end, const ChannelErrors& floor, std::size_t channel) {
   const double chance = normalQuantile(1.0 - TraceOptions{}.significance) * std::sqrt(2.0 / end.rows);
   const double least = std::max(end.base_rmse[channel], floor[channel]);
-  return std::pow(end.refined_rmse[channel], 2) > (1.0 + chance) * least * least;
+  return std::pow(end.refined_rmse[channel], 2) > (1.0 + chance) * least * least;  // (T51)
 }
 
 void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& scope) {
@@ -30,7 +30,8 @@ void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>&
     double confirmed = 0.0;
     for (const EndLevel& end : ends) {
       if (isWorse(end, floor, c)) {
-        reach[c] = 0.5 * 0.5 * (confirmed + end.distance);  // TrainedRange::share() ends at twice the reach
+        reach[c] =
+            0.5 * 0.5 * (confirmed + end.distance);  // (T52) TrainedRange::share() ends at twice the reach
         break;
       }
       confirmed = end.distance;
@@ -45,7 +46,7 @@ ModelScope scopeOf(const TraceResult& result) {
   if (!hasCorrections(result)) return scope;
   scope.base = result.base;
   for (std::size_t c = 0; c < kChannels; ++c)
-    scope.kept[c] = !(result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]);
+    scope.kept[c] = !(result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]);  // (T49)
   std::map<std::pair<std::string, bool>, std::vector<EndLevel>> sides;
   for (const EndLevel& end : result.ends) sides[{end.column, end.high}].push_back(end);
   for (TrainedRange& range : scope.trained)

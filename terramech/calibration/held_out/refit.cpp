@@ -25,7 +25,9 @@ RefinedModel refitted(const RefinedModel& model, const SharedError& shared, cons
   SolvedContacts start;
   FitPlan plan = fitPlan(model, options.fit_soil);
   plan.iterations = 8;
-  if (result.first_prior && !model.effects.empty()) plan.effect_prior[0] = *result.first_prior;
+  const std::size_t given = result.base.effects.size();  // the first effect that was found is the next
+  if (result.first_prior && model.effects.size() > given)
+    plan.effect_prior[static_cast<int>(given)] = *result.first_prior;
   plan.misfit = misfitOf(white.apply(seen.measured - predictRows(model, seen, start)), seen);
   return fitModel(model, seen, white, plan, start).model;
 }

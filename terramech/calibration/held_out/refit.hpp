@@ -5,16 +5,16 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// Models fitted again to a part of the rows, and their errors on the others.
+/// Refits of models to a subset of the rows, and errors on the other rows.
 namespace talus::terramech {
 
-/// Squared errors summed by channel, NaN left out.
+/// Squared errors summed by channel; NaN is ignored.
 class SquaredErrors {
  public:
   /// Adds residuals, rows x kChannels.
   void add(const Eigen::MatrixXd& residual);
 
-  /// Root mean square by channel; NaN where nothing was added.
+  /// Root mean square by channel; NaN if nothing was added.
   ChannelErrors rmse() const;
 
  private:
@@ -22,18 +22,18 @@ class SquaredErrors {
   std::array<int, kChannels> count_{};
 };
 
-/// The base of a result fitted again to the rows that `train` marks, as it was fitted to all of them: by rowsOfSoil() and
-/// what rows share beside the base.
+/// Base of a result, refitted to the rows marked by `train` by the method of the original fit: uses
+/// rowsOfSoil() and the shared errors beside the base.
 RefinedModel refittedBase(const TraceResult& result, const TraceOptions& options, std::vector<char> train);
 
-/// Its refined model fitted again to those rows.
+/// Refined model of a result, refitted to these rows.
 RefinedModel refittedModel(const TraceResult& result, const TraceOptions& options,
                            const std::vector<char>& train);
 
-/// Errors at the slip and load as measured.
+/// Errors with slip and load as measured.
 ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial);
 
-/// Residuals (measured - predicted) at the slip and load as measured, rows x kChannels.
+/// Residuals (measured - predicted) with slip and load as measured, rows x kChannels.
 Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial);
 
 }  // namespace talus::terramech

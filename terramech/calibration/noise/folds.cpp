@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFolds = 5;
 
-/// Rows in bands of like values, neighbours in different folds.
+/// Assigns rows to bands of similar values; neighbouring bands are in different folds.
 std::vector<int> bands(const std::vector<double>& value, int count) {
   std::vector<std::size_t> order(value.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -23,7 +23,7 @@ std::vector<int> bands(const std::vector<double>& value, int count) {
   return fold;
 }
 
-/// Numbers of the levels of a column in their order, values within `width` being one.
+/// Level number of each row of a column, in ascending order; values within `width` are one level.
 std::vector<int> levels(const std::vector<double>& value, double width) {
   std::map<long, int> number;
   for (double v : value) number.try_emplace(std::lround(v / width), 0);
@@ -39,7 +39,7 @@ std::vector<int> levels(const std::vector<double>& value, double width) {
 Folds foldsOf(const Trial& trial) {
   const std::set<int> runs(trial.run.begin(), trial.run.end());
   if (runs.size() >= kFolds && 2 * runs.size() <= trial.run.size()) {
-    // Moments of a drive that follow one another err alike: stretches of it are held out.
+    // Consecutive moments of a drive have similar errors; therefore stretches of the drive are held out.
     const bool moments = trial.run == trial.moment;
     const auto of = [&](int run) {
       const auto k = std::distance(runs.begin(), runs.find(run)),

@@ -43,7 +43,7 @@ Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
   Eigen::VectorXd step(null.soil);
   for (Eigen::Index k = 0; k < step.size(); ++k)
     step[k] = null.known.prior.mean[k] + normal(random) / std::sqrt(null.known.prior.precision[k]);
-  return null.known.columns.leftCols(null.soil) * step;
+  return null.known.columns.leftCols(null.soil) * step;  // (T36)
 }
 
 /// Scores of contenders against the null, table by table.
@@ -71,7 +71,7 @@ class Contest {
   double profiledGain(const RunSums& both, bool positive, Eigen::Index table, double null_score) const {
     const RunError run = likelihood_.profile(both, run_, table, kFurtherSteps);
     const HeldOutFit fit = likelihood_.heldOut(both, run, table, 1);
-    return allowed(fit.steps, 0, positive) ? fit.score()[0] - null_score : 0.0;
+    return allowed(fit.steps, 0, positive) ? fit.score()[0] - null_score : 0.0;  // (T35)
   }
 
  private:
@@ -97,7 +97,7 @@ double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
   double greatest = 0.0;
   for (std::size_t k = 0; k < most; ++k) {
     const auto c = static_cast<std::size_t>(order[k]);
-    greatest = std::max(greatest, contest.profiledGain(sums[c], positive[c], table, null_score));
+    greatest = std::max(greatest, contest.profiledGain(sums[c], positive[c], table, null_score));  // (T37)
   }
   return greatest;
 }
@@ -107,6 +107,7 @@ double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
 double GainDistribution::threshold(double level) const {
   if (greatest.empty()) return 0.0;
   const auto above = static_cast<std::size_t>(level * static_cast<double>(greatest.size() + 1));
+  // (T38)
   return greatest[greatest.size() - std::clamp<std::size_t>(above, 1, greatest.size())] + further_questions;
 }
 
@@ -114,7 +115,7 @@ double GainDistribution::pValue(double reached) const {
   const auto below =
       std::lower_bound(greatest.begin(), greatest.end(), reached - further_questions) - greatest.begin();
   const auto beyond = static_cast<double>(greatest.size()) - static_cast<double>(below);
-  return (beyond + 1.0) / (static_cast<double>(greatest.size()) + 1.0);
+  return (beyond + 1.0) / (static_cast<double>(greatest.size()) + 1.0);  // (T39)
 }
 
 GainDistribution gainDistribution(const NullModel& null, const Contenders& contenders, int draws,

@@ -14,7 +14,7 @@ bool slipIsSeen(const Trial& trial, const SensorNoise& noise) {
   const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
   const Eigen::ArrayXd error =
       slip.unaryExpr([&](double i) { return noise.slipStd(i); }).min(0.1 * slip.abs());
-  return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();
+  return (slip - slip.mean()).square().mean() > 4.0 * error.square().mean();  // (T9)
 }
 
 namespace {
@@ -69,7 +69,7 @@ std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise) {
     if (2 * std::set<int>(group.begin(), group.end()).size() > group.size()) continue;
     const Speeds v = speedsOf(
         trial, group, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
-    if (v.scatter() <= 4.0) return group;
+    if (v.scatter() <= 4.0) return group;  // (T12)
   }
   return {};
 }
@@ -125,7 +125,7 @@ std::vector<Posterior> deconvolve(const std::vector<double>& measured,
   Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(atoms, x.minCoeff(), x.maxCoeff());
   Eigen::ArrayXd weight = Eigen::ArrayXd::Constant(atoms, 1.0 / static_cast<double>(atoms)), std(atoms);
   Eigen::ArrayXXd share(n, atoms);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRounds; ++round) {  // (T10)
     for (Eigen::Index a = 0; a < atoms; ++a) std[a] = std::max(std_at(place[a]), 0.5 * spacing);
     for (Eigen::Index a = 0; a < atoms; ++a)
       share.col(a) = weight[a] / std[a] * (-0.5 * ((x - place[a]) / std[a]).square()).exp();
@@ -154,6 +154,7 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
   const double mean = x.mean(), scatter = (x - mean).square().mean();
   const double kept = std::clamp(1.0 - error.square().mean() / (scatter + 1e-300), 0.0, 1.0);
   std::vector<Posterior> out;
+  // (T11)
   for (Eigen::Index i = 0; i < n; ++i) out.push_back({mean + kept * (x[i] - mean), kept * squared(error[i])});
   return out;
 }
@@ -171,7 +172,7 @@ std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<in
   std::vector<Posterior> out;
   for (Eigen::Index i = 0; i < v.value.size(); ++i) {
     const double rim = trial.states[static_cast<std::size_t>(i)].rim_speed_mps;
-    const double kept = scatter / (scatter + v.variance[i]);
+    const double kept = scatter / (scatter + v.variance[i]);  // (T13)
     const double own = kept * v.variance[i] + (one ? 0.0 : squared(1.0 - kept) * v.mean_variance[i]);
     out.push_back({1.0 - (v.mean[i] + kept * (v.value[i] - v.mean[i])) / rim, own / (rim * rim)});
   }
@@ -203,7 +204,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
     trial.slip_variance[row] = std::clamp(slips[i].variance, (speed.empty() ? 0.3 : 0.02) * trust, trust);
     if (set) {
       trial.states[i].load_N = set->load_N(static_cast<int>(i), trial.load_N[i]);
-      trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;
+      trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;  // (T15)
       continue;
     }
     trial.states[i].load_N =

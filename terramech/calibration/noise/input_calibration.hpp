@@ -10,33 +10,34 @@
 
 namespace talus::terramech {
 
-/// Whether the measured slip varies by more than its own error may: by twice as much. Where it does not, what
-/// its error does to the readings is itself a smooth function of the measured slip, and a smooth of it would
-/// hide the error. `noise` is that of residuals without a smooth of slip; more than a tenth of the slip is
-/// not taken for error.
+/// Returns true if the measured slip varies by more than twice its possible error. Otherwise the effect of
+/// the slip error on the readings is a smooth function of the measured slip, and a smooth of slip would hide
+/// the error. `noise` is estimated from residuals without a smooth of slip; at most a tenth of the slip is
+/// treated as error.
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Number of the set speed over ground of each row: one of the whole table where its speeds, had from slip and rim
-/// speed, vary by no more than twice what the slips' error makes of them, else one of each run where those within
-/// runs do. The mean speed tells each row's slip better than its own reading then: 1 - v / (r omega). Empty where
-/// speeds vary by more, where the three columns are not tied, or where slips are not seen. `noise` as above.
+/// Number of the set speed over ground of each row. One speed for the whole table if the speeds, computed
+/// from slip and rim speed, vary by at most twice the effect of the slip error; otherwise one speed per run
+/// if speeds within runs satisfy this. The mean speed v then gives a more accurate slip than the reading: 1 -
+/// v / (r omega). Empty if speeds vary more, if slip, speed and rim speed are not consistent, or if
+/// slipIsSeen() is false. `noise` as in slipIsSeen().
 std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise);
 
-/// Whether slips are seen to vary, and speeds beyond one of the whole table.
+/// Returns true if slips vary measurably, and speeds vary beyond a single speed for the table.
 bool inputsAreSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Standard deviation of the error that all rows' slips share: that of the mean where there is one level of
-/// slip, or of the mean speed where there is one speed; empty where rows err each by themselves.
+/// Standard deviation of the slip error shared by all rows: that of the mean for a single slip level, or of
+/// the mean speed for a single speed; empty if the rows have independent errors.
 Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise);
 
-/// Sets a slip, and the speed over ground with it where the row's speeds agree with the slip it had: the
-/// three were then had from two.
+/// Sets the slip. Also updates the speed over ground if the row's speeds were consistent with the previous
+/// slip: two of slip, speed and rim speed determine the third.
 void setSlip(WheelState& state, double slip);
 
-/// Replaces slip and load of the states by their posterior means given what was measured, and sets their
-/// variances: the distribution of true values is found from all rows (nonparametric maximum likelihood,
-/// kiefer_wolfowitz_1956), so that the attenuation by noisy inputs is taken out. Call it with the measured
-/// slip and load in the states. Set loads, where they are known, take the place of that of loads.
+/// Replaces slip and load of the states by their posterior means given the measurements, and sets their
+/// variances. The distribution of true values is estimated from all rows (nonparametric maximum likelihood,
+/// kiefer_wolfowitz_1956), which removes the attenuation by noisy inputs. The states must contain the
+/// measured slip and load. Set loads, if known, replace the estimated distribution of loads.
 void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set = {});
 
 }  // namespace talus::terramech

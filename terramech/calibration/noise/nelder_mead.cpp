@@ -25,7 +25,7 @@ std::vector<double> nelderMead(const Cost& cost, const std::vector<double>& star
   double value = 0.0;
   try {
     search.optimize(x, value);
-  } catch (const nlopt::roundoff_limited&) {  // x is the lowest point so far: no step improves it any more
+  } catch (const nlopt::roundoff_limited&) {  // no step improves x within rounding
   }
   return x;
 }

@@ -5,15 +5,14 @@
 
 namespace talus::terramech {
 
-/// When the simplex stops.
+/// Step and stopping criteria of the simplex method.
 struct NelderMeadOptions {
-  double step = 0.5;        ///< first edge, in every coordinate
-  int evaluations = 1000;   ///< at most
-  double tolerance = 1e-6;  ///< spread of the values over the simplex at which it is done
+  double step = 0.5;        ///< initial edge length in every coordinate
+  int evaluations = 1000;   ///< maximum number
+  double tolerance = 1e-6;  ///< stops at this spread of the values over the simplex
 };
 
-/// The lowest point that the simplex method finds from `start` (nelder_mead_1965), for few coordinates of
-/// like scale.
+/// Minimum found by the simplex method from `start` (nelder_mead_1965), for few coordinates of similar scale.
 std::vector<double> nelderMead(const std::function<double(const std::vector<double>&)>& cost,
                                const std::vector<double>& start, const NelderMeadOptions& options);
 

@@ -6,8 +6,9 @@
 
 namespace talus::terramech {
 
-/// Root mean square of what errors of the sensors, and of slip and load by their slopes, leave in each scaled channel; NaN
-/// where nothing is measured. `level` holds the readings of a model, rows x kChannels.
+/// Root mean square of each scaled channel due to sensor errors, including errors of slip and load through
+/// their slopes; NaN for channels without measurements. `level` contains a model's predictions, rows x
+/// kChannels.
 std::array<double, kChannels> noiseFloor(const Trial& trial, const Eigen::MatrixXd& level,
                                          const InputSlopes& slopes, const SensorNoise& noise);
 

@@ -93,6 +93,7 @@ Share shareOf(const Groups& g, const Eigen::VectorXd& deviation, const Eigen::Ma
     product += there.select(own.array() * moved.array(), 0.0).sum() / variance;
     square += there.select(moved.array().square(), 0.0).sum() / variance;
   }
+  // (T14)
   return square > 0.0 ? Share{product / square, 1.0 / std::sqrt(square)} : Share{0.0, 1.0};
 }
 
@@ -104,7 +105,7 @@ double NominalLoad::errorStd() const {
 
 double NominalLoad::load_N(int row, double measured_N) const {
   const double deviation = std::log(measured_N) - log_mean[row];
-  return std::exp(log_mean[row] + (1.0 - error_share) * deviation);
+  return std::exp(log_mean[row] + (1.0 - error_share) * deviation);  // (T15)
 }
 
 std::optional<NominalLoad> nominalLoad(const Trial& trial, const Eigen::MatrixXd& residual,

@@ -10,24 +10,26 @@
 
 namespace talus::terramech {
 
-/// Loads that a campaign sets: one for each run, or a few levels. How far the readings about them are error shows in
-/// the contact: where a reading of the load moves and sinkage, torque and pull do not follow it as the model does, it was
-/// the reading that erred. No size of the sensor's error need be known for that.
+/// Nominal loads of a campaign: one per run, or a few levels. The contact reveals the share of reading error
+/// in the deviations from the nominal load: if a load reading deviates and sinkage, torque and pull do not
+/// follow as the model predicts, the reading is in error. The size of the sensor's error need not be known.
 struct NominalLoad {
-  Eigen::VectorXd log_mean;  ///< of each row's set load, ln N
-  Eigen::VectorXd rows;      ///< that share it
-  double error_share = 1.0;  ///< of the readings' deviation from the set load [-], (0, 1]
-  double scatter = 0.0;      ///< of those deviations, relative
+  Eigen::VectorXd log_mean;  ///< nominal load of each row, ln N
+  Eigen::VectorXd rows;      ///< number of rows with this nominal load
+  double error_share = 1.0;  ///< share of reading error in the deviation from the nominal load [-], (0, 1]
+  double scatter = 0.0;      ///< relative scatter of these deviations
 
   double errorStd() const;  ///< of a reading, relative
-  /// The true load of a row given its reading [N].
+  /// Estimated true load of a row from its reading [N].
   double load_N(int row, double measured_N) const;
 };
 
-/// The set loads of a trial, `residual` measured - model at the inputs as measured, `slopes` there. The share is the
-/// coefficient of -by_load d in the residual, both centred within the set loads, d = ln(reading / set load): 1 where the load
-/// was as set, 0 where it was as read (least squares, channels weighed by their scatter; ours). None where loads follow neither
-/// runs nor levels, of a drive, where the share is not known to a quarter, or not told from 0 by two standard errors.
+/// Nominal loads of a trial. `residual` is measured - model at the measured inputs, `slopes` the slopes
+/// there. The error share is the coefficient of -by_load d in the residual, both centred within the nominal
+/// loads, with d = ln(reading / nominal load): 1 if the true load was nominal, 0 if the true load was as read
+/// (least squares, channels weighted by their scatter; ours). A share within two standard errors of 1 is set
+/// to 1. Nothing if loads follow neither runs nor levels, for a drive, if the share has a standard error
+/// above 0.25, or if the share does not exceed 0 by two standard errors.
 std::optional<NominalLoad> nominalLoad(const Trial& trial, const Eigen::MatrixXd& residual,
                                        const InputSlopes& slopes);
 

@@ -31,12 +31,15 @@ struct RunSums {
   StepPrior prior;
 };
 
-/// One table's parameters and what they leave.
+/// Parameters of each table, and how well those of the other folds predict each fold.
 struct HeldOutFit {
-  Eigen::VectorXd log_likelihood;  ///< of each table's held-out rows, up to what all models share
-  Eigen::VectorXd prior_chi2;      ///< of the parameters fitted to all rows
-  Eigen::MatrixXd steps;           ///< those parameters, parameters x tables
-  /// log_likelihood - prior_chi2 / 2: a soil that returns to its prior counts in favour.
+  /// Sum over folds of ln p(rows of the fold | rows of the others, prior), less the constant that all models share: the
+  /// predictive density, in which a parameter that the other folds do not determine has its prior.
+  Eigen::VectorXd log_likelihood;
+  /// Of each parameter the least among the fits without one fold each: of what one fold alone determines none.
+  Eigen::VectorXd prior_chi2;
+  Eigen::MatrixXd steps;  ///< those parameters, parameters x tables
+  /// log_likelihood - prior_chi2 / 2 (T34): no prior counts twice, and a soil that returns to its prior gains.
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
@@ -57,7 +60,7 @@ class RunLikelihood {
   /// sums(), `of_known` its result.
   RunSums sums(const RunSums& of_known, const LinearModel& known, const LinearModel& added) const;
 
-  /// Each fold told by the parameters of the others, for `count` tables from `first` on.
+  /// Each fold predicted from the others, for `count` tables from `first` on.
   HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
   /// Covariance R of a unit's error that is most likely with these columns in the model, among those in which

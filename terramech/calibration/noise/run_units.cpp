@@ -113,7 +113,7 @@ std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const 
     if (3 * length * together > run.size()) continue;
     const std::vector<int> cut = stretches(runs, run.size(), length * together);
     const double now = logLikelihood(whitening, cut, table);
-    if (now < likely + kClearly) continue;
+    if (now < likely + kClearly) continue;  // (T21)
     best = cut;
     likely = now;
   }

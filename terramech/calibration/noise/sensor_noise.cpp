@@ -82,7 +82,7 @@ std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::Mat
                                             const StatedSensors& stated, SensorNoise& noise) {
   std::vector<StrainedSensor> all;
   const auto isStrained = [&](const char* column, const std::optional<double>& declared, double fitted) {
-    if (!declared || !(fitted > *declared * std::exp(2.0 * kStatedSpread))) return false;
+    if (!declared || !(fitted > *declared * std::exp(2.0 * kStatedSpread))) return false;  // (T8)
     all.push_back({column, *declared, fitted});
     return true;
   };
@@ -160,7 +160,7 @@ Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residua
     const Eigen::MatrixXd q = orthonormal(all);
     Eigen::VectorXd r(n);
     for (Eigen::Index i = 0; i < n; ++i) r[i] = residual(rows[static_cast<std::size_t>(i)], c);
-    r -= q * (q.transpose() * r);
+    r -= q * (q.transpose() * r);  // (T6)
     r *= std::sqrt(static_cast<double>(n) / static_cast<double>(n - q.cols()));
     for (Eigen::Index i = 0; i < n; ++i) left(rows[static_cast<std::size_t>(i)], c) = r[i];
   }
@@ -201,7 +201,7 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
     set(log_ratio);
     double sum = 0.0;
     for (std::size_t k = 0; k < all.size(); ++k) sum += 0.5 * squared(log_ratio[k] / all[k].spread);
-    return sum - logLikelihood(trial, residual, level, slopes, noise);
+    return sum - logLikelihood(trial, residual, level, slopes, noise);  // (T7)
   };
   set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
                  {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));

@@ -11,31 +11,32 @@
 
 namespace talus::terramech {
 
-/// Maximum a posteriori noise of sensors and inputs from what is left of the residuals once every smooth
-/// dependence on a covariate is taken out (so that a missing effect does not pass for noise). Errors of slip
-/// and load show as deviations that move all channels along `slopes` together. Stated standard deviations are
-/// priors of 25 %, others are 3 % within a factor 2. `level` is the model's reading, for the relative parts.
+/// Maximum a posteriori noise of sensors and inputs, from residuals without their smooth dependence on
+/// covariates, so that a missing effect is not taken for noise. Errors of slip and load are deviations that
+/// move all channels together along `slopes`. Stated standard deviations are priors with 25 % uncertainty;
+/// the others have priors of 3 % within a factor of 2. `level` contains the model's predictions, for relative
+/// errors.
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
-/// Sensors that by the fitted noise err far more than is stated of them: by more than two standard deviations of that
-/// statement's own uncertainty, e^0.5. `noise` is left as it would be if they erred as stated.
+/// Sensors whose fitted noise exceeds the stated noise by a factor above e^0.5, two standard deviations of
+/// the uncertainty of a statement. Sets these sensors in `noise` to the stated values.
 std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::MatrixXd& level,
                                             const StatedSensors& stated, SensorNoise& noise);
 
-/// Columns that are measured and of whose error nothing is stated.
+/// Measured columns without a stated error.
 std::vector<std::string> unstatedSensors(const Trial& trial, const StatedSensors& stated);
 
-/// Residuals with an additive smooth of these columns taken out, scaled up for the freedom that it took. NaN
-/// stay.
+/// Residuals without an additive smooth of the columns, scaled up for the degrees of freedom of the smooth.
+/// NaN values remain.
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
                               const std::vector<std::string>& columns);
 
-/// The covariates of a trial that the noise may be smoothed over: those chosen for their link to the residuals though
-/// it seems to be by chance would take a part of the noise with them.
+/// Covariates of a trial used for smooths in the noise fit. Covariates that a screening selected but that are
+/// not significant (Trial::chance) are excluded, because they would absorb a part of the noise.
 std::vector<std::string> noiseColumns(const Trial& trial);
 
-/// Those that do not determine its slip.
+/// The noise covariates that do not determine the slip.
 std::vector<std::string> allButSlip(const Trial& trial);
 
 }  // namespace talus::terramech

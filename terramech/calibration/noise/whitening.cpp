@@ -14,6 +14,7 @@ namespace talus::terramech {
 Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
                               const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
                               double load_variance) {
+  // (T3)
   Eigen::Matrix4d s = slip_variance * slopes.by_slip.row(row).transpose() * slopes.by_slip.row(row) +
                       load_variance * slopes.by_load.row(row).transpose() * slopes.by_load.row(row);
   for (int c = 0; c < kChannels; ++c) {
@@ -35,7 +36,7 @@ Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::Matrix
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = covariance(index[i], index[j]);
-  const Part inverse = Eigen::LLT<Part>(part).matrixL().solve(Part::Identity(size, size));
+  const Part inverse = Eigen::LLT<Part>(part).matrixL().solve(Part::Identity(size, size));  // (T4)
   Eigen::Matrix4d full = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j)
@@ -104,7 +105,7 @@ std::vector<SharedFactor> Whitening::shared() const {
   const std::size_t rows = factor.size();
   std::vector<SharedFactor> all(rows, SharedFactor::Zero());
   for (std::size_t row = 0; row < rows; ++row) {
-    all[row].leftCols<kChannels>() = factor[row];
+    all[row].leftCols<kChannels>() = factor[row];  // (T16)
     if (!common.by_soil.empty())
       all[row].rightCols<kShared - kChannels>() = factor[row] * common.by_soil[row];
   }
@@ -119,7 +120,7 @@ std::vector<SharedFactor> Whitening::shared() const {
   return all;
 }
 
-// (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
+// (T20) (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
 // I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
 void Whitening::settleRuns(Eigen::VectorXd& rows) const {
   const std::vector<int>& unit = common.unit;

@@ -9,49 +9,49 @@
 
 namespace talus::terramech {
 
-/// Slopes of the scaled readings in the two inputs that are themselves measured, rows x kChannels.
+/// Slopes of the scaled predictions in the measured inputs slip and load, rows x kChannels.
 struct InputSlopes {
   Eigen::MatrixXd by_slip;  ///< per unit of slip
-  Eigen::MatrixXd by_load;  ///< per relative change of load, forces over the measured load
+  Eigen::MatrixXd by_load;  ///< per relative change of load; forces over the measured load
 };
 InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
 
-/// Covariance of one row's scaled residuals. `slip_variance` absolute, `load_variance` relative.
+/// Covariance of one row's scaled residuals. `slip_variance` is absolute, `load_variance` relative.
 Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
                               const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
                               double load_variance);
 
-/// Inverse of the lower Cholesky factor of a row's covariance, zero rows and columns for the channels that it
-/// does not measure.
+/// Inverse of the lower Cholesky factor of a row's covariance; rows and columns of channels without a
+/// measurement are zero.
 Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row);
 
-/// A row with 0 where nothing was measured.
+/// One row of the residuals; 0 for missing measurements.
 Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 
-/// Makes residuals of unit variance and uncorrelated: rowFactor() of their covariance; what rows of one
-/// moment share of its slip's error taken out; then what rows of a run share.
+/// Transforms residuals to unit variance without correlation in three steps: rowFactor() of the covariance of
+/// a row, then the slip error shared by rows of a moment, then the error shared by rows of a run.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;
-  Eigen::MatrixXd std;   ///< marginal standard deviations of a row's own error, rows x kChannels
-  MomentSlip slip{};     ///< error of the slip that rows of a moment share
-  SharedError common{};  ///< what the rows of a run share
+  Eigen::MatrixXd std;   ///< marginal standard deviations of a row's independent error, rows x kChannels
+  MomentSlip slip{};     ///< slip error shared by rows of a moment
+  SharedError common{};  ///< error shared by rows of a run
 
-  /// What each part of an error that rows share becomes in each row of rowByRow(), less what the moments' slip
-  /// takes out.
+  /// Effect of each shared error component on every row of rowByRow(), after removal of the moments' slip
+  /// error.
   std::vector<SharedFactor> shared() const;
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
-  Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< the same without the runs' error
-  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each over its own std
+  Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< without the shared errors of runs
+  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each value divided by its own std
 
  private:
   void settleRuns(Eigen::VectorXd& rows) const;
 };
-/// The rows that `keep` marks.
+/// Whitening of the rows marked by `keep`.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
 
-/// What strength and stiffness of the soil do to each row about a model's readings, to first order; nothing on a
-/// drive, whose soil changes along the way as its slip does.
+/// Linearised effect of soil strength and stiffness on each row at the model's predictions; empty on a drive,
+/// along which the soil changes like the slip.
 std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
                                     const Eigen::MatrixXd& level, const SolvedContacts& solved);
 

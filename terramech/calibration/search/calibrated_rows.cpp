@@ -39,7 +39,7 @@ void CalibratedRows::settle(const Eigen::MatrixXd& noise_alone, const Eigen::Mat
   model.noise = fitNoise(trial_, noise_alone, level, measured_slopes, knownSensors(model));
   calibrateInputs(trial_, model.noise, set_load_);
   level_ = predictRows(model, trial_, solved);
-  residual_ = trial_.measured - level_;
+  residual_ = trial_.measured - level_;  // (T1)
   const InputSlopes slopes = inputSlopes(model, trial_, solved);
   by_slip_.reset();
   const Eigen::VectorXd shared = sharedSlipStd(trial_, model.noise);

@@ -11,42 +11,43 @@
 
 namespace talus::terramech {
 
-/// Rows of a trial beside a model: slip and load at their most likely values, the residuals, and the noise that these
-/// show. `solved` as predictRows().
+/// Rows of a trial relative to a model: most likely slip and load, residuals, and noise estimated from the
+/// residuals. `solved` as in predictRows().
 class CalibratedRows {
  public:
   explicit CalibratedRows(const Trial& trial) : trial_(trial) {}
 
-  /// Estimates the noise from the residuals of `model` less every smooth dependence on a column, writes it to model.noise,
-  /// and calibrates slip and load by it. The error that rows of a unit share starts at roughRunError().
+  /// Estimates the noise from the residuals of `model` without their smooth dependence on columns, writes it
+  /// to model.noise, and calibrates slip and load. The shared error of units starts at roughRunError().
   void calibrate(RefinedModel& model, SolvedContacts& solved);
 
-  /// Replaces the covariance of the error that rows of a unit share.
+  /// Sets the covariance of the error shared by rows of a unit.
   void setRunError(const RunError& run);
 
-  /// Residuals of another model, the noise as it is.
+  /// Computes the residuals of another model with unchanged noise.
   void compare(const RefinedModel& model, SolvedContacts& solved);
 
   const Trial& trial() const { return trial_; }
-  const Eigen::MatrixXd& level() const { return level_; }        ///< the model's readings, rows x kChannels
+  const Eigen::MatrixXd& level() const { return level_; }        ///< predictions, rows x kChannels
   const Eigen::MatrixXd& residual() const { return residual_; }  ///< measured - level
   const Whitening& whitening() const { return whitening_; }
   const Eigen::VectorXd& white() const { return white_; }  ///< whitened residuals, rows*kChannels
 
-  /// Change of the readings by one standard deviation of the error that all slips share; empty where rows vary in slip and
-  /// in speed.
+  /// Change of the predictions for one standard deviation of the slip error shared by all rows; empty if rows
+  /// vary in slip and in speed.
   const std::optional<Eigen::MatrixXd>& bySharedSlip() const { return by_slip_; }
 
-  Eigen::VectorXd sinkages_m() const;  ///< the model's
+  Eigen::VectorXd sinkages_m() const;  ///< sinkages of the model
 
  private:
   void backToMeasured();
   void findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes);
   StatedSensors knownSensors(const RefinedModel& model) const;
-  /// Fits the noise to residuals that hold nothing else, at the measured inputs, and all that follows from it.
+  /// Fits the noise to residuals that contain only noise, at the measured inputs, and updates all dependent
+  /// quantities.
   void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
               const InputSlopes& measured_slopes, RefinedModel& model, SolvedContacts& solved);
-  /// Finds the units whose rows share an error, and the noise without it.
+  /// Determines the units whose rows share an error, and the noise without the shared error.
   void shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level, const InputSlopes& measured_slopes,
                    RefinedModel& model, SolvedContacts& solved);
 

@@ -93,7 +93,7 @@ Trial screenColumns(const RefinedModel& base, const Trial& trial, const TraceOpt
     const std::string& column = own[order[k]];
     if (k >= most)
       screened.dropped.push_back(column);
-    else if (gain[order[k]] <= by_chance)
+    else if (gain[order[k]] <= by_chance)  // (T40)
       screened.chance.push_back(column);
   }
   const auto isDropped = [&](const std::string& name) { return isIn(screened.dropped, name); };

@@ -6,18 +6,20 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// The part of a large table that a search can take in bounded time.
+/// Reduction of a large table to a size that a search can process in bounded time.
 namespace talus::terramech {
 
-/// Marks at most `most` rows, all where there are no more: the rows in the order of runs and of the file are cut into as
-/// many equal stretches, of which one row each is drawn at random, so that every run keeps its share and no period
-/// of a design meets that of the sample. Of a drive whole moments.
+/// Marks a sample of at most `most` rows, or all rows if there are no more. The rows in order of runs and of
+/// the file are divided into `most` equal stretches, and one row is drawn at random from each: every run
+/// keeps its share, and the sample has no period in common with the design. For a drive, whole moments are
+/// drawn.
 std::vector<char> rowSample(const Trial& trial, int most, std::uint64_t seed);
 
-/// A trial with at most options.most_columns columns of one's own, numeric and text together: those whose coarseCandidates()
-/// gain most on the residuals of `base`, by the gain of the search itself, in the table's order. The others are named
-/// in Trial::dropped and left out of the states. Kept columns whose gain does not exceed ln(columns / significance),
-/// which noise reaches in some column with probability `significance` at most, are in Trial::chance.
+/// Returns the trial with at most options.most_columns additional columns, numeric and text together: those
+/// whose coarseCandidates() have the greatest gain on the residuals of `base`, with the gain of the search,
+/// in the order of the table. The other columns are listed in Trial::dropped and removed from the states.
+/// Kept columns whose gain does not exceed ln(columns / significance) are listed in Trial::chance; noise
+/// reaches this gain in some column with a probability of at most `significance`.
 Trial screenColumns(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
                     const std::function<bool(double)>& go_on);
 

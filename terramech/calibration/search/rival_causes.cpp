@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t kRivals = 3;
 
-/// What an answer calls a cause.
+/// Key of a cause: name, column and group of the candidate.
 std::string causeOf(const Candidate& c) {
   return c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value;
 }
 
-/// Whether two parts are of one cause: of one column, a curve or forms of one family; drifts of one column are one cause
-/// where they differ in their course alone.
+/// Returns true if two effects are the same cause: the same column, and curves or forms of one family. Drifts
+/// of one column are the same cause if they differ in their time course only.
 bool isOneCause(const Effect& other, const Effect& own) {
   const Candidate a{{other}, "", 0}, b{{own}, "", 0};
   if (a.covariate() != b.covariate()) return false;
@@ -28,15 +28,16 @@ bool isOneCause(const Effect& other, const Effect& own) {
           own.name.starts_with(other.name));
 }
 
-/// Whether the other holds the constant offset of a sensor that a part is: a curve or a drift of what that sensor reads.
+/// Returns true if the candidate includes the constant sensor offset `own`: a curve or a drift of the same
+/// sensor.
 bool holdsOffset(const Candidate& other, const Effect& own) {
   const EffectForm* form = findEffect(own.name);
   return form && form->of_sensor && own.parameters.size() == 1 &&
          other.parts.front().channel == own.channel && (other.empirical() || other.family == "drift");
 }
 
-/// Whether the other is another cause than these parts. A product stands for either of its columns, so that only the columns
-/// of another product are causes beside one.
+/// Returns true if the candidate is another cause than the effects `own`. A product represents both of its
+/// columns; product candidates are therefore rivals of products only.
 bool isOther(const Candidate& other, const std::vector<Effect>& own) {
   if (isProduct(other.covariate()) && !isProduct(own.front().covariate)) return false;
   return std::none_of(own.begin(), own.end(), [&](const Effect& part) {
@@ -54,7 +55,7 @@ std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation>
     if (rivals.size() == kRivals || e.gain <= 0.0) break;
     if (!seen.insert(causeOf(e.candidate)).second) continue;
     RefinedModel model = search.modelWith(e.candidate);
-    // A curve that is level is a constant, of whatever column.
+    // A constant curve depends on no column.
     if (search.dependsOn(model, e.candidate.covariate()))
       rivals.push_back({in_place_of, e, std::move(model)});
   }
@@ -73,7 +74,7 @@ std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k) {
   for (const Promise& p : without.screen(0).promises) {
     if (tried.size() == kFits || p.gain <= 0.0) break;
     if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
-    // Of a column the best curve; of its named forms each.
+    // At most one curve per column, and each named form.
     const std::string kind = p.candidate.empirical() ? p.candidate.covariate() : causeOf(p.candidate);
     if (tried.insert(kind).second) ranked.push_back(without.fitted(p.candidate));
   }

@@ -7,12 +7,13 @@
 
 namespace talus::terramech {
 
-/// Other causes for accepted candidate number `k` of a search: the best form and the best curve of each column, and other
-/// forms of its own column, fitted in its place beside the other effects. At most three, of different columns or forms, best
-/// first; their gains are counted as TraceSearch::gainOf(k).
+/// Alternative causes for accepted candidate `k` of a search: the best form and the best curve of each
+/// column, and other forms of the candidate's column, fitted in its place beside the other effects. At most
+/// three, of different columns or forms, best first; gains are comparable to TraceSearch::gainOf(k).
 std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k);
 
-/// Those of `ranked` that a model without any accepted candidate may lack: at most three, of different columns or forms.
+/// Alternative causes from `ranked` for a model without accepted candidates: at most three, of different
+/// columns or forms.
 std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked);
 
 }  // namespace talus::terramech

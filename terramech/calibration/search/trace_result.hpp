@@ -124,7 +124,8 @@ struct TraceResult {
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   std::vector<StrainedSensor> strained;  ///< beside the refined model
   ChannelErrors declared_floor{};        ///< noise_floor if these sensors erred as stated
-  std::optional<Estimate> first_prior;   ///< of the first effect's first parameter, known beside the model
+  std::optional<Estimate>
+      first_prior;  ///< of the first number of the first effect found, known beside the model
   SharedError base_shared,
       shared;  ///< what the rows of a run have in common beside the base, and the refined model
   std::vector<EndLevel> ends;  ///< of the model beyond its rows

@@ -123,14 +123,14 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
   SolvedContacts before_solved = fit_.solved();
   const NullModel before = fit_.standing(model(), rows.residual(), before_solved),
                   after = fit_.standing(found.model, left, solved);
-  e.gain = fittedScore(after) - fittedScore(before);
+  e.gain = fittedScore(after) - fittedScore(before);  // (T35)
   const Eigen::VectorXd was = rows.whitening().marginal(rows.residual()),
                         is = rows.whitening().marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   // What explains leaves the readings themselves less to explain. Beside a soil that is known, one that moves them
   // farther off, by more than all that it gains, moved what rows of a run share; a soil that is fitted moves with it.
-  if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))
+  if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))  // (T41)
     e.gain = std::min(0.0, e.gain);
   return e;
 }
@@ -154,7 +154,7 @@ bool TraceSearch::dependsOn(const RefinedModel& model, const std::string& column
   SolvedContacts solved, solved_exchanged;
   const Eigen::VectorXd moved = fit_.rows().whitening().marginal(trial.measured.array().isFinite().select(
       predictRows(model, exchanged, solved_exchanged) - predictRows(model, trial, solved), 0.0));
-  return 0.5 * moved.squaredNorm() > closeGain(options_);
+  return 0.5 * moved.squaredNorm() > closeGain(options_);  // (T47)
 }
 
 std::vector<Explanation> TraceSearch::pairs() {
@@ -234,7 +234,7 @@ bool TraceSearch::differs(const RefinedModel& without) const {
   SolvedContacts solved;
   const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
       predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
-  constexpr double kShare = 0.02;
+  constexpr double kShare = 0.02;  // (T46)
   for (int c = 0; c < kChannels; ++c)
     if (moved(Eigen::seq(c, Eigen::last, Eigen::fix<kChannels>)).norm() >
         kShare * std::sqrt(static_cast<double>(rows.trial().rows())))

@@ -10,17 +10,18 @@
 
 namespace talus::terramech {
 
-/// One search: candidates compared beside a model that grows by those accepted. Used by traceResiduals().
+/// A search that compares candidates beside a model and adds the accepted candidates. Used by
+/// traceResiduals().
 class TraceSearch {
  public:
-  /// `go_on` is asked between pieces of work with the share that is done; false ends each call early.
+  /// `go_on` is called between steps of work with the completed share; false ends each call early.
   TraceSearch(
       const RefinedModel& base, const Trial& trial, const TraceOptions& options,
       std::function<bool(double)> go_on = [](double) { return true; });
 
   const RefinedModel& model() const { return fit_.model(); }
 
-  /// All candidates to first order, and what tables drawn from the model would promise.
+  /// Linearised gains of all candidates, and their distribution under noise.
   struct Screening {
     std::vector<Promise> promises;  ///< best first
     double threshold = 0.0;
@@ -29,85 +30,88 @@ class TraceSearch {
   };
   Screening screen(int draws);
 
-  /// Gains of candidates to first order, in their order.
+  /// Linearised gains of the candidates, in their order.
   std::vector<double> gainsOf(const std::vector<Candidate>& candidates);
 
-  /// The most promising candidates fitted inside the full model, by the same gain, best first.
+  /// Fits the most promising candidates inside the full model; best gain first.
   std::vector<Explanation> fitBest(const std::vector<Promise>& promises);
 
-  /// A candidate fitted together with everything else.
+  /// Fits a candidate together with all other parameters.
   Explanation fitted(const Candidate& candidate);
 
-  /// The model with a candidate, fitted, with the covariance of its parameters.
+  /// The fitted model with a candidate, including the covariance of its parameters.
   RefinedModel modelWith(const Candidate& candidate) const;
 
-  /// Whether what a model predicts depends on a column: rows that exchange their values of it (the first with that in the
-  /// middle, and so on) differ by more than closeGain() in log-likelihood.
+  /// Returns true if the predictions of a model depend on a column: an exchange of the column's values among
+  /// rows (the first with the middle row, and so on) changes the log-likelihood by more than closeGain().
   bool dependsOn(const RefinedModel& model, const std::string& column) const;
 
-  /// What two candidates together gain, the first fitted before the second is sought, best first.
+  /// Gains of pairs of candidates, the first fitted before the second is searched; best first.
   std::vector<Explanation> pairs();
 
-  /// Puts a candidate into the model, fits everything again and estimates the noise again.
+  /// Adds a candidate to the model, refits all parameters and re-estimates the noise.
   void accept(const Candidate& candidate);
 
-  /// Keeps the first parameter of the effect accepted first near what was known of it before.
+  /// Sets a prior for the first parameter of the effect accepted first.
   void trust(const std::optional<Estimate>& prior);
 
-  /// Takes accepted candidate number k out and fits the others again, the noise as it is.
+  /// Removes accepted candidate k and refits the others with unchanged noise.
   void leaveOut(std::size_t k);
 
-  /// Fits everything and estimates the noise again.
+  /// Refits all parameters and re-estimates the noise.
   void settleAll();
 
-  /// What accepted candidate number k gains beside the others, the noise as it is.
+  /// Gain of accepted candidate k beside the others, with unchanged noise.
   double gainOf(std::size_t k) const;
 
-  /// What part `part` of accepted candidate number k gains beside everything else, the noise as it is.
+  /// Gain of part `part` of accepted candidate k beside all others, with unchanged noise.
   double gainOfPart(std::size_t k, std::size_t part) const;
 
-  /// Whether accepted candidate number k moves the readings of the rows, in any channel by a fiftieth of their
-  /// noise, root mean square: less would gain closeGain() in no table that is searched.
+  /// Returns true if accepted candidate k changes the predictions of some channel by at least a fiftieth of
+  /// its noise (root mean square). Smaller changes would gain less than closeGain() in any table that is
+  /// searched.
   bool acts(std::size_t k) const;
 
-  /// Takes those parts out of accepted candidate number k, last first, that gain no more than `least`; one stays.
+  /// Removes those parts of accepted candidate k, last first, that gain no more than `least`; at least one
+  /// part remains.
   void thin(std::size_t k, double least);
 
-  /// Takes those parts out of it that move nothing, as acts(), whatever they gain: a form at its bound may gain by what it
-  /// would do beyond it, to first order. One stays.
+  /// Removes those parts of accepted candidate k that have no effect according to acts(), regardless of their
+  /// gain: a form at its bound may have a linearised gain from values beyond the bound. At least one part
+  /// remains.
   void dropIdleParts(std::size_t k);
 
-  /// The effects of accepted candidate number k as they are now in the model.
+  /// Current effects of accepted candidate k in the model.
   std::vector<Effect> parts(std::size_t k) const;
 
-  /// What the rows of a run have in common beside the model.
+  /// Error shared by the rows of a run.
   const SharedError& sharedError() const { return fit_.rows().whitening().common; }
 
-  /// Squared length of the whitened residuals.
+  /// Squared norm of the whitened residuals.
   double chi2() const { return fit_.rows().white().squaredNorm(); }
 
-  /// Gives curves more knots where that gains.
+  /// Increases the number of knots of curves if this yields a gain.
   void refineCurves();
 
-  /// Fills the result's model, errors and standard deviations.
+  /// Writes the model, errors and standard deviations to the result.
   void finish(TraceResult& result);
 
  private:
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
   bool refineCurve(std::size_t k);
   RefinedModel withoutPart(std::size_t k, std::size_t part) const;
-  /// Whether the readings of the rows differ without an effect, as acts().
+  /// Returns true if the predictions change without an effect, by the criterion of acts().
   bool differs(const RefinedModel& without) const;
-  std::size_t firstPart(std::size_t k) const;  ///< of accepted candidate number k among the model's effects
+  std::size_t firstPart(std::size_t k) const;  ///< index of candidate k's first effect in the model
   /// Sets the parameters, their standard deviations and the channel of each effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;
 
   TraceOptions options_;
   std::function<bool(double)> go_on_;
   TrialFit fit_;
-  std::optional<Estimate> first_prior_;  ///< of a correction that is never taken out
-  std::size_t given_effects_;            ///< of the base, in front; fitted, never taken out
-  std::vector<std::size_t> part_count_;  ///< effects in the model of each accepted candidate
+  std::optional<Estimate> first_prior_;  ///< of a correction that is never removed
+  std::size_t given_effects_;            ///< leading effects, of the base; fitted, never removed
+  std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
 };
 
 }  // namespace talus::terramech

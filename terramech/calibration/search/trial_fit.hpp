@@ -26,7 +26,7 @@ class TrialFit {
   const CalibratedRows& rows() const { return rows_; }
   const SolvedContacts& solved() const { return solved_; }
 
-  /// Keeps the first parameter of the model's first effect near what was known of it before.
+  /// Keeps the first parameter of the first effect behind the base's near what was known of it before.
   void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
 
   /// Another model fitted to the rows, the noise as it is.
@@ -69,6 +69,7 @@ class TrialFit {
 
   bool fit_soil_;
   RefinedModel model_;
+  int given_effects_;     ///< of the base, in front
   double prior_modulus_;  ///< k_c + k_phi of the base, that its log_stiffness counts from
   CalibratedRows rows_;
   Folds folds_;

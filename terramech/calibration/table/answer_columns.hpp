@@ -8,7 +8,7 @@
 
 namespace talus::terramech {
 
-/// Columns that hold what a model predicts, in the order of Channel.
+/// Columns of the quantities that a model predicts, in the order of Channel.
 inline constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
                                                              "side_force_N"};
 

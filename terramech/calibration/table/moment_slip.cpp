@@ -32,7 +32,7 @@ void MomentSlip::takeOut(Eigen::Ref<Eigen::VectorXd> rows) const {
   for (Eigen::Index row = 0; row < moved.rows(); ++row) {
     const int m = moment[static_cast<std::size_t>(row)];
     if (p.length[m] <= 0.0) continue;
-    // (I + u u^T)^(-1/2) = I - (1 - (1 + |u|^2)^(-1/2)) u u^T / |u|^2
+    // (T5) (I + u u^T)^(-1/2) = I - (1 - (1 + |u|^2)^(-1/2)) u u^T / |u|^2
     const double share = (1.0 - 1.0 / std::sqrt(1.0 + p.length[m])) * p.with_rows[m] / p.length[m];
     rows.segment(row * channels, channels) -= share * moved.row(row).transpose();
   }

@@ -4,25 +4,24 @@
 
 #include <Eigen/Core>
 
-/// All wheels of a rover turn at one rate and its slip is read once a moment: rows of a moment share the
-/// error of that reading.
+/// All wheels of a rover have the same turning rate, and the slip is measured once per moment: rows of a
+/// moment share the slip error.
 namespace talus::terramech {
 
-/// What the shared error does to rows that are otherwise independent, of unit variance and uncorrelated:
-/// their covariance is I + u u^T over each moment. Empty where rows share nothing.
+/// Effect of the shared slip error on otherwise independent rows of unit variance: their covariance is I + u
+/// u^T within each moment. Empty if rows share no error.
 struct MomentSlip {
   std::vector<int> moment;  ///< number of each row's moment, from 0
-  Eigen::MatrixXd moved;    ///< u, rows x channels: by one standard deviation of the slip's error
+  Eigen::MatrixXd moved;    ///< u, rows x channels: change for one standard deviation of the slip error
 
-  /// Makes rows, channels of a row side by side, independent of one another, too: (I + u u^T)^(-1/2) of each
-  /// moment.
+  /// Decorrelates the rows (channels of a row adjacent) by (I + u u^T)^(-1/2) of each moment.
   void takeOut(Eigen::Ref<Eigen::VectorXd> rows) const;
 
-  /// What the log-likelihood of such rows is more than were they independent (Sherman and Morrison).
+  /// Log-likelihood of the rows minus that of independent rows (Sherman-Morrison).
   double logLikelihood(const Eigen::VectorXd& rows) const;
 };
 
-/// The rows that `keep` marks.
+/// MomentSlip of the rows marked by `keep`.
 MomentSlip subset(const MomentSlip& slip, const std::vector<char>& keep);
 
 }  // namespace talus::terramech

@@ -36,7 +36,7 @@ Rows readRows(const TableFile& table, const std::stop_token& stop) {
   return all;
 }
 
-/// A column as numbers; false when a field holds words.
+/// Reads a column as numbers; false if a field contains text.
 bool numbersOf(const Rows& all, std::size_t column, std::vector<double>& values) {
   bool any = false;
   for (const CsvRow& row : all.rows) {
@@ -48,7 +48,7 @@ bool numbersOf(const Rows& all, std::size_t column, std::vector<double>& values)
   return any;
 }
 
-/// The conditions alone: a telemetry without the answers.
+/// Telemetry with the conditions only, without measured answers.
 Telemetry conditionsOf(const Rows& all, const std::string& source) {
   Telemetry t;
   t.source = source;
@@ -80,7 +80,8 @@ std::string faultOf(const CsvRow& row, const WheelState& s) {
   return "";
 }
 
-/// Takes back the corrections that the scope does not hold for; the standard deviation holds what is taken back.
+/// Removes the corrections that the scope excludes, and includes the removed correction in the standard
+/// deviation.
 void takeBack(const ModelScope& scope, const WheelState& state, Prediction& p) {
   std::array<double, kChannels> taken{};
   for (std::size_t c = 0; c < kChannels; ++c) taken[c] = 1.0 - scope.share(state, c);
@@ -94,7 +95,7 @@ void takeBack(const ModelScope& scope, const WheelState& state, Prediction& p) {
   }
 }
 
-/// Widens a prediction outside the trained ranges; names the columns.
+/// Increases the standard deviation outside the trained ranges; returns the names of the columns.
 std::string outsideOf(const ModelScope& scope, const WheelState& state, Prediction& p) {
   std::string columns;
   for (const TrainedRange& range : scope.trained) {

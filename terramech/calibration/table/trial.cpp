@@ -62,7 +62,7 @@ void needWheel(const Telemetry& t, const RefinedModel& model) {
                     "add them, or pass --rover"});
 }
 
-/// Distinct finite values, at most `limit` of them.
+/// Number of distinct finite values, at most `limit`.
 std::size_t distinct(const std::vector<double>& values, std::size_t limit) {
   std::set<double> seen;
   for (double v : values)
@@ -109,7 +109,8 @@ std::vector<int> runNumbers(const std::vector<WheelState>& states) {
   return run;
 }
 
-// Rows of one moment of one run, each of another wheel.
+// Moment number of each row: rows of one run at one time, each of a different wheel; empty if any row does
+// not fit this scheme.
 std::vector<int> momentNumbers(const std::vector<WheelState>& states) {
   std::map<std::pair<std::string_view, double>, std::set<std::string_view>> wheels;
   std::map<std::pair<std::string_view, double>, int> numbers;
@@ -125,8 +126,8 @@ std::vector<int> momentNumbers(const std::vector<WheelState>& states) {
   return rows >= 2 * numbers.size() ? moment : std::vector<int>{};
 }
 
-// What the slope asks of the whole rover, for the first row of each moment: at a steady speed
-// sum(DP) = tan(slope) sum(W), the loads being normal to the ground.
+// Sets DP/W in the first row of each moment to the rover's total from the slope: at constant speed sum(DP) =
+// tan(slope) sum(W), with loads normal to the ground.
 void balance(Trial& trial) {
   std::set<int> seen;
   for (int row = 0; row < trial.rows(); ++row) {
@@ -136,7 +137,8 @@ void balance(Trial& trial) {
   }
 }
 
-// A drive whose wheels' pull nobody measured is asked for the rover's; the slope is then an answer, no cause.
+// For a drive without measured wheel pull the rover's total pull is used; the slope is then a measured answer
+// and not a covariate.
 void addMoments(Trial& trial) {
   if (trial.has(Channel::DrawbarPull)) return;
   trial.moment = momentNumbers(trial.states);
@@ -146,7 +148,7 @@ void addMoments(Trial& trial) {
   if (std::set<int>(trial.run.begin(), trial.run.end()).size() < 5) trial.run = trial.moment;
 }
 
-// The pull of the whole rover in place of the first wheel's.
+// Replaces the pull of the first wheel of each moment by that of the whole rover.
 void pullTogether(const Trial& trial, Eigen::MatrixXd& scaled) {
   const int pull = static_cast<int>(Channel::DrawbarPull);
   const int moments = *std::max_element(trial.moment.begin(), trial.moment.end()) + 1;
@@ -264,7 +266,7 @@ std::vector<char> beyondAxle(const Trial& trial) {
 
 namespace {
 
-// Without all of its wheels the rover's pull is not known.
+// The rover's pull is unknown if rows of some wheels are removed.
 void dropBrokenMoments(const Trial& trial, const std::vector<char>& keep, Trial& part) {
   std::set<int> broken;
   for (std::size_t row = 0; row < trial.moment.size(); ++row)

@@ -24,7 +24,7 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
                                       limits);
 }
 
-// The pull at other slips: of the soils that all rows together allow, at each row's load.
+// Pull at other slips from the posterior soils of all rows together, at the load of each row.
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
                  std::vector<Assessment>& result) {
   SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
@@ -74,7 +74,7 @@ RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& lef
   return groundTruthOf(file.model);
 }
 
-// What was read of the sinkage goes before what the model foretells.
+// A measured sinkage has precedence over the model's prediction.
 Estimate sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
                    const ModelPull& pull, double noise) {
   if (read == nullptr || !std::isfinite((*read)[row])) return pull.sinkage_over_radius;

@@ -12,42 +12,42 @@
 
 namespace talus::terramech {
 
-/// How rows of a table are judged.
+/// Options for the assessment of a table's rows.
 struct AssessOptions {
   TableFile table;                       ///< the CSV
-  std::string formula = "single-force";  ///< one of pullFormulas(), where there is no model
-  std::string model;  ///< file of a base or refined model; empty: the pull follows from T, z and i as read
-  std::string rover;  ///< library name or file: whose wheel, where the table has no wheel size; may be empty
+  std::string formula = "single-force";  ///< one of pullFormulas(), used without a model
+  std::string model;  ///< file of a base or refined model; empty: pull from the readings T, z and i
+  std::string rover;  ///< library name or file; supplies missing wheel dimensions; may be empty
   double slope_rad = 0.17453292519943295;  ///< 10 deg (thesis Fig. 3.12)
-  double margin_rad = 0.0;                 ///< of the slope, either way
+  double margin_rad = 0.0;                 ///< uncertainty of the slope, +-
   double z_threshold = 0.5;                ///< z/r above which the category drops one level
   double z_critical = 0.75;                ///< z/r above which it is dangerous
   double noise = 0.05;                     ///< relative standard deviation of each reading [-]
-  double reference_slip = 0.5;             ///< that `extrapolate` gives the pull at
-  bool extrapolate = false;                ///< also forecast the pull at the reference slip, and the greatest
+  double reference_slip = 0.5;             ///< slip of the forecasts of `extrapolate`
+  bool extrapolate = false;                ///< also forecast pull at the reference slip and maximum pull
 };
 
-/// What a row comes to.
+/// Assessment of a row.
 struct Assessment {
-  std::size_t line = 0;
-  double slip = 0.0;
-  Estimate pull;  ///< DP/W
-  Estimate sinkage_over_radius;
-  double torque_over_load_radius = 0.0;
-  Category category = Category::Unknown;
-  CategoryProbability probability{};
-  std::optional<PullForecast> forecast;
+  std::size_t line = 0;                   ///< line of the table
+  double slip = 0.0;                      ///< measured slip [-]
+  Estimate pull;                          ///< DP/W
+  Estimate sinkage_over_radius;           ///< z/r [-]
+  double torque_over_load_radius = 0.0;   ///< T/(W r) [-]
+  Category category = Category::Unknown;  ///< category of the mean pull and sinkage
+  CategoryProbability probability{};      ///< of each category
+  std::optional<PullForecast> forecast;   ///< if AssessOptions::extrapolate
 };
 
-/// The rows of a table, judged.
+/// Assessment of a table.
 struct AssessedTable {
-  std::vector<Assessment> rows;
-  std::vector<RejectedRow> rejected;
-  std::vector<std::string> left_out;  ///< effects of the model that are faults of a sensor
+  std::vector<Assessment> rows;       ///< usable rows in order
+  std::vector<RejectedRow> rejected;  ///< unusable rows with the reason
+  std::vector<std::string> left_out;  ///< effects of the model that are sensor faults
 };
 
-/// Reads the table and judges each row, by its readings or by the model. Throws InputError for what is wrong
-/// with the input.
+/// Reads the table and assesses each row from its readings or with the model. Throws InputError for invalid
+/// input.
 AssessedTable assessTable(const AssessOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

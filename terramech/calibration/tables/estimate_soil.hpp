@@ -8,15 +8,14 @@
 
 namespace talus::terramech {
 
-/// Names of the methods: "bevameter", "sojourner", "iagnemma", "linear-offset", "wong-reece".
+/// Names of the estimation methods: "bevameter", "sojourner", "iagnemma", "linear-offset", "wong-reece".
 const std::vector<std::string>& estimateMethods();
 
-/// Names of the ways to find the shear modulus K: "error-minimisation", "effective-torque",
+/// Names of the methods for the shear modulus K: "error-minimisation", "effective-torque",
 /// "effective-torque-printed", "joint".
 const std::vector<std::string>& modulusMethods();
 
-/// Runs the method on the table. Throws InputError for what is wrong with the input, std::domain_error when
-/// there is no fit.
+/// Runs the method on the table. Throws InputError for invalid input, std::domain_error if no fit exists.
 SoilEstimate estimateSoil(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -45,7 +45,7 @@ ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows, c
   return modulusJointly(rows.wheel, rows.samples, {}, watch);
 }
 
-// The file's own column, where it has one value in all rows.
+// Shear modulus column of the file, if it has one value in all rows.
 std::optional<double> columnModulus(const EstimateOptions& options) {
   const Telemetry table = readTelemetry(options.table);
   const auto* column = table.find("shear_modulus_m");
@@ -56,7 +56,8 @@ std::optional<double> columnModulus(const EstimateOptions& options) {
   return column->front();
 }
 
-// K where it need not be found: as stated, else the file's, else the prior's. NaN where no K is needed.
+// K if it need not be estimated: the stated value, else that of the file, else that of the prior. NaN if the
+// method needs no K.
 std::optional<double> knownModulus(const EstimateOptions& options, const std::vector<SoilPrior>& priors) {
   if (options.method == "sojourner") return kNan;
   if (const auto stated = statedModulus(options)) return stated;
@@ -76,7 +77,7 @@ ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior
   return priors.empty() ? fit : withPrior(fit, priors);
 }
 
-// The line of a method at a known K, in constant memory; that of linear-offset with M1 where asked.
+// Line of a method for a known K, in constant memory; for linear-offset with M1 if requested.
 class LineFit {
  public:
   explicit LineFit(const EstimateOptions& options)
@@ -98,7 +99,7 @@ class LineFit {
   LinearOffsetFit whole_;
 };
 
-// What the line is fitted to.
+// Points to which the line is fitted.
 std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows& rows, double modulus) {
   std::vector<StressPair> points;
   for (std::size_t k = 0; k < rows.samples.size(); ++k)
@@ -106,7 +107,7 @@ std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows
   return points;
 }
 
-// All rows at once.
+// Fits all rows at once.
 void fitTogether(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
                  const ProgressMonitor& watch, SoilEstimate& estimate) {
   const auto known = knownModulus(options, priors);
@@ -122,7 +123,8 @@ void fitTogether(const EstimateOptions& options, const WheelRows& rows, const st
   estimate.shear_modulus_m = modulus.shear_modulus_m;
 }
 
-// Row by row in constant memory: a line where K is known, else a line for each K of a ladder.
+// Fits row by row in constant memory: one line if K is known, else one line per value of the shear-modulus
+// grid.
 class Recursion {
  public:
   Recursion(const EstimateOptions& options, const Wheel& wheel, const std::vector<SoilPrior>& priors)
@@ -137,7 +139,7 @@ class Recursion {
     }
   }
 
-  // False: the sample has no equation.
+  // Returns false if the sample gives no equation.
   bool add(const Wheel& wheel, const WheelSample& sample) {
     if (!known_) return ladder_.add(sample);
     line_.add(wheel, sample, *known_);
@@ -162,7 +164,7 @@ RunningSoil runningOf(const Recursion& recursion) {
             .friction_angle_rad = fit.frictionAngle_rad(),
             .shear_modulus_m = recursion.modulus().shear_modulus_m,
             .covariance = fit.covariance};
-  } catch (const std::domain_error&) {  // too few rows yet
+  } catch (const std::domain_error&) {  // too few rows
     return {};
   }
 }

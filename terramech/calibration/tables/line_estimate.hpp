@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// The linear methods: sojourner, iagnemma, linear-offset. Throws as estimateSoil().
+/// Estimates by the linear methods: sojourner, iagnemma, linear-offset. Throws as estimateSoil().
 SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

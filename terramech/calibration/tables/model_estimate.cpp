@@ -72,11 +72,11 @@ SoilEstimate soilOf(const ModelSoil& found) {
   return estimate;
 }
 
-// The channel without which a soil explains the rows best, where one does.
+// Channel whose removal gives the best fit of a soil, if any.
 struct OddColumn {
   std::string column;         // empty: none
-  double misfit = kMisfit;    // of the others
-  bool contradicted = false;  // the soil of two or more others leaves it unexplained
+  double misfit = kMisfit;    // of the other channels
+  bool contradicted = false;  // the soil from at least two other channels does not explain this channel
 };
 
 OddColumn oddColumn(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
@@ -104,8 +104,8 @@ std::string remedyFor(const OddColumn& odd) {
                      odd.column, odd.misfit);
 }
 
-// Throws where no soil comes near the rows, warns where none describes them well. A misfit alone may be the model's: then no
-// column by itself is at fault, or the others foretell it roughly.
+// Throws if no soil explains the rows, warns if the fit is poor. A large misfit alone may be an error of the
+// model if no single column is at fault, or if the other columns predict it approximately.
 void judgeFit(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
               const ModelSoil& found, SoilEstimate& estimate) {
   const bool poor = found.misfit > kMisfit;

@@ -5,13 +5,14 @@
 
 namespace talus::terramech {
 
-/// Whether some row of a wheel at a slip angle (beyond kStraightUpTo_rad) has its side force, or straight wheels have one of more
-/// than kCoarse of the load (root mean square): what such rows say of the soil takes the whole model. Throws as readTelemetry().
+/// Returns true if a side force is measured in rows with a slip angle above kStraightUpTo_rad, or exceeds
+/// kCoarse of the load (root mean square) in rows of straight wheels. Such rows require the complete model
+/// for a soil estimate. Throws as readTelemetry().
 bool measuresSideForce(const TableFile& table);
 
-/// The soil by --method wong-reece from all channels that the table has, the effects of --model acting; without one none
-/// act. Throws as estimateSoil(); std::domain_error where no soil comes near the rows (noSoilExplains()), or where a soil explains all columns but one of three or
-/// more, and leaves that one unexplained (leavesUnexplained()).
+/// Estimates the soil by --method wong-reece from all channels of the table, with the effects of --model if
+/// given. Throws as estimateSoil(), and std::domain_error if no soil explains the rows (noSoilExplains()), or
+/// if a soil explains all columns except one of at least three (leavesUnexplained()).
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -9,10 +9,10 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLeft = 0.5;  // of the root mean square of a channel's readings
+constexpr double kLeft = 0.5;  // relative to the root mean square of a channel's readings
 
-// What the soil leaves of one channel, relative to its readings; 0 where that is little of load or radius. Infinite where it
-// foretells what reads nothing.
+// Residual of one channel relative to its readings; 0 if small compared to load or radius; infinite if the
+// predictions differ from readings that are all 0.
 double leftOf(const SoilAnswer& answer, int channel) {
   double readings = 0.0, residuals = 0.0;
   int rows = 0;

@@ -9,37 +9,38 @@
 
 namespace talus::terramech {
 
-/// Mean square of the whitened residuals above which the model does not describe the rows [-].
+/// Mean square of the whitened residuals above which the model is rejected [-].
 inline constexpr double kMisfit = 3.0;
 
-/// Root mean square of residuals, of the load or the radius, that a model of a rigid wheel may leave [-].
+/// Root mean square of the residuals over load or radius that is acceptable for a rigid-wheel model [-].
 inline constexpr double kCoarse = 0.1;
 
-/// Readings of rows, and what the soil found foretells of them.
+/// Readings of rows, and predictions for the estimated soil.
 struct SoilAnswer {
   Eigen::MatrixXd measured;   ///< rows x kChannels [-] as Reading::scaled(); NaN: not measured
-  Eigen::MatrixXd predicted;  ///< the same
+  Eigen::MatrixXd predicted;  ///< same layout
   double misfit = 1.0;        ///< mean square of the whitened residuals [-]
 };
 
-/// The column of telemetry that a channel is read from, such as "side_force_N".
+/// Telemetry column of a channel, such as "side_force_N".
 const char* columnOf(Channel channel);
 
-/// A column of the table and what the soil leaves of it.
+/// A column of the table, and the share that the soil leaves unexplained.
 struct UnexplainedColumn {
   std::string column;  ///< empty: none
   double left = 0.0;   ///< root mean square of the residuals over that of the readings [-]
 };
 
-/// The channel of which the soil leaves most, of those of which it leaves more than half and more than 0.1 of the load or the radius.
-/// The bounds are ours, not from the literature: they do not depend on the stated noise, and soils of measured sand leave less.
+/// The channel with the largest unexplained share, if more than half of its readings and more than 0.1 of
+/// load or radius are unexplained. The bounds are ours, not from the literature: they are independent of the
+/// stated noise, and soils of measured sand are below them.
 UnexplainedColumn unexplained(const SoilAnswer& answer);
 
-/// Whether the soil leaves more than half of that channel and more than 0.1 of the load or the radius.
+/// Returns true if more than half of the channel and more than 0.1 of load or radius are unexplained.
 bool leavesUnexplained(const SoilAnswer& answer, Channel channel);
 
-/// Why no soil comes near the rows; empty where one does: the strength found is that of a soil (SoilEstimate::implausible()), and
-/// their misfit is at most kMisfit or no column is unexplained.
+/// Reason why no soil explains the rows. Empty if the estimated strength is plausible
+/// (SoilEstimate::implausible()), and the misfit is at most kMisfit or no column is unexplained.
 std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer);
 
 }  // namespace talus::terramech

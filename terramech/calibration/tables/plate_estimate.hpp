@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// The soil by plate tests: bevameter. Throws as estimateSoil().
+/// Estimates the soil from plate tests: bevameter. Throws as estimateSoil().
 SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -34,7 +34,7 @@ void take(const SoilPosterior& p, SoilEstimate& estimate) {
   estimate.unseen = p.unseen;
 }
 
-// Row by row in constant memory.
+// Processes rows one by one in constant memory.
 SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const SoilFitOptions& fit,
                        std::vector<RunningSoil>& running, const ProgressMonitor& watch) {
   SoilFilter filter(rows.wheel, prior, {.fit = fit});
@@ -54,7 +54,7 @@ SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const So
   return last;
 }
 
-// Sinkage and torque of the rows, and under the mean soil of the posterior.
+// Sinkage and torque of the rows, measured and predicted for the posterior mean.
 SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
   RefinedModel model;
   const ContactSoil& m = posterior.mean;
@@ -84,7 +84,7 @@ SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
   return answer;
 }
 
-// What the posterior takes for granted and these rows may not bear out.
+// Warns of assumptions of the posterior that the rows contradict.
 void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
                        std::vector<std::string>& warnings) {
   if (posterior.misfit > kMisfit) {
@@ -121,7 +121,7 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
                                          : fitSoil(rows.readings(), prior, fit);
   if (watch.stopped()) return estimate;
   take(*estimate.posterior, estimate);
-  // Several soils in one table are told by their column, and each may be one.
+  // groupsThatDisagree() names the column that separates several soils in one table; each soil may be valid.
   const std::string groups = groupsThatDisagree(rows, *estimate.posterior, fit.noise);
   if (const std::string why = noSoilExplains(estimate, answerOf(rows, *estimate.posterior));
       groups.empty() && !why.empty())

@@ -5,8 +5,8 @@
 
 namespace talus::terramech {
 
-/// The posterior of the soil by the wheel's equilibrium: wong-reece without a model. Throws as estimateSoil();
-/// std::domain_error where no soil comes near the rows (noSoilExplains()).
+/// Posterior of the soil from the wheel's equilibrium: wong-reece without a model. Throws as estimateSoil(),
+/// and std::domain_error if no soil explains the rows (noSoilExplains()).
 SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -14,71 +14,73 @@
 
 namespace talus::terramech {
 
-/// How the soil is found from a table: one of the methods
+/// Options of a soil estimate from a table. Methods:
 ///   bevameter       plate tests (plate_estimate.hpp)
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
-///   wong-reece      the posterior by the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
+///   wong-reece      posterior from the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
 struct EstimateOptions {
-  TableFile table;     ///< the CSV
-  std::string method;  ///< one of estimateMethods()
-  std::string
-      shear_modulus;  ///< K: a number [m], or one of modulusMethods(); empty: the file's column, else the prior's, else joint
-  std::string prior;  ///< soil file or name; empty: for wong-reece the classes of thesis Table 2.1, else none
-  std::string rover;  ///< library name or file: whose wheel, where the table has no wheel size; may be empty
-  std::string model;  ///< wong-reece: a refined model whose effects act; empty: none
-  bool whole_equation = false;  ///< linear-offset: keep M1 of Eq. 2.9
-  bool recursive = false;       ///< take the rows in one by one and keep each answer
-  double plate_width_m = 0.0;   ///< bevameter: of all plates [m], where the file has no such column; 0: none
+  TableFile table;              ///< the CSV
+  std::string method;           ///< one of estimateMethods()
+  std::string shear_modulus;    ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
+  std::string prior;            ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
+  std::string rover;            ///< library name or file; supplies missing wheel dimensions; may be empty
+  std::string model;            ///< wong-reece: refined model whose effects are applied; empty: none
+  bool whole_equation = false;  ///< linear-offset: include M1 of Eq. 2.9
+  bool recursive = false;       ///< process rows one by one and store each estimate
+  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] without such a column; 0: none
   double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
-/// The estimate after a row of the table; NaN where there is none yet.
+/// Estimate after a row of the table; NaN if not available yet.
 struct RunningSoil {
+  /// No value.
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-  std::size_t line = 0;  ///< of the table
-  double cohesion_Pa = kNan;
-  double friction_angle_rad = kNan;
-  double shear_modulus_m = kNan;
+  std::size_t line = 0;                                          ///< line of the table
+  double cohesion_Pa = kNan;                                     ///< c
+  double friction_angle_rad = kNan;                              ///< phi
+  double shear_modulus_m = kNan;                                 ///< K
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
 };
 
-/// options.shear_modulus as a number [m], if it is one. Throws InputError where it is not > 0.
+/// options.shear_modulus as a number [m]; nothing if it is not a number. Throws InputError if the number is
+/// not > 0.
 std::optional<double> statedModulus(const EstimateOptions& options);
 
-/// Standard deviation of phi [rad] from that of tan(phi): by its slope at phi.
+/// Standard deviation of phi [rad] from that of tan(phi), linearised at phi.
 double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad);
 
-/// What any method answers; a number it cannot give is NaN.
+/// Result of any method; quantities that a method does not provide are NaN.
 struct SoilEstimate {
-  double cohesion_Pa;
-  double tan_friction;
-  double shear_modulus_m;
-  Eigen::Matrix2d covariance;  ///< of (c, tan phi)
-  double friction_angle_rad;
-  double sinkage_exponent;
-  std::optional<double> cohesive_modulus;
-  std::optional<double> frictional_modulus;
-  std::vector<PlateModulus> plates;  ///< of bevameter, where the table holds one soil
-  std::vector<TrialSoil> soils;      ///< of bevameter: each soil of the table by its trials
-  std::size_t rows_used = 0;
-  std::vector<RejectedRow> rejected;
-  std::vector<std::string> ignored;        ///< the table's columns of numbers that the method does not read
-  std::vector<std::string> unseen;         ///< parameters that the data do not show, with the reason
-  std::vector<std::string> warnings;       ///< what the user should know of how it was fitted
-  std::vector<std::string> effects;        ///< that acted, of --model
-  std::vector<StressPair> points;          ///< what a line was fitted to, for a plot
-  std::optional<SoilPosterior> posterior;  ///< of wong-reece
-  std::vector<std::string> class_names;    ///< of its prior
-  std::vector<RunningSoil> running;        ///< per used row, if recursive
+  double cohesion_Pa;                        ///< c
+  double tan_friction;                       ///< tan(phi) [-]
+  double shear_modulus_m;                    ///< K
+  Eigen::Matrix2d covariance;                ///< of (c, tan phi)
+  double friction_angle_rad;                 ///< phi
+  double sinkage_exponent;                   ///< n [-]
+  std::optional<double> cohesive_modulus;    ///< k_c
+  std::optional<double> frictional_modulus;  ///< k_phi
+  std::vector<PlateModulus> plates;          ///< bevameter, if the table contains one soil
+  std::vector<TrialSoil> soils;              ///< bevameter: each soil of the table from its trials
+  std::size_t rows_used = 0;                 ///< number of readings in the fit
+  std::vector<RejectedRow> rejected;         ///< unusable rows with the reason
+  std::vector<std::string> ignored;          ///< numeric columns that the method does not read
+  std::vector<std::string> unseen;           ///< parameters not determined by the data, with the reason
+  std::vector<std::string> warnings;         ///< warnings about the fit
+  std::vector<std::string> effects;          ///< effects applied, of --model
+  std::vector<StressPair> points;            ///< points of a line fit, for a plot
+  std::optional<SoilPosterior> posterior;    ///< wong-reece
+  std::vector<std::string> class_names;      ///< of the prior of wong-reece
+  std::vector<RunningSoil> running;          ///< per used row, if recursive
 
+  /// Initialises the numbers to NaN.
   SoilEstimate();
 
-  /// Takes c, tan(phi), their covariance and what was not seen from a fitted line.
+  /// Copies c, tan(phi), their covariance and undetermined parameters from a line fit.
   void take(const ShearStrength& fit);
 
-  /// What no soil is like, by more than two standard deviations: c < 0, phi below 0 or above 60 deg. Empty
-  /// where it may be one.
+  /// Reason why the estimate is implausible for any soil by more than two standard deviations: c < 0, phi
+  /// below 0 or above 60 deg. Empty if plausible.
   std::string implausible() const;
 };
 

@@ -11,8 +11,8 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLarge = 0.5;   // mean departure of a group, in standard deviations of one reading
-constexpr double kChance = 5.0;  // of a column's chi-squared, in its standard deviations
+constexpr double kLarge = 0.5;   // mean deviation of a group, in standard deviations of one reading
+constexpr double kChance = 5.0;  // threshold of excess(), in standard deviations of chi-squared
 
 struct Group {
   double rows = 0.0;
@@ -38,7 +38,8 @@ std::vector<Eigen::Vector2d> residuals(const WheelRows& rows, const SoilPosterio
   return all;
 }
 
-// How far beyond chance the groups of a column depart, in standard deviations; 0 where none by much.
+// Excess of a column's chi-squared over its expected value, in standard deviations; 0 if no group deviates by
+// more than kLarge.
 double excess(const std::map<std::string, Group>& groups) {
   double sum = 0.0, largest = 0.0;
   for (const auto& [name, group] : groups) {

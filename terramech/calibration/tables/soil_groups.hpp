@@ -8,9 +8,9 @@
 
 namespace talus::terramech {
 
-/// Whether one soil explains rows of every kind: one line that names the column of words (soil, run, ...)
-/// whose groups of rows depart from the fit, each its own way, by half a standard deviation of the readings
-/// and more and beyond chance; empty where none does.
+/// Tests whether one soil explains all groups of rows. Returns one line with the text column (soil, run, ...)
+/// whose groups deviate from the fit significantly and by at least half a standard deviation of the readings;
+/// empty if there is none.
 std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& posterior,
                                const ReadingErrors& noise);
 

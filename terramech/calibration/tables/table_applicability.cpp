@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFewest = 20, kMost = 400;
 
-/// Every so many rows of a trial, at most kMost.
+/// Evenly spaced rows of a trial, at most kMost.
 Trial evenRows(const Trial& trial) {
   const int step = (trial.rows() + kMost - 1) / kMost;
   if (step < 2) return trial;

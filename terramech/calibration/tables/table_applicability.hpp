@@ -7,10 +7,11 @@
 
 namespace talus::terramech {
 
-/// Whether a rigid wheel on soil describes the rows of a table, as residual tracing judges it (model_validity.hpp): with
-/// the soil alone, and where that fails with the effects that tracing finds. Of at most 400 rows, evenly taken. `base`: a soil or
-/// model that is given, empty: the soil is fitted. Applies, too, where there is nothing to judge by: fewer than 20 rows,
-/// or no load, slip or wheel. Throws InputError for files that cannot be read.
+/// Tests whether a rigid wheel on soil describes the rows of a table, with the criterion of residual tracing
+/// (model_validity.hpp): first with the soil alone, then with the effects that tracing finds. Uses at most
+/// 400 evenly spaced rows. `base` is a given soil or model; if empty, the soil is fitted. The model is also
+/// considered applicable without sufficient data: fewer than 20 rows, or no load, slip or wheel. Throws
+/// InputError for unreadable files.
 Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
                                  const ProgressMonitor& watch = {});
 

@@ -27,7 +27,7 @@ bool close(double a, double b) {
   return std::abs(a - b) <= 1e-3 * std::max(std::abs(a), std::abs(b)) + 1e-9;
 }
 
-/// Rows whose value of a column some rule accepts.
+/// Marks the rows that satisfy a rule.
 template <class Rule>
 std::vector<char> rowsWhere(const Trial& trial, const Rule& rule) {
   std::vector<char> rows;
@@ -35,7 +35,8 @@ std::vector<char> rowsWhere(const Trial& trial, const Rule& rule) {
   return rows;
 }
 
-/// Values with commas between; one in double quotes may hold commas, and two quotes for one of its own, as a CSV field.
+/// Splits a list of values separated by commas. A value in double quotes may contain commas, and doubled
+/// quotes for a quote, as in a CSV field.
 std::vector<std::string> wordsOf(const std::string& values) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at <= values.size();) {
@@ -75,7 +76,7 @@ bool isText(const Trial& trial, const std::string& column) {
                      [&](const WheelState& s) { return !s.label(column).empty(); });
 }
 
-// A value of a text column may hold two dots; it has no ranges.
+// Values of text columns may contain two dots; ranges apply to numeric columns only.
 LeftOut ofValues(const Trial& trial, const std::string& column, const std::string& values) {
   const auto dots = isText(trial, column) ? std::string::npos : values.find("..");
   if (dots != std::string::npos && values.front() != '"') {
@@ -103,7 +104,7 @@ std::vector<LeftOut> eachLevel(const Trial& trial, const std::string& column) {
   for (const std::string& word : words) all.push_back(ofWords(trial, column, word, {word}));
   if (!all.empty() || values.empty()) return all;
   std::sort(values.begin(), values.end());
-  // Levels are apart by more than a hundredth of the range.
+  // Levels are separated by more than a hundredth of the range.
   const double apart = 0.01 * (values.back() - values.front());
   std::vector<std::pair<double, double>> levels;
   for (double v : values) {
@@ -124,7 +125,7 @@ std::vector<LeftOut> eachLevel(const Trial& trial, const std::string& column) {
   return all;
 }
 
-/// Columns and their squares, in units of their scatter over the rows that are seen.
+/// Columns and their squares, divided by their scatter over the seen rows.
 Eigen::MatrixXd features(const Trial& trial, const Trial& seen) {
   std::vector<Eigen::VectorXd> columns{Eigen::VectorXd::Ones(trial.rows())};
   for (const std::string& name : seen.covariates) {
@@ -147,7 +148,7 @@ Eigen::MatrixXd features(const Trial& trial, const Trial& seen) {
   return all;
 }
 
-/// Ridge regression whose strength minimises n |y - H y|^2 / (n - tr H)^2.
+/// Ridge regression with the strength that minimises n |y - H y|^2 / (n - tr H)^2.
 Eigen::VectorXd ridge(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(x, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& s = svd.singularValues();
@@ -229,7 +230,7 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
   errors.base = rmseOf(errors.base_told, unseen);
   errors.refined = rmseOf(errors.told, unseen);
   errors.floor = result.noise_floor;
-  Trial same = seen;  // columns as were searched
+  Trial same = seen;  // the columns that were searched
   same.covariates = result.trial.covariates;
   errors.regression = regressionErrors(same, unseen);
   return errors;

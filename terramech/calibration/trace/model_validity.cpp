@@ -20,7 +20,8 @@ Estimate scatterOf(const Trial& trial, int channel) {
   return {sum / n, std::sqrt(std::max(0.0, square / n - (sum / n) * (sum / n)))};
 }
 
-/// Whether a channel moves by more than its noise, or by so much that no sensor's noise is that large.
+/// Returns true if the scatter of a channel exceeds twice its noise or, for torque and sinkage, kLoudest of
+/// its mean.
 bool moves(const Estimate& scatter, int channel, double noise_floor) {
   const bool ratio =
       channel == static_cast<int>(Channel::Sinkage) || channel == static_cast<int>(Channel::Torque);

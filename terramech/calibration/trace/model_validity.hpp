@@ -6,18 +6,18 @@
 
 namespace talus::terramech {
 
-/// Whether a rigid wheel on soil, with physical effects, describes the rows.
+/// Applicability of the model of a rigid wheel on soil with physical effects.
 struct Applicability {
-  bool applies = true;
-  std::string reason;  ///< why not
+  bool applies = true;  ///< true if the model describes the rows
+  std::string reason;   ///< reason if the model does not apply
 };
 
-/// The physics alone, curves of no known cause and faults of sensors left out, on rows held out. Of the channels that move (by more
-/// than twice their noise, or torque and sinkage by more than a quarter of their mean) it must explain
-/// half of the variance of one, and none may it predict so badly that its mean square error is twice the
-/// variance. And where drawbar pull, torque and sinkage are measured together, the relation between them that
-/// holds for every soil (closure_offset.hpp) must not fail by 0.15 in half of the rows while the physics is
-/// as far off. All limits are ours.
+/// Tests the physical model, without empirical curves and sensor faults, on held-out rows. Only channels that
+/// vary are tested: by more than twice their noise or, for torque and sinkage, by more than a quarter of
+/// their mean. The model must explain at least half of the variance in one channel, and in no channel may its
+/// mean square error exceed twice the variance. If drawbar pull, torque and sinkage are measured together,
+/// the soil-independent relation between them (closure_offset.hpp) must not have a median error above 0.15
+/// while the error of the model in drawbar pull is as large. All limits are ours.
 Applicability applicability(const TraceResult& result, const TraceOptions& options);
 
 }  // namespace talus::terramech

@@ -89,13 +89,13 @@ long curves(const std::vector<Effect>& effects) {
 /// it leaves to them what the other names, more than noise gives to some curve.
 double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
   const long more = curves(other) - curves(present);
-  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;
+  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;  // (T45)
 }
 
 /// Takes out, last first, what beside the others gains no more than noise would.
 void check(Path& path) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
-    if (path.search.gainOf(k) > path.threshold) continue;
+    if (path.search.gainOf(k) > path.threshold) continue;  // (T44)
     path.search.leaveOut(k);
     path.search.settleAll();
     path.effects.erase(path.effects.begin() + static_cast<long>(k));
@@ -167,7 +167,7 @@ void findRivals(const Path& path, TraceResult& result, const std::function<bool(
     TracedEffect& effect = result.effects[k];
     const double least = path.search.gainOf(k) - path.close;
     for (RivalCause& rival : rivalsOf(path.search, k)) {
-      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);
+      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);  // (T47)
       result.rivals.push_back(std::move(rival));
     }
   }
@@ -199,7 +199,7 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     preferSimple(path.rejected, screening.threshold);
     const double least =
         0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
-    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;
+    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;  // (T42)
     take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
     path.rejected.erase(path.rejected.begin());
     reconsider(path);
@@ -311,7 +311,7 @@ bool isSimpler(const Candidate& a, const Candidate& b) {
 void preferSimple(std::vector<Explanation>& ranked, double threshold) {
   auto first = ranked.begin();
   for (auto e = ranked.begin(); e != ranked.end(); ++e)
-    if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&
+    if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&  // (T43)
         isSimpler(e->candidate, first->candidate))
       first = e;
   if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);

@@ -5,19 +5,21 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// From measured rows and a model: what the model lacks, and the model with it.
+/// Finds the effects missing in a model from measured rows, and the refined model.
 namespace talus::terramech {
 
-/// Whether the first of explanations, best first, is taken: it gains more than `threshold`.
+/// Returns true if the first of the ranked explanations is accepted, which requires a gain above `threshold`.
 bool accepted(const std::vector<Explanation>& ranked, double threshold);
 
-/// Brings to the front of explanations, best first, the best of the simplest kind (known forms, of a family the one of fewest numbers, then drifts, then curves)
-/// that itself gains more than `threshold` and falls behind the best by less: on top of it noise gives some curve as much,
-/// so that a curve is no better account until it gains more than that. What it holds beyond the form is then found by itself.
+/// Moves the best explanation of the simplest kind to the front of the ranked explanations, if its gain
+/// exceeds `threshold` and is less than `threshold` below the best gain. Kinds in order: known forms (within
+/// a family, the form with the fewest parameters), drifts, curves. Noise alone gives some curve an additional
+/// gain of up to `threshold`; a curve is preferred only if it gains more. Remaining contributions of the
+/// curve are found in later steps.
 void preferSimple(std::vector<Explanation>& ranked, double threshold);
 
-/// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. A stopped watch ends it
-/// early with what was found so far.
+/// Traces the residuals of `base` on the rows of `trial`. Deterministic for a seed. After a stop by the watch
+/// the result contains the effects found so far.
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options = {},
                            const ProgressMonitor& watch = {});
 

@@ -7,48 +7,52 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// The next experiment: runs in which the causes that are left differ most, and what measured runs say of each cause.
+/// Design of the next experiment: runs for which the remaining causes differ most, and scores of the causes
+/// from measured runs.
 namespace talus::terramech {
 
-/// A cause, and the model in which it acts.
+/// A possible cause, and the model that includes it.
 struct Cause {
   std::string name;
   RefinedModel model;
 };
 
-/// The refined model, followed by the same model with one effect replaced by a rival. Rivals are the causes that the rows cannot
-/// separate from the effect; if there are none, the candidate with the next greatest gain. Only the refined model if no candidate gains.
+/// The refined model, then the refined model with one effect replaced by a rival. Rivals are the causes that
+/// the rows cannot separate from the effect, or without such causes the candidate with the next greatest
+/// gain. Contains the refined model only if no candidate has a gain.
 std::vector<Cause> causesOf(const TraceResult& result);
 
-/// What a cause predicts of the mean of a run's rows, in the unit of each answer; NaN where the table does not measure it.
+/// A cause's prediction of the mean of a run's rows, in the unit of each answer; NaN for answers that the
+/// table does not measure.
 struct RunPrediction {
   std::string cause;
   std::array<double, kChannels> mean{}, std{};
 };
 
-/// A run to make: conditions that it keeps, and its rows, which differ in slip.
+/// A proposed run: constant conditions, and rows that differ in slip.
 struct ProposedRun {
-  std::vector<std::pair<std::string, double>> columns;      ///< but slip
+  std::vector<std::pair<std::string, double>> columns;      ///< numeric columns except slip
   std::vector<std::pair<std::string, std::string>> groups;  ///< text columns
   std::vector<double> slip;                                 ///< of its rows, ascending
-  std::vector<std::vector<RunPrediction>> row_predictions;  ///< of each row, of each cause
-  std::vector<RunPrediction> predictions;                   ///< of the mean of its rows, of each cause
+  std::vector<std::vector<RunPrediction>> row_predictions;  ///< for each row, of each cause
+  std::vector<RunPrediction> predictions;                   ///< mean of the rows, of each cause
 };
 
-/// At most `count` runs, in the order of choice, within the range of the rows: columns of the causes and the load at the
-/// ends and the middle of their ranges, the others as in the middle row. Each is the one that lowers the sum over pairs of
-/// causes of exp(-B) most, B being the Bhattacharyya distance of their predictions (bhattacharyya_1943), a bound of the chance to
-/// take one for the other. Predictions hold the errors of sensors, parameters and what rows of a run share.
+/// Proposes at most `count` runs, in the order of selection, within the range of the rows. Columns of the
+/// causes and the load take the ends and the middle of their ranges; other columns are as in the middle row.
+/// Each run minimises the sum over pairs of causes of exp(-B), with B the Bhattacharyya distance of their
+/// predictions (bhattacharyya_1943), which bounds the probability of confusing the causes. Predictions
+/// include the errors of sensors, parameters and the error shared by rows of a run.
 std::vector<ProposedRun> proposeRuns(const TraceResult& result, int count);
 
-/// What measured rows say of a cause.
+/// Score of a cause from measured rows.
 struct CauseScore {
   std::string cause;
   double log_likelihood = 0.0;
-  double probability = 0.0;  ///< among the causes, each held for as likely before
+  double probability = 0.0;  ///< posterior for equal prior probabilities of the causes
 };
 
-/// Of each cause, in the order of causesOf().
+/// Scores of all causes, in the order of causesOf().
 std::vector<CauseScore> scoreCauses(const TraceResult& result, const Trial& measured);
 
 }  // namespace talus::terramech

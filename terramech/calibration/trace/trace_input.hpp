@@ -5,14 +5,15 @@
 
 namespace talus::terramech {
 
-/// What a table gives traceResiduals().
+/// Input of traceResiduals() from a table.
 struct TraceInput {
   ModelRows rows;  ///< rows.model is the base
   TraceOptions options;
 };
 
-/// The rows and the base of a search. A soil that the base does not give is fitted. A given soil without standard deviations
-/// gets default ones (giveDefaultDeviations()) unless the table is a rover's own drive. Throws InputError as modelRows(), and when fewer than 6 rows can be used.
+/// Rows and base model of a search. The soil is fitted if the base specifies none. A specified soil without
+/// standard deviations gets default ones (giveDefaultDeviations()) unless the table is a rover's own drive.
+/// Throws InputError as modelRows(), and if fewer than 5 rows are usable.
 TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options);
 
 }  // namespace talus::terramech

@@ -9,7 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kTold = 0.9;  // of the prior's deviation: above it the rows said little
+constexpr double kTold = 0.9;  // of the prior's standard deviation: a parameter above this share is not
+                               // determined by the rows
 
 int indexOf(const std::string& name) {
   const auto& all = soilParameters();
@@ -26,7 +27,7 @@ SensorNoise noiseOf(const RefinedModel& model, double relative) {
   return noise;
 }
 
-/// The soil's parameters alone are free.
+/// Plan of a fit with only the soil parameters free.
 FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
   FitPlan plan = options.prior ? fitPlan(*options.prior, false) : fitPlan(model, true);
   const int shear = options.shear_modulus_m ? indexOf("shear_modulus_m") : -1;
@@ -35,12 +36,12 @@ FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
   return plan;
 }
 
-/// A model on the way, and the noise as the readings that it foretells make it.
+/// State of the fit: the model, and the noise at its current predictions.
 class SoilModelFit {
  public:
   SoilModelFit(const Trial& trial, const FitPlan& plan, double noise)
       : trial_(trial), plan_(plan), noise_(noise) {
-    // The row's own errors of slip and load are all that is known of them.
+    // The independent errors of slip and load of a row are the only information on the inputs.
     const auto rows = static_cast<std::size_t>(trial_.rows());
     for (std::size_t row = 0; row < rows; ++row) slips_.push_back(trial_.slip[row]);
   }
@@ -60,12 +61,12 @@ class SoilModelFit {
     return fit;
   }
 
-  /// In the order of the plan.
+  /// in the order of the plan
   Eigen::MatrixXd covariance(const RefinedModel& fitted) {
     return parameterCovariance(fitted, trial_, whiteningBy(fitted), plan_, solved_);
   }
 
-  /// Readings, and the free parameters taken off.
+  /// Degrees of freedom: readings minus free parameters, at least 1.
   double freedom() const {
     const auto readings = static_cast<double>(trial_.measured.array().isFinite().count());
     return std::max(1.0, readings - static_cast<double>(plan_.free.size()));
@@ -92,7 +93,7 @@ RefinedModel withSoil(const RefinedModel& model, const Soil& soil, const ModelSo
   return other;
 }
 
-/// Of (c, tan phi) from that of the fitted parameters; rows of what is not fitted are 0.
+/// Covariance of (c, tan phi) from that of the fitted parameters; zero for parameters that are not fitted.
 Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& covariance, const Soil& soil) {
   const double by_phi = 1.0 + std::pow(std::tan(soil.friction_angle_rad), 2);
   const std::array<int, 2> index{indexOf("cohesion_Pa"), indexOf("friction_angle_rad")};
@@ -115,7 +116,7 @@ ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSo
   SoilModelFit search{trial, plan, options.noise};
   const Soil& afresh = options.prior ? options.prior->soil : unknownSoil().model.soil;
   Fit best = search.from(withSoil(model, afresh, options));
-  // A soil that the prior fixes in part is no place for the model's own.
+  // The soil of the model is no start value if the prior fixes some of its parameters.
   if (!options.prior) {
     const Fit own = search.from(withSoil(model, model.soil, options));
     if (own.cost() < best.cost()) best = own;

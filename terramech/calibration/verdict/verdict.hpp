@@ -7,58 +7,59 @@
 
 namespace talus::terramech {
 
-/// What tracing can say of a table.
+/// Conclusion of a trace.
 enum class Verdict {
-  Explained,       ///< effects were found that carry most, more than half, of what was more than noise
-  NothingMissing,  ///< no effect, and what is left is no more than the sensors err
-  Unexplained      ///< more is left than the sensors err, and no cause was accepted for most of it
+  Explained,       ///< found effects explain more than half of the residual above noise
+  NothingMissing,  ///< no effect found; residual within the sensor errors
+  Unexplained      ///< residual above the sensor errors, mostly without an accepted cause
 };
 
 /// "explained", "nothing_missing" or "unexplained".
 const char* name(Verdict verdict);
 
-/// The answer of a trace, and where the most is left.
+/// Conclusion of a trace, with the largest remaining residual.
 struct Answer {
-  Verdict verdict = Verdict::NothingMissing;
-  Channel channel = Channel::DrawbarPull;  ///< whose rest exceeds its floor most
-  bool open = false;                       ///< some rest exceeds its floor
-  double rest = 0.0, floor = 0.0;          ///< rms there of the refined model, and of the sensors alone [-]
-  std::string column;                    ///< over which the rest varies most; empty: over none that is known
-  double gain = 0.0;                     ///< what that column promises, against TraceResult::threshold
-  std::vector<StrainedSensor> strained;  ///< sensors that would have to err far more than stated
-  std::vector<std::string> unstated;     ///< columns of whose error nothing is stated: it is the fitted one
-  /// Standard deviations from run to run of the logarithms of the soil's strength and stiffness, where they make
-  /// most of what is left; 0 elsewhere.
+  Verdict verdict = Verdict::NothingMissing;  ///< the conclusion
+  Channel channel = Channel::DrawbarPull;     ///< channel whose residual exceeds its floor most
+  bool open = false;                          ///< some residual exceeds its floor
+  double rest = 0.0, floor = 0.0;             ///< rms there of the refined model, and of the sensors [-]
+  std::string column;                         ///< column over which the residual varies most; may be empty
+  double gain = 0.0;                          ///< gain of that column, to compare with TraceResult::threshold
+  std::vector<StrainedSensor> strained;       ///< sensors whose error would be far larger than stated
+  std::vector<std::string> unstated;          ///< measured columns without a stated error
+  /// Standard deviations between runs of the logarithms of soil strength and stiffness, if they cause most of
+  /// the residual; otherwise 0.
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
-  std::string unit = "run";  ///< what rows share that error in: a run, or a stretch of time
-  std::string inapplicable;  ///< why the model does not apply; empty where it does
-  std::string measure;       ///< rows that would decide; empty where nothing exceeds its floor
+  std::string unit = "run";  ///< unit of rows that share the error: a run, or a stretch of time
+  std::string inapplicable;  ///< reason why the model does not apply; empty if it applies
+  std::string measure;       ///< rows that would discriminate; empty if no residual exceeds its floor
 };
 
-/// The floor is that of the sensors as they are stated, where they would have to err far more than that; without a
-/// statement that of the fitted noise. A channel's rest exceeds its floor where its variance does by more than
-/// three standard errors of the variance of as many normal errors. Found effects explain where they carry more than
-/// half of what the base model leaves above the floor.
+/// Derives the conclusion. The floor is that of the stated sensor errors if the fitted errors would be far
+/// larger; without a statement that of the fitted noise. A residual exceeds its floor if its variance is
+/// larger by more than three standard errors of the variance of as many normal errors. The verdict is
+/// Explained if the found effects carry more than half of the base model's residual above the floor.
 Answer answerOf(const TraceResult& result);
 
-/// A parameter of the soil that the rows moved far from what was known of it.
+/// A soil parameter that the rows moved far from its prior.
 struct MovedParameter {
-  std::string name;
-  double value = 0.0, prior = 0.0, prior_std = 0.0;
-  double away() const;  ///< [prior standard deviations]
+  std::string name;                                  ///< as in soilParameters()
+  double value = 0.0, prior = 0.0, prior_std = 0.0;  ///< fitted value, and mean and std of the prior
+  double away() const;                               ///< (value - prior) / prior_std
 };
 
-/// Those of the refined model's soil that stand more than three standard deviations from their prior.
+/// Soil parameters of the refined model more than three standard deviations from their prior.
 std::vector<MovedParameter> movedSoil(const TraceResult& result);
 
-/// Names of fitted numbers of the refined model's soil that stand at a bound of their range.
+/// Names of fitted soil parameters of the refined model at a bound of their range.
 std::vector<std::string> soilAtBounds(const RefinedModel& model);
 
-/// Names of fitted numbers of an effect that stand at a bound of their range.
+/// Names of fitted parameters of an effect at a bound of their range.
 std::vector<std::string> atBounds(const Effect& effect);
 
-/// The refined model as predictions need it: what rows of a new run share is an error of theirs, too, and so is what
-/// held-out rows show beyond that and the floor (by three standard errors): what nothing explains.
+/// The refined model with additional error terms for predictions: the error shared by rows of a new run, and
+/// the error of held-out rows in excess of this error and the floor (by three standard errors), which has no
+/// explanation.
 RefinedModel forPrediction(const TraceResult& result);
 
 }  // namespace talus::terramech

@@ -7,7 +7,7 @@
 namespace talus::cli {
 namespace campaign_test {
 
-TEST(Campaign, OutsideMpiOneProcessLeads) {
+TEST(Campaign, WithoutMpiThereIsOneLeadingRank) {
   const Campaign campaign;
   EXPECT_EQ(campaign.ranks(), 1);
   EXPECT_TRUE(campaign.leads());
@@ -15,7 +15,7 @@ TEST(Campaign, OutsideMpiOneProcessLeads) {
 
 // Property: outcomes are in the order of their jobs for any number of workers, a job that throws stops none,
 // and progress ends whole.
-TEST(Campaign, OutcomesComeInOrderAndAFailureIsOneOfThem) {
+TEST(Campaign, OutcomesAreInJobOrderIncludingFailures) {
   const Campaign campaign;
   for (const std::size_t workers : {1U, 2U, 5U}) {
     std::atomic<int> ran{0};
@@ -48,7 +48,7 @@ TEST(Campaign, OutcomesComeInOrderAndAFailureIsOneOfThem) {
 
 // Property: what is done when the stop comes stays; a job that answers with nothing was stopped, and so is all
 // behind it.
-TEST(Campaign, AStopKeepsWhatIsDone) {
+TEST(Campaign, StopKeepsCompletedJobs) {
   const Campaign campaign;
   std::stop_source source;
   const auto outcomes = campaign.run(
@@ -66,7 +66,7 @@ TEST(Campaign, AStopKeepsWhatIsDone) {
   }
 }
 
-TEST(Campaign, NoJobsHaveNoOutcomes) {
+TEST(Campaign, EmptyCampaignHasNoOutcomes) {
   EXPECT_TRUE(Campaign().run(0, [](std::size_t) { return std::string("x"); }).empty());
 }
 

@@ -34,7 +34,7 @@ struct Program {
 };
 
 // Closed form: the exit code is what run() answered for the options of the line: 10 and the count.
-TEST(Command, RunsWithItsParsedOptionsAndKeepsTheExitCode) {
+TEST(Command, ParsedOptionsAreUsedAndTheExitCodeKept) {
   Program program;
   program.app.parse("greet --name x --count 5");
   EXPECT_EQ(program.context.exit_code, 15);
@@ -43,7 +43,7 @@ TEST(Command, RunsWithItsParsedOptionsAndKeepsTheExitCode) {
   EXPECT_EQ(refusing.context.exit_code, Exit::kNo);
 }
 
-TEST(Command, DoesNotRunWhereTheLineIsWrong) {
+TEST(Command, InvalidCommandLineDoesNotRun) {
   Program program;
   program.context.exit_code = 99;
   EXPECT_THROW(program.app.parse("greet"), CLI::RequiredError);
@@ -51,7 +51,7 @@ TEST(Command, DoesNotRunWhereTheLineIsWrong) {
   EXPECT_EQ(program.context.exit_code, 99);
 }
 
-TEST(Command, AnOldNameWorksWithAWarning) {
+TEST(Command, DeprecatedNameWorksWithAWarning) {
   Program program;
   program.context.quiet = false;
   testing::internal::CaptureStderr();

@@ -7,7 +7,7 @@ namespace talus::cli {
 namespace commands_test {
 
 // Property: every subcommand has a name of its own, a group that --help knows, and parses its own --help.
-TEST(Commands, EachHasANameAGroupAndExamples) {
+TEST(Commands, EachCommandHasANameGroupAndExamples) {
   CLI::App app("talus");
   Context context;
   addCommands(app, context);

@@ -8,7 +8,7 @@
 namespace talus::cli {
 namespace context_test {
 
-TEST(Context, AnyTextIsOneLine) {
+TEST(Context, OneLineRemovesControlCharacters) {
   EXPECT_EQ(oneLine("first\nsecond"), "first; second");
   EXPECT_EQ(oneLine("tab\there\x1b[31m"), "tab here [31m");
   EXPECT_EQ(oneLine("trailing \r\n\n"), "trailing");
@@ -29,7 +29,7 @@ TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
 
 // Property: what is printed parses again; what JSON has no number for is null, bytes that are no text are
 // replaced.
-TEST(Context, PrintedJsonParses) {
+TEST(Context, PrintedJsonIsValid) {
   testing::internal::CaptureStdout();
   printJson({{"cost", NAN}, {"bound", INFINITY}, {"name", "a\xff"}, {"length_m", 0.1}});
   const std::string printed = testing::internal::GetCapturedStdout();
@@ -40,19 +40,19 @@ TEST(Context, PrintedJsonParses) {
 }
 
 // Closed form: the byte that begins no letter becomes U+FFFD, in routes and pages as on stdout.
-TEST(Context, JsonTextHoldsNoByteThatIsNoText) {
+TEST(Context, JsonTextIsValidUtf8) {
   EXPECT_EQ(jsonText({{"file", "d\xff.tif"}}), "{\"file\":\"d\xEF\xBF\xBD.tif\"}");
   EXPECT_EQ(jsonText({{"file", "\xc3\xa9"}}, 1), "{\n \"file\": \"\xc3\xa9\"\n}");
 }
 
-TEST(Context, ALineOfAnErrorIsText) {
+TEST(Context, ErrorLineIsValidUtf8) {
   EXPECT_EQ(oneLine("a\xEF"
                     "b\nc\xc3\xa9\x07\n"),
             "a\xEF\xBF\xBD"
             "b; c\xc3\xa9 ");
 }
 
-TEST(Context, WorkersAreAsManyAsAllowedAndAtLeastOne) {
+TEST(Context, WorkerCountIsTheRequestedOneAndAtLeastOne) {
   Context context;
   EXPECT_GE(context.workers(), 1);
   context.threads = 3;
@@ -60,7 +60,7 @@ TEST(Context, WorkersAreAsManyAsAllowedAndAtLeastOne) {
 }
 
 // Property: work is stopped by Ctrl-C, and in a pipe no bar is drawn.
-TEST(Context, TheWatchPassesTheStopOn) {
+TEST(Context, MonitorForwardsTheStopRequest) {
   std::stop_source source;
   Context context;
   context.quiet = true;

@@ -10,7 +10,7 @@ namespace help_format_test {
 using testing::HasSubstr;
 
 // Property: the words stay, in order, on lines of no more than the width, and no two lines would fit on one.
-TEST(HelpFormat, TextIsWrappedAtBlanks) {
+TEST(HelpFormat, TextIsWrappedAtSpaces) {
   const std::string text =
       "a rover drives over  soft ground\nand an-overlong-word-stays-whole on its own line";
   for (const std::size_t width : {8U, 12U, 20U, 200U}) {
@@ -27,7 +27,7 @@ TEST(HelpFormat, TextIsWrappedAtBlanks) {
   EXPECT_EQ(wrapped("", 10), "");
 }
 
-TEST(HelpFormat, AnOptionShowsItsValueChoicesDefaultAndWhatItExcludes) {
+TEST(HelpFormat, OptionHelpShowsValueChoicesDefaultAndExclusions) {
   CLI::App app("purpose", "talus");
   app.formatter(std::make_shared<HelpFormat>());
   std::string kind = "rigid";
@@ -52,7 +52,7 @@ TEST(HelpFormat, AnOptionShowsItsValueChoicesDefaultAndWhatItExcludes) {
   EXPECT_THAT(help, testing::Not(HasSubstr("--sort")));
 }
 
-TEST(HelpFormat, OldNamesOfOptionsAreAcceptedWithAWarning) {
+TEST(HelpFormat, DeprecatedOptionsAreAcceptedWithAWarning) {
   const Folder folder;
   const std::string table = folder.write("t.csv",
                                          "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n"

@@ -35,12 +35,12 @@ void waitFor(const Interrupt& interrupt) {
   std::exit(3);
 }
 
-TEST(InterruptDeathTest, TheFirstSignalIsARequest) {
+TEST(InterruptDeathTest, FirstSignalRequestsAStop) {
   EXPECT_EXIT(interruptedOnce(SIGINT), testing::ExitedWithCode(7), "");
   EXPECT_EXIT(interruptedOnce(SIGTERM), testing::ExitedWithCode(7), "");
 }
 
-TEST(InterruptDeathTest, TheSecondEndsTheProcessWithThePromisedCode) {
+TEST(InterruptDeathTest, SecondSignalEndsTheProcessWithTheDocumentedCode) {
   EXPECT_EXIT(interruptedTwice(), testing::ExitedWithCode(Exit::kCancelled), "");
 }
 
@@ -52,13 +52,13 @@ TEST(InterruptDeathTest, TheSecondEndsTheProcessWithThePromisedCode) {
   for (;;) ++turn;
 }
 
-TEST(InterruptDeathTest, WorkThatIgnoresItIsEnded) {
+TEST(InterruptDeathTest, UnresponsiveWorkIsEnded) {
   EXPECT_EXIT(deaf(SIGINT), testing::ExitedWithCode(130), "cancelled");
   EXPECT_EXIT(deaf(SIGTERM), testing::ExitedWithCode(143), "cancelled");
 }
 
 // What waits for another process, as for the writer of a FIFO, takes no CPU time: it is ended before it would wake.
-TEST(InterruptDeathTest, WorkThatWaitsIsEnded) {
+TEST(InterruptDeathTest, BlockedWorkIsEnded) {
   EXPECT_EXIT(
       {
         const Interrupt interrupt;
@@ -71,7 +71,7 @@ TEST(InterruptDeathTest, WorkThatWaitsIsEnded) {
 }
 
 // Who says that it answers may take its time: here twice the CPU time after which others are ended.
-TEST(InterruptDeathTest, WorkThatAnswersIsNotEnded) {
+TEST(InterruptDeathTest, ResponsiveWorkIsNotEnded) {
   EXPECT_EXIT(
       {
         Interrupt interrupt;
@@ -86,7 +86,7 @@ TEST(InterruptDeathTest, WorkThatAnswersIsNotEnded) {
 }
 
 // Property: its destructor wakes the listener by a signal that is not taken for the user's.
-TEST(InterruptDeathTest, ItsOwnEndIsNoInterrupt) {
+TEST(InterruptDeathTest, DestructionIsNotTreatedAsAnInterrupt) {
   EXPECT_EXIT(
       {
         { const Interrupt interrupt; }

@@ -37,7 +37,7 @@ Campaigned planned(const std::string& before) {
 
 // Property: four processes that do not know of each other would write one file; whatever the program was
 // built with, the ranks that these variables speak of are not there to be joined.
-TEST(MpiLaunch, RanksThatCannotBeJoinedAreRefused) {
+TEST(MpiLaunch, RanksWithoutMpiSupportAreRejected) {
   for (const std::string variable : {"OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const Campaigned refused = planned("OMPI_ALLOW_RUN_AS_ROOT=1 " + variable + "=4 ");
     EXPECT_EQ(WEXITSTATUS(refused.status), 2) << variable;
@@ -47,7 +47,7 @@ TEST(MpiLaunch, RanksThatCannotBeJoinedAreRefused) {
   }
 }
 
-TEST(MpiLaunch, OneRankIsAPlainRun) {
+TEST(MpiLaunch, SingleRankEqualsAPlainRun) {
   const Campaigned plain = planned(""), one = planned("OMPI_COMM_WORLD_SIZE=1 ");
   EXPECT_EQ(one.status, 0) << one.said;
   EXPECT_EQ(one.table, plain.table);
@@ -55,7 +55,7 @@ TEST(MpiLaunch, OneRankIsAPlainRun) {
 }
 
 #if !TALUS_HAS_MPI
-TEST(MpiLaunch, MpirunOfAProgramWithoutMpiIsRefused) {
+TEST(MpiLaunch, MpirunWithoutMpiSupportIsRejected) {
   TALUS_REQUIRE(test::installed("mpirun"), "mpirun is not installed");
   const Campaigned refused = planned(mpirun(2));
   EXPECT_EQ(WEXITSTATUS(refused.status), 2);

@@ -6,7 +6,7 @@
 namespace talus::cli {
 namespace number_check_test {
 
-TEST(NumberCheck, RefusesNaNInfinityAndWhatLiesOutside) {
+TEST(NumberCheck, NanInfinityAndOutOfRangeAreRejected) {
   CLI::Validator slip = within(-1.0, 1.0);
   for (std::string good : {"-1", "0", "0.999", "1"}) EXPECT_EQ(slip(good), "");
   for (std::string bad : {"1.001", "nan", "-inf", "abc", ""}) EXPECT_NE(slip(bad), "");
@@ -17,7 +17,7 @@ TEST(NumberCheck, RefusesNaNInfinityAndWhatLiesOutside) {
 }
 
 // Whatever the option, and also where a test of its range lets NaN pass.
-TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
+TEST(NumberCheck, ImpossibleNumbersAreRejectedForAnyOption) {
   const auto said = [](const std::string& word) -> std::string {
     CLI::App app;
     std::string value;
@@ -41,7 +41,7 @@ TEST(NumberCheck, NoOptionTakesAnImpossibleNumber) {
 }
 
 // A number where a number is wanted is no file's name.
-TEST(NumberCheck, TheRemedyIsThatOfTheOption) {
+TEST(NumberCheck, RemedyDependsOnTheOptionType) {
   const auto said = [](const std::string& option) -> std::string {
     CLI::App app;
     double weight = 0.0;
@@ -61,7 +61,7 @@ TEST(NumberCheck, TheRemedyIsThatOfTheOption) {
 }
 
 // Property: `--risk-weight ""` was 0 to the parser, and `--map ""` as if no map had been named.
-TEST(NumberCheck, NoOptionOfAnySubcommandTakesAnEmptyValue) {
+TEST(NumberCheck, EmptyValuesAreRejectedForEveryOption) {
   using Words = std::vector<std::string>;
   Context context;
   const auto declare = [&context](CLI::App& app) {
@@ -103,7 +103,7 @@ TEST(NumberCheck, NoOptionOfAnySubcommandTakesAnEmptyValue) {
             "--seed: its value is empty; leave the option out or give a value");
 }
 
-TEST(NumberCheck, EndsThatDoNotBind) {
+TEST(NumberCheck, FiniteNonNegativeAndPositiveChecksRejectOtherNumbers) {
   std::string minus = "-3";
   std::string none = "nan";
   EXPECT_EQ(finite()(minus), "");

@@ -24,7 +24,7 @@ std::string refusal(const std::string& path, const std::vector<std::string>& inp
   return "";
 }
 
-TEST(CheckOutput, KeepsInputsJournalsDevicesAndForeignLinks) {
+TEST(CheckOutput, InputsJournalsDevicesAndForeignLinksAreProtected) {
   const Folder folder, other;
   folder.write("in.csv", "x");
   folder.write("e.db", "SQLite format 3 and more");
@@ -47,7 +47,7 @@ TEST(CheckOutput, KeepsInputsJournalsDevicesAndForeignLinks) {
 }
 
 // `update -o e.db-wal --journal e.db` ended by 0, and SQLite had overwritten its output.
-TEST(CheckOutput, KeepsWhatSqliteHasBesideAJournal) {
+TEST(CheckOutput, SqliteFilesOfAJournalAreProtected) {
   const Folder folder;
   folder.write("e.db", "SQLite format 3 and more");
   folder.write("text", "x");
@@ -60,7 +60,7 @@ TEST(CheckOutput, KeepsWhatSqliteHasBesideAJournal) {
 }
 
 // Of a journal that does not exist yet, too; whatever way either is spelled.
-TEST(CheckOutput, IsNoPartOfTheJournalOfItsCall) {
+TEST(CheckOutput, OutputMustNotBePartOfTheJournal) {
   const Folder folder;
   fs::create_directory(folder / "f");
   fs::create_symlink("j.db", folder / "link.db");
@@ -80,7 +80,7 @@ TEST(CheckOutput, IsNoPartOfTheJournalOfItsCall) {
   EXPECT_FALSE(refused("j2.db-wal", "j.db"));
 }
 
-TEST(CheckOutput, HoldsForEveryCall) {
+TEST(CheckOutput, EveryCommandProtectsItsInputs) {
   const BadFiles files;
   const std::string map = "good.asc";
   files.folder().write("mission.yaml",
@@ -110,7 +110,7 @@ TEST(CheckOutput, HoldsForEveryCall) {
 }
 
 // `generate -o site.asc` wrote a GeoTIFF of that name.
-TEST(CheckOutput, RefusesANameOfAnotherFormat) {
+TEST(CheckOutput, ExtensionOfAnotherFormatIsRejected) {
   const BadFiles files;
   expectRefused(
       files,
@@ -146,7 +146,7 @@ TEST(CheckOutput, RefusesANameOfAnotherFormat) {
 }
 
 // A mission names its output in a file that may come from anywhere.
-TEST(CheckOutput, HoldsForTheOutputOfAMission) {
+TEST(CheckOutput, MissionOutputIsProtected) {
   const BadFiles files;
   const Folder other;
   other.write("far", "x");
@@ -191,7 +191,7 @@ class SmallDisk {
   rlimit before_{};
 };
 
-TEST(CheckOutput, AFullDiskIsToldAndKeepsTheOldFile) {
+TEST(CheckOutput, FullDiskIsReportedAndTheOldFileKept) {
   const BadFiles files;
   std::string cases =
       "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"

@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace sha256_test {
 
-TEST(Sha256, OfKnownMessages) {
+TEST(Sha256, DigestsMatchKnownMessages) {
   const Folder folder;
   // Printed in: FIPS 180-4's examples (NIST, SHA256.pdf), one block, two blocks, and a million letters.
   EXPECT_EQ(sha256OfFile(folder.write("abc", "abc")),
@@ -23,7 +23,7 @@ TEST(Sha256, OfKnownMessages) {
 }
 
 // A file with a checksum beside it is the file that was summed, whichever option names it, and in a mission.
-TEST(Sha256, AFileThatDiffersFromTheSumBesideItIsRefused) {
+TEST(Sha256, FileThatDiffersFromItsChecksumIsRejected) {
   const Folder folder;
   const std::string dem = folder.write(
       "hill.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0 0\n0 0 0\n0 0 0\n");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +26,7 @@ json assessed(const std::vector<std::string>& more) {
   return json::parse(ran.out);
 }
 
-TEST(AssessCommand, PrintsTheFieldsThatOthersRelyOn) {
+TEST(AssessCommand, JsonHasTheDocumentedFields) {
   const json rows = assessed({});
   ASSERT_EQ(rows.size(), 3u);
   for (const json& row : rows) {
@@ -40,6 +41,24 @@ TEST(AssessCommand, PrintsTheFieldsThatOthersRelyOn) {
   EXPECT_EQ(rows[2]["category"], "safe");
 }
 
+// Property: the page of a long table counts all of its rows and is small; a list of 24 665 rows made 11.5 MB of it.
+TEST(AssessCommand, ThePageOfALongTableIsSmall) {
+  const Folder folder;
+  std::string drive = std::string(kDrive).substr(0, std::string(kDrive).find('\n') + 1);
+  for (int row = 0; row < 3000; ++row)
+    drive += "80," + std::to_string(0.8 + 0.001 * row) + ",0.02,0.5,0.1,0.1\n";
+  const std::string table = folder.write("drive.csv", drive), page = folder / "r.html";
+  const json rows = json::parse(runTalus({"--json", "assess", table, "--html", page}).out);
+  const std::string html = fileContent(page);
+  EXPECT_LT(html.size(), 300'000U);
+  for (const char* category : {"safe", "marginal", "dangerous"}) {
+    const auto count = std::ranges::count(rows, category, [](const json& row) { return row["category"]; });
+    EXPECT_THAT(html, HasSubstr("<td>" + std::string(category) + "</td><td class=\"number\">" +
+                                std::to_string(count) + "</td>"));
+  }
+  EXPECT_THAT(html, HasSubstr("The first 500 of 3000 rows"));
+}
+
 TEST(AssessCommand, PlaneFormulaIsEquation321AndBothPrintedPairsAreDangerous) {
   // Printed in: thesis 3.5, pairs (0.1, 0.2) and (0.3, 0.4) at 10 deg; it calls the second safe, which
   // Eq. 3.21 does not give: -0.2 for both.
@@ -50,7 +69,7 @@ TEST(AssessCommand, PlaneFormulaIsEquation321AndBothPrintedPairsAreDangerous) {
   }
 }
 
-TEST(AssessCommand, ASteeperMissionAsksForMore) {
+TEST(AssessCommand, SteeperSlopeLowersTheCategory) {
   EXPECT_EQ(assessed({"--slope", "0.6"})[2]["category"], "dangerous");
 }
 
@@ -58,7 +77,7 @@ constexpr const char* kSoil =
     "soil: {name: x, cohesion_Pa: 1500, friction_angle_deg: 30, sinkage_exponent: 0.9, cohesive_modulus: 0, "
     "frictional_modulus: 1.7e6, shear_modulus_m: 0.015}\nmodel: wong-reece\n";
 
-TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
+TEST(AssessCommand, ModelDeterminesPullAndReadingsDetermineSinkage) {
   // Property: the same soil in `talus wheel` gives the same pull, whatever torque was read.
   const Folder folder;
   const std::string model = folder.write("model.yaml", kSoil);
@@ -81,7 +100,7 @@ TEST(AssessCommand, ByAModelThePullIsTheModelsAndTheSinkageTheReading) {
   EXPECT_NEAR(rows[1]["sinkage_over_radius"].get<double>(), 0.4, 1e-12);
 }
 
-TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
+TEST(AssessCommand, IgnoredSensorEffectsAreListed) {
   const Folder folder;
   const std::string drive = folder.write("drive.csv", kDrive), plain = folder.write("plain.yaml", kSoil);
   const std::string tilted =
@@ -96,7 +115,7 @@ TEST(AssessCommand, SaysWhichFaultsOfSensorsItLeavesOut) {
   EXPECT_TRUE(without.err.empty());
 }
 
-TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
+TEST(AssessCommand, ModelAssessmentNeedsNeitherTorqueNorSinkage) {
   const Folder folder;
   const Ran ran =
       runTalus({"--json", "assess",
@@ -108,7 +127,7 @@ TEST(AssessCommand, ByAModelNeitherTorqueNorSinkageNeedBeRead) {
   EXPECT_GT(row["torque_over_load_radius"].get<double>(), 0.1);
 }
 
-TEST(AssessCommand, ExtrapolatesByTheRowsOwnSoilOrByTheModel) {
+TEST(AssessCommand, ExtrapolationUsesTheFittedSoilOrTheModel) {
   // Property: the greatest pull is not below that at the reference slip; rows of the same load foretell the
   // same; a model without doubt has none.
   const Folder folder;
@@ -131,7 +150,7 @@ TEST(AssessCommand, ExtrapolatesByTheRowsOwnSoilOrByTheModel) {
   EXPECT_FALSE(assessed({})[0].contains("greatest"));
 }
 
-TEST(AssessCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(AssessCommand, ErrorsAreOneLineWithTheirExitCode) {
   const Folder folder;
   const std::string bad =
       folder.write("bad.csv", "load_N,torque_Nm,sinkage_m,wheel_radius_m,wheel_width_m\n0,1,0.01,0.1,0.1\n");

@@ -32,7 +32,7 @@ nlohmann::json lasting(const std::string& text) {
   return lines;
 }
 
-TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
+TEST(BenchCommand, ComparisonWritesLogsTableAndPage) {
   const Folder folder;
   const Ran ran = runTalus({"bench", room(folder), "--planners", "field,BIT*:cold", "--runs", "2", "--time",
                             "0.2", "-o", folder / "out", "--json"});
@@ -50,7 +50,7 @@ TEST(BenchCommand, ComparesPlannersAndWritesLogsTableAndPage) {
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
 
-TEST(BenchCommand, TakesAGeneratedSite) {
+TEST(BenchCommand, GeneratedSiteIsAccepted) {
   const Folder folder;
   const Ran ran = runTalus({"bench", "--planners", "field", "--runs", "1", "--pairs", "1", "--side", "64",
                             "-o", folder / "out", "--json"});
@@ -60,7 +60,7 @@ TEST(BenchCommand, TakesAGeneratedSite) {
   EXPECT_EQ(json[0]["breached"], 0);
 }
 
-TEST(BenchCommand, TakesSeveralSuitesAndDrivesOverTheTrueSlip) {
+TEST(BenchCommand, SeveralSuitesAreRunAndDrivenOverTrueSlip) {
   const Folder folder;
   const Ran ran = runTalus({"bench", "slip", "grids", room(folder), "--planners", "field", "--runs", "1",
                             "--pairs", "2", "-o", folder / "out", "--json"});
@@ -78,7 +78,7 @@ TEST(BenchCommand, TakesSeveralSuitesAndDrivesOverTheTrueSlip) {
 }
 
 // Measured by others: OMPL's own reader, from Debian's ompl-demos, makes its database of the logs.
-TEST(BenchCommand, OmplsOwnReaderTakesTheLogs) {
+TEST(BenchCommand, OmplReadsTheLogs) {
   if (std::system("command -v ompl_benchmark_statistics > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "ompl_benchmark_statistics (package ompl-demos) is not installed";
   const Folder folder;
@@ -93,7 +93,7 @@ TEST(BenchCommand, OmplsOwnReaderTakesTheLogs) {
   EXPECT_THAT(fileContent(folder / "out/a.db"), HasSubstr("room_1"));
 }
 
-TEST(BenchCommand, RanksOfMpiGiveWhatOneProcessGives) {
+TEST(BenchCommand, MpiRanksReproduceTheSingleProcessResult) {
   TALUS_REQUIRE_MPI();
   const Folder folder;
   const std::string call = std::string(TALUS_PROGRAM) + " bench " + room(folder) +
@@ -123,7 +123,7 @@ void expectTheFastRunsKept(const Folder& folder) {
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
 }
 
-TEST(BenchCommand, ACancelledCampaignKeepsWhatIsDone) {
+TEST(BenchCommand, CancelledCampaignKeepsCompletedRuns) {
   const Folder folder;
   EXPECT_EQ(interruptedWhenBusy("exec " + longCampaign(folder), 1), 130);
   EXPECT_EQ(fileContent(folder / "out.txt"), "");  // a reader of stdout gets the whole or nothing
@@ -131,14 +131,14 @@ TEST(BenchCommand, ACancelledCampaignKeepsWhatIsDone) {
   expectTheFastRunsKept(folder);
 }
 
-TEST(BenchCommand, ACancelledCampaignOfRanksKeepsWhatIsDone) {
+TEST(BenchCommand, CancelledMpiCampaignKeepsCompletedRuns) {
   TALUS_REQUIRE_MPI();
   const Folder folder;
   EXPECT_NE(interruptedWhenBusy("exec env " + mpirun(2) + longCampaign(folder), 2), 0);
   expectTheFastRunsKept(folder);
 }
 
-TEST(BenchCommand, MistakesAreOneLineWithTwo) {
+TEST(BenchCommand, ErrorsAreOneLineWithCodeTwo) {
   const Folder folder;
   for (const auto& words : std::vector<std::vector<std::string>>{{"bench", folder / "none.scen"},
                                                                  {"bench", folder / "none.tif"},

@@ -21,7 +21,7 @@ json run(const Folder& folder, std::vector<std::string> words) {
 
 // Property: categories count every cell, a map that is read back counts the same, and stricter thresholds never
 // make more ground safe.
-TEST(CostmapCommand, CategoriesCountEveryCellAndStay) {
+TEST(CostmapCommand, CategoriesCountEveryCellAndRoundTrip) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(50, 40, block));
   const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",  "--soil",
@@ -51,7 +51,7 @@ TEST(CostmapCommand, CategoriesCountEveryCellAndStay) {
   EXPECT_THAT(fileContent(folder / "layers.tif"), testing::StartsWith("II"));
 }
 
-TEST(CostmapCommand, MistakesAreOneLineAndLeaveNoFile) {
+TEST(CostmapCommand, ErrorsAreOneLineAndLeaveNoFile) {
   const std::vector<std::string> ground{"costmap", "good.asc",   "--resolution", "1",
                                         "--soil",  "sandy_loam", "--rover",      "mer"};
   std::vector<BadCall> calls;

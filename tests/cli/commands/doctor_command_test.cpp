@@ -11,7 +11,7 @@ namespace doctor_command_test {
 
 using nlohmann::json;
 
-TEST(DoctorCommand, SaysWhatIsInForceAndWhereItComesFrom) {
+TEST(DoctorCommand, SettingsAreListedWithTheirOrigin) {
   const Ran ran = runTalus({"--seed", "7", "doctor", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const json found = json::parse(ran.out);
@@ -22,7 +22,7 @@ TEST(DoctorCommand, SaysWhatIsInForceAndWhereItComesFrom) {
   EXPECT_TRUE(found["faults"].empty());
 }
 
-TEST(DoctorCommand, ADriverThatIsNotThereIsAFault) {
+TEST(DoctorCommand, MissingDriverIsReportedAsAFault) {
   ::setenv("GDAL_SKIP", "GPX", 1);
   const Ran ran = runTalus({"doctor"});
   ::unsetenv("GDAL_SKIP");

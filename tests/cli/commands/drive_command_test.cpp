@@ -36,7 +36,7 @@ json outcomeOf(const Folder& folder, const std::vector<std::string>& words) {
   return json::parse(ran.out);
 }
 
-TEST(DriveCommand, GroundAsBelievedIsReachedUnderEveryBelief) {
+TEST(DriveCommand, CorrectlyMappedGroundIsTraversedUnderEveryBelief) {
   for (const char* belief : {"geometry", "prior", "online", "clairvoyant"}) {
     const Folder folder;
     const Ran ran = runTalus(drive(folder, "{}\n", {"--belief", belief, "--json"}), folder.path());
@@ -54,7 +54,7 @@ TEST(DriveCommand, GroundAsBelievedIsReachedUnderEveryBelief) {
 
 // What bottomless traps refuse may leave the rover on ground that nothing but its own track leads away from: it goes
 // back along that. Perfect knowledge finds a way in both worlds.
-TEST(DriveCommand, WhoIsHemmedInByItsFindingsGoesBackAlongItsTrack) {
+TEST(DriveCommand, RoverEnclosedByItsFindingsReachesTheGoal) {
   const Folder folder;
   folder.write("truth.yaml", R"(random: {spread: 0.1, patches: 10, patch_radius_m: 3, patch_soil: trap}
 soils:
@@ -74,7 +74,7 @@ soils:
   }
 }
 
-TEST(DriveCommand, AnUndeclaredPatchHoldsTheBlindAndNotTheWatchful) {
+TEST(DriveCommand, UndeclaredPatchImmobilisesWithoutUpdatesOnly) {
   const Folder folder;
   const Ran blind = runTalus(drive(folder, kTrap, {"--belief", "prior", "--json"}), folder.path());
   EXPECT_EQ(blind.code, 1);
@@ -89,7 +89,7 @@ TEST(DriveCommand, AnUndeclaredPatchHoldsTheBlindAndNotTheWatchful) {
   EXPECT_GT(online["length_m"].get<double>(), told["length_m"].get<double>());
 }
 
-TEST(DriveCommand, WorldsGiveRatesThatDoNotDependOnThreads) {
+TEST(DriveCommand, RatesAreIndependentOfThreadCount) {
   const Folder folder;
   const char* const random = "random: {spread: 0.1, patches: 6, patch_radius_m: 2}\n";
   const auto words = drive(folder, random, {"--worlds", "6", "--seed", "11", "--json"});
@@ -112,7 +112,7 @@ TEST(DriveCommand, WorldsGiveRatesThatDoNotDependOnThreads) {
   EXPECT_EQ(out["each"].size(), 6U);
 }
 
-TEST(DriveCommand, AllBeliefsAreComparedInTheSameWorlds) {
+TEST(DriveCommand, BeliefsAreComparedInTheSameWorlds) {
   const Folder folder;
   const json out = outcomeOf(
       folder, drive(folder, "random: {spread: 0.05}\n", {"--worlds", "3", "--belief", "all", "--json"}));
@@ -122,7 +122,7 @@ TEST(DriveCommand, AllBeliefsAreComparedInTheSameWorlds) {
     EXPECT_TRUE(out[belief]["immobilised"].contains("interval_95")) << belief;
 }
 
-TEST(DriveCommand, ThePageTellsTheDrive) {
+TEST(DriveCommand, PageShowsTheDrive) {
   const Folder folder;
   const json out = outcomeOf(folder, drive(folder, kTrap, {"--html", "r.html", "--json"}));
   EXPECT_EQ(out, outcomeOf(folder, drive(folder, kTrap, {"--json"})));
@@ -131,7 +131,7 @@ TEST(DriveCommand, ThePageTellsTheDrive) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
-TEST(DriveCommand, TheTruthMayHoldAllItsPartsAtOnce) {
+TEST(DriveCommand, TruthFileAcceptsAllPartsTogether) {
   // Property: a class whose true soil is the one believed changes nothing.
   const Folder folder;
   const std::string others =
@@ -141,7 +141,7 @@ TEST(DriveCommand, TheTruthMayHoldAllItsPartsAtOnce) {
   EXPECT_EQ(outcomeOf(folder, drive(folder, "classes: {0: sandy_loam}\n" + others, {"--json"})), alone);
 }
 
-TEST(BadInput, Rehearsals) {
+TEST(BadInput, InvalidDriveCallsAreRejectedWithOneLine) {
   const BadFiles files;
   const auto write = [&](const char* name, const char* text) { files.folder().write(name, text); };
   write("t_key.yaml", "patchs: []\n");

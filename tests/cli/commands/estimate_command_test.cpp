@@ -40,7 +40,7 @@ json estimated(const std::vector<std::string>& more, const std::string& table) {
   return json::parse(ran.out);
 }
 
-TEST(EstimateCommand, EveryMethodPrintsTheFieldsThatOthersRelyOn) {
+TEST(EstimateCommand, EveryMethodPrintsTheDocumentedFields) {
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   for (const char* method : {"sojourner", "iagnemma", "linear-offset", "wong-reece"}) {
@@ -55,7 +55,7 @@ TEST(EstimateCommand, EveryMethodPrintsTheFieldsThatOthersRelyOn) {
   }
 }
 
-TEST(EstimateCommand, ShearModulusIsTakenAsStatedOrFoundAsAsked) {
+TEST(EstimateCommand, ShearModulusIsTakenOrEstimatedAsRequested) {
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   EXPECT_DOUBLE_EQ(estimated({"--method", "iagnemma", "--shear-modulus", "0.02"}, table)["shear_modulus_m"],
@@ -105,7 +105,7 @@ TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
   }
 }
 
-TEST(EstimateCommand, RecursiveEndsWhereAllRowsTogetherDo) {
+TEST(EstimateCommand, RecursiveEstimateEqualsBatchEstimate) {
   // Property: with K stated the recursion is the same least squares; wong-reece keeps the ten rows in its
   // window.
   const Folder folder;
@@ -127,7 +127,7 @@ TEST(EstimateCommand, RecursiveEndsWhereAllRowsTogetherDo) {
   }
 }
 
-TEST(EstimateCommand, RecursiveFindsKWithEveryCriterion) {
+TEST(EstimateCommand, RecursiveEstimateSupportsEveryModulusCriterion) {
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   for (const char* how : {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
@@ -141,7 +141,7 @@ TEST(EstimateCommand, RecursiveFindsKWithEveryCriterion) {
   }
 }
 
-TEST(EstimateCommand, RejectsRowsByLineAndCountsThem) {
+TEST(EstimateCommand, RejectedRowsAreListedByLine) {
   const Folder folder;
   const std::string table =
       folder.write("drive.csv", drive() + "-3,1,0.01,0.3,0.1,0.1\n80,1,0.01,-0.2,0.1,0.1\n");
@@ -152,7 +152,7 @@ TEST(EstimateCommand, RejectsRowsByLineAndCountsThem) {
   EXPECT_THAT(result["rejected"][1]["reason"].get<std::string>(), HasSubstr("slip"));
 }
 
-TEST(EstimateCommand, SaysWhenDataAreBadlyConditioned) {
+TEST(EstimateCommand, IllConditionedDataIsReported) {
   const Folder folder;
   std::string text = kHeader;
   for (int k = 0; k < 6; ++k) text += "80,3.0" + std::to_string(k) + ",0.018,0.5,0.1,0.1\n";
@@ -162,7 +162,7 @@ TEST(EstimateCommand, SaysWhenDataAreBadlyConditioned) {
   EXPECT_THAT(ran.err, HasSubstr("ill-conditioned: friction_angle_rad"));
 }
 
-TEST(EstimateCommand, BevameterWithOnePlateGivesItsModulusAndNoMore) {
+TEST(EstimateCommand, SinglePlateYieldsOnlyItsModulus) {
   // Closed form: p = 2e6 z^0.8 under one plate: k is seen, k_c and k_phi are not.
   const Folder folder;
   std::string text = "plate_width_m,pressure_Pa,sinkage_m\n";
@@ -179,7 +179,7 @@ TEST(EstimateCommand, BevameterWithOnePlateGivesItsModulusAndNoMore) {
   EXPECT_TRUE(result["cohesion_Pa"].is_null());
 }
 
-TEST(EstimateCommand, KeepsM1WhereAsked) {
+TEST(EstimateCommand, M1IsKeptOnRequest) {
   // Property: M1 makes a difference of some per cent on cohesive soil, alike in the recursion.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
@@ -194,7 +194,7 @@ TEST(EstimateCommand, KeepsM1WhereAsked) {
   EXPECT_EQ(estimated(recursive, table)["cohesion_Pa"], with);
 }
 
-TEST(EstimateCommand, SaysWhenNoSoilIsLikeThis) {
+TEST(EstimateCommand, ImplausibleSoilIsReported) {
   // Property: sinkage that grows threefold with slip at one load is no Wong-Reece wheel.
   const Folder folder;
   const std::string table = folder.write("sinking.csv", std::string(kHeader) +
@@ -210,7 +210,7 @@ TEST(EstimateCommand, SaysWhenNoSoilIsLikeThis) {
   EXPECT_EQ(estimated({"--method", "wong-reece"}, folder.write("drive.csv", drive()))["plausible"], true);
 }
 
-TEST(EstimateCommand, BevameterFitsBothTests) {
+TEST(EstimateCommand, BevameterFitsShearAndPlateTests) {
   const Folder folder;
   std::string text =
       "normal_stress_Pa,shear_stress_Pa,shear_displacement_m,plate_width_m,pressure_Pa,sinkage_m\n";
@@ -231,7 +231,7 @@ TEST(EstimateCommand, BevameterFitsBothTests) {
   EXPECT_NEAR(result["cohesive_modulus"], 5000.0, 20.0);
 }
 
-TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(EstimateCommand, ErrorsAreOneLineWithTheirExitCode) {
   const Folder folder;
   const std::string good = folder.write("drive.csv", drive());
   const std::string lacking = folder.write("lacking.csv", "load_N,torque_Nm\n80,3\n");
@@ -272,7 +272,7 @@ TEST(EstimateCommand, MistakesAreOneLineWithTheirExitCode) {
   }
 }
 
-TEST(EstimateCommand, WritesAPage) {
+TEST(EstimateCommand, PageContainsTheFigure) {
   const Folder folder;
   const std::string page = folder / "fit.html";
   EXPECT_EQ(
@@ -282,7 +282,7 @@ TEST(EstimateCommand, WritesAPage) {
   EXPECT_TRUE(fileContent(page).find("data:image/svg+xml") != std::string::npos);
 }
 
-TEST(EstimateCommand, TheEffectsOfAModelActAndAreNamed) {
+TEST(EstimateCommand, ModelEffectsAreAppliedAndListed) {
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   const std::string soil = "soil: loam\nmodel: wong-reece\n";
@@ -303,7 +303,7 @@ TEST(EstimateCommand, TheEffectsOfAModelActAndAreNamed) {
   EXPECT_LT(strength(dug), strength(plain));
 }
 
-TEST(EstimateCommand, AModelGoesWithWongReeceAlone) {
+TEST(EstimateCommand, ModelRequiresWongReece) {
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   const std::string model = folder.write("m.yaml", "soil: loam\nmodel: wong-reece\n");

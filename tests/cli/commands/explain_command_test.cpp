@@ -23,7 +23,7 @@ std::vector<std::string> explain(const std::vector<std::string>& more) {
 
 // Closed form: a plane that rises by 0.1 eastwards: slope atan 0.1 along east, the same downwards along west, and
 // none along north.
-TEST(ExplainCommand, NamesTheCellAndTheSlopeAlongTheHeading) {
+TEST(ExplainCommand, CellAndSlopeAlongTheHeadingMatchTheMap) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, ramp));
   const auto slopes = [&folder](const std::string& heading) {
@@ -44,7 +44,7 @@ TEST(ExplainCommand, NamesTheCellAndTheSlopeAlongTheHeading) {
 }
 
 // Property: text and JSON list the same causes.
-TEST(ExplainCommand, TextListsWhatTheJsonLists) {
+TEST(ExplainCommand, TextListsTheCausesOfTheJson) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, ramp));
   const json why = json::parse(runTalus(explain({"--at", "20.5,12.5", "--json"}), folder.path()).out);
@@ -54,7 +54,7 @@ TEST(ExplainCommand, TextListsWhatTheJsonLists) {
   EXPECT_THAT(text, HasSubstr(why["verdict"].get<std::string>()));
 }
 
-TEST(ExplainCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(ExplainCommand, ErrorsAreOneLineWithTheirExitCode) {
   const std::vector<std::string> ground{"explain", "good.asc",   "--resolution", "1",
                                         "--soil",  "sandy_loam", "--rover",      "fido"};
   const auto with = [&ground](const std::vector<std::string>& more) {

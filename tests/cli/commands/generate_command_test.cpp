@@ -10,7 +10,7 @@ namespace generate_command_test {
 
 using testing::HasSubstr;
 
-TEST(GenerateCommand, WritesASiteThatOtherCommandsRead) {
+TEST(GenerateCommand, GeneratedSiteIsReadByOtherCommands) {
   const Folder folder;
   const Ran ran = runTalus({"generate", "craters", "--size", "80x60", "--resolution", "2", "--seed", "4",
                             "-o", folder / "site.tif"});
@@ -32,7 +32,7 @@ TEST(GenerateCommand, WritesASiteThatOtherCommandsRead) {
 
 // Property: of a site's own layer of rocks nothing counts as lost but single cells without rocks among many, and those around them:
 // one in a thousand at most.
-TEST(GenerateCommand, ASitesOwnRocksAreKnown) {
+TEST(GenerateCommand, GeneratedRocksAreNotTreatedAsLostData) {
   const Folder folder;
   for (const std::string kind : {"craters", "dunes", "rocks"}) {
     const Ran made = runTalus({"generate", kind, "--size", "150", "--seed", "31", "-o", folder / "s.tif"});
@@ -48,7 +48,7 @@ TEST(GenerateCommand, ASitesOwnRocksAreKnown) {
   }
 }
 
-TEST(GenerateCommand, ShippedDescriptionsAreWhole) {
+TEST(GenerateCommand, ShippedDescriptionsAreComplete) {
   const Folder folder;
   for (const char* name : {"moon_craters", "mars_dunes", "mars_rocks"}) {
     const Ran ran = runTalus({"generate", std::string(TALUS_SOURCE_DIR "/maps/sites/") + name + ".yaml",
@@ -58,7 +58,7 @@ TEST(GenerateCommand, ShippedDescriptionsAreWhole) {
   }
 }
 
-TEST(GenerateCommand, BadInputIsOneLineAndCodeTwo) {
+TEST(GenerateCommand, ErrorsAreOneLineWithCodeTwo) {
   const Folder folder;
   const std::string out = folder / "site.tif";
   struct Case {

@@ -14,7 +14,7 @@ namespace help_command_test {
 
 using testing::HasSubstr;
 
-TEST(HelpCommand, FormatsAreTheKeysOfTheReaders) {
+TEST(HelpCommand, FormatsListTheKeysOfTheReaders) {
   const Ran ran = runTalus({"help", "formats"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(ran.out, formatsText());
@@ -26,7 +26,7 @@ TEST(HelpCommand, FormatsAreTheKeysOfTheReaders) {
     EXPECT_EQ(formats[format.title].size(), format.keys.size()) << format.title;
 }
 
-TEST(HelpCommand, SoilsAndRoversAreThoseOfTheLibrary) {
+TEST(HelpCommand, SoilsAndRoversListTheLibrary) {
   const std::string soils = runTalus({"help", "soils"}).out, rovers = runTalus({"help", "rovers"}).out;
   for (const std::string& name : terramech::librarySoils())
     EXPECT_THAT(soils, HasSubstr("\n" + name + " ")) << name;
@@ -35,7 +35,7 @@ TEST(HelpCommand, SoilsAndRoversAreThoseOfTheLibrary) {
 }
 
 // Property: what the option tree has is in both, and bash takes the script.
-TEST(HelpCommand, ManualAndCompletionHaveEveryCall) {
+TEST(HelpCommand, ManualAndCompletionCoverEveryCommand) {
   const Folder folder;
   const std::string manual = runTalus({"help", "man"}).out,
                     script = runTalus({"help", "bash-completion"}).out;
@@ -58,7 +58,7 @@ TEST(HelpCommand, ManualAndCompletionHaveEveryCall) {
   EXPECT_EQ(fileContent(folder / "out"), "sojourner\nplan plugins\n");
 }
 
-TEST(HelpCommand, ACallsHelpIsThatOfTheCallAndAnUnknownTopicOneLine) {
+TEST(HelpCommand, HelpOfACommandEqualsItsHelpOptionAndUnknownTopicIsOneLine) {
   EXPECT_EQ(runTalus({"help", "plan"}).out, runTalus({"plan", "--help"}).out);
   EXPECT_EQ(runTalus({"help"}).out, runTalus({"--help"}).out);
   const Ran unknown = runTalus({"help", "format"});

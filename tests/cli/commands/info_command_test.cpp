@@ -20,7 +20,7 @@ std::string plane(const Folder& folder) {
   return folder.write("plane.asc", text);
 }
 
-TEST(InfoCommand, JsonHasTheFieldsThatProgramsRelyOn) {
+TEST(InfoCommand, JsonHasTheDocumentedFields) {
   const Folder folder;
   const Ran ran = runTalus({"--json", "info", plane(folder), "--resolution", "2"});
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -39,7 +39,7 @@ TEST(InfoCommand, JsonHasTheFieldsThatProgramsRelyOn) {
 }
 
 // Property: a point cloud stands wherever a DEM does.
-TEST(InfoCommand, APointCloudIsAMapForEveryCommand) {
+TEST(InfoCommand, PointCloudIsAcceptedAsAMap) {
   const Folder folder;
   octomap::OcTree tree(0.5);
   for (int column = 0; column < 24; ++column)
@@ -61,7 +61,7 @@ TEST(InfoCommand, APointCloudIsAMapForEveryCommand) {
               HasSubstr("has a grid of its own"));
 }
 
-TEST(InfoCommand, BadInputIsOneLineAndCodeTwo) {
+TEST(InfoCommand, ErrorsAreOneLineWithCodeTwo) {
   const Folder folder;
   const std::string map = plane(folder);
   struct Case {

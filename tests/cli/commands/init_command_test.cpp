@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/mission.hpp>
@@ -11,7 +15,7 @@ namespace init_command_test {
 
 using testing::HasSubstr;
 
-TEST(InitCommand, ItsMissionIsPlannedAsItStands) {
+TEST(InitCommand, CreatedMissionCanBePlanned) {
   const Folder folder;
   folder.write("flat ground.asc", asciiGrid(20, 20, [](int column, int) { return 0.01 * column; }));
   std::filesystem::create_directory(folder / "m");
@@ -27,8 +31,27 @@ TEST(InitCommand, ItsMissionIsPlannedAsItStands) {
   EXPECT_THAT(again.err, HasSubstr("m/site.yaml: exists; name another file with -o, or pass --force"));
 }
 
+// Property: where the first choices of start and goal are blocked, or lie in a hollow that no drive leaves, the mission is planned as it
+// stands; and on level ground.
+TEST(InitCommand, ItsPlacesAreJoined) {
+  const Folder folder;
+  const auto walled = [](int column, int row) {
+    const auto near = [&](int c, int r) { return std::max(std::abs(column - c), std::abs(row - r)); };
+    return near(10, 10) == 4 || near(30, 30) == 4 || near(30, 30) < 2 ? 3.0 : 0.0;
+  };
+  folder.write("walled.asc", asciiGrid(40, 40, walled));
+  folder.write("level.asc", asciiGrid(20, 20, [](int, int) { return 0.0; }));
+  for (const std::string name : {"walled", "level"}) {
+    const Ran made =
+        runTalus({"init", name + ".asc", "--resolution", "1", "-o", name + ".yaml"}, folder.path());
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Ran planned = runTalus({"plan", name + ".yaml", "--quiet"}, folder.path());
+    EXPECT_EQ(planned.code, 0) << name << planned.out << planned.err;
+  }
+}
+
 // Property: every key of the reader stands in the text, once.
-TEST(InitCommand, HasEveryKeyOfAMission) {
+TEST(InitCommand, CreatedMissionHasEveryKey) {
   const std::string text = missionText({});
   for (const auto keys : {missionKeys(), missionMapKeys(), thresholdKeys()})
     for (const terramech::FileKey& key : keys)

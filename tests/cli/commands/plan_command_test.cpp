@@ -28,7 +28,7 @@ std::string dem() {
 }
 
 // One run for all that a good plan shows: starting the program is what takes time.
-TEST(PlanCommand, PlansWritesAndScoresTheSame) {
+TEST(PlanCommand, PlannedRouteIsWrittenAndScoresTheSameCost) {
   const Folder folder;
   folder.write("dem.asc", dem());
   const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",   "--soil",
@@ -49,7 +49,10 @@ TEST(PlanCommand, PlansWritesAndScoresTheSame) {
   EXPECT_EQ(summary["status"], "found");
   EXPECT_GT(summary["length_m"].get<double>(), 21.0);
   EXPECT_LE(summary["lower_bound"].get<double>(), summary["cost"].get<double>());
-  for (const char* key : {"load", "costmap", "plan"}) EXPECT_TRUE(summary["seconds"].contains(key)) << key;
+  for (const char* key : {"load", "costmap", "plan", "proof"})
+    EXPECT_TRUE(summary["seconds"].contains(key)) << key;
+  EXPECT_GT(summary["seconds"]["proof"].get<double>(), 0.0);
+  EXPECT_LT(summary["seconds"]["proof"].get<double>(), summary["seconds"]["plan"].get<double>());
 
   const json route = json::parse(fileContent(folder / "route.geojson"));
   EXPECT_EQ(route["crs"], "local");
@@ -92,7 +95,7 @@ struct Refused {
   const char* says;
 };
 
-TEST(PlanCommand, EveryBadCallIsOneLineAndACode) {
+TEST(PlanCommand, ErrorsAreOneLineWithTheirExitCode) {
   const Folder folder;
   folder.write("dem.asc", dem());
   folder.write("empty.csv", "x_m,y_m\n");
@@ -122,7 +125,7 @@ TEST(PlanCommand, EveryBadCallIsOneLineAndACode) {
   }
 }
 
-TEST(PlanCommand, AMissionNeedsNothingElse) {
+TEST(PlanCommand, MissionFileSuffices) {
   const Folder folder;
   folder.write("dem.asc", dem());
   folder.write("mission.yaml",
@@ -133,7 +136,7 @@ TEST(PlanCommand, AMissionNeedsNothingElse) {
   EXPECT_EQ(json::parse(ran.out)["status"], "found");
 }
 
-TEST(PlanCommand, TakesTheCheapestOfSeveralGoalsAndPassesViaPoints) {
+TEST(PlanCommand, CheapestGoalIsChosenAndViaPointsArePassed) {
   const Folder folder;
   folder.write("dem.asc", dem());
   const auto plan = [&folder](const std::vector<std::string>& more) {
@@ -171,7 +174,7 @@ TEST(PlanCommand, TakesTheCheapestOfSeveralGoalsAndPassesViaPoints) {
 
 // Property: a map read in windows gives a route that the whole map allows at the same price, near the one
 // planned on the whole.
-TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {
+TEST(PlanCommand, WindowedPlanMatchesThePlanOnTheFullMap) {
   const Folder folder;
   const Ran made =
       runTalus({"generate", "craters", "--size", "900x700", "--seed", "7", "-o", "dem.tif"}, folder.path());
@@ -198,7 +201,7 @@ TEST(PlanCommand, PlansInWindowsOfAMapBeyondMemory) {
   EXPECT_EQ(plan({"--in-memory", "100000", "--whole-field"}).out.substr(0, 60), whole.out.substr(0, 60));
 }
 
-TEST(PlanCommand, SaysWhatWindowsCannotDo) {
+TEST(PlanCommand, UnsupportedWindowedPlanningIsRejected) {
   const Folder folder;
   folder.write("dem.asc", dem());
   const Ran ran = runTalus({"plan", "dem.asc", "--resolution", "1", "--start", "5.5,4.5", "--goal",
@@ -222,7 +225,7 @@ std::string hills() {
 }
 
 // The route is there before the 36 routes of the Pareto set are planned: the stop comes among those.
-TEST(PlanCommand, AParetoSetThatIsCancelledIsNotDrawn) {
+TEST(PlanCommand, CancelledParetoSetIsNotDrawn) {
   const Folder folder;
   folder.write("dem.asc", hills());
   const std::string line =

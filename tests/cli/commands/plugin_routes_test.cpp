@@ -42,7 +42,7 @@ class PluginRoutes : public testing::Test {
   Folder folder_;
 };
 
-TEST_F(PluginRoutes, AreCheckedAndPricedByTheProgram) {
+TEST_F(PluginRoutes, PluginRoutesAreCheckedAndPriced) {
   const Ran planned = plan("line");
   ASSERT_EQ(planned.code, 0) << planned.err;
   const json route = json::parse(planned.out);
@@ -58,7 +58,7 @@ TEST_F(PluginRoutes, AreCheckedAndPricedByTheProgram) {
   EXPECT_EQ(json::parse(direct.out)["cost"], route["cost"]);
 }
 
-TEST_F(PluginRoutes, ThroughAWallAreRefusedAndScoredWithEachViolation) {
+TEST_F(PluginRoutes, InvalidPluginRoutesAreRejectedAndScoredWithViolations) {
   const Words places{"--start", "5,14", "--goal", "35,14"};
   Words words{"--plugin", TALUS_STRAIGHT_PLUGIN, "-o", "r.geojson"};
   words.insert(words.end(), places.begin(), places.end());
@@ -73,7 +73,7 @@ TEST_F(PluginRoutes, ThroughAWallAreRefusedAndScoredWithEachViolation) {
   EXPECT_GE(json::parse(scored.out)["violations"].size(), 3U);
 }
 
-TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
+TEST_F(PluginRoutes, PluginErrorsAreOneLine) {
   struct Wrong {
     const char* planner;
     int code;
@@ -101,7 +101,7 @@ TEST_F(PluginRoutes, WhatAPluginDoesWrongIsOneLine) {
 }
 
 // It states that it keeps headings and a turning radius; the places of its route say otherwise.
-TEST_F(PluginRoutes, HeadingsAreThoseOfThePlaces) {
+TEST_F(PluginRoutes, HeadingsAreCheckedAgainstTheRoute) {
   const auto lied = [this](const Words& motion) {
     Words words{"--turning-radius", "2"};
     words.insert(words.end(), motion.begin(), motion.end());
@@ -114,7 +114,7 @@ TEST_F(PluginRoutes, HeadingsAreThoseOfThePlaces) {
   EXPECT_EQ(plan("liar", {"--turning-radius", "2", "--start-heading", "0", "--goal-heading", "0"}).code, 0);
 }
 
-TEST_F(PluginRoutes, WhatIsNoPluginOrHonoursTooLittleIsOneLine) {
+TEST_F(PluginRoutes, UnusablePluginsAreRejectedWithOneLine) {
   const auto with = [&](const std::string& file, const Words& more = {}) {
     Words words{"--plugin", file, "--start", "5,4", "--goal", "35,4"};
     words.insert(words.end(), more.begin(), more.end());
@@ -123,7 +123,7 @@ TEST_F(PluginRoutes, WhatIsNoPluginOrHonoursTooLittleIsOneLine) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     return ran.err;
   };
-  EXPECT_THAT(with(TALUS_OTHER_PLUGIN), HasSubstr("built for planner interface 99, this program has 6"));
+  EXPECT_THAT(with(TALUS_OTHER_PLUGIN), HasSubstr("built for planner interface 99, this program has 7"));
   EXPECT_THAT(with("none.so"), HasSubstr("none.so: no such file"));
   EXPECT_THAT(with("wall.asc"), HasSubstr("cannot be loaded"));
   EXPECT_THAT(with(TALUS_STRAIGHT_PLUGIN, {"--via", "20,4"}), HasSubstr("via is not honoured"));
@@ -133,7 +133,7 @@ TEST_F(PluginRoutes, WhatIsNoPluginOrHonoursTooLittleIsOneLine) {
   EXPECT_EQ(run("score", {"--plugin", TALUS_STRAIGHT_PLUGIN}).code, 2);
 }
 
-TEST_F(PluginRoutes, AreComparedAndDriven) {
+TEST_F(PluginRoutes, PluginPlannersCanBeBenchmarkedAndDriven) {
   const Ran bench = runTalus(
       {"bench", "wall.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil", "sandy_loam", "--rover",
        "fido", "--planners", "field", "--plugin", TALUS_STRAIGHT_PLUGIN, "--runs", "1", "--pairs", "2"},

@@ -7,7 +7,7 @@ namespace plugins_command_test {
 
 using testing::HasSubstr;
 
-TEST(PluginsCommand, SaysWhatIsBuiltInAndWhatAPluginOffers) {
+TEST(PluginsCommand, BuiltInAndPluginCapabilitiesAreListed) {
   const Ran built_in = runTalus({"plugins"});
   EXPECT_EQ(built_in.code, 0) << built_in.err;
   EXPECT_THAT(built_in.out, HasSubstr("planners: field, hybrid, RRTstarSE2, RRTstar"));
@@ -15,12 +15,12 @@ TEST(PluginsCommand, SaysWhatIsBuiltInAndWhatAPluginOffers) {
   ASSERT_EQ(loaded.code, 0) << loaded.err;
   const auto json = nlohmann::json::parse(loaded.out);
   EXPECT_EQ(json["name"], "talus");
-  EXPECT_EQ(json["interface_version"], 6);
+  EXPECT_EQ(json["interface_version"], 7);
   EXPECT_EQ(json["planners"][0], "field");
   EXPECT_THAT(json["features"], ::testing::Contains("lower bound"));
 }
 
-TEST(PluginsCommand, WhatIsNoPluginIsOneLineAndTwo) {
+TEST(PluginsCommand, FilesThatAreNoPluginAreRejectedWithOneLine) {
   const Folder folder;
   for (const std::string& file : {folder / "none.so", folder.write("text.so", "not a library\n")}) {
     const Ran ran = runTalus({"plugins", file});

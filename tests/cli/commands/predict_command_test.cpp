@@ -23,7 +23,7 @@ double value(const std::string& table, const std::string& column) {
 }
 
 // Property: a model that is a soil alone predicts what `talus wheel` computes, and never reads the answer.
-TEST(PredictCommand, OfASoilAloneIsTheWheelsEquilibrium) {
+TEST(PredictCommand, PlainSoilPredictsTheWheelEquilibrium) {
   const Folder folder;
   const json wheel = json::parse(runTalus({"--json", "--quiet", "wheel", "--soil", "sandy_loam", "--rover",
                                            "fido", "--load", "80", "--slip", "0.3"})
@@ -45,7 +45,7 @@ TEST(PredictCommand, OfASoilAloneIsTheWheelsEquilibrium) {
   }
 }
 
-TEST(PredictCommand, RowsThatCannotBePredictedAreNamedByLine) {
+TEST(PredictCommand, UnpredictableRowsAreListedByLine) {
   const Folder folder;
   folder.write("model.yaml", "{soil: sandy_loam, model: wong-reece}\n");
   folder.write("t.csv", "load_N,slip\n80,0.3\n-5,0.3\n80,0.1\n");
@@ -60,7 +60,7 @@ TEST(PredictCommand, RowsThatCannotBePredictedAreNamedByLine) {
   EXPECT_THAT(ran.err, testing::HasSubstr("t.csv:3: "));
 }
 
-TEST(PredictCommand, MistakesAreOneLineAndLeaveNoFile) {
+TEST(PredictCommand, ErrorsAreOneLineAndLeaveNoFile) {
   expectRefused(BadFiles(),
                 {{{"predict", "words.csv", "--model", "sandy_loam"}, 2, "--output"},
                  {{"predict", "words.csv", "--model", "no_such", "-o", "o.csv"}, 2, "no_such"},

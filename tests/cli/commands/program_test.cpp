@@ -23,7 +23,7 @@ struct WrongCall {
 
 class WrongCalls : public testing::TestWithParam<WrongCall> {};
 
-TEST_P(WrongCalls, EndWithOneLineAndCode2) {
+TEST_P(WrongCalls, ErrorIsOneLineWithCodeTwo) {
   const Ran ran = runTalus(GetParam().words);
   EXPECT_EQ(ran.code, 2);
   EXPECT_THAT(ran.err, StartsWith("talus: "));
@@ -57,7 +57,7 @@ TEST(Program, HelpAndVersionGoToStandardOutput) {
 }
 
 // The reader has gone before the first word is written, as behind `head`, and it is no full disk.
-TEST(Program, AReaderThatIsGoneIsNoError) {
+TEST(Program, ClosedPipeIsNoErrorAndFullDeviceIs) {
   const Folder folder;
   const std::string call = "cd '" + folder.path().string() + "' && { sleep 0.3; '" + TALUS_PROGRAM +
                            "' plan --help 2>err; echo $? >code; } | true; sleep 1";

@@ -10,7 +10,7 @@ namespace reproduce_command_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-TEST(ReproduceCommand, GoalsAreTheSameForTheSameSeed) {
+TEST(ReproduceCommand, GoalsAreReproducibleForTheSameSeed) {
   // Property: all but the lines of time.
   const auto measured = [] {
     const Ran ran = runTalus({"--json", "--seed", "5", "reproduce", "--goals", "--soils", "8"});
@@ -27,7 +27,7 @@ TEST(ReproduceCommand, GoalsAreTheSameForTheSameSeed) {
   EXPECT_EQ(once, measured());
 }
 
-TEST(ReproduceCommand, WritesThePageAndEveryPicture) {
+TEST(ReproduceCommand, PageAndEveryFigureAreWritten) {
   const Folder folder;
   const Ran ran = runTalus({"reproduce", "--soils", "8", "-o", folder / "docs"});
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -40,14 +40,14 @@ TEST(ReproduceCommand, WritesThePageAndEveryPicture) {
   }
 }
 
-TEST(ReproduceCommand, RefusesAFolderThatCannotBeMade) {
+TEST(ReproduceCommand, FolderThatCannotBeCreatedIsRejected) {
   const Folder folder;
   const std::string file = folder.write("file", "x");
   const Ran ran = runTalus({"reproduce", "--soils", "8", "-o", file + "/below"});
   EXPECT_EQ(ran.code, 2);
 }
 
-TEST(ReproduceCommand, NamesTheRemedyWhereTheValidationProgramIsMissing) {
+TEST(ReproduceCommand, MissingValidationProgramIsReportedWithARemedy) {
   const Folder folder;
   std::filesystem::copy_file(TALUS_PROGRAM, folder / "talus");
   const std::string line = "cd '" + folder.path().string() + "' && ./talus reproduce --goals >out 2>err";

@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 
 // Swells as long as two wheelbases, level over the footprint that the map's slopes are taken over: score
 // refuses under --chassis what it takes without, and takes what plan --chassis drives.
-TEST(ScoreCommand, HoldsARouteAgainstTheChassis) {
+TEST(ScoreCommand, ChassisCheckIsAppliedOnRequest) {
   const Folder folder;
   std::string text = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 0.2\nNODATA_value -9999\n";
   for (int row = 0; row < 50; ++row) {
@@ -59,7 +59,7 @@ TEST(ScoreCommand, HoldsARouteAgainstTheChassis) {
             10.0 / 8.0 * json::parse(straight.out)["energy_J"].get<double>());
 }
 
-TEST(ScoreCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(ScoreCommand, ErrorsAreOneLineWithTheirExitCode) {
   const BadFiles files;
   const auto score = [](const Words& more) {
     Words words{"score", "good.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};

@@ -36,7 +36,7 @@ std::string oneWheelShort() {
   return text;
 }
 
-TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
+TEST(TraceCommand, EffectOfOneGroupIsAttributedToItsColumn) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
   folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
@@ -50,7 +50,7 @@ TEST(TraceCommand, AnEffectOfOneGroupIsSaidOfTheColumnThatTellsTheGroup) {
 }
 
 // Verdict, errors before and after, measurements and model, each effect over its data, then the rest; numbers as in the text.
-TEST(TraceCommand, ThePageShowsEachEffectWithItsDataAndTheNumbersOfTheText) {
+TEST(TraceCommand, PageShowsVerdictErrorsAndEachEffectWithItsData) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
   folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
@@ -75,7 +75,7 @@ TEST(TraceCommand, ThePageShowsEachEffectWithItsDataAndTheNumbersOfTheText) {
 }
 
 // They were traced as rows of straight wheels that the ground pushes aside.
-TEST(TraceCommand, SideForcesWithoutTheAngleThatTheyBelongToAreRefused) {
+TEST(TraceCommand, SideForcesWithoutSlipAngleAreRejected) {
   const Folder folder;
   std::string text = "load_N,slip,sinkage_m,drawbar_pull_N,side_force_N,wheel_radius_m,wheel_width_m\n";
   for (int row = 0; row < 12; ++row)
@@ -88,7 +88,7 @@ TEST(TraceCommand, SideForcesWithoutTheAngleThatTheyBelongToAreRefused) {
 }
 
 // `--html` was passed over in silence where rows are held out.
-TEST(TraceCommand, HoldingOutRowsWritesItsPageAndNoModel) {
+TEST(TraceCommand, HeldOutRunWritesItsPageAndNoModel) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
   folder.write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
@@ -111,7 +111,7 @@ TEST(TraceCommand, HoldingOutRowsWritesItsPageAndNoModel) {
               testing::AllOf(testing::HasSubstr("--model-out"), testing::HasSubstr("--hold-out")));
 }
 
-TEST(TraceCommand, AnEqualCauseIsAnotherOneAndNamedOnce) {
+TEST(TraceCommand, EqualCausesAreDistinctAndListedOnce) {
   const Folder folder;
   std::string table =
       "run,pass_index,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";

@@ -82,7 +82,7 @@ terramech::Soil weak() {
   return soil;
 }
 
-TEST(UpdateCommand, ADriveOverWeakGroundIsLearnedAndExplained) {
+TEST(UpdateCommand, WeakGroundIsEstimatedAndExplained) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
   const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
@@ -101,7 +101,7 @@ TEST(UpdateCommand, ADriveOverWeakGroundIsLearnedAndExplained) {
       << before << ' ' << after << ' ' << truth;
 }
 
-TEST(UpdateCommand, TwoUpdatesMakeOneMap) {
+TEST(UpdateCommand, RepeatedUpdateYieldsTheSameMap) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
   site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
@@ -113,7 +113,7 @@ TEST(UpdateCommand, TwoUpdatesMakeOneMap) {
 }
 
 // A map that holds drives which the journal lacks cannot be rebuilt from it; nothing told so.
-TEST(UpdateCommand, TellsHowManyDrivesTheJournalLacks) {
+TEST(UpdateCommand, MissingJournalDrivesAreReported) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
   site.folder.write("u.csv", driveOver(weak(), 0.1));
@@ -128,7 +128,7 @@ TEST(UpdateCommand, TellsHowManyDrivesTheJournalLacks) {
 
 // Property: a journal that was changed is not written on, even where the map holds the drives that it has.
 // The new map listed drives of which it knew nothing, so that the drives themselves were not learned later.
-TEST(UpdateCommand, RefusesToReplayAnotherPlacesJournal) {
+TEST(UpdateCommand, JournalOfAnotherAreaIsRejected) {
   const Site site;
   site.folder.write("d.csv", driveOver(terramech::loadSoil("dry_sand")));
   site.run({"update", "map.ot", "d.csv", "-o", "b.ot", "--journal", "e.db", "--json"});
@@ -144,7 +144,7 @@ TEST(UpdateCommand, RefusesToReplayAnotherPlacesJournal) {
   EXPECT_THAT(ran.err, testing::HasSubstr("e.db: none of its 80 rows tells of this map"));
 }
 
-TEST(UpdateCommand, RefusesAJournalOfWhichRowsAreGone) {
+TEST(UpdateCommand, JournalWithMissingOrModifiedRowsIsRejected) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
   site.folder.write("u.csv", driveOver(weak(), 0.1));
@@ -165,7 +165,7 @@ TEST(UpdateCommand, RefusesAJournalOfWhichRowsAreGone) {
   }
 }
 
-TEST(UpdateCommand, RowsOfALogThatGrewOrHoldsRowsTwiceCountOnce) {
+TEST(UpdateCommand, RowsOfAGrownOrRepeatedLogCountOnce) {
   const Site site;
   const std::string all = driveOver(terramech::loadSoil("dry_sand")), rows = all.substr(all.find('\n') + 1);
   std::size_t half = 0;
@@ -188,7 +188,7 @@ TEST(UpdateCommand, RowsOfALogThatGrewOrHoldsRowsTwiceCountOnce) {
   EXPECT_EQ(fileContent(site.folder / "twice.ot"), fileContent(site.folder / "whole.ot"));
 }
 
-TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {
+TEST(UpdateCommand, UnusableRowsAreCountedAndReported) {
   const Site site;
   const std::string text = driveOver(weak()) + "a,w0,30,500,20,0,0,10,0.2,0.1,0.01\n" +  // off the map
                            "a,w0,31,20,20,0,0,-3,0.2,0.1,0.01\n" +                       // load <= 0
@@ -201,7 +201,7 @@ TEST(UpdateCommand, RowsThatCannotBeUsedAreCountedAndTold) {
   EXPECT_NE(site.warnings.find("time decreases"), std::string::npos) << site.warnings;
 }
 
-TEST(UpdateCommand, FrictionInTheTorqueIsToldAndLeftOut) {
+TEST(UpdateCommand, TorqueOffsetIsReportedAndExcluded) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
   site.folder.write("biased.csv", driveOver(weak(), 0.3));
@@ -212,7 +212,7 @@ TEST(UpdateCommand, FrictionInTheTorqueIsToldAndLeftOut) {
               site.cause("sound.ot", "20,20", "drawbar_pull_over_load"), 0.03);
 }
 
-TEST(UpdateCommand, ARehearsalsTelemetryTeachesTheMap) {
+TEST(UpdateCommand, SimulatedTelemetryUpdatesTheMap) {
   const Site site;
   site.folder.write("truth.yaml", "classes: {0: lunar_nominal}\n");
   std::vector<std::string> words{"drive"};
@@ -227,7 +227,7 @@ TEST(UpdateCommand, ARehearsalsTelemetryTeachesTheMap) {
   EXPECT_GT(out["cells_changed"].get<int>(), 0);
 }
 
-TEST(BadInput, Updates) {
+TEST(BadInput, InvalidUpdateCallsAreRejectedWithOneLine) {
   const Site site;
   const BadFiles files;
   std::filesystem::copy(site.folder / "map.ot", files.folder() / "map.ot");

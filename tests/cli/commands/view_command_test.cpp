@@ -17,7 +17,7 @@ double hills(int column, int row) {
   return 0.3 * std::sin(column / 5.0) + 0.2 * std::cos(row / 6.0);
 }
 
-TEST(ViewCommand, ShowsTheRouteThatPlanWroteOnItsMap) {
+TEST(ViewCommand, PlannedRouteIsShownOnItsMap) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));
   const Ran plan =
@@ -43,7 +43,7 @@ TEST(ViewCommand, ShowsTheRouteThatPlanWroteOnItsMap) {
 }
 
 // The map in a folder of its own, the route in another, the call from a third.
-TEST(ViewCommand, FindsTheMapFromAnotherFolder) {
+TEST(ViewCommand, MapIsFoundFromAnotherFolder) {
   const Folder folder;
   for (const char* name : {"maps", "routes", "elsewhere"})
     std::filesystem::create_directory(folder.path() / name);
@@ -72,7 +72,7 @@ TEST(ViewCommand, FindsTheMapFromAnotherFolder) {
 }
 
 // Property: of two routes to the same goal the page has both, what differs between them, and what each was made from.
-TEST(ViewCommand, ComparesRoutes) {
+TEST(ViewCommand, RoutesAreCompared) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));
   const std::vector<std::string> call{"plan",    "dem.asc", "--resolution", "1",   "--soil", "sandy_loam",
@@ -105,7 +105,7 @@ TEST(ViewCommand, ComparesRoutes) {
   EXPECT_THAT(far.err, HasSubstr("does not contain the start of the route direct.geojson"));
 }
 
-TEST(ViewCommand, ShowsAnElevationMap) {
+TEST(ViewCommand, ElevationMapIsShown) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));
   const Ran view =

@@ -8,7 +8,7 @@ namespace wheel_command_test {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(WheelCommand, PrintsTheForcesForAPersonAndForAMachine) {
+TEST(WheelCommand, ForcesArePrintedAsTextAndJson) {
   const std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover", "mer",
                                       "--load", "100",    "--slip", "0.3"};
   const Ran plain = runTalus(call);
@@ -21,7 +21,7 @@ TEST(WheelCommand, PrintsTheForcesForAPersonAndForAMachine) {
     EXPECT_TRUE(json.at(field).is_number()) << field;
 }
 
-TEST(WheelCommand, GivesTheSideForceOfASlipAngle) {
+TEST(WheelCommand, SideForceIsOddInSlipAngle) {
   std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover",     "mer",
                                 "--slip", "0.2",    "--json", "--slip-angle"};
   const auto side = [&](const std::string& angle) {
@@ -38,7 +38,7 @@ TEST(WheelCommand, GivesTheSideForceOfASlipAngle) {
   EXPECT_THAT(refused.err, HasSubstr("--slip-angle"));
 }
 
-TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
+TEST(WheelCommand, LockedWheelAndDefaultLoadAreSupported) {
   const Ran ran = runTalus({"wheel", "--soil", "sand", "--rover", "mer", "--slip", "-1", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto json = nlohmann::json::parse(ran.out);
@@ -46,7 +46,7 @@ TEST(WheelCommand, TakesALockedWheelAndTheRoversOwnLoad) {
   EXPECT_NEAR(json["load_N"].get<double>(), 176.0 * 3.71 / 6.0, 1e-9);
 }
 
-TEST(WheelCommand, TyresAndHardGroundAreReachable) {
+TEST(WheelCommand, TyresAndRigidGroundAreSupported) {
   const std::vector<std::string> soft{"wheel", "--json", "--soil", "sand",   "--rover",
                                       "mer",   "--load", "100",    "--slip", "0.2"};
   const auto with = [](std::vector<std::string> call, const std::vector<std::string>& more) {
@@ -72,7 +72,7 @@ TEST(WheelCommand, TyresAndHardGroundAreReachable) {
   EXPECT_EQ(with({"wheel", "--hard-ground", "--rover", "mer"}, {}).code, 2);
 }
 
-TEST(WheelCommand, WritesAPageThatNeedsNothingElse) {
+TEST(WheelCommand, PageIsSelfContained) {
   const Folder folder;
   const Ran ran = runTalus(
       {"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.3", "--html", folder / "wheel.html"});
@@ -82,7 +82,7 @@ TEST(WheelCommand, WritesAPageThatNeedsNothingElse) {
   EXPECT_THAT(page, testing::Not(HasSubstr("http://cdn")));
 }
 
-TEST(WheelCommand, MistakesAreOneLineWithTheirExitCode) {
+TEST(WheelCommand, ErrorsAreOneLineWithTheirExitCode) {
   struct Case {
     std::vector<std::string> words;
     int code;

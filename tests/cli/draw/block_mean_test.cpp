@@ -6,7 +6,7 @@
 namespace talus::cli {
 namespace block_mean_test {
 
-TEST(Blocks, CoverTheMapAndLeaveOutNoData) {
+TEST(Blocks, BlocksCoverTheMapAndExcludeNoData) {
   maps::Raster<float> fine({5, 4, 2.0, {10.0, 20.0}}, 1.0F);
   fine[{4, 0}] = 3.0F;
   fine[{0, 0}] = std::nanf("");
@@ -17,7 +17,7 @@ TEST(Blocks, CoverTheMapAndLeaveOutNoData) {
   EXPECT_EQ((mean[{2, 0}]), 2.0F);  // the cut block: one cell of 3 and one of 1
 }
 
-TEST(Blocks, ABlockWithoutDataHasNone) {
+TEST(Blocks, BlockWithoutDataIsNan) {
   const maps::Grid grid{4, 4, 1.0, {0.0, 0.0}};
   const maps::Raster<float> mean = Blocks(grid, 2).mean([](maps::Cell) { return std::nanf(""); });
   EXPECT_TRUE(std::isnan(mean[{1, 1}]));
@@ -25,7 +25,7 @@ TEST(Blocks, ABlockWithoutDataHasNone) {
 
 // Property: a map within the side stays as it is; a coarser one has the least factor that fits, covers the map,
 // and where no cell of a block is left out its mean is the brute-force one.
-TEST(Blocks, AreAsSmallAsFitsAndTheirMeanIsTheCells) {
+TEST(Blocks, FactorIsMinimalAndMeansMatchBruteForce) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> value(-1.0F, 1.0F);
   for (const int most : {7, 8, 20, 50}) {

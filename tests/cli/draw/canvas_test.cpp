@@ -21,7 +21,7 @@ std::uint32_t number(const std::string& bytes, std::size_t at) {
 }
 
 // Printed in: PNG specification (ISO/IEC 15948), section 11.2.2: width and height are bytes 16 to 23.
-TEST(Canvas, APngHasTheSizeThatWasAskedFor) {
+TEST(Canvas, PngHasTheRequestedSize) {
   Canvas canvas({.width = 37, .height = 21});
   const std::string bytes = canvas.bytes();
   ASSERT_THAT(bytes, StartsWith("\x89PNG\r\n\x1a\n"));
@@ -33,7 +33,7 @@ TEST(Canvas, APngHasTheSizeThatWasAskedFor) {
 }
 
 // Property: what is drawn stands in the file in its colour, and nothing of it where nothing was drawn.
-TEST(Canvas, AnSvgHoldsWhatWasDrawn) {
+TEST(Canvas, SvgContainsExactlyTheDrawnElements) {
   const auto drawn = [](const auto& draw) {
     Canvas canvas({.width = 40, .height = 30, .kind = Canvas::Kind::Svg});
     draw(canvas);
@@ -62,7 +62,7 @@ TEST(Canvas, AnSvgHoldsWhatWasDrawn) {
 }
 
 // Property: a text is as wide as its parts, wider when it is larger, and never wider drawn upright.
-TEST(Canvas, TextWidthAddsUp) {
+TEST(Canvas, TextWidthIsAdditiveAndScalesWithSize) {
   Canvas canvas({.width = 10, .height = 10});
   const double one = canvas.textWidth("mmm"), two = canvas.textWidth("mmmmmm");
   EXPECT_GT(one, 0.0);
@@ -70,7 +70,7 @@ TEST(Canvas, TextWidthAddsUp) {
   EXPECT_GT(canvas.textWidth("mmm", {.size = 24.0}), 1.8 * one);
 }
 
-TEST(Canvas, ASizeThatCannotBeDrawnIsAnError) {
+TEST(Canvas, InvalidSizeIsRejected) {
   EXPECT_REFUSED(Canvas({.width = -1, .height = 5}), std::runtime_error, "invalid value (typically too big)");
   EXPECT_REFUSED(Canvas({.width = 1'000'000, .height = 1'000'000}), std::runtime_error,
                  "invalid value (typically too big)");

@@ -65,13 +65,13 @@ using terramech::Category;
 constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
 
 // Closed form: the lightness that the header states.
-TEST(Colour, CategoriesAreARampOfLightness) {
+TEST(Colour, CategoryLightnessMatchesTheStatedRamp) {
   const double stated[] = {99, 66, 33, 0};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(lightness(colourOf(kCategories[i])), stated[i], 1.0) << i;
 }
 
 // Closed form: CIE L*a*b* of each two categories under the same light of the hillshade, for three kinds of sight.
-TEST(Colour, CategoriesDifferByThirtyUnderAnyLight) {
+TEST(Colour, CategoryColoursDifferByThirtyUnderAnyIllumination) {
   for (const auto& [sight, seen] :
        {std::pair{"colour", &seenByAll}, {"deuteranope", &seenByADeuteranope}, {"grey", &printedInGrey}}) {
     double least = INFINITY;
@@ -89,7 +89,7 @@ TEST(Colour, CategoriesDifferByThirtyUnderAnyLight) {
 }
 
 // The light takes from each part the same share; full light takes nothing.
-TEST(Colour, LightScalesAColour) {
+TEST(Colour, LightScalesAColourProportionally) {
   const Colour c = lit(rgb(0x804020), 0.5, 0.2);
   EXPECT_DOUBLE_EQ(c.red, 0.9 * 0x80 / 255.0);
   EXPECT_DOUBLE_EQ(c.blue, 0.9 * 0x20 / 255.0);
@@ -109,7 +109,7 @@ TEST(Colour, ScalesAreOrderedByLightness) {
   EXPECT_EQ(at(viridis(), 0.501).green, at(viridis(), 0.51).green);  // one step
 }
 
-TEST(Colour, SeriesRepeatAfterEight) {
+TEST(Colour, SeriesColoursAreDistinctAndRepeatAfterEight) {
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(seriesColour(i).red, seriesColour(i + 8).red);
     for (std::size_t j = 0; j < i; ++j)

@@ -61,7 +61,7 @@ double explainedCost(const Ground& site, maps::Cell cell, double heading) {
 
 // Property: category and cost in each heading of a cell are those of `talus explain`, refusals included; where a cell of the page
 // stands for several they are those of the one in its middle.
-TEST(HeadingCosts, OfThePageAreThoseOfExplain) {
+TEST(HeadingCosts, PageValuesEqualThoseOfExplain) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Folder folder;
   const Ground site = steepSite(folder);

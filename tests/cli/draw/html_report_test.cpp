@@ -1,12 +1,15 @@
 #include <talus/cli/draw/html_report.hpp>
 
+#include "browser.hpp"
+#include "requirement.hpp"
+
 namespace talus::cli {
 namespace html_report_test {
 
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(HtmlReport, EscapesAndEmbeds) {
+TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
   HtmlReport report("a < b");
   report.table({"name", "value"}, {{"x & y", "1.5"}});
   report.charts({{.title = "Pull", .x = {}, .y = {}, .series = {{.x = {0.0, 1.0}, .y = {0.0, 1.0}}}}});
@@ -17,7 +20,7 @@ TEST(HtmlReport, EscapesAndEmbeds) {
 }
 
 // Property: nothing that a user named reads as markup, wherever it stands.
-TEST(HtmlReport, TextIsNeverMarkup) {
+TEST(HtmlReport, UserTextIsNeverMarkup) {
   const std::string hostile = "<script>alert(\"1\")</script>";
   HtmlReport report(hostile);
   report.heading(hostile);
@@ -27,8 +30,31 @@ TEST(HtmlReport, TextIsNeverMarkup) {
   EXPECT_EQ(escaped("a & <b> \"c\""), "a &amp; &lt;b&gt; &quot;c&quot;");
 }
 
+// Property: on a phone nothing of a page with a table of twelve columns is beside the screen, and each cell has its column's name.
+TEST(HtmlReport, FitsAPhone) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  HtmlReport report("t");
+  std::vector<std::string> header, row;
+  for (int i = 0; i < 12; ++i) {
+    header.push_back("column \"" + std::to_string(i));
+    row.push_back(std::to_string(i));
+  }
+  report.table(header, {row, row});
+  // The page itself runs no script.
+  const std::string frame = "<!doctype html><html><body><iframe width=390 height=844 srcdoc=\"" +
+                            escaped(report.html()) +
+                            R"("></iframe><script>onload = () => {
+        const page = document.querySelector("iframe").contentDocument, box = page.querySelector(".table");
+        document.body.dataset.fits = box.scrollWidth <= box.clientWidth && page.documentElement.scrollWidth <= 390;
+        document.body.dataset.name = getComputedStyle(page.querySelectorAll("td")[13], "::before").content;
+      };</script></body></html>)";
+  const Shown shown = show(frame);
+  EXPECT_THAT(shown.dom, HasSubstr("data-fits=\"true\"")) << shown.dom.substr(0, 300) << shown.console;
+  EXPECT_THAT(shown.dom, HasSubstr("data-name=\"&quot;column \\&quot;1&quot;\"")) << shown.dom.substr(0, 300);
+}
+
 // Closed form: a number may carry a unit or a percent sign; a name that begins with a digit is none.
-TEST(HtmlReport, NumbersAreSetRight) {
+TEST(HtmlReport, NumbersAreRightAligned) {
   const auto number = [](const std::string& cell) {
     HtmlReport report("t");
     report.table({"h"}, {{cell}});

@@ -3,7 +3,7 @@
 namespace talus::cli {
 namespace image_test {
 
-TEST(Base64, OfTheTestVectors) {
+TEST(Base64, EncodingMatchesTheRfcTestVectors) {
   // Printed in: RFC 4648, section 10.
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");

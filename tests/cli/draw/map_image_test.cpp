@@ -13,7 +13,7 @@ maps::Raster<float> plane(double per_column, double per_row) {
   return z;
 }
 
-TEST(Hillshade, FacingTheSunInTheNorthWestIsBrighter) {
+TEST(Hillshade, SlopesFacingNorthWestAreBrighter) {
   // Property: a slope that falls to the north-west is brighter than flat ground, one that falls to the
   // south-east darker.
   const float flat = hillshade(plane(0.0, 0.0))[{4, 4}];
@@ -21,7 +21,7 @@ TEST(Hillshade, FacingTheSunInTheNorthWestIsBrighter) {
   EXPECT_LT((hillshade(plane(-0.3, 0.3))[{4, 4}]), flat);
 }
 
-TEST(Hillshade, NoDataStaysAndDoesNotSpread) {
+TEST(Hillshade, NoDataIsPreservedAndDoesNotSpread) {
   maps::Raster<float> z = plane(0.1, 0.0);
   const float whole = hillshade(z)[{0, 0}];
   z[{4, 4}] = std::nanf("");
@@ -31,7 +31,7 @@ TEST(Hillshade, NoDataStaysAndDoesNotSpread) {
 }
 
 // Property: a few outliers do not take the contrast of the others; a plain has a range around its one brightness.
-TEST(Hillshade, LightRangeIsThatOfMostOfTheMap) {
+TEST(Hillshade, LightRangeIgnoresOutliers) {
   maps::Raster<float> shade({10, 10, 1.0, {0.0, 0.0}}, 0.4F);
   shade[{0, 0}] = 0.0F;
   shade[{1, 0}] = std::nanf("");
@@ -51,7 +51,7 @@ TEST(MapImage, TopRowIsNorth) {
   EXPECT_EQ(image.at(0, 1), pixel(colourOf(terramech::Category::Dangerous)));
 }
 
-TEST(MapImage, MixesTheCategoriesOfABlock) {
+TEST(MapImage, CategoryColoursOfABlockAreMixed) {
   maps::Raster<CategoryShares> categories({1, 1, 1.0, {0.0, 0.0}});
   categories[{0, 0}].count = {1, 0, 1, 0};
   const Colour a = colourOf(terramech::Category::Safe);
@@ -69,7 +69,7 @@ TEST(MapImage, ClassesHaveTheirColours) {
   EXPECT_EQ(image.at(7, 0), pixel(rgb(0xE69F00)));
 }
 
-TEST(MapImage, NoValueIsTransparent) {
+TEST(MapImage, MissingValuesAreTransparent) {
   ValueLayer layer{.name = "slope", .unit = "deg", .values = plane(1.0, 0.0), .range = {0.0, 7.0}};
   layer.values[{3, 3}] = std::nanf("");
   Image image = valueImage(layer);

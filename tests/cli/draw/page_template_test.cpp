@@ -14,7 +14,7 @@ std::size_t count(std::string_view text, std::string_view part) {
 }
 
 // Property: a whole page whose places to fill in are there, the data once and last.
-TEST(PageTemplate, HasItsPlacesToFillIn) {
+TEST(PageTemplate, TemplateContainsItsPlaceholders) {
   const std::string_view page = pageTemplate();
   EXPECT_TRUE(page.starts_with("<!") || page.starts_with("<html"));
   EXPECT_NE(page.find("</html>"), page.npos);
@@ -26,7 +26,7 @@ TEST(PageTemplate, HasItsPlacesToFillIn) {
 }
 
 // Property: it loads nothing: no script, style or image of elsewhere.
-TEST(PageTemplate, NeedsNothingFromElsewhere) {
+TEST(PageTemplate, TemplateLoadsNoExternalResource) {
   const std::string page(pageTemplate());
   EXPECT_EQ(count(page, "<script src"), 0U);
   EXPECT_EQ(count(page, "<link "), 0U);

@@ -33,7 +33,7 @@ bool bodyMatches(const Shown& shown, const std::string& pattern) {
   return std::regex_search(shown.dom.substr(0, shown.dom.find("id=\"data\"")), std::regex(pattern));
 }
 
-TEST(Page, NeedsNothingFromElsewhere) {
+TEST(Page, PageLoadsNoExternalResource) {
   const std::string html = page(exampleScene());
   for (const char* foreign : {"<link ", "<script src", "@import", "url(http", "sourceMappingURL"})
     EXPECT_EQ(html.find(foreign), std::string::npos) << foreign;
@@ -41,7 +41,7 @@ TEST(Page, NeedsNothingFromElsewhere) {
   keep("page.html", html);
 }
 
-TEST(Page, EscapesWhatTheUserNamed) {
+TEST(Page, UserTextIsEscaped) {
   Scene scene = exampleScene();
   scene.title = "</script><script>alert(1)</script>";
   scene.facts.emplace_back("file", "</script>@TALUS_TITLE@");
@@ -50,7 +50,7 @@ TEST(Page, EscapesWhatTheUserNamed) {
   EXPECT_THAT(html, HasSubstr("\\u003c/script>@TALUS_TITLE@"));
 }
 
-TEST(Page, DrawsMapProfilesAndSummary) {
+TEST(Page, MapProfilesAndSummaryAreDrawn) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(page(exampleScene()));
   EXPECT_TRUE(ready(shown)) << shown.console;
@@ -64,7 +64,7 @@ TEST(Page, DrawsMapProfilesAndSummary) {
 }
 
 // Property: no name from a file is taken for code or for markup, in whichever place of the page it stands.
-TEST(Page, NamesFromFilesAreTextInEveryPlace) {
+TEST(Page, FileNamesAreNeverMarkupOrCode) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const std::string name :
        {"<!--<script>", "</script><script>document.body.dataset.hit=1</script>",
@@ -79,7 +79,7 @@ TEST(Page, NamesFromFilesAreTextInEveryPlace) {
   }
 }
 
-TEST(Page, PointingAtTheProfileMarksThePlaceOnTheMap) {
+TEST(Page, HoveringTheProfileMarksTheMap) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const svg = document.querySelector("#charts svg"), box = svg.getBoundingClientRect();
@@ -90,7 +90,7 @@ TEST(Page, PointingAtTheProfileMarksThePlaceOnTheMap) {
   EXPECT_TRUE(bodyMatches(shown, "id=\"reading\"[^>]*>2[0-9][0-9]\\.[0-9] m from the start"));
 }
 
-TEST(Page, PointingAtTheRouteMarksTheProfile) {
+TEST(Page, HoveringTheRouteMarksTheProfile) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const rule = () => document.querySelector("#charts .mark-rule:last-of-type line").getAttribute("transform");
@@ -119,7 +119,7 @@ std::string planned(const Folder& folder, const std::string& script) {
 
 // Property: what a cell shows is what `talus explain` states of it, to the last decimal that is shown; cells are
 // reached by Enter and the arrow keys.
-TEST(Page, CellsShowWhatExplainStates) {
+TEST(Page, CellValuesEqualThoseOfExplain) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Folder folder;
   const Shown shown = show(planned(folder, R"(
@@ -173,7 +173,7 @@ TEST(Page, CellsShowWhatExplainStates) {
   EXPECT_EQ(places.size(), 7U) << text;
 }
 
-TEST(Page, RulerMeasuresOnTheMap) {
+TEST(Page, RulerMeasuresDistanceAndBearing) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const map = document.getElementById("map"), box = map.getBoundingClientRect(), root = document.documentElement.dataset;
@@ -198,7 +198,7 @@ TEST(Page, RulerMeasuresOnTheMap) {
 
 // Property: on a screen of 1400 x 900 and on a phone, map and profile are seen without scrolling, and the map is more than the
 // third of the screen.
-TEST(Page, MapAndProfileAreOnOneScreen) {
+TEST(Page, MapAndProfileFitOneScreen) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const auto& [width, height] : {std::pair{1400, 900}, {390, 844}}) {
     // Chromium's own window is at least 500 wide: a frame is not.
@@ -221,7 +221,7 @@ TEST(Page, MapAndProfileAreOnOneScreen) {
 
 // Property: each quantity colours the route in more than one colour where it varies, and names its unit beside its bar; the
 // opacity reaches the layer; another layer takes the place of the first.
-TEST(Page, QuantityLayerAndOpacityAreChosen) {
+TEST(Page, QuantityLayerAndOpacityAreSelectable) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const pick = (id, value) => {
@@ -248,7 +248,7 @@ TEST(Page, QuantityLayerAndOpacityAreChosen) {
 }
 
 // Closed form: latitude and longitude between the points of the lattice are those of the projection, beside the pole too.
-TEST(Page, CursorHasLatitudeAndLongitude) {
+TEST(Page, CursorShowsLatitudeAndLongitude) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   Scene scene = exampleScene();
   scene.georeference.emplace(
@@ -289,7 +289,7 @@ constexpr const char* kOpenRelief = R"(
   }, 50);)";
 
 // Property: the relief is drawn, not blank, states by how much it is higher, and the console is silent.
-TEST(Page, ShowsARelief) {
+TEST(Page, ReliefIsDrawn) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   TALUS_REQUIRE(pageTemplate().find("id=\"three\"") != std::string_view::npos,
                 "libjs-three was not there at the build");
@@ -302,7 +302,7 @@ TEST(Page, ShowsARelief) {
   EXPECT_THAT(std::regex_replace(shown.console, driver, ""), Not(HasSubstr("CONSOLE")));
 }
 
-TEST(Page, StatesThatThereIsNoWebGL) {
+TEST(Page, MissingWebGlIsReported) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   TALUS_REQUIRE(pageTemplate().find("id=\"three\"") != std::string_view::npos,
                 "libjs-three was not there at the build");
@@ -313,7 +313,7 @@ TEST(Page, StatesThatThereIsNoWebGL) {
 
 // Property: before it is printed the page is laid out on one sheet of A4 less its margins, with the map on it, and afterwards as
 // before.
-TEST(Page, PrintsOnOneSheet) {
+TEST(Page, PageFitsOneSheetInPrint) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
     const size = () => { const b = document.body.getBoundingClientRect(); return `${b.width}x${b.height}`; };
@@ -331,7 +331,29 @@ TEST(Page, PrintsOnOneSheet) {
   EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"true,true,true,true,true\"")) << shown.console;
 }
 
-TEST(Page, ComparesRoutes) {
+// Property: on paper neither the legend nor the explained cell with its rose lies over the map; both are there as a whole, and back on
+// the map afterwards.
+TEST(Page, PrintsLegendAndCellBesideTheMap) {
+  TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
+  const Shown shown = show(played(exampleScene(), R"(
+    const map = document.getElementById("map"), at = map.getBoundingClientRect();
+    map.dispatchEvent(new MouseEvent("click", {bubbles: true, clientX: at.left + 300, clientY: at.top + 300}));
+    setTimeout(() => {
+      dispatchEvent(new Event("beforeprint"));
+      const box = part => document.querySelector(part).getBoundingClientRect(), paper = box("body"), sheet = box("#map");
+      const seen = ["#key #legend", "#key table", "#key figure svg"].map(part => {
+        const b = box(part);
+        return b.height > 20 && b.top >= sheet.bottom && b.bottom <= box("#profiles").top && b.right <= paper.right;
+      });
+      seen.push(sheet.height > 300, box("#facts").bottom <= paper.bottom);
+      dispatchEvent(new Event("afterprint"));
+      seen.push(map.querySelector(".legend #legend") && map.querySelector(".probe figure") ? true : false);
+      document.documentElement.dataset.seen = seen.join();
+    }, 300);)"));
+  EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"true,true,true,true,true,true\"")) << shown.console;
+}
+
+TEST(Page, RoutesAreCompared) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   Scene scene = sceneOf(exampleMap(), {.title = "two"});
   NamedRoute first{"<b>one", exampleRoute(), {}}, second{"two", exampleRoute(), {}};
@@ -351,7 +373,7 @@ TEST(Page, ComparesRoutes) {
   EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE")));
 }
 
-TEST(Page, OfAMapWithoutARouteHasNoProfiles) {
+TEST(Page, MapWithoutARouteHasNoProfiles) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(page(sceneOf(exampleMap(), {.title = "map"})));
   EXPECT_TRUE(ready(shown)) << shown.console;

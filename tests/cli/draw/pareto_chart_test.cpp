@@ -19,7 +19,7 @@ std::vector<planner::ParetoRoute> front() {
 }
 
 // Closed form: kilojoules, hours and percent of the routes.
-TEST(ParetoChart, ThePageHasARowForEachRoute) {
+TEST(ParetoChart, PageHasARowForEachRoute) {
   const Folder folder;
   saveParetoChart(folder / "front.html", front());
   const std::string page = fileContent(folder / "front.html");
@@ -28,14 +28,14 @@ TEST(ParetoChart, ThePageHasARowForEachRoute) {
   EXPECT_THAT(page, HasSubstr("data:image/svg+xml"));
 }
 
-TEST(ParetoChart, APictureByItsExtensionAndNoneWhereItCannotBeWritten) {
+TEST(ParetoChart, FigureFormatFollowsTheExtensionAndUnwritablePathIsRejected) {
   const Folder folder;
   saveParetoChart(folder / "front.svg", front());
   EXPECT_THAT(fileContent(folder / "front.svg"), HasSubstr("<svg"));
   EXPECT_THROW(saveParetoChart(folder / "no/front.png", front()), InputError);
 }
 
-TEST(ParetoChart, JsonHasTheDemandsAndThePrices) {
+TEST(ParetoChart, JsonHasDemandsAndWeights) {
   const auto json = paretoJson(front());
   ASSERT_EQ(json.size(), 2U);
   EXPECT_EQ(json[0]["energy_J"], 10'000.0);

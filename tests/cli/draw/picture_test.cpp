@@ -8,25 +8,25 @@ namespace picture_test {
 
 using testing::StartsWith;
 
-TEST(Picture, OfAMapWithARoute) {
+TEST(Picture, MapWithARouteIsDrawn) {
   const std::string bytes = drawPicture(exampleScene());
   EXPECT_THAT(bytes, StartsWith("\x89PNG"));
   keep("picture.png", bytes);
 }
 
-TEST(Picture, OfAMapWithoutCategoriesShowsItsFirstLayer) {
+TEST(Picture, MapWithoutCategoriesShowsItsFirstLayer) {
   const std::string bytes = drawPicture(sceneOf(exampleMap(), {.title = "Slope of the example"}));
   EXPECT_THAT(bytes, StartsWith("\x89PNG"));
   keep("picture_slope.png", bytes);
 }
 
-TEST(Picture, StandsOneCellAndNoData) {
+TEST(Picture, SingleCellWithoutDataIsDrawn) {
   maps::ElevationMap map;
   map.elevation_m = maps::Raster<float>({1, 1, 1.0, {0.0, 0.0}}, std::nanf(""));
   EXPECT_THAT(drawPicture(sceneOf(map, {.title = "nothing"})), StartsWith("\x89PNG"));
 }
 
-TEST(Picture, IsTheSameTwice) {
+TEST(Picture, PictureIsDeterministic) {
   EXPECT_EQ(drawPicture(exampleScene()), drawPicture(exampleScene()));
 }
 

@@ -30,7 +30,7 @@ Plot example() {
   return plot;
 }
 
-TEST(Plot, IsAPngOrAnSvg) {
+TEST(Plot, PlotIsDrawnAsPngOrSvg) {
   const std::string bytes = draw({example(), example(), example()}, Canvas::Kind::Png);
   EXPECT_THAT(bytes, StartsWith("\x89PNG"));
   EXPECT_THAT(draw({example()}, Canvas::Kind::Svg), HasSubstr("<svg"));
@@ -38,7 +38,7 @@ TEST(Plot, IsAPngOrAnSvg) {
 }
 
 // Property: points cost some 30 bytes each of an SVG: a page of many charts stays below 3 MB.
-TEST(Plot, OfManyPointsIsSmall) {
+TEST(Plot, SvgSizePerPointIsBounded) {
   Plot many = example();
   Series cloud{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};
   for (int i = 0; i < 2000; ++i) {
@@ -50,19 +50,35 @@ TEST(Plot, OfManyPointsIsSmall) {
   EXPECT_LT(draw({many}, Canvas::Kind::Svg).size() - few, 2000U * 40U);
 }
 
-TEST(Plot, StandsEmptySeriesAndNothingFinite) {
+// Property: what a chart shows of 100 000 readings with their standard deviations is bounded by its pixels: readings that do not add to
+// it add nothing to the file, and its axes hold all of them.
+TEST(Plot, OfReadingsThatCoverEachOtherIsSmall) {
+  const auto cloud = [](int count) {
+    Series readings{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};
+    for (int i = 0; i < count; ++i) {
+      readings.x.push_back(std::fmod(0.618 * i, 1.0));
+      readings.y.push_back(std::sin(i));
+      readings.y_std.push_back(0.1);
+    }
+    return draw({{.title = "", .x = {}, .y = {}, .series = {readings}}}, Canvas::Kind::Svg);
+  };
+  EXPECT_LT(cloud(100'000).size(), 1'000'000U);
+  EXPECT_LT(cloud(100'000).size(), 3 * cloud(5'000).size());
+}
+
+TEST(Plot, EmptyAndNanSeriesAreDrawn) {
   Plot plot{.title = "", .x = {}, .y = {}, .series = {{.x = {}, .y = {}}, {.x = {1.0}, .y = {std::nan("")}}}};
   EXPECT_THAT(draw({plot}, Canvas::Kind::Png), StartsWith("\x89PNG"));
   EXPECT_THAT(draw({}, Canvas::Kind::Png), StartsWith("\x89PNG"));
 }
 
-TEST(Plot, RefusesColumnsOfDifferentLength) {
+TEST(Plot, ColumnsOfDifferentLengthAreRejected) {
   const Plot plot{.title = "", .x = {}, .y = {}, .series = {{.name = "a", .x = {1.0, 2.0}, .y = {1.0}}}};
   EXPECT_REFUSED(draw({plot}, Canvas::Kind::Png), std::invalid_argument,
                  "x, y, y_std have 2, 1, 0 values, must be as many");
 }
 
-TEST(Plot, IsWrittenByItsExtension) {
+TEST(Plot, FormatFollowsTheExtension) {
   const Folder folder;
   save(folder / "a.svg", {example()});
   save(folder / "a.png", {example()});

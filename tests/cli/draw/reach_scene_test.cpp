@@ -18,14 +18,14 @@ maps::ElevationMap level() {
 
 // Of places that no way over the cells connects.
 Scene severed(const maps::ElevationMap& map, const maps::Raster<costmap::CellCode>& cells) {
-  costmap::DriveCurve curve;
+  costmap::TravelCurve curve;
   curve.cost_J_per_m.fill(1.0F);
   const costmap::CostGrid cost = costmap::flattened(
-      cells, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
+      cells, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve}));
   return reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});
 }
 
-TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
+TEST(ReachScene, BothCellSetsAndTheGapAreShown) {
   const maps::ElevationMap map = level();
   maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
   for (int row = 0; row < 20; ++row)
@@ -54,7 +54,7 @@ TEST(ReachScene, ShowsBothSetsAndTheGapBetween) {
 }
 
 // A set that is easily overlooked, 5 columns of 6 cells in a corner, has a ring around it.
-TEST(ReachScene, MarksASmallSet) {
+TEST(ReachScene, SmallSetIsMarkedByARing) {
   const maps::ElevationMap map = level();
   maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));
   const costmap::CellCode blocked({.curve = costmap::CellCode::kBlocked});

@@ -24,7 +24,7 @@ planner::Route through(const std::vector<maps::Point>& points) {
 
 // Closed form: a straight line beside one with a triangle of height 30 over its middle part; the sides of the triangle leave
 // the tolerance of 2 at a known place.
-TEST(RouteComparison, FindsWhereRoutesPartAndMeet) {
+TEST(RouteComparison, DivergingPartMatchesClosedForm) {
   const planner::Route straight = through({{0, 0}, {100, 0}});
   const planner::Route detour = through({{0, 0}, {30, 0}, {50, 30}, {70, 0}, {100, 0}});
   const auto found = partings(detour, straight, 2.0);
@@ -38,7 +38,7 @@ TEST(RouteComparison, FindsWhereRoutesPartAndMeet) {
 }
 
 // Property: none between a route and itself with other vertices, two where it is left twice, and none of an empty route.
-TEST(RouteComparison, CountsPartings) {
+TEST(RouteComparison, PartingsAreCounted) {
   const planner::Route straight = through({{0, 0}, {100, 0}});
   EXPECT_TRUE(partings(straight, through({{0, 0}, {13, 0}, {77, 0}, {100, 0}}), 0.5).empty());
   EXPECT_EQ(partings(through({{0, 0}, {20, 0}, {30, 9}, {40, 0}, {60, 0}, {70, -9}, {80, 0}}), straight, 1.0)
@@ -47,7 +47,7 @@ TEST(RouteComparison, CountsPartings) {
   EXPECT_TRUE(partings(planner::Route(), straight, 1.0).empty());
 }
 
-TEST(RouteComparison, SeparatesWhatDiffersFromWhatIsEqual) {
+TEST(RouteComparison, DifferingAndEqualFactsAreSeparated) {
   Scene scene = sceneOf(exampleMap(), {.title = "two"});
   NamedRoute first{"a", exampleRoute(), {{"soil", "sand"}, {"seed", "1"}}};
   NamedRoute second{"b", exampleRoute(), {{"soil", "clay"}, {"seed", "1"}}};

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 using testing::Pair;
 using testing::StartsWith;
 
-TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
+TEST(RouteSummary, SummaryListsLengthTimeEnergyAndSlope) {
   const auto facts = summaryOf(exampleRoute());
   EXPECT_THAT(facts, Contains(Pair("length", StartsWith("512.6 m, detour factor 1.00"))));
   EXPECT_THAT(facts, Contains(Pair("driving time", StartsWith("2 h 50 min, mean speed 0.0503 m/s"))));
@@ -29,7 +29,7 @@ TEST(RouteSummary, SaysWhatARoverEngineerAsks) {
   EXPECT_LE(facts.size(), 11U);
 }
 
-TEST(RouteSummary, LeavesOutWhatIsNotKnown) {
+TEST(RouteSummary, UnknownValuesAreOmitted) {
   planner::Route route = exampleRoute();
   for (auto& v : route.vertices) v.slip = v.sinkage_m = planner::kNotKnown;
   for (const auto& [what, value] : summaryOf(route)) {
@@ -38,7 +38,7 @@ TEST(RouteSummary, LeavesOutWhatIsNotKnown) {
   }
 }
 
-TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
+TEST(RouteSummary, ZeroLengthRouteIsReportedAsEmpty) {
   planner::Route route = exampleRoute();
   route.vertices.resize(1);
   route.summary.length_m = route.summary.time_s = 0.0;
@@ -46,14 +46,14 @@ TEST(RouteSummary, OfARouteWithoutLengthSaysSo) {
             "route                empty: the start is at the goal, or within its tolerance\n");
 }
 
-TEST(RouteSummary, OfNoRouteIsItsReason) {
+TEST(RouteSummary, FailedRouteIsSummarisedByItsReason) {
   planner::Route route;
   route.status = planner::RouteStatus::NoRoute;
   route.reason = "a cliff";
   EXPECT_EQ(summaryText(route), "route                no_route: a cliff\n");
 }
 
-TEST(RouteSummary, Durations) {
+TEST(RouteSummary, DurationsHaveTwoUnitsAtMost) {
   EXPECT_EQ(durationText(45.0), "45 s");
   EXPECT_EQ(durationText(1800.0), "30 min");
   EXPECT_EQ(durationText(7500.0), "2 h 05 min");

@@ -21,7 +21,7 @@ TEST(Scene, SlopeOfAPlaneIsItsAngle) {
   EXPECT_NEAR((scene.layers[0].values[{10, 10}]), 0.3 / kDegree, 1e-4);
 }
 
-TEST(Scene, OfALargeMapIsSmall) {
+TEST(Scene, LargeMapIsReducedToTheMaximumSide) {
   maps::ElevationMap map;
   map.elevation_m = maps::Raster<float>({3000, 500, 1.0, {0.0, 0.0}}, 5.0F);
   const Scene scene = sceneOf(map, {.title = "large", .max_side = 1000});
@@ -29,7 +29,7 @@ TEST(Scene, OfALargeMapIsSmall) {
   EXPECT_EQ(scene.grid().resolution_m, 3.0);
 }
 
-TEST(Scene, ARouteAloneLiesInsideItsGround) {
+TEST(Scene, SceneGridContainsTheRoute) {
   const planner::Route route = exampleRoute();
   const Scene scene = sceneOf(route, {.title = "route"});
   for (const planner::RouteVertex& v : route.vertices) EXPECT_TRUE(scene.grid().cellAt({v.x_m, v.y_m}));

@@ -31,7 +31,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(SlopeRose, ShadesWhatIsRefused) {
+TEST(SlopeRose, RefusedHeadingsAreShaded) {
   const std::string free = draw(crossed(false), Canvas::Kind::Svg),
                     held = draw(crossed(true), Canvas::Kind::Svg);
   EXPECT_THAT(free, HasSubstr("<svg"));
@@ -41,7 +41,7 @@ TEST(SlopeRose, ShadesWhatIsRefused) {
   EXPECT_THAT(draw(crossed(true), Canvas::Kind::Png), StartsWith("\x89PNG"));
 }
 
-TEST(SlopeRose, StandsHeadingsThatAreAllRefused) {
+TEST(SlopeRose, FullyRefusedHeadingsAreDrawn) {
   SlopeRose rose = crossed(false);
   for (RoseHeading& heading : rose.headings) heading = {.heading_rad = heading.heading_rad, .refused = true};
   rose.uphill_rad.reset();

@@ -8,7 +8,7 @@ namespace ticks_test {
 
 using testing::ElementsAre;
 
-TEST(Ticks, AreRoundAndInside) {
+TEST(Ticks, TicksAreRoundAndWithinTheRange) {
   EXPECT_THAT(ticks({0.0, 1.0}, 5),
               ElementsAre(0.0, 0.2, testing::DoubleEq(0.4), testing::DoubleNear(0.6, 1e-12), 0.8, 1.0));
   EXPECT_THAT(ticks({-3.0, 7.0}, 5), ElementsAre(-2.0, 0.0, 2.0, 4.0, 6.0));
@@ -19,7 +19,7 @@ TEST(Ticks, AreRoundAndInside) {
 
 // Property: marks of any axis lie inside it, equally far apart by 1, 2 or 5 times a power of ten, and their
 // number is the one asked for within a factor of 1.6, give or take one at the ends.
-TEST(Ticks, OfAnyAxisAreRound) {
+TEST(Ticks, TicksOfRandomAxesAreRoundAndEquidistant) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> power(-9.0, 9.0), share(0.0, 3.0);
   for (int k = 0; k < 3'000; ++k) {

@@ -19,7 +19,7 @@ std::string site() {
 }
 
 // Property: both files have the category that explain gives, at each of three places.
-TEST(CategoryFiles, ColoursNamesOverviewsAndNav2) {
+TEST(CategoryFiles, CategoryFilesMatchExplain) {
   const Folder folder;
   folder.write("site.asc", site());
   const Ran ran = runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "bedrock", "--rover",

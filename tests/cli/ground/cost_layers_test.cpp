@@ -69,7 +69,7 @@ class CostLayers : public testing::Test {
 };
 
 // Closed form: 30 m at 20 and at 40 J/m.
-TEST_F(CostLayers, JoulesAMetreAreAddedToCostAndEnergy) {
+TEST_F(CostLayers, LayerCostIsAddedToCostAndEnergy) {
   const json plain = score({}), shadow = score({"--layer", "shadow=shadow.asc"}),
              both = score({"--layer", "shadow=shadow.asc", "--layer", "radio=shadow.asc"});
   EXPECT_NEAR(shadow["cost"].get<double>() - plain["cost"].get<double>(), 600.0, 1e-2);
@@ -79,7 +79,7 @@ TEST_F(CostLayers, JoulesAMetreAreAddedToCostAndEnergy) {
   EXPECT_GT(both["lower_bound"].get<double>(), plain["lower_bound"].get<double>() + 1000.0);
 }
 
-TEST_F(CostLayers, RoutesGoAroundWhatIsDearOrRefused) {
+TEST_F(CostLayers, RoutesAvoidExpensiveAndRefusedCells) {
   const json plain = plan({});
   EXPECT_NEAR(plain["length_m"].get<double>(), 30.0, 1e-6);
   for (const char* layer : {"wall=dear.asc", "wall=refused.asc", "wall=unseen.asc"}) {
@@ -89,7 +89,7 @@ TEST_F(CostLayers, RoutesGoAroundWhatIsDearOrRefused) {
   }
 }
 
-TEST_F(CostLayers, TheCheckSeesRefusals) {
+TEST_F(CostLayers, ScoreDetectsRefusedCells) {
   for (const char* layer : {"wall=refused.asc", "wall=unseen.asc"}) {
     const json held = score({"--layer", layer}, 1);
     EXPECT_EQ(held["status"], "infeasible");
@@ -99,7 +99,7 @@ TEST_F(CostLayers, TheCheckSeesRefusals) {
               HasSubstr("refused by layer 'wall'"));
 }
 
-TEST_F(CostLayers, CellsWithoutDataCostAsTheDearestWhereThePolicyAllowsThem) {
+TEST_F(CostLayers, NoDataCellsCostTheMaximumIfUnknownIsAllowed) {
   const json dear = score({"--allow-unknown", "--layer", "wall=dear.asc"}),
              unseen = score({"--allow-unknown", "--layer", "wall=unseen.asc"});
   EXPECT_NEAR(unseen["cost"].get<double>(), dear["cost"].get<double>(), 1e-2);
@@ -110,7 +110,7 @@ TEST_F(CostLayers, CellsWithoutDataCostAsTheDearestWhereThePolicyAllowsThem) {
               HasSubstr("layer wall has no data in 72 of 960 cells: they count as unknown and are excluded"));
 }
 
-TEST_F(CostLayers, AMapKeepsItsLayers) {
+TEST_F(CostLayers, MapStoresItsLayers) {
   const Ran built = run("costmap", {"--layer", "wall=dear.asc", "-o", "map.ot", "--geotiff", "layers.tif"});
   ASSERT_EQ(built.code, 0) << built.err;
   const Ran planned =
@@ -126,7 +126,7 @@ TEST_F(CostLayers, AMapKeepsItsLayers) {
 }
 
 // Closed form: 4.5 m of the path lie in its shadow.
-TEST_F(CostLayers, APluginAddsAndRefuses) {
+TEST_F(CostLayers, PluginLayerAddsCostAndRefusesCells) {
   const json plain = score({}), shadow = score({"--layer", std::string("shadow=") + TALUS_SHADOW_LAYER});
   EXPECT_NEAR(shadow["cost"].get<double>() - plain["cost"].get<double>(), 4.5 * 20.0, 1e-2);
   const Ran beyond = run("plan", {"--start", "5.5,5.5", "--goal", "39,5.5", "--layer",
@@ -135,7 +135,7 @@ TEST_F(CostLayers, APluginAddsAndRefuses) {
   EXPECT_THAT(beyond.err, HasSubstr("goal 39.00,5.50 lies on a blocked cell"));
 }
 
-TEST_F(CostLayers, WhatAPluginDoesWrongIsOneLine) {
+TEST_F(CostLayers, PluginErrorsAreOneLine) {
   const auto refused = [&](const std::string& library, const std::string& reason) {
     const Ran ran = run("score", {"--path", "straight.csv", "--layer", "own=" + library});
     EXPECT_EQ(ran.code, 2) << reason;
@@ -159,7 +159,7 @@ TEST_F(CostLayers, WhatAPluginDoesWrongIsOneLine) {
   refused("missing.so", "missing.so: no such file");
 }
 
-TEST_F(CostLayers, MistakesAreOneLine) {
+TEST_F(CostLayers, ErrorsAreOneLine) {
   folder.write("negative.asc", raster([](int, int) { return "-3"; }));
   folder.write("beyond.asc", raster([](int, int) { return "1e30"; }));
   folder.write("words.asc", "no raster\n");

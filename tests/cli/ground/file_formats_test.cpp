@@ -13,13 +13,13 @@ namespace file_formats_test {
 using terramech::FileKey;
 using testing::HasSubstr;
 
-TEST(FileFormats, TheDocumentHoldsWhatTheReadersTake) {
+TEST(FileFormats, DocumentMatchesTheReaders) {
   const std::string document = fileContent(TALUS_SOURCE_DIR "/docs/formats.md");
   EXPECT_EQ(document.substr(std::min(document.find("## "), document.size())), formatsMarkdown());
 }
 
 // Beside what the readers of telemetry know there are two columns of words.
-TEST(FileFormats, TelemetryHasTheColumnsThatItsReaderKnows) {
+TEST(FileFormats, TelemetryColumnsAreThoseOfTheReader) {
   std::vector<std::string> expected{"run", "wheel"};
   const auto& known = terramech::knownTelemetryColumns();
   expected.insert(expected.end(), known.begin(), known.end());
@@ -27,7 +27,7 @@ TEST(FileFormats, TelemetryHasTheColumnsThatItsReaderKnows) {
 }
 
 // And a table of x_m, y_m beside them.
-TEST(FileFormats, VectorFilesHaveTheDriversThatAreOpened) {
+TEST(FileFormats, VectorFormatsAreTheSupportedDrivers) {
   std::vector<std::string> expected = maps::vectorFormats();
   expected.emplace_back("CSV");
   for (const FileFormat& format : fileFormats())
@@ -37,7 +37,7 @@ TEST(FileFormats, VectorFilesHaveTheDriversThatAreOpened) {
 }
 
 // Property: every key is taken where it is listed: what is refused is never its name.
-TEST(FileFormats, EveryKeyIsRead) {
+TEST(FileFormats, EveryListedKeyIsAccepted) {
   const Folder folder;
   const auto refusal = [&](const std::string& yaml, const std::vector<std::string>& call) {
     folder.write("file.yaml", yaml);
@@ -60,7 +60,7 @@ TEST(FileFormats, EveryKeyIsRead) {
               HasSubstr("unknown key"));
 }
 
-TEST(FileFormats, AKeyWithoutItsUnitNamesTheOneThatIsMeant) {
+TEST(FileFormats, KeyWithoutUnitSuggestsTheKnownKey) {
   const Folder folder;
   folder.write("soil.yaml", "cohesion: 1000\nfriction_angle: 30\n");
   folder.write("rover.yaml", "mass: 100\n");

@@ -34,7 +34,7 @@ Context quiet() {
 }
 
 // Closed form: degrees as radians; a flag turns its threshold over.
-TEST(GroundOptions, ThePolicyIsWhatTheLineSays) {
+TEST(GroundOptions, PolicyFollowsTheCommandLine) {
   const auto policy =
       parsed("dem.tif --no-marginal --allow-unknown --slope-uncertainty-deg 10 --time-weight 3").policy;
   EXPECT_FALSE(policy.allow_marginal);
@@ -42,11 +42,11 @@ TEST(GroundOptions, ThePolicyIsWhatTheLineSays) {
   EXPECT_FALSE(policy.allow_dangerous);
   EXPECT_NEAR(policy.slope_margin_rad, 10.0 * kDegree, 1e-12);
   EXPECT_EQ(policy.time_weight_W, 3.0);
-  EXPECT_EQ(policy.risk_weight_J, costmap::DrivePolicy{}.risk_weight_J);
+  EXPECT_EQ(policy.risk_weight_J, costmap::TravelPolicy{}.risk_weight_J);
   EXPECT_THROW(parsed("dem.tif --soil a --model b.yaml"), CLI::ExcludesError);
 }
 
-TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
+TEST(GroundOptions, GroundHasTheGivenSoilAndRover) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat));
   const Ground ground =
@@ -82,7 +82,7 @@ TEST(GroundOptions, GroundIsOfTheSoilAndRoverNamed) {
                 ThrowsMessage<InputError>(HasSubstr("was built for rover 'fido'")));
 }
 
-TEST(GroundOptions, ABuiltMapIsThatOfTheElevationMapBesideIt) {
+TEST(GroundOptions, BuiltMapMustMatchTheElevationMap) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat));
   const std::string steep = folder.write("steep.asc", asciiGrid(20, 20, [](int c, int) { return 0.5 * c; }));
@@ -98,7 +98,7 @@ TEST(GroundOptions, ABuiltMapIsThatOfTheElevationMapBesideIt) {
         << other;
 }
 
-TEST(GroundOptions, AFootprintThatHidesCliffsIsRefused) {
+TEST(GroundOptions, OversizedFootprintIsRejected) {
   const Folder folder;
   const std::string dem =
       folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido --footprint ";
@@ -108,7 +108,7 @@ TEST(GroundOptions, AFootprintThatHidesCliffsIsRefused) {
 }
 
 // Which file is wrong is told where the number alone is no mistake.
-TEST(GroundOptions, NumbersThatDriveOnNoSlopeAreToldWithTheirFile) {
+TEST(GroundOptions, InvalidRoverAndSoilValuesAreReportedWithTheirFile) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1";
   const std::string rover = folder.write(
@@ -126,7 +126,7 @@ TEST(GroundOptions, NumbersThatDriveOnNoSlopeAreToldWithTheirFile) {
 }
 
 // A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
-TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
+TEST(GroundOptions, ClassesFileIsCombinedWithANamedSoil) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
   const std::string classes = folder.write("soils.yaml", "terrain_classes: {1: dry_sand, 2: sandy_loam}\n");
@@ -144,7 +144,7 @@ TEST(GroundOptions, ClassesOfTheFileAndTheSoilNamed) {
 
 // Closed form: theta_m / theta_1 = c1 + c2 slip is 1.08 at slip 1, and -0.32 at slip -1. Either ended the build of the map by
 // exit 1, without the file.
-TEST(GroundOptions, AStressPeakBeyondTheContactIsAFaultOfTheFile) {
+TEST(GroundOptions, StressPeakOutsideTheContactIsRejectedNamingTheFile) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
   const auto soil = [](const std::string& peak) {
@@ -165,7 +165,7 @@ TEST(GroundOptions, AStressPeakBeyondTheContactIsAFaultOfTheFile) {
 
 // Closed form: one pixel in 25 of each cell of column 2 is of the weak class, whatever its number; rocks are not seen in
 // one pixel of column 4 and dense in one of column 6.
-TEST(GroundOptions, WhatReachesIntoACellCounts) {
+TEST(GroundOptions, WeakestClassAndRocksOfPartialPixelsAreUsed) {
   const Folder folder;
   const auto raster = [&](const std::string& name, auto value) {
     std::string text = asciiGrid(50, 50, value);

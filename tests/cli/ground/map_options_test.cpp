@@ -33,7 +33,7 @@ MapOptions parsed(const std::string& line) {
 }
 
 // Closed form: heights of the cells' columns and rows; a window keeps the cells inside it.
-TEST(MapOptions, TheMapIsReadAsTheLineSays) {
+TEST(MapOptions, ElevationFollowsTheReadOptions) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(12, 9, ramp));
   const auto whole = readMap(parsed(dem + " --resolution 1"), quiet());
@@ -48,7 +48,7 @@ TEST(MapOptions, TheMapIsReadAsTheLineSays) {
   EXPECT_TRUE(std::isnan(scaled.elevation_m[{7, 0}]));
 }
 
-TEST(MapOptions, WhatDoesNotFitTheFileIsRefused) {
+TEST(MapOptions, InvalidReadOptionsAreRejected) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(12, 9, ramp));
   EXPECT_THAT([&] { readMap(parsed(dem + " --resolution 1 --below 3"), quiet()); },
@@ -61,7 +61,7 @@ TEST(MapOptions, WhatDoesNotFitTheFileIsRefused) {
 }
 
 // Closed form: two squares of keep-out, of which either shuts its cells; no other layer where none is named.
-TEST(MapOptions, SeveralKeepOutFilesAddUp) {
+TEST(MapOptions, KeepOutFilesAreCombined) {
   const Folder folder;
   const auto square = [&folder](const std::string& name, int x) {
     const std::string a = std::to_string(x) + ".2", b = std::to_string(x) + ".8";

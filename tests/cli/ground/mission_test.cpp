@@ -24,13 +24,13 @@ PlanOptions readIn(const Folder& folder, PlanOptions options = {}) {
   return options;
 }
 
-TEST(Mission, IsToldByItsExtension) {
+TEST(Mission, MissionIsDetectedByItsExtension) {
   EXPECT_TRUE(isMission("a/b.yaml") && isMission("m.yml"));
   EXPECT_FALSE(isMission("yaml") || isMission("m.tif") || isMission("m.yaml.tif"));
 }
 
 // Closed form: degrees as radians; files beside the mission by their path, others as they stand.
-TEST(Mission, SaysAllThatAPlanNeeds) {
+TEST(Mission, EveryMissionFieldIsRead) {
   const Folder folder;
   folder.write("dem.tif", "x");
   folder.write("soils.yaml", "x");
@@ -55,7 +55,7 @@ TEST(Mission, SaysAllThatAPlanNeeds) {
 }
 
 // Property: what the command line says holds over the file, stricter thresholds above all.
-TEST(Mission, TheCommandLineHolds) {
+TEST(Mission, CommandLineOverridesTheMission) {
   const Folder folder;
   PlanOptions said;
   said.ground.rover = "fido";
@@ -78,7 +78,7 @@ TEST(Mission, TheCommandLineHolds) {
   EXPECT_EQ(plan.drive.start_heading_rad, 0.1);
 }
 
-TEST(Mission, MistakesNameTheFileAndTheField) {
+TEST(Mission, ErrorsNameFileAndField) {
   const Folder folder;
   const auto refused = [&folder](const std::string& text) {
     return [path = folder.write("bad.yaml", text)] {

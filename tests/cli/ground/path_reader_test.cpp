@@ -17,13 +17,13 @@ std::vector<Point> read(const std::string& name, const std::string& content) {
   return readPath(folder.write(name, content), exampleMap());
 }
 
-TEST(PathReader, TakesTablesWithTheTwoColumnsInAnyOrder) {
+TEST(PathReader, TablesAreReadWithColumnsInAnyOrder) {
   EXPECT_THAT(read("p.csv", "name,y_m,x_m\na,2,1\nb,4.5,3e1\n"), ElementsAre(Point{1, 2}, Point{30, 4.5}));
   EXPECT_THAT(read("p.TXT", "x_m,y_m\n1,2\n"), ElementsAre(Point{1, 2}));
 }
 
 // Property: a route of ours gives back its map metres to the last bit, whatever its coordinates are rounded to.
-TEST(PathReader, TakesTheMetresOfOurOwnRoutes) {
+TEST(PathReader, RouteMetresAreReadExactly) {
   EXPECT_THAT(read("r.geojson", R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature",
       "geometry":{"type":"LineString","coordinates":[[0.11,7.02],[0.3,8]]},
       "properties":{"x_m":[0.1,0.30000000000000004],"y_m":[7,8]}}]})"),
@@ -31,7 +31,7 @@ TEST(PathReader, TakesTheMetresOfOurOwnRoutes) {
 }
 
 // A route whose line was moved or cut in another program was judged where it had been before, and allowed.
-TEST(PathReader, ALineThatIsNoLongerItsOwnMetresIsRefused) {
+TEST(PathReader, InconsistentCoordinatesAreRejected) {
   const auto with = [](const std::string& coordinates) {
     return R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature","geometry":{"type":"LineString",
         "coordinates":)" +
@@ -47,21 +47,21 @@ TEST(PathReader, ALineThatIsNoLongerItsOwnMetresIsRefused) {
         << coordinates;
 }
 
-TEST(PathReader, TakesTheFirstLineOfAnyGeoJson) {
+TEST(PathReader, FirstLineOfAGeoJsonIsRead) {
   EXPECT_THAT(read("l.json", R"({"type":"GeometryCollection","crs":"local","geometries":[
       {"type":"Point","coordinates":[9,9]},{"type":"LineString","coordinates":[[1,2],[3,4]]}]})"),
               ElementsAre(Point{1, 2}, Point{3, 4}));
 }
 
 // It is judged cell by cell: each vertex near the map, and their sum without an end.
-TEST(PathReader, APathLongerThanFourMillionCellsIsRefused) {
+TEST(PathReader, PathLongerThanFourMillionCellsIsRejected) {
   std::string rows = "x_m,y_m\n";
   for (int k = 0; k < 100; ++k) rows += k % 2 == 0 ? "0,0\n" : "400000,0\n";
   EXPECT_THAT([&] { read("long.csv", rows); },
               ThrowsMessage<InputError>(HasSubstr("more than 4 million cells")));
 }
 
-TEST(PathReader, WhatIsNoPathIsOneLine) {
+TEST(PathReader, InvalidPathsAreRejectedWithOneLine) {
   struct Case {
     const char* name;
     const char* content;

@@ -14,7 +14,7 @@ maps::SiteOptions loaded(const std::string& text) {
   return loadSite(folder.write("site.yaml", text));
 }
 
-TEST(SiteDescription, KindsAreKnownByName) {
+TEST(SiteDescription, KindsAreFoundByName) {
   EXPECT_EQ(siteKind("craters"), maps::SiteKind::Craters);
   EXPECT_EQ(siteKind("dunes"), maps::SiteKind::Dunes);
   EXPECT_EQ(siteKind("rocks"), maps::SiteKind::Rocks);
@@ -23,7 +23,7 @@ TEST(SiteDescription, KindsAreKnownByName) {
               ThrowsMessage<InputError>(HasSubstr("choose craters, dunes or rocks")));
 }
 
-TEST(SiteDescription, WhatIsLeftOutIsTheDefaultAndAWidthMakesASquare) {
+TEST(SiteDescription, OmittedFieldsAreDefaultsAndWidthImpliesASquare) {
   const auto site = loaded("site: {kind: dunes, width: 64, resolution_cm: 50, seed: 9}\n");
   EXPECT_EQ(site.kind, maps::SiteKind::Dunes);
   EXPECT_EQ(site.width, 64);
@@ -35,7 +35,7 @@ TEST(SiteDescription, WhatIsLeftOutIsTheDefaultAndAWidthMakesASquare) {
   EXPECT_EQ(loaded("site: {kind: rocks, width: 8, height: 5}\n").height, 5);
 }
 
-TEST(SiteDescription, MistakesNameFileAndField) {
+TEST(SiteDescription, ErrorsNameFileAndField) {
   EXPECT_THAT([] { loaded("site: {kind: dunes, seed: -1}\n"); },
               ThrowsMessage<InputError>(HasSubstr("seed = -1")));
   EXPECT_THAT([] { loaded("site: {kind: dunes, widht: 3}\n"); },

@@ -16,7 +16,7 @@ std::map<std::string, maps::Raster<float>> layersOf(const costmap::Traversabilit
 
 // Closed form: a plane that rises by 0.1 eastwards has the slope atan 0.1 everywhere and climbs to the east;
 // uphill costs more than downhill, and a cell without elevation has no number but its category.
-TEST(SiteLayers, OfAPlane) {
+TEST(SiteLayers, LayersOfAPlaneMatchClosedForm) {
   const std::vector<std::string> rows(14, "1111111?222222");
   auto layers = layersOf(costmap::mapOf(rows, 0.1));
   EXPECT_EQ(layers.size(), 13U);
@@ -32,7 +32,7 @@ TEST(SiteLayers, OfAPlane) {
 }
 
 // Property: a cell's best heading is no worse than its worst, and better on some slope that is safe one way only.
-TEST(SiteLayers, TheBestHeadingIsNoWorseThanTheWorst) {
+TEST(SiteLayers, BestHeadingIsNoWorseThanTheWorst) {
   bool better = false;
   for (const double gradient : {0.05, 0.1, 0.15, 0.2, 0.25}) {
     auto layers = layersOf(costmap::mapOf(std::vector<std::string>(14, "1111111222222"), gradient));
@@ -45,7 +45,7 @@ TEST(SiteLayers, TheBestHeadingIsNoWorseThanTheWorst) {
 }
 
 // Property: the weaker soil pulls less and sinks more, and categories are those of the map.
-TEST(SiteLayers, SayWhatTheMapSays) {
+TEST(SiteLayers, LayersMatchTheMap) {
   const auto map = costmap::mapOf({"1111111222222", "1111111222222", "11111112222#2", "1111111222222"});
   auto layers = layersOf(map);
   EXPECT_GT((layers["drawbar_pull_over_load"][{2, 1}]), (layers["drawbar_pull_over_load"][{11, 2}]));

@@ -23,7 +23,7 @@ TEST(TruthFile, EveryPartIsOptional) {
   EXPECT_EQ(truth.patch_soil.name, terramech::loadSoil("mars_drift").name);
 }
 
-TEST(TruthFile, HoldsWhatItSays) {
+TEST(TruthFile, EveryFieldIsRead) {
   const planner::Truth truth = read(
       "classes: {1: dry_sand, 4: sandy_loam}\n"
       "patches: [{x_m: 40, y_m: 25, radius_m: 4, soil: dry_sand},\n"
@@ -45,7 +45,7 @@ TEST(TruthFile, HoldsWhatItSays) {
   EXPECT_EQ(truth.effects[0].parameters, (std::vector<double>{0.4}));
 }
 
-TEST(TruthFile, MistakesNameTheField) {
+TEST(TruthFile, ErrorsNameTheField) {
   const std::pair<const char*, const char*> cases[] = {
       {"random: {spread: 1.5}\n", "spread must lie in [0, 1]"},
       {"random: {spread: .nan}\n", "spread"},

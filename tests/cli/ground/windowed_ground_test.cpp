@@ -21,7 +21,7 @@ GroundOptions options(const Folder& folder) {
   return made;
 }
 
-TEST(WindowedGround, OnlyAMapOfMoreCellsNeedsWindows) {
+TEST(WindowedGround, WindowsAreUsedOnlyAboveTheCellLimit) {
   const Folder folder;
   const GroundOptions large = options(folder);
   EXPECT_TRUE(needsWindows(large, 29'999));
@@ -33,7 +33,7 @@ TEST(WindowedGround, OnlyAMapOfMoreCellsNeedsWindows) {
 
 // Property: the windows give the codes of the ground read as a whole, away from the DEM's edge, and the
 // overview is coarser by a whole factor and covers it.
-TEST(WindowedGround, WindowsAreTheWholeGroundBitByBit) {
+TEST(WindowedGround, WindowsAreBitIdenticalToTheFullGround) {
   const Folder folder;
   const GroundOptions of = options(folder);
   Context context;

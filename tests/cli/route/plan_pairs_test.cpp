@@ -29,7 +29,7 @@ std::string call(const Folder& folder) {
          " --soil sandy_loam --rover fido --resolution 1 --quiet";
 }
 
-TEST(PlanPairs, EachRowIsWhatPlanSaysOfIt) {
+TEST(PlanPairs, EachRowEqualsASinglePlan) {
   const Folder folder;
   const Ran many = runTalus({"plan", hills(folder), "--pairs", pairs(folder), "--soil", "sandy_loam",
                              "--rover", "fido", "--resolution", "1", "--json", "--quiet"});
@@ -49,7 +49,7 @@ TEST(PlanPairs, EachRowIsWhatPlanSaysOfIt) {
   EXPECT_EQ(lines[3]["status"], "found");
 }
 
-TEST(PlanPairs, WritesATable) {
+TEST(PlanPairs, ResultsAreWrittenAsATable) {
   const Folder folder;
   const std::string out = folder / "routes.csv";
   const Ran ran =
@@ -62,7 +62,7 @@ TEST(PlanPairs, WritesATable) {
   EXPECT_THAT(text, HasSubstr("\n3,start_invalid,hybrid,"));
 }
 
-TEST(PlanPairs, RanksOfMpiGiveWhatOneProcessGives) {
+TEST(PlanPairs, MpiRanksReproduceTheSingleProcessResult) {
   TALUS_REQUIRE_MPI();
   const Folder folder;
   const auto answer = [&](const std::string& before) {
@@ -76,7 +76,7 @@ TEST(PlanPairs, RanksOfMpiGiveWhatOneProcessGives) {
   expectRanksAgree(answer, one);
 }
 
-TEST(PlanPairs, MistakesAreOneLine) {
+TEST(PlanPairs, ErrorsAreOneLine) {
   const BadFiles files;
   int tables = 0;
   const auto plan = [&](const std::string& table, const std::vector<std::string>& more = {}) {

@@ -6,7 +6,7 @@ namespace talus::cli {
 namespace provenance_test {
 
 // Property: two calls that differ in outputs and threads alone have the same text.
-TEST(Provenance, CallWithoutWhatDecidesNothing) {
+TEST(Provenance, CallTextOmitsOutputsAndThreads) {
   const char* const long_call[] = {"/usr/bin/talus", "plan",          "dem.tif",   "--start", "1,2",    "-o",
                                    "r.geojson",      "--html=p.html", "--threads", "4",       "--seed", "7",
                                    "--json",         "--via",         "it's here", nullptr};
@@ -17,7 +17,7 @@ TEST(Provenance, CallWithoutWhatDecidesNothing) {
   EXPECT_EQ(callText(nullptr), "");
 }
 
-TEST(Provenance, StatesWhatAFileOfARouteHas) {
+TEST(Provenance, ProvenanceListsTheInputsOfARoute) {
   const auto inputs = nlohmann::ordered_json::parse(
       R"({"files":[{"file":"dem.tif","path":"x/dem.tif","sha256":"00ff"}],"seed":7,"version":"0.1.0","rover":"mer",
           "soils":["sand","clay"],"command":"talus plan dem.tif"})");

@@ -30,7 +30,7 @@ std::string refusal(const nlohmann::ordered_json& document) {
   return "";
 }
 
-TEST(RouteReader, ReadsBackWhatPlanWrites) {
+TEST(RouteReader, WrittenRouteIsReadExactly) {
   const Folder folder;
   planner::Route route = exampleRoute();
   route.vertices[3].slip = planner::kNotKnown;
@@ -50,7 +50,7 @@ TEST(RouteReader, ReadsBackWhatPlanWrites) {
   EXPECT_EQ(back.summary.planner, route.summary.planner);
 }
 
-TEST(RouteReader, RefusalNamesFileAndField) {
+TEST(RouteReader, ErrorsNameFileAndField) {
   auto document = written();
   auto& properties = document["features"][0]["properties"];
   EXPECT_EQ(refusal(document), "");
@@ -77,7 +77,7 @@ TEST(RouteReader, RefusalNamesFileAndField) {
   EXPECT_THAT(refusal(document), HasSubstr("'cost' holds what is no number"));
 }
 
-TEST(RouteReader, StandsAnyCutOfAFile) {
+TEST(RouteReader, TruncatedRouteIsRejected) {
   // Property: a route cut anywhere is refused, never half read. Every 97th length, the file being long.
   const Folder folder;
   const std::string whole = written().dump();
@@ -87,7 +87,7 @@ TEST(RouteReader, StandsAnyCutOfAFile) {
                    "is not valid JSON");
 }
 
-TEST(RouteReader, StandsAnyFieldOfAnotherKind) {
+TEST(RouteReader, FieldOfWrongTypeIsReadOrRejected) {
   // Property: each property replaced by a word, a number, an empty array or nothing is refused or read, never
   // worse.
   const Folder folder;

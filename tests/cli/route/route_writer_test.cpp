@@ -30,7 +30,7 @@ std::string write(const Folder& folder, const std::string& name, const maps::Ele
 }
 
 // Property: what another program gets is what `talus score --path` reads: the same metres, to rounding of degrees.
-TEST(RouteWriter, EveryFormatComesBackAsThePath) {
+TEST(RouteWriter, EveryFormatRoundTripsAsAPath) {
   const Folder folder;
   const maps::ElevationMap map = mapOf(maps::kEarth);
   const planner::Route route = exampleRoute();
@@ -45,7 +45,7 @@ TEST(RouteWriter, EveryFormatComesBackAsThePath) {
   }
 }
 
-TEST(RouteWriter, AGeoPackageIsARouteAgain) {
+TEST(RouteWriter, GeoPackageRoundTripsAsARoute) {
   const Folder folder;
   const planner::Route route = exampleRoute();
   const std::string path = write(folder, "r.gpkg", mapOf(maps::kMoon));
@@ -61,7 +61,7 @@ TEST(RouteWriter, AGeoPackageIsARouteAgain) {
   EXPECT_EQ(types, (std::map<std::string, int>{{"LineString", vertices}, {"Point", vertices}}));
 }
 
-TEST(RouteWriter, SaysWhereTheBodyIsLost) {
+TEST(RouteWriter, FormatsWithoutBodyWarnOrReject) {
   const Folder folder;
   testing::internal::CaptureStderr();
   write(folder, "r.geojson", mapOf(maps::kMars));
@@ -77,7 +77,7 @@ TEST(RouteWriter, SaysWhereTheBodyIsLost) {
   EXPECT_EQ(fileContent(folder / "r.gpx"), "");
 }
 
-TEST(RouteWriter, TheTableHasARowForEachVertex) {
+TEST(RouteWriter, TableHasARowForEachVertex) {
   const Folder folder;
   const std::string table = fileContent(write(folder, "r.csv", mapOf(maps::kMoon)));
   EXPECT_TRUE(table.starts_with("x_m,y_m,")) << table.substr(0, 80);

@@ -175,7 +175,7 @@ Answer SameRoute::byPython() const {
   return answer;
 }
 
-TEST_F(SameRoute, OfEveryInterface) {
+TEST_F(SameRoute, EveryInterfaceYieldsTheSameRoute) {
   const Answer route = answerOf(planner::planRoute(map(), kThere));
   ASSERT_GT(route.vertices.size(), 20U);
   EXPECT_TRUE(std::isfinite(route.vertices.front().elevation_m));

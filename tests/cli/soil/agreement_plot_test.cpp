@@ -6,7 +6,7 @@ namespace talus::cli {
 namespace agreement_plot_test {
 
 // Property: rows without a measurement or a prediction are left out, and the line of agreement spans the measurements.
-TEST(AgreementPlot, HoldsWhatWasMeasuredAndPredicted) {
+TEST(AgreementPlot, OnlyMeasuredAndPredictedRowsAreShown) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Eigen::MatrixXd measured = Eigen::MatrixXd::Constant(4, 4, kNone), told = Eigen::MatrixXd::Zero(4, 4);
   const auto c = static_cast<Eigen::Index>(terramech::Channel::Torque);

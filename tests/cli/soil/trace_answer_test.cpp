@@ -26,7 +26,7 @@ TraceResult resultOf(double promised, double fitted) {
 }
 
 // It read "gain 7.7 of 6.0 that would be evidence".
-TEST(TraceAnswer, SaysWhichNumberFellShort) {
+TEST(TraceAnswer, RejectedGainNamesTheInsufficientValue) {
   EXPECT_EQ(refusal(resultOf(2.5, 2.0)), "gain 2.5, below the 6.0 that would be evidence");
   EXPECT_EQ(refusal(resultOf(7.7, 5.1)),
             "gain 7.7 to first order, 5.1 when fitted, below the 6.0 that would be evidence");
@@ -35,7 +35,7 @@ TEST(TraceAnswer, SaysWhichNumberFellShort) {
               testing::HasSubstr("varies most with slip (gain 7.7 to"));
 }
 
-TEST(TraceAnswer, NamesTheOtherCheckThatRefused) {
+TEST(TraceAnswer, RejectionNamesTheFailedCheck) {
   TraceResult result = resultOf(7.7, 7.1);
   EXPECT_THAT(refusal(result), testing::EndsWith("7.1 when fitted: gains more than noise would, but not "
                                                  "beside the others"));
@@ -45,7 +45,7 @@ TEST(TraceAnswer, NamesTheOtherCheckThatRefused) {
   EXPECT_THAT(refusal(result), testing::HasSubstr("accepted first, and left out"));
 }
 
-TEST(TraceAnswer, NothingMissingAsksForNoRows) {
+TEST(TraceAnswer, NothingMissingRequestsNoMeasurement) {
   TraceResult result = resultOf(2.5, 2.0);
   EXPECT_FALSE(answerOf(result).measure.empty());
   result.base_rmse[0] = result.refined_rmse[0] = 0.01;
@@ -54,7 +54,7 @@ TEST(TraceAnswer, NothingMissingAsksForNoRows) {
 
 // Property: side bulldozing of size 0 stands in place of the base's, whose term is gone then; a rear fill of size 0 of
 // a wheel that does not dig is nothing, and one of the base's own size would be felt.
-TEST(TraceAnswer, AnEffectOfSizeZeroTakesBackTheTermOfTheBase) {
+TEST(TraceAnswer, EffectOfSizeZeroRemovesTheTermOfTheBase) {
   TraceResult result = resultOf(2.5, 2.0);
   for (int row = 0; row < 10; ++row) {
     auto& state = result.trial.states[static_cast<std::size_t>(row)];

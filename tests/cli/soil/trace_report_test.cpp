@@ -36,20 +36,20 @@ terramech::Explanation explanation(const std::string& name, const std::string& c
 
 // Closed form: 3 x + 0.5 e has the correlation 3 / sqrt(9.25) = 0.986 with x, -2 x has -1; both are above 0.9
 // in size. A column that does not vary has none, nor does a missing value count.
-TEST(TraceReport, ConfoundedColumnsMoveTogether) {
+TEST(TraceReport, CorrelatedColumnsAreConfounded) {
   EXPECT_THAT(confounded(trial(), "depth"), ElementsAre("temperature", "same"));
   EXPECT_TRUE(confounded(trial(), "noise").empty());
   EXPECT_TRUE(confounded(trial(), "steady").empty());
 }
 
-TEST(TraceReport, AnEffectOfOneGroupIsOfTheColumnOfTheGroup) {
+TEST(TraceReport, CovariateOfAGroupEffectIsTheGroupColumn) {
   EXPECT_EQ(covariateOf({.name = "a", .covariate = "constant", .only_column = "wheel", .only_value = "2"}),
             "wheel");
   EXPECT_EQ(covariateOf({.name = "a", .covariate = "depth"}), "depth");
 }
 
 // Property: a rival in another column is told first, then a confounded column, then a rival form, then none.
-TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
+TEST(TraceReport, ProposedMeasurementSeparatesTheClosestAlternative) {
   terramech::TracedEffect effect;
   effect.chosen = explanation("ding", "depth");
   effect.equal = {explanation("lyasko", "depth"), explanation("drift", "noise")};
@@ -63,7 +63,7 @@ TEST(TraceReport, TheMeasurementSeparatesTheNearestAlternative) {
   EXPECT_EQ(separatingMeasurement(trial(), effect), "no close alternative");
 }
 
-TEST(TraceReport, FittedNumbersAreThoseOfTheFormInItsOrder) {
+TEST(TraceReport, FittedValuesFollowTheParametersOfTheForm) {
   terramech::TracedEffect effect;
   effect.chosen.candidate.parts = {{.name = "torque_offset", .covariate = "load_N", .parameters = {0.5}}};
   effect.parameter_std = {0.1};
@@ -76,7 +76,7 @@ TEST(TraceReport, FittedNumbersAreThoseOfTheFormInItsOrder) {
   EXPECT_TRUE(fittedNumbers(effect).empty());
 }
 
-TEST(TraceReport, RowsBeyondTheAxleAreSaidWithTheirErrors) {
+TEST(TraceReport, RowsBeyondTheAxleAreReportedWithTheirErrors) {
   terramech::TableTrace trace;
   trace.beyond_axle = 3;
   trace.beyond_axle_rmse = {0.125, NAN, 0.5, NAN};

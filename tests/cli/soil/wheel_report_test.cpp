@@ -13,13 +13,13 @@ namespace wheel_report_test {
 using testing::HasSubstr;
 using testing::Not;
 
-WheelAtWork work() {
+WheelOperatingPoint work() {
   return {terramech::loadSoil("sandy_loam"), terramech::loadRover("fido"), 80.0, 0.3};
 }
 
 // Property: the page states the forces of the equilibrium, in the units that it names and over r, rW and W.
-TEST(WheelReport, StatesTheForcesOfTheEquilibrium) {
-  const WheelAtWork at = work();
+TEST(WheelReport, PageShowsTheEquilibriumForces) {
+  const WheelOperatingPoint at = work();
   const double r = at.rover.wheel.radius_m;
   const auto f = terramech::equilibrium(at.soil, at.rover.wheel, {.load_N = 80.0, .slip = 0.3});
   const std::string page = wheelReport(at);
@@ -35,21 +35,21 @@ TEST(WheelReport, StatesTheForcesOfTheEquilibrium) {
 }
 
 // Property: soils that are compared have a curve each.
-TEST(WheelReport, ComparesSoils) {
-  WheelAtWork at = work();
+TEST(WheelReport, ComparedSoilsHaveTheirOwnCurves) {
+  WheelOperatingPoint at = work();
   const std::size_t alone = wheelReport(at).size();
   at.others = {terramech::loadSoil("dry_sand"), terramech::loadSoil("clay")};
   EXPECT_GT(wheelReport(at).size(), alone + 3U * 2U * 1000U);
 }
 
-TEST(WheelReport, NamesAreNoMarkup) {
-  WheelAtWork at = work();
+TEST(WheelReport, SoilNamesAreNeverMarkup) {
+  WheelOperatingPoint at = work();
   at.soil.name = "<b>sand</b>";
   EXPECT_THAT(wheelReport(at), Not(HasSubstr("<b>sand")));
 }
 
-TEST(WheelReport, ALoadThatSinksTheWheelHasNoPage) {
-  WheelAtWork at = work();
+TEST(WheelReport, LoadBeyondTheAxleIsRejected) {
+  WheelOperatingPoint at = work();
   at.load_N = 1e9;
   EXPECT_REFUSED(wheelReport(at), std::domain_error,
                  "the wheel sinks to its axle before the soil carries 1000000000.000000 N");

@@ -40,7 +40,7 @@ std::vector<BenchmarkRun> runs() {
 }
 
 // Closed form: by hand from the costs above.
-TEST(BenchReport, ARefusedRouteCountsAsNoCost) {
+TEST(BenchReport, InvalidRouteHasNoCost) {
   const auto lines = compared(plan(), runs());
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_DOUBLE_EQ(lines[0].worst_gap, 0.2);  // on the first case the field's 100 J are the best that stand
@@ -54,7 +54,7 @@ TEST(BenchReport, ARefusedRouteCountsAsNoCost) {
 }
 
 // Property: each planner whose route stands has a curve, in percent of the best route that stands.
-TEST(BenchReport, ARefusedRouteIsNotDrawn) {
+TEST(BenchReport, InvalidRouteIsNotPlotted) {
   const auto plots = gapsOverTime(plan(), runs());
   ASSERT_EQ(plots.size(), 2u);
   ASSERT_EQ(plots[0].series.size(), 1u);
@@ -64,7 +64,7 @@ TEST(BenchReport, ARefusedRouteIsNotDrawn) {
   EXPECT_EQ(plots[1].series.size(), 2u);
 }
 
-TEST(BenchReport, SaysThatItWasCutShort) {
+TEST(BenchReport, CancelledCampaignIsReported) {
   auto some = runs();
   some.pop_back();
   EXPECT_THAT(asPage(plan(), some), HasSubstr("Cancelled after 3 of 4 runs."));

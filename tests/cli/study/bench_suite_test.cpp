@@ -26,7 +26,7 @@ Context quiet() {
 
 // Property: pairs lie half a diagonal apart at least, a route joins them, the same seed gives the same, and
 // maps of one name in two folders keep their cases apart.
-TEST(BenchSuite, PairsOfAMapAreFarApartAndJoined) {
+TEST(BenchSuite, PairsAreDistantConnectedAndReproducible) {
   const Folder one, other;
   SuiteOptions options;
   options.names = {one.write("dem.asc", asciiGrid(60, 50, rolling)),
@@ -53,7 +53,7 @@ TEST(BenchSuite, PairsOfAMapAreFarApartAndJoined) {
 }
 
 // Property: each slip world is planned twice over the same truth.
-TEST(BenchSuite, SlipWorldsComeInPairs) {
+TEST(BenchSuite, SlipWorldsArePlannedWithMeanAndTail) {
   SuiteOptions options;
   options.names = {"slip"};
   options.pairs = 2;
@@ -66,7 +66,7 @@ TEST(BenchSuite, SlipWorldsComeInPairs) {
   }
 }
 
-TEST(BenchSuite, GroundWithoutAMapIsRefused) {
+TEST(BenchSuite, GroundOptionsWithoutAMapAreRejected) {
   SuiteOptions options;
   options.names = {"slip"};
   options.ground.soil = "sandy_loam";

@@ -12,10 +12,10 @@ namespace cost_grid_test {
 CostGrid plain(int side) {
   const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
   return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
-                   std::make_shared<DriveCost>(DriveCost::Limits{}, std::vector<DriveCurve>(1)));
+                   std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
 }
 
-TEST(CostGrid, ARevisionChangesItsRangeAndNothingElse) {
+TEST(CostGrid, RevisionChangesOnlyItsRange) {
   const CostGrid before = plain(200);
   const maps::CellBox range{{60, 60}, {70, 66}};
   const CostGrid after =
@@ -31,7 +31,7 @@ TEST(CostGrid, ARevisionChangesItsRangeAndNothingElse) {
     }
 }
 
-TEST(CostGrid, ARevisionSharesTheTilesItDoesNotTouch) {
+TEST(CostGrid, RevisionSharesUnchangedTiles) {
   const CostGrid before = plain(200);
   const CostGrid after = revised(before, {.ranges = {{{0, 0}, {5, 5}}},
                                           .code = [](maps::Cell, CellCode code) { return code; },
@@ -42,7 +42,7 @@ TEST(CostGrid, ARevisionSharesTheTilesItDoesNotTouch) {
   EXPECT_EQ(shared, 15);  // Closed form: 4x4 tiles, one touched
 }
 
-TEST(CostGrid, ElevationIsThatOfTheRasterItWasCutFrom) {
+TEST(CostGrid, ElevationMatchesTheSourceRaster) {
   maps::Raster<float> heights(plain(150).grid());
   for (int row = 0; row < 150; ++row)
     for (int column = 0; column < 150; ++column)
@@ -59,7 +59,7 @@ TEST(CostGrid, ElevationIsThatOfTheRasterItWasCutFrom) {
   EXPECT_THROW(CostGrid{content}, std::invalid_argument);
 }
 
-TEST(CostGrid, ElevationCutAnewInABoxLeavesEarlierVersionsAsTheyWere) {
+TEST(CostGrid, RetiledElevationLeavesEarlierVersionsUnchanged) {
   maps::Raster<float> heights(plain(150).grid(), 1.0F);
   const HeightTable before = tiled(heights);
   heights[{70, 10}] = 5.0F;
@@ -70,7 +70,7 @@ TEST(CostGrid, ElevationCutAnewInABoxLeavesEarlierVersionsAsTheyWere) {
 }
 
 // Property: whatever tiles of copies are set, each table holds what a plain list of its own would.
-TEST(TileTable, CopiesShareAndDoNotInterfere) {
+TEST(TileTable, CopiesAreIndependent) {
   const auto tileOf = [](std::uint8_t curve) {
     auto tile = std::make_shared<CostTile>();
     tile->cells.fill(CellCode({.curve = curve}));

@@ -13,16 +13,16 @@ CostGrid oneGround() {
   const auto model = testGround();
   const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
   return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
-                   std::make_shared<DriveCost>(model->limits(),
-                                               std::vector<DriveGround>{model->ground(0, model->prior(0))}));
+                   std::make_shared<TravelCost>(model->limits(),
+                                                std::vector<GroundCost>{model->ground(0, model->prior(0))}));
 }
 
-TEST(CostWeights, CostIsTheWeighedSumOfEnergyTimeAndRisk) {
+TEST(CostWeights, CostIsTheWeightedSumOfEnergyTimeAndRisk) {
   const CostGrid map = oneGround();
   const auto other = reweighted(map, {.energy = 2.0, .time_W = 3.0, .risk_J = 5e6});
   for (const double gradient : {-0.1, 0.0, 0.05}) {
     const CellCode cell({gradient, 0.0, 0});
-    const DriveState state = map.cost().detail(cell, {1.0, 0.0});
+    const TravelState state = map.cost().detail(cell, {1.0, 0.0});
     ASSERT_EQ(state.refusal, Refusal::None);
     const double expected = 2.0 * static_cast<double>(state.energy_J_per_m) +
                             3.0 * static_cast<double>(state.time_s_per_m) +
@@ -32,7 +32,7 @@ TEST(CostWeights, CostIsTheWeighedSumOfEnergyTimeAndRisk) {
   }
 }
 
-TEST(CostWeights, WhatIsRefusedStaysRefusedAndTilesAreShared) {
+TEST(CostWeights, ReweightingKeepsInfeasibilityAndSharesTiles) {
   const CostGrid map = oneGround();
   const auto other = reweighted(map, {.energy = 0.0, .time_W = 0.0, .risk_J = 0.0});
   for (double gradient = -0.9; gradient < 0.9; gradient += 0.01) {
@@ -43,7 +43,7 @@ TEST(CostWeights, WhatIsRefusedStaysRefusedAndTilesAreShared) {
   EXPECT_EQ(other->content().tiles[0], map.content().tiles[0]);
 }
 
-TEST(CostWeights, RefusesNegativeWeightsAndMapsWithoutNumbers) {
+TEST(CostWeights, NegativeWeightsAndMapsWithoutStatesAreRejected) {
   EXPECT_REFUSED(reweighted(oneGround(), {.energy = -1.0}), std::invalid_argument,
                  "energy, time_W and risk_J must be >= 0");
   EXPECT_REFUSED(reweighted(oneGround(), {.risk_J = std::nan("")}), std::invalid_argument,
@@ -51,7 +51,7 @@ TEST(CostWeights, RefusesNegativeWeightsAndMapsWithoutNumbers) {
   const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
   const CostGrid bare =
       flattened(maps::Raster<CellCode>(grid),
-                std::make_shared<DriveCost>(DriveCost::Limits{}, std::vector<DriveCurve>(1)));
+                std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
   EXPECT_REFUSED(reweighted(bare, {}), std::domain_error, "holds no energy, time and risk to weigh");
 }
 

@@ -19,8 +19,8 @@ GroundBelief certain(const GroundModel& model) {
   return belief;
 }
 
-DriveCost costOf(const GroundModel& model, const GroundBelief& belief) {
-  return {model.limits(), std::vector<DriveGround>{model.ground(0, belief)}};
+TravelCost costOf(const GroundModel& model, const GroundBelief& belief) {
+  return {model.limits(), std::vector<GroundCost>{model.ground(0, belief)}};
 }
 
 // A plane that rises by `along` in the heading east and by `across` to its left.
@@ -46,12 +46,12 @@ GroundModel modelOf(const terramech::Soil& soil) {
 }
 
 // Closed form: a planner that knows slopes along the heading only pays on every slope across what it pays on none.
-TEST(CrossSlope, AlongOnlyPricesAPlaneByItsGradientAlong) {
+TEST(CrossSlope, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
   GroundModel::Parts parts = modelOf(testSand()).parts();
   const GroundModel priced(parts);
   parts.prices_crossing = false;
   const GroundModel along_only(parts);
-  const DriveCost cost = costOf(along_only, certain(along_only)), full = costOf(priced, certain(priced));
+  const TravelCost cost = costOf(along_only, certain(along_only)), full = costOf(priced, certain(priced));
   for (const double along : {-0.1, 0.0, 0.1})
     for (const double across : {0.05, 0.15, 0.25}) {
       EXPECT_EQ(cost.costPerMetre(plane(along, across), {}), cost.costPerMetre(plane(along, 0.0), {}));
@@ -62,14 +62,14 @@ TEST(CrossSlope, AlongOnlyPricesAPlaneByItsGradientAlong) {
 }
 
 // Property: what the equilibrium of the rover refuses by more than a row across and a bin along is not allowed.
-TEST(CrossSlope, AllowsNothingThatTheEquilibriumRefuses) {
+TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
   std::mt19937 random(1);
   int refused = 0, held = 0, given_up = 0;
   for (int soils = 0; soils < 6; ++soils) {
     const terramech::Soil soil = drawn(random);
     const GroundModel model = modelOf(soil);
     const terramech::SlopeEquilibrium exact(soil, testRover());
-    const DriveCost cost = costOf(model, certain(model));
+    const TravelCost cost = costOf(model, certain(model));
     for (double along = -0.3; along <= 0.3; along += 0.021)
       for (double across = 0.013; across <= 0.36; across += 0.017) {
         const bool allowed = std::isfinite(cost.costPerMetre(plane(along, across), {}));
@@ -96,7 +96,7 @@ TEST(CrossSlope, AllowsNothingThatTheEquilibriumRefuses) {
 
 // Property: away from failure a metre costs and slips what the equilibrium says at that gradient, row 0 included, whatever the
 // steering. Tolerance: linear between nodes and equilibria.
-TEST(CrossSlope, CostsAndSlipsAsTheEquilibrium) {
+TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
   std::mt19937 random(2);
   std::vector<double> ratios;
   for (const auto steering :
@@ -108,11 +108,11 @@ TEST(CrossSlope, CostsAndSlipsAsTheEquilibrium) {
       const GroundModel model(
           {.rover = rover, .classes = {{.number = 0, .soil = soil}}, .policy = {.allow_dangerous = true}});
       const terramech::SlopeEquilibrium exact(soil, rover);
-      const DriveCost cost = costOf(model, certain(model));
+      const TravelCost cost = costOf(model, certain(model));
       for (double along = -0.2; along <= 0.2; along += 0.023)
         for (double across = 0.0; across <= 0.3; across += 0.02) {
           const CellCode cell = plane(along, across);
-          const DriveState state = cost.detail(cell, {});
+          const TravelState state = cost.detail(cell, {});
           const auto want = exact.at({cell.dzDx(), cell.dzDy()});
           if (!want.holds() || want.pull_reserve < 0.03 || want.side_reserve < 0.03) continue;
           ASSERT_EQ(state.refusal, Refusal::None) << soils << ' ' << along << ' ' << across;
@@ -129,10 +129,10 @@ TEST(CrossSlope, CostsAndSlipsAsTheEquilibrium) {
 }
 
 // Property: from heading to heading a degree apart the cost on a plane changes as the equilibrium's energy does, without steps.
-TEST(CrossSlope, CostOverHeadingIsSmooth) {
+TEST(CrossSlope, CostIsSmoothInHeading) {
   const GroundModel model = modelOf(testSand());
   const terramech::SlopeEquilibrium exact(testSand(), testRover());
-  const DriveCost cost = costOf(model, certain(model));
+  const TravelCost cost = costOf(model, certain(model));
   int compared = 0;
   for (double steepness = 0.04; steepness < 0.34; steepness += 0.03) {
     const CellCode cell = plane(steepness, 0.0);
@@ -158,7 +158,7 @@ TEST(CrossSlope, CostOverHeadingIsSmooth) {
 
 // A rover as tall as it is dangerous: base and track 0.9 m, centre of mass 1.2 m high, tips at atan(0.45 / 1.2) = 20.6 degrees on ground that
 // holds far more.
-TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
+TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   terramech::Soil clay = testSand();
   clay.cohesion_Pa = 20000.0;
   for (const auto steering :
@@ -171,7 +171,7 @@ TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
     tall.max_torque_Nm = 200.0;
     const GroundModel model({.rover = tall, .classes = {{.number = 0, .soil = clay}}});
     const terramech::SlopeEquilibrium exact(clay, tall);
-    const DriveCost cost = costOf(model, certain(model));
+    const TravelCost cost = costOf(model, certain(model));
     const double tips = 0.45 / 1.2;
     int tipped = 0;
     for (int degree = 0; degree < 360; degree += 5) {
@@ -194,7 +194,7 @@ TEST(CrossSlope, RefusesWhatTipsAndNothingFarFromIt) {
 // Property: where a slope is allowed, the deepest wheel, solved anew under the load that it carries there, sinks by less than
 // the clearance (0.04 of it: the table of wheel forces and a bin of gradient). A rover near tipping, whose lower wheels carry far more than
 // their share.
-TEST(CrossSlope, TheDeepestWheelSinksByLessThanTheClearance) {
+TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
   terramech::Rover tall = testRover();
   tall.wheelbase_m = 0.8;
   tall.centre_of_mass_height_m = 1.6;
@@ -206,7 +206,7 @@ TEST(CrossSlope, TheDeepestWheelSinksByLessThanTheClearance) {
   const GroundModel model(
       {.rover = tall, .classes = {{.number = 0, .soil = sand}}, .policy = {.allow_dangerous = true}});
   const terramech::SlopeEquilibrium exact(sand, tall);
-  const DriveCost cost = costOf(model, certain(model));
+  const TravelCost cost = costOf(model, certain(model));
   int allowed = 0, sunk = 0;
   for (double along = -0.25; along <= 0.25; along += 0.0125)
     for (double across = 0.0; across <= 0.2; across += 0.025) {
@@ -231,11 +231,11 @@ TEST(CrossSlope, TheDeepestWheelSinksByLessThanTheClearance) {
 
 // Property: cost, risk and refusal never fall as the slope across grows, nor when the rover crosses it the other
 // way round.
-TEST(CrossSlope, SteeperAcrossIsNeverCheaper) {
+TEST(CrossSlope, CostIsMonotoneInCrossSlope) {
   std::mt19937 random(3);
   for (int soils = 0; soils < 4; ++soils) {
     const GroundModel model = modelOf(drawn(random));
-    const DriveCost cost = costOf(model, model.prior(0));
+    const TravelCost cost = costOf(model, model.prior(0));
     for (double along = -0.35; along <= 0.35; along += 0.01) {
       float before = 0.0F;
       for (double across = 0.0; across < 0.36; across += 0.005) {
@@ -250,7 +250,7 @@ TEST(CrossSlope, SteeperAcrossIsNeverCheaper) {
 
 // Property: weaker or less sure ground is never cheaper in any heading, and never allowed where stronger ground
 // is refused.
-TEST(CrossSlope, WeakerGroundIsNeverCheaper) {
+TEST(CrossSlope, CostIsMonotoneInSoilStrength) {
   std::mt19937 random(4);
   const auto between = [&random](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -262,7 +262,7 @@ TEST(CrossSlope, WeakerGroundIsNeverCheaper) {
     GroundBelief weak = strong;
     weak.pull.value -= between(0.0, 0.05);
     weak.pull.std += between(0.0, 0.03);
-    const DriveCost stronger = costOf(model, strong), weaker = costOf(model, weak);
+    const TravelCost stronger = costOf(model, strong), weaker = costOf(model, weak);
     for (double steepness = 0.0; steepness < 0.36; steepness += 0.02)
       for (int k = 0; k < 36; ++k) {
         const double heading = k * std::numbers::pi / 18;
@@ -274,12 +274,12 @@ TEST(CrossSlope, WeakerGroundIsNeverCheaper) {
   }
 }
 
-TEST(CrossSlope, NamesTheSideForce) {
+TEST(CrossSlope, SideForceFailureIsReported) {
   terramech::Soil loose = testSand();
   loose.cohesion_Pa = 0.0;
   loose.friction_angle_rad = 0.45;
   const GroundModel model = modelOf(loose);
-  const DriveCost cost = costOf(model, certain(model));
+  const TravelCost cost = costOf(model, certain(model));
   const double steep = model.limits().max_across - 0.01;
   ASSERT_FALSE(terramech::SlopeEquilibrium(loose, testRover()).at({-0.05, steep}).holds());
   EXPECT_EQ(cost.detail(plane(-0.05, steep), {}).refusal, Refusal::SideForce);
@@ -288,11 +288,11 @@ TEST(CrossSlope, NamesTheSideForce) {
   EXPECT_EQ(cost.detail(plane(0.3, 0.1), {}).refusal, Refusal::Pull);
 }
 
-TEST(CrossSlope, OfTwoGroundsTheHarderCounts) {
+TEST(CrossSlope, CostOfTwoGroundsIsAtLeastThatOfTheHarder) {
   const auto model = testGround();
   const GroundBelief belief = model->prior(0);
-  const DriveCost cost(model->limits(),
-                       std::vector<DriveGround>{model->ground(0, 0, belief), model->ground(1, 1, belief),
+  const TravelCost cost(model->limits(),
+                        std::vector<GroundCost>{model->ground(0, 0, belief), model->ground(1, 1, belief),
                                                 model->ground(0, 1, belief)});
   for (double along = -0.3; along <= 0.3; along += 0.02)
     for (double across = 0.0; across <= 0.3; across += 0.02) {

@@ -5,7 +5,7 @@
 namespace talus::costmap {
 namespace learned_cells_test {
 
-TEST(LearnedCells, KeepsWordsAndTellsChanges) {
+TEST(LearnedCells, CellsAreStoredAndChangesReported) {
   LearnedCells cells({.width = 200, .height = 100, .resolution_m = 1.0, .south_west = {}});
   EXPECT_EQ((cells[{199, 99}]), 0U);
   EXPECT_FALSE(cells.set({70, 5}, 0)) << "it was that before";

@@ -313,7 +313,7 @@ int expectAsPage(Site& site, const World& world) {
 
 // Closed form: the page, for cells that were driven, near these and far from all, before and after three places may
 // raise.
-TEST(BeliefPage, HasTheEstimateOfACell) {
+TEST(BeliefPage, EstimateMatchesThePublishedPage) {
   std::mt19937_64 random(2);
   for (const Case& one : {Case{3, 5.0, -0.03, 20.0},
                           {5, 9.0, 0.03, 40.0},
@@ -329,7 +329,7 @@ TEST(BeliefPage, HasTheEstimateOfACell) {
 
 // Closed form: the page, of three places, one of which is known to 0.061 or 0.054, and in one of which a single reading
 // lies below the class by 1.2 or 0.9 of its standard deviation.
-TEST(BeliefPage, HasWhichPlacesMayRaise) {
+TEST(BeliefPage, RaisingConditionMatchesThePublishedPage) {
   for (const std::size_t readings : {3U, 4U})
     for (const double single : {-0.12, -0.09}) {
       SCOPED_TRACE(readings);

@@ -25,7 +25,7 @@ ReadingCount times(ReadingCount reading, std::uint16_t count) {
   return reading;
 }
 
-TEST(ReadingCount, RoundsTowardsDanger) {
+TEST(ReadingCount, ReadingsAreRoundedConservatively) {
   // Closed form: steps of 0.01 from -1.28, for a pull that may only lower down, else to the nearest, up for sinkage
   EXPECT_EQ(pullReading({0.109, 0.05}, false).step, 138);
   EXPECT_EQ(pullReading({0.109, 0.05}, true).step, 139);
@@ -35,13 +35,13 @@ TEST(ReadingCount, RoundsTowardsDanger) {
   EXPECT_NE(pullReading({0.1, 0.05}, true).kind, pullReading({0.1, 0.05}, false).kind);
 }
 
-TEST(BlockEvidence, NumbersDoNotAverageTheModelsErrorAway) {
+TEST(BlockEvidence, VarianceIsBoundedBelowByTheModelError) {
   const BlockEvidence block = summed({times(pullReading({0.2, 0.05}, true), 60000)});
   EXPECT_NEAR(block.pull, 0.2F, 0.011F);
   EXPECT_NEAR(std::sqrt(block.variance), 0.02F, 1e-3F);
 }
 
-TEST(BlockEvidence, IsAsWeakAsItsWeakestPart) {
+TEST(BlockEvidence, WeakestPullFollowsTheWeakestReadings) {
   const BlockEvidence block =
       summed({times(pullReading({-0.25, 0.05}, true), 3), times(pullReading({0.3, 0.05}, true), 60)});
   EXPECT_LT(block.weak_pull, -0.05F);
@@ -56,7 +56,7 @@ ReadingCount of(ReadingCount reading, std::uint16_t drive) {
 
 // Property: of two drives that disagree the place is as the weaker alone says, whichever has more readings; a drive of few readings
 // that scatter lowers nothing beyond what all of them say.
-TEST(BlockEvidence, IsAsWeakAsTheDriveThatShowsLeast) {
+TEST(BlockEvidence, EstimateIsThatOfTheWeakestDrive) {
   const ReadingCount weak = pullReading({0.10, 0.05}, true), strong = pullReading({0.20, 0.05}, true);
   const BlockEvidence alone = summed({of(times(weak, 40), 1)});
   const BlockEvidence both = summed({of(times(weak, 40), 1), of(times(strong, 900), 2)});
@@ -88,7 +88,7 @@ double meanOfSound(int drives) {
 }
 
 // Property: drives that are all sound do not take each other down, however many. (The least of eight lies 0.014 lower.)
-TEST(BlockEvidence, SoundDrivesDoNotLowerEachOther) {
+TEST(BlockEvidence, NumberOfConsistentDrivesDoesNotBiasTheEstimate) {
   const double one = meanOfSound(1);
   for (const int drives : {2, 3, 4, 8, 16}) {
     EXPECT_GT(meanOfSound(drives), one - 0.007) << drives;
@@ -97,7 +97,7 @@ TEST(BlockEvidence, SoundDrivesDoNotLowerEachOther) {
 }
 
 // Property: readings of one drive say the same, whatever its number.
-TEST(BlockEvidence, ADrivesNumberDoesNotShow) {
+TEST(BlockEvidence, EstimateIsIndependentOfDriveNumbers) {
   std::mt19937_64 random(5);
   for (int round = 0; round < 40; ++round) {
     std::vector<ReadingCount> one, other;
@@ -113,13 +113,13 @@ TEST(BlockEvidence, ADrivesNumberDoesNotShow) {
   }
 }
 
-TEST(BlockEvidence, WhatMayOnlyLowerGivesNoPull) {
+TEST(BlockEvidence, LowerOnlyReadingsYieldNoPullEstimate) {
   const BlockEvidence block = summed({times(pullReading({0.3, 0.05}, false), 20)});
   EXPECT_TRUE(std::isnan(block.pull));
   EXPECT_TRUE(block.lowers);
 }
 
-TEST(BlockEvidence, SinksAsDeepAsItsDeepestPart) {
+TEST(BlockEvidence, SinkageIsThatOfTheDeepestReadings) {
   EXPECT_TRUE(std::isnan(summed({pullReading({0.3, 0.05}, true)}).sinkage));
   const BlockEvidence block = summed({times(sinkageReading(0.1, true), 40), sinkageReading(0.77, true)});
   EXPECT_GT(block.sinkage, 0.65F);
@@ -128,7 +128,7 @@ TEST(BlockEvidence, SinksAsDeepAsItsDeepestPart) {
 }
 
 // Property: of bounds the hardest holds, in whatever order they came and whatever else was read.
-TEST(BlockEvidence, TheHardestBoundHolds) {
+TEST(BlockEvidence, StrictestBoundIsKept) {
   std::vector<ReadingCount> counts{times(pullReading({0.3, 0.05}, true), 500)};
   for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
     for (ReadingCount reading : boundReadings(bound)) counts.push_back(times(reading, 1));
@@ -141,7 +141,7 @@ TEST(BlockEvidence, TheHardestBoundHolds) {
   EXPECT_TRUE(std::isnan(summed({times(pullReading({0.3, 0.05}, true), 500)}).most_pull));
 }
 
-TEST(BlockEvidence, SamplesWeighByCertainty) {
+TEST(BlockEvidence, SampleCountIsInverseVarianceWeighted) {
   // Closed form: standard deviation 0.05 counts one, 0.1 a quarter
   EXPECT_NEAR(samples(std::vector{pullReading({0.2, 0.05}, true), pullReading({0.2, 0.1}, true)}), 1.25,
               1e-9);

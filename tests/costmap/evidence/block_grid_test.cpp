@@ -17,7 +17,7 @@ std::shared_ptr<const GroundSite> siteOf(const std::vector<std::string>& rows, d
 
 // Property: every cell lies in the block whose column and row it has, blocks are side by side, and their side is
 // the largest power of two of cells within a quarter of the correlation length.
-TEST(BlockGrid, PartsTheMap) {
+TEST(BlockGrid, BlocksPartitionTheMap) {
   for (const double length_m : {2.0, 8.0, 20.0, 40.0}) {
     const auto site = siteOf(std::vector<std::string>(21, std::string(37, '1')), length_m);
     const BlockGrid blocks(site);
@@ -37,7 +37,7 @@ TEST(BlockGrid, PartsTheMap) {
   }
 }
 
-TEST(BlockGrid, TopIsTheFirstKnownCellOfABlock) {
+TEST(BlockGrid, TopKeyIsThatOfTheFirstKnownCell) {
   std::vector<std::string> rows(16, std::string(16, '?'));
   const auto hole = siteOf(rows, 16.0);
   EXPECT_FALSE(BlockGrid(hole).topKey(BlockGrid(hole).blockOf({5, 5})));

@@ -18,7 +18,7 @@ Readings tableOf(const std::vector<ReadingCount>& counts) {
 }
 
 // Property: whatever is put in, in any order, a plain std::map of the same says the same.
-TEST(EvidenceBricks, AgreeWithAPlainMap) {
+TEST(EvidenceBricks, MatchesAPlainMap) {
   std::mt19937 random(7);
   EvidenceBricks bricks(21, 13);  // no multiple of a brick
   std::map<Key, Readings> plain;
@@ -69,7 +69,7 @@ TEST(EvidenceBricks, AgreeWithAPlainMap) {
 }
 
 // Property: a count that is full stays full.
-TEST(EvidenceBricks, CountsStopAtTheirMost) {
+TEST(EvidenceBricks, CountsSaturate) {
   EvidenceBricks bricks(8, 8);
   bricks.at({1, 1});
   for (int i = 0; i < 3; ++i) bricks.count({1, 1}, {0, 7, 30000});

@@ -3,7 +3,7 @@
 
 #include <site_map.hpp>
 
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/evidence/evidence_field.hpp>
 #include <talus/costmap/map/map_file.hpp>
 
@@ -33,7 +33,7 @@ WheelObservation weaker(double x, double y, double by) {
           .sinkage_may_raise = true};
 }
 
-TEST(TraversabilityMap, LearnsWhereItDroveAndDoubtsFarAway) {
+TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {
   TraversabilityMap map = mapOf(wide());
   const GroundBelief before = *map.ground({30, 30});
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(map.learn(soft(30.5, 30.5)));
@@ -47,7 +47,7 @@ TEST(TraversabilityMap, LearnsWhereItDroveAndDoubtsFarAway) {
   EXPECT_EQ(far.pull.std, before.pull.std);
 }
 
-TEST(TraversabilityMap, PublishesWhatItLearnedAndKeepsOldVersions) {
+TEST(TraversabilityMap, PublishingAddsEvidenceAndKeepsEarlierVersions) {
   TraversabilityMap map = mapOf(wide());
   const auto old = map.published();
   for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
@@ -62,7 +62,7 @@ TEST(TraversabilityMap, PublishesWhatItLearnedAndKeepsOldVersions) {
   EXPECT_EQ(old->at({30, 30}).curve(), 0);
 }
 
-TEST(TraversabilityMap, EvidenceDoesNotCrossIntoAnotherClass) {
+TEST(TraversabilityMap, EvidenceDoesNotAffectOtherClasses) {
   std::vector<std::string> site = wide();
   for (auto& row : site) row.replace(31, 29, 29, '2');
   TraversabilityMap map = mapOf(site);
@@ -72,7 +72,7 @@ TEST(TraversabilityMap, EvidenceDoesNotCrossIntoAnotherClass) {
   EXPECT_EQ(map.ground({32, 30})->pull.value, dust.pull.value);
 }
 
-TEST(TraversabilityMap, EvidenceSurvivesAFileToTheBit) {
+TEST(TraversabilityMap, EvidenceRoundTripsExactly) {
   TraversabilityMap map = mapOf(wide(), 0.05);
   for (int i = 0; i < 40; ++i) map.learn(soft(20.5 + 0.3 * i, 30.5));
   map.publish();
@@ -85,13 +85,13 @@ TEST(TraversabilityMap, EvidenceSurvivesAFileToTheBit) {
     EXPECT_EQ(back.belief({column, 30}), map.belief({column, 30})) << column;
 }
 
-TEST(TraversabilityMap, OutsideTheMapNothingIsLearned) {
+TEST(TraversabilityMap, ObservationsOutsideTheMapAreRejected) {
   TraversabilityMap map = mapOf(wide());
   EXPECT_FALSE(map.learn(soft(-5.0, 3.0)));
   EXPECT_FALSE(map.learn(soft(std::nan(""), 3.0)));
 }
 
-TEST(EvidenceField, ManyPlacesMoveTheClassOnePlaceHardly) {
+TEST(EvidenceField, ClassMeanMovesMoreWithManyIndependentPlaces) {
   TraversabilityMap one = mapOf(wide()), many = mapOf(wide());
   for (int i = 0; i < 200; ++i) {
     one.learn(weaker(30.5, 30.5, 0.06));
@@ -103,7 +103,7 @@ TEST(EvidenceField, ManyPlacesMoveTheClassOnePlaceHardly) {
   EXPECT_LT(many.evidence().posterior(0).pull.value, one.evidence().posterior(0).pull.value);
 }
 
-TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
+TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
   TraversabilityMap map = mapOf(wide()), ordinary = mapOf(wide());
   for (int i = 0; i < 20; ++i) {
     map.learn(weaker(30.5, 30.5, 0.4));
@@ -118,7 +118,7 @@ TEST(EvidenceField, OtherGroundThatNoRasterShowsIsNotTheClass) {
   EXPECT_NEAR(map.ground({45, 45})->pull.value, prior, 0.05);
 }
 
-TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
+TEST(EvidenceField, BlockEstimateIsThatOfItsWeakestReadings) {
   TraversabilityMap map = mapOf(wide());
   for (int i = 0; i < 50; ++i) map.learn(weaker(30.5, 30.5, 0.0));
   for (int i = 0; i < 3; ++i) map.learn(weaker(30.5, 30.5, 0.4));
@@ -126,7 +126,7 @@ TEST(EvidenceField, ABlockIsAsWeakAsItsWeakestPart) {
   EXPECT_LT(map.ground({30, 30})->pull.value, map.model().prior(0).pull.value - 0.2);
 }
 
-TEST(TraversabilityMap, RefusedGroundStaysRefused) {
+TEST(TraversabilityMap, RefusedAreaStaysBlocked) {
   TraversabilityMap map = mapOf(wide());
   map.refuse({130.5, 230.5}, 2.0);
   map.publish();

@@ -79,7 +79,7 @@ double mostRise(const TraversabilityMap& from, const TraversabilityMap& to) {
   return most;
 }
 
-TEST(Evidence, TheOrderOfReadingsDoesNotShow) {
+TEST(Evidence, ResultIsIndependentOfReadingOrder) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     std::mt19937_64 random(seed);
     const auto site = randomSite(random);
@@ -93,7 +93,7 @@ TEST(Evidence, TheOrderOfReadingsDoesNotShow) {
 }
 
 // Property: a wheel that finds ground weaker than anyone did nowhere makes the map more hopeful.
-TEST(Evidence, AWeakReadingRaisesNothing) {
+TEST(Evidence, WeakReadingNeverIncreasesAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
     const auto site = randomSite(random);
@@ -112,7 +112,7 @@ TEST(Evidence, AWeakReadingRaisesNothing) {
   }
 }
 
-TEST(Evidence, AReadingReplacedByAWeakerOneRaisesNothing) {
+TEST(Evidence, ReplacingAReadingByAWeakerOneIncreasesNoEstimate) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     std::mt19937_64 random(seed);
     const auto site = randomSite(random);
@@ -126,7 +126,7 @@ TEST(Evidence, AReadingReplacedByAWeakerOneRaisesNothing) {
 }
 
 // Property: what may not raise leaves no cell better than it was, in mean and in the tail that risk comes from.
-TEST(Evidence, WhatMayOnlyLowerRaisesNothing) {
+TEST(Evidence, LowerOnlyReadingsNeverIncreaseAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
     const auto site = randomSite(random);
@@ -144,7 +144,7 @@ TEST(Evidence, WhatMayOnlyLowerRaisesNothing) {
 
 // Property: twenty readings of a trap in one cell, strong ground in every block around it, the trap's block
 // anywhere in its patch: the cell is as weak as it was read.
-TEST(Evidence, OwnEvidenceIsNeverDropped) {
+TEST(Evidence, WeakEvidenceOfACellIsNeverDroppedForItsNeighbours) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     std::mt19937_64 random(seed);
     const maps::Cell trap{static_cast<int>(random() % 40), static_cast<int>(random() % 40)};
@@ -168,7 +168,7 @@ TEST(Evidence, OwnEvidenceIsNeverDropped) {
   }
 }
 
-TEST(Evidence, EachClassInABlockHasItsOwn) {
+TEST(Evidence, ClassesWithinABlockHaveSeparateEvidence) {
   std::vector<std::string> site(30, std::string(30, '1'));
   for (auto& row : site) row.replace(15, 15, 15, '2');  // through the middle of a block of two cells
   for (const bool dust_first : {false, true}) {
@@ -190,7 +190,7 @@ TEST(Evidence, EachClassInABlockHasItsOwn) {
 }
 
 // Property: three weak readings and sixty strong ones in one block, whichever came first.
-TEST(Evidence, DangerNeedsFewReadingsStrengthMany) {
+TEST(Evidence, FewWeakReadingsOutweighManyStrongOnes) {
   for (const bool weak_first : {false, true}) {
     TraversabilityMap map = mapOf(std::vector<std::string>(30, std::string(30, '1')));
     const auto learn = [&](double pull, int times) {
@@ -211,7 +211,7 @@ TEST(Evidence, DangerNeedsFewReadingsStrengthMany) {
   }
 }
 
-TEST(Evidence, TheFirstSinkageCountsInFull) {
+TEST(Evidence, FirstDeepSinkageIsFullyWeighted) {
   TraversabilityMap map = mapOf(std::vector<std::string>(30, std::string(30, '1')));
   WheelObservation seen{.time_s = 1.0,
                         .place = {115.5, 215.5},
@@ -227,7 +227,7 @@ TEST(Evidence, TheFirstSinkageCountsInFull) {
 
 // Property: a pose known to a metre makes all ground within two metres as weak as what was read, of any class,
 // and lets strength count only where all of it is of one class.
-TEST(Evidence, PoseErrorSpreadsDangerAndHoldsStrengthBack) {
+TEST(Evidence, PoseErrorSpreadsWeakEvidenceAndRestrictsStrongEvidence) {
   std::vector<std::string> site(30, std::string(30, '1'));
   for (auto& row : site) row.replace(15, 15, 15, '2');
   TraversabilityMap map = mapOf(site);

@@ -9,7 +9,7 @@
 namespace talus::costmap {
 namespace evidence_reach_test {
 
-TEST(EvidenceReach, IsInWholePatchesWithinTheMap) {
+TEST(EvidenceReach, ReachIsAlignedToPatchesWithinTheMap) {
   const TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
   EvidenceReach reach(map.surface().site());
   EXPECT_TRUE(reach.boxes().empty());

@@ -16,7 +16,7 @@ WheelObservation possible() {
   return {.place = {}, .pull = {0.1, 0.05}, .sinkage = {0.2, kInf}};
 }
 
-TEST(ObservationFault, PassesWhatAWheelCanGive) {
+TEST(ObservationFault, ValidObservationsAreAccepted) {
   EXPECT_EQ(fault(possible()), "");
   WheelObservation bound = possible();
   bound.pull = bound.sinkage = {std::nan(""), std::nan("")};
@@ -24,7 +24,7 @@ TEST(ObservationFault, PassesWhatAWheelCanGive) {
   EXPECT_EQ(fault(bound), "") << "a bound alone";
 }
 
-TEST(ObservationFault, NamesWhatNoWheelGives) {
+TEST(ObservationFault, ImpossibleObservationsNameTheField) {
   using O = WheelObservation;
   struct Case {
     std::function<void(O&)> change;

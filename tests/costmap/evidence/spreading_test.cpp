@@ -7,7 +7,7 @@ namespace spreading_test {
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 4.0};
 
-TEST(SparseKernel, FallsFromOneToZero) {
+TEST(SparseKernel, KernelDecreasesFromOneToZero) {
   EXPECT_DOUBLE_EQ(sparseKernel(0.0, 4.0), 1.0);
   EXPECT_EQ(sparseKernel(4.0, 4.0), 0.0);
   EXPECT_NEAR(sparseKernel(2.0, 4.0), 1.0 / 6.0, 1e-12);  // Closed form: (2 - 1)/3 * 1/2
@@ -23,7 +23,7 @@ TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
   EXPECT_EQ(process.at({5, 0}).pull.std, 0.05);
 }
 
-TEST(GaussianProcess, RepeatingAPlaceDoesNotMakeItsNeighboursCertain) {
+TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
   std::vector<PlaceEvidence> many(20, {.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025});
   const double k = sparseKernel(2.0, 4.0);
   // Property: what a perfectly known place can tell about one 2 m away is k^2 of its variance, no more.

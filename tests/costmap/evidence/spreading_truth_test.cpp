@@ -53,7 +53,7 @@ struct Score {
   double share() const { return static_cast<double>(within) / count; }
 };
 
-TEST(Spreading, GaussianProcessIsAsNearAndTellsItsDoubtBetter) {
+TEST(Spreading, GaussianProcessIsAsAccurateAndBetterCalibratedThanKernelInference) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0.0, 0.02);
   std::uniform_real_distribution<double> place(0.0, 20.0);
@@ -151,7 +151,7 @@ std::vector<double> drawnFrom(const std::vector<maps::Point>& places, std::mt199
   return values;
 }
 
-TEST(Spreading, OfPlacesSaidToBeWeakWithProbabilityPASharePIs) {
+TEST(Spreading, WeakPlaceProbabilitiesAreCalibrated) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0.0, kNoise);
   std::uniform_real_distribution<double> along(0.0, 20.0), beside(-2.5, 2.5);
@@ -170,7 +170,7 @@ TEST(Spreading, OfPlacesSaidToBeWeakWithProbabilityPASharePIs) {
   own.expectWithin({0.02, 0.05}, "ground of the kernel");
 }
 
-TEST(Spreading, OnGroundOfAnotherKindItErrsOnTheSideOfDoubt) {
+TEST(Spreading, WeakPlaceProbabilitiesAreConservativeForOtherCovariance) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0.0, kNoise);
   std::uniform_real_distribution<double> along(0.0, 20.0), beside(-2.5, 2.5);

@@ -15,7 +15,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What a wheel of the test rover reads on a soil at a slip, noise-free, on the slope on which it drives
 // steadily.
-WheelReading reading(const terramech::Soil& soil, double slip) {
+TelemetryReading reading(const terramech::Soil& soil, double slip) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
   const auto wheel = terramech::equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip});
@@ -29,7 +29,7 @@ WheelReading reading(const terramech::Soil& soil, double slip) {
           .drawbar_pull_N = kNone};
 }
 
-TEST(WheelObserver, GroundThatIsItsClassShowsNoDeparture) {
+TEST(WheelObserver, MatchingGroundShowsNoDeparture) {
   const auto model = testGround();
   for (const double slip : {0.1, 0.3, 0.5}) {
     const auto seen = WheelObserver(*model).observe(0, reading(testSand(), slip));
@@ -40,7 +40,7 @@ TEST(WheelObserver, GroundThatIsItsClassShowsNoDeparture) {
   }
 }
 
-TEST(WheelObserver, SeesThatSandIsDust) {
+TEST(WheelObserver, SandClassOnDustIsObservedAsDust) {
   const auto model = testGround();
   for (const double slip : {0.3, 0.5}) {
     const auto seen = WheelObserver(*model).observe(0, reading(testDust(), slip));
@@ -50,9 +50,9 @@ TEST(WheelObserver, SeesThatSandIsDust) {
   }
 }
 
-TEST(WheelObserver, SlipAndSlopeAloneTellEnough) {
+TEST(WheelObserver, SlipAndSlopeSufficeForAPullObservation) {
   const auto model = testGround();
-  WheelReading blind = reading(testDust(), 0.5);
+  TelemetryReading blind = reading(testDust(), 0.5);
   blind.torque_Nm = blind.sinkage_m = kNone;
   const auto seen = WheelObserver(*model).observe(0, blind);
   ASSERT_TRUE(seen.has_value());
@@ -60,9 +60,9 @@ TEST(WheelObserver, SlipAndSlopeAloneTellEnough) {
   EXPECT_TRUE(std::isinf(seen->sinkage.std));
 }
 
-TEST(WheelObserver, NothingToGoByNothingSaid) {
+TEST(WheelObserver, InsufficientReadingsYieldNoObservation) {
   const auto model = testGround();
-  WheelReading blind = reading(testSand(), 0.2);
+  TelemetryReading blind = reading(testSand(), 0.2);
   blind.torque_Nm = blind.sinkage_m = blind.gradient = kNone;
   EXPECT_FALSE(WheelObserver(*model).observe(0, blind).has_value());
   blind = reading(testSand(), 0.2);
@@ -82,7 +82,7 @@ std::vector<ClassReading> halfAndHalf(const terramech::Soil& front, const terram
   return all;
 }
 
-TEST(WheelObserver, TheWheelsInDustAreToldFromThoseOnSand) {
+TEST(WheelObserver, WheelsOnDifferentGroundAreDistinguished) {
   const auto model = testGround();
   for (const double slip : {0.2, 0.4, 0.7}) {
     const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), slip));
@@ -93,14 +93,14 @@ TEST(WheelObserver, TheWheelsInDustAreToldFromThoseOnSand) {
   }
 }
 
-TEST(WheelObserver, LittleSlipYetDeepIsASign) {
+TEST(WheelObserver, DeepSinkageAtLowSlipIndicatesWeakerGround) {
   const auto model = testGround();
   const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), 0.05));
   // Property: weaker by more than the class varies from place to place
   EXPECT_LT(seen[0]->pull.value, model->prior(0).pull.value - 0.05);
 }
 
-TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
+TEST(WheelObserver, RutIsNotInterpretedAsFirmGround) {
   const auto model = testGround();
   std::vector<ClassReading> all = halfAndHalf(testSand(), terramech::rutted(testSand()), 0.3);
   all[2].reading.pass = all[3].reading.pass = 2;
@@ -112,20 +112,20 @@ TEST(WheelObserver, ARutIsNotTakenForFirmGround) {
   EXPECT_GT(WheelObserver(*model).observe(all)[2]->pull.value, model->prior(0).pull.value + 0.05);
 }
 
-TEST(WheelObserver, StuckWheelsSayThatTheGroundIsWeak) {
+TEST(WheelObserver, SpinningWheelIndicatesWeakGround) {
   const auto model = testGround();
-  WheelReading spun = reading(testDust(), 0.98);
+  TelemetryReading spun = reading(testDust(), 0.98);
   spun.gradient = kNone;
   const auto seen = WheelObserver(*model).observe(0, spun);
   EXPECT_NEAR(seen->pull.value, model->prior(1).pull.value, 0.1);
 }
 
-TEST(PullFromTorque, FlatWheelPullsItsTorque) {
+TEST(PullFromTorque, PullEqualsTorqueAtZeroSinkage) {
   EXPECT_DOUBLE_EQ(pullFromTorque(0.4, 0.0), 0.4);  // Closed form: no sinkage, no resistance
 }
 
 // What a wheel reads that is turned uphill on the slope that it holds along and across.
-WheelReading crabbing(const terramech::Soil& soil, double slip, double slip_angle_rad) {
+TelemetryReading crabbing(const terramech::Soil& soil, double slip, double slip_angle_rad) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
   const auto wheel = terramech::equilibrium(
@@ -144,13 +144,13 @@ WheelReading crabbing(const terramech::Soil& soil, double slip, double slip_angl
           .drawbar_pull_N = kNone};
 }
 
-TEST(WheelObserver, AWheelThatCrabsTellsItsGroundAsAStraightOneDoes) {
+TEST(WheelObserver, SlipAngleDoesNotBiasTheObservation) {
   const auto model = testGround();
   const WheelObserver observer(*model);
   const double sand = model->prior(0).pull.value;
   for (const double slip : {0.15, 0.3, 0.5})
     for (const double angle : {-0.5, -0.25, -0.1, 0.1, 0.25, 0.5}) {
-      const WheelReading on_sand = crabbing(testSand(), slip, angle);
+      const TelemetryReading on_sand = crabbing(testSand(), slip, angle);
       EXPECT_EQ(on_sand.across > 0.0, angle < 0.0);
       const auto same = observer.observe(0, on_sand);
       ASSERT_TRUE(same);
@@ -162,7 +162,7 @@ TEST(WheelObserver, AWheelThatCrabsTellsItsGroundAsAStraightOneDoes) {
       EXPECT_LT(weaker->pull.value, sand - 2.0 * weaker->pull.std) << slip << ' ' << angle;
       // Property: what is not known of the angle or the slope across errs towards weaker ground.
       for (const bool angle_known : {false, true}) {
-        WheelReading less = on_sand;
+        TelemetryReading less = on_sand;
         (angle_known ? less.across : less.slip_angle_rad) = kNone;
         const auto seen = observer.observe(0, less);
         ASSERT_TRUE(seen);
@@ -172,10 +172,10 @@ TEST(WheelObserver, AWheelThatCrabsTellsItsGroundAsAStraightOneDoes) {
 }
 
 // Ground that pulls as its class does, yet holds less across.
-TEST(WheelObserver, GroundThatHoldsLittleAcrossIsWeaker) {
+TEST(WheelObserver, LowSideForceIndicatesWeakerGround) {
   const auto model = testGround();
   const WheelObserver observer(*model);
-  WheelReading sliding = crabbing(testSand(), 0.3, -0.4);
+  TelemetryReading sliding = crabbing(testSand(), 0.3, -0.4);
   const double along = sliding.gradient, across = sliding.across, held = 0.4;
   // The same pull in the wheel's plane, that part of the side force.
   const double c = std::cos(0.4), s = std::sin(0.4), pull = along * c + across * s,
@@ -192,18 +192,18 @@ TEST(WheelObserver, GroundThatHoldsLittleAcrossIsWeaker) {
 }
 
 // Property: from slip 0.9 on a balance says nothing better than the class; what is weaker is kept.
-TEST(WheelObserver, ARoverThatMayHaveStoodGivesAnUpperBound) {
+TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
   const auto ground = testGround();
   const WheelObserver observer(*ground);
   const double prior = ground->prior(0).pull.value;
   for (const double slip : {0.9, 0.98})
     for (const double gradient : {-0.1, 0.0, 0.2, 0.4, 0.6}) {
-      WheelReading reading{.load_N = 55.0,
-                           .slip = slip,
-                           .torque_Nm = std::nan(""),
-                           .sinkage_m = std::nan(""),
-                           .gradient = gradient,
-                           .drawbar_pull_N = std::nan("")};
+      TelemetryReading reading{.load_N = 55.0,
+                               .slip = slip,
+                               .torque_Nm = std::nan(""),
+                               .sinkage_m = std::nan(""),
+                               .gradient = gradient,
+                               .drawbar_pull_N = std::nan("")};
       const auto seen = observer.observe(0, reading);
       ASSERT_TRUE(seen);
       EXPECT_TRUE(seen->bound);

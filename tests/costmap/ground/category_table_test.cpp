@@ -15,7 +15,7 @@ CategoryTable tableOf(const GroundModel& model) {
 }
 
 // Property: the category is the model's at the climb of the worst heading, or worse where planners read it so.
-TEST(CategoryTable, IsTheModelsCategoryOfTheWorstHeadingOrWorse) {
+TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
   std::mt19937 random(4);
@@ -25,7 +25,7 @@ TEST(CategoryTable, IsTheModelsCategoryOfTheWorstHeadingOrWorse) {
     const CellCode cell({gradient(random), gradient(random), 0});
     const double steps = std::ceil(std::hypot(cell.stepsX(), cell.stepsY()));
     const double worst = model->crossing(0)->steepest(steps * CellCode::kStep);
-    const Ranked expected = model->category(model->prior(0), worst);
+    const RankedCategory expected = model->category(model->prior(0), worst);
     const CategoryTable::Entry seen = table.at(cell);
     ASSERT_GE(seen.category, static_cast<std::uint8_t>(expected.category));
     if (seen.category != static_cast<std::uint8_t>(expected.category)) continue;
@@ -39,15 +39,15 @@ TEST(CategoryTable, IsTheModelsCategoryOfTheWorstHeadingOrWorse) {
 
 // Property: the map's category of a cell is at least as bad as its category in any heading. A cell that the map shows as safe or
 // marginal is not refused in its worst heading.
-TEST(CategoryTable, NoHeadingIsWorse) {
+TEST(CategoryTable, NoHeadingHasAWorseCategory) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
-  const DriveCost cost(model->limits(), std::vector<DriveGround>{model->ground(0, model->prior(0))});
+  const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
   for (double gradient = 0.01; gradient < 0.45; gradient += 0.0137)
     for (int k = 0; k < 48; ++k) {
       const double heading = k * std::numbers::pi / 24;
       const CellCode cell({.dz_dx = gradient * std::cos(k), .dz_dy = gradient * std::sin(k), .curve = 0});
-      const DriveState state = cost.detail(cell, {std::cos(heading), std::sin(heading)});
+      const TravelState state = cost.detail(cell, {std::cos(heading), std::sin(heading)});
       const auto seen = static_cast<terramech::Category>(table.at(cell).category);
       EXPECT_GE(seen, state.category) << gradient << ' ' << k;
       if (seen == terramech::Category::Dangerous) continue;
@@ -55,7 +55,7 @@ TEST(CategoryTable, NoHeadingIsWorse) {
     }
 }
 
-TEST(CategoryTable, HoldsTheSteepestGradientThatACellCanHold) {
+TEST(CategoryTable, SteepestRepresentableGradientIsDangerous) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
   // Property: nothing climbs a gradient of 2.8.

@@ -8,7 +8,7 @@ namespace talus::costmap {
 namespace class_borders_test {
 
 // Brute force: every cell against every cell around it.
-TEST(ClassBorders, AreCellsWithAnotherClassInReach) {
+TEST(ClassBorders, BordersAreCellsWithAnotherClassWithinReach) {
   std::mt19937_64 random(2);
   for (int trial = 0; trial < 60; ++trial) {
     const maps::Grid grid{.width = 1 + static_cast<int>(random() % 15),

@@ -9,7 +9,7 @@ namespace talus::costmap {
 namespace cost_curve_table_test {
 
 // Property: what a belief costs does not depend on which like it was asked for first.
-TEST(CostCurveTable, OrderDoesNotMatter) {
+TEST(CostCurveTable, CostIsIndependentOfRequestOrder) {
   const GroundBelief sure{.pull = {0.101, 0.031}, .sinkage = {0.6, 0.01}};
   const GroundBelief unsure{.pull = {0.107, 0.033}, .sinkage = {0.6, 0.3}};
   CostCurveTable one(testGround()), other(testGround());
@@ -28,7 +28,7 @@ TEST(CostCurveTable, OrderDoesNotMatter) {
 
 // Property: a number's ground costs no less than the belief that it was given for, at any gradient, also when the
 // numbers have run out.
-TEST(CostCurveTable, NoBeliefIsMadeCheaper) {
+TEST(CostCurveTable, TabulatedCostIsNeverBelowTheExactCost) {
   std::mt19937_64 random(9);
   const auto drawn = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -41,16 +41,16 @@ TEST(CostCurveTable, NoBeliefIsMadeCheaper) {
                               .sinkage = {drawn(0.0, 1.5), 0.1}};
     const std::uint8_t number = table.learned(index, belief);
     if (i % 10 != 0 || number == CellCode::kBlocked) continue;
-    const DriveCurve exact = model->ground(index, belief).curve;
-    for (std::size_t bin = 0; bin < DriveCurve::kBins; ++bin)
+    const TravelCurve exact = model->ground(index, belief).curve;
+    for (std::size_t bin = 0; bin < TravelCurve::kBins; ++bin)
       ASSERT_GE(table.cost()->curves()[number].cost_J_per_m[bin], (1.0F - 1e-6F) * exact.cost_J_per_m[bin])
-          << i << " at gradient " << DriveCurve::gradient(static_cast<int>(bin));
+          << i << " at gradient " << TravelCurve::gradient(static_cast<int>(bin));
   }
   EXPECT_TRUE(table.overflowed());
 }
 
 // Property: a class that nobody asked for is refused; asked for, it has the ground of the belief that it came to meanwhile.
-TEST(CostCurveTable, AClassIsPricedWhenItIsAskedFor) {
+TEST(CostCurveTable, ClassCostIsComputedOnFirstRequest) {
   const auto model = testGround();
   CostCurveTable table(model);
   const CellCode level({.curve = 1});
@@ -71,7 +71,7 @@ TEST(CostCurveTable, AClassIsPricedWhenItIsAskedFor) {
 
 // Property: numbers of classes that nobody asked for are lent to beliefs when all others are used up, and the class has its own
 // again after a restart; until then nothing is cheaper than it should be.
-TEST(CostCurveTable, LendsTheNumbersOfClassesThatNobodyAskedFor) {
+TEST(CostCurveTable, UnusedClassNumbersAreReusedConservatively) {
   GroundModel::Parts parts = testGround()->parts();
   while (parts.classes.size() < 254)
     parts.classes.push_back({.number = static_cast<int>(parts.classes.size()) + 1, .soil = testDust()});
@@ -94,7 +94,7 @@ TEST(CostCurveTable, LendsTheNumbersOfClassesThatNobodyAskedFor) {
 }
 
 // Property: a prior that moves to and fro comes to the same each time.
-TEST(CostCurveTable, APriorThatComesBackIsTheSame) {
+TEST(CostCurveTable, RestoredPriorReproducesItsCosts) {
   CostCurveTable book(testGround());
   const GroundBelief low{.pull = {0.2, 0.06}, .sinkage = {0.2, 0.1}};
   const GroundBelief high{.pull = {0.21, 0.06}, .sinkage = {0.2, 0.1}};

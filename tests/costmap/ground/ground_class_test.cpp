@@ -11,7 +11,7 @@ double pull(const terramech::Soil& soil) {
   return terramech::MobilityCurve(soil, testRover()).reference().drawbar_pull_over_load;
 }
 
-TEST(GroundClass, StatedDeviationsBecomeDoubtAboutThePull) {
+TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.friction_angle_rad = 0.05}};
   terramech::Soil weaker = testSand(), stronger = testSand();
   weaker.friction_angle_rad -= 0.025;
@@ -21,20 +21,20 @@ TEST(GroundClass, StatedDeviationsBecomeDoubtAboutThePull) {
 }
 
 // The value that no soil has is none that the file states.
-TEST(GroundClass, ADeviationThatLeavesTheRangeOfSoilsIsNamed) {
+TEST(GroundClass, StdOutsideTheSoilRangeIsReported) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
   EXPECT_THAT(
       [&] { groundClass(1, prior, testRover()); },
       testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(" with half of its std 1e+12")));
 }
 
-TEST(GroundClass, WithoutStatedDeviationsKeepsTheDefault) {
+TEST(GroundClass, WithoutSoilStdTheDefaultStdIsUsed) {
   EXPECT_EQ(groundClass(1, {.mean = testSand(), .deviation = {}}, testRover()).mean_std,
             GroundClass{}.mean_std);
 }
 
 // Property: an Earth's test says less of the Moon: weaker ground, and more doubt; of the gravity that it was tested in, all.
-TEST(GroundClass, GravityOfTheTestCounts) {
+TEST(GroundClass, LowerGravityThanTestedWeakensAndIncreasesStd) {
   terramech::SoilPrior prior{.mean = testSand(), .deviation = {}};
   terramech::Rover rover = testRover();
   const GroundClass as_stated = groundClass(1, prior, rover);
@@ -62,7 +62,7 @@ terramech::RefinedModel digging() {
   return model;
 }
 
-TEST(GroundClass, OfARefinedModelKeepsWhatTheGroundDoes) {
+TEST(GroundClass, RefinedModelKeepsItsGroundEffects) {
   const GroundClass ground = groundClass(3, digging(), testRover());
   ASSERT_EQ(ground.effects.size(), 1U);
   EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
@@ -70,7 +70,7 @@ TEST(GroundClass, OfARefinedModelKeepsWhatTheGroundDoes) {
   EXPECT_LT(mobilityOf(ground, testRover()).reference().drawbar_pull_over_load, pull(testSand()));
 }
 
-TEST(GroundClass, DoubtOfARefinedModelIsItsCovariance) {
+TEST(GroundClass, PullStdFollowsFromTheModelCovariance) {
   terramech::RefinedModel more = digging(), less = digging();
   more.effects[0].parameters[0] += 0.004;
   less.effects[0].parameters[0] -= 0.004;

@@ -18,7 +18,7 @@ GroundBelief anyBelief(std::mt19937_64& random) {
 const GroundBelief kPrior{.pull = {0.137, 0.09}, .sinkage = {0.23, 0.1}};
 
 // Property: at every level what stands for a belief is no better than it in anything, and is its own kind.
-TEST(GroundKind, RoundsTowardsDanger) {
+TEST(GroundKind, RoundingIsConservativeAtEveryLevel) {
   std::mt19937_64 random(3);
   const GroundClass ground{.soil = testSand()};
   for (int i = 0; i < 5000; ++i) {
@@ -41,7 +41,7 @@ TEST(GroundKind, RoundsTowardsDanger) {
   }
 }
 
-TEST(GroundKind, StepsAreThoseStated) {
+TEST(GroundKind, RoundingStepsMatchTheirDefinition) {
   const GroundClass ground{.soil = testSand()};
   // Closed form: from 0.137 down two steps of 0.02 to 0.097, 0.03 up to 0.09 * 2^(-6/4), from 0.23 up two steps of 0.1; at
   // level 2 steps of 0.08, an octave and 0.4.
@@ -57,7 +57,7 @@ TEST(GroundKind, StepsAreThoseStated) {
 }
 
 // Property: what is no worse than the prior of its class is rounded to nothing worse, at any level.
-TEST(GroundKind, LittleEvidenceMakesNothingDearer) {
+TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
   std::mt19937_64 random(4);
   const GroundClass ground{.soil = testSand()};
   for (int i = 0; i < 2000; ++i) {

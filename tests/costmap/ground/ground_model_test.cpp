@@ -22,12 +22,12 @@ GroundBelief certain(const GroundModel& model) {
   return belief;
 }
 
-TEST(GroundModel, CertainPriorIsTheSoilsOwnMobilityCurve) {
+TEST(GroundModel, ExactPriorEqualsTheMobilityCurve) {
   const auto model = testGround();
   const terramech::MobilityCurve curve(testSand(), testRover());
   for (const double gradient : {-0.2, -0.05, 0.0, 0.05, 0.1}) {
     const auto expected = curve.at(std::atan(gradient));
-    const DriveState state = model->state(0, certain(*model), gradient);
+    const TravelState state = model->state(0, certain(*model), gradient);
     // Closed form: no shift, no doubt; the horizontal metre is longer on the slope. Tolerance: float storage.
     EXPECT_NEAR(state.slip, expected.slip, 1e-6);
     EXPECT_NEAR(state.energy_J_per_m, expected.energy_J_per_m * std::hypot(1.0, gradient), 1e-3);
@@ -35,7 +35,7 @@ TEST(GroundModel, CertainPriorIsTheSoilsOwnMobilityCurve) {
   }
 }
 
-TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
+TEST(GroundModel, PullDeficitIsEquivalentToASteeperGradient) {
   const auto model = testGround();
   GroundBelief weaker = certain(*model);
   weaker.pull.value -= 0.04;
@@ -44,7 +44,7 @@ TEST(GroundModel, GroundWeakerByDDrivesLikeASlopeSteeperByD) {
 }
 
 // Closed form: half of the thrust at the reference slip is half of what more slip gives, too; the resistance stays.
-TEST(GroundModel, BeyondTheReferenceSlipWeakGroundHasItsShareOfTheThrust) {
+TEST(GroundModel, AboveReferenceSlipWeakerGroundScalesTheThrust) {
   const auto model = testGround();
   const terramech::MobilityCurve curve(testSand(), testRover());
   const auto& at = curve.reference();
@@ -57,7 +57,7 @@ TEST(GroundModel, BeyondTheReferenceSlipWeakGroundHasItsShareOfTheThrust) {
 
 // Property: ground that is refused on no slope that its soil refuses would hold rovers. Soils drawn about the class, each
 // believed to have its true pull at the reference slip: how far the steepest slope that is not refused lies above the soil's own.
-TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
+TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   GroundModel::Parts parts = testGround()->parts();
@@ -101,7 +101,7 @@ TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
       const double shift = belief.pull.value - own.reference().drawbar_pull_over_load;
       if (shift < 0.03) continue;
       ++weak;
-      const double steepest = ExpectedDrive(own).last();
+      const double steepest = ExpectedTravel(own).last();
       belief.pull = {own.reference().drawbar_pull_over_load, 0.0};
       belief.sinkage = {own.reference().sinkage_over_radius, 0.0};
       double allowed = -0.3;
@@ -109,7 +109,7 @@ TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
       sum += allowed - steepest;
       promised += allowed > steepest + 0.03 ? 1 : 0;
       shift_promised +=
-          ExpectedDrive(mobilityOf(parts.classes[0], parts.rover)).last() - shift > steepest + 0.03;
+          ExpectedTravel(mobilityOf(parts.classes[0], parts.rover)).last() - shift > steepest + 0.03;
     }
     EXPECT_LE(promised, 6) << name;
     EXPECT_LT(std::abs(sum / weak), 0.02) << name;
@@ -117,7 +117,7 @@ TEST(GroundModel, DrawnSoilsClimbNoLessThanTheirPullPromises) {
   }
 }
 
-TEST(GroundModel, WheelsBehindDriveInTheRutsThatAModelKnows) {
+TEST(GroundModel, FollowingWheelsUseMultipassEffects) {
   GroundModel::Parts parts = testGround()->parts();
   const GroundModel plain(parts);
   parts.classes[0].effects = {
@@ -146,7 +146,7 @@ TEST(GroundModel, ClimbingCostsMoreThanDescending) {
             model->cost_J_per_m(model->state(0, belief, -0.1)));
 }
 
-TEST(GroundModel, CategoryFollowsThePullThatTheSlopeAsksFor) {
+TEST(GroundModel, CategoryFollowsTheRequiredPull) {
   const auto model = testGround();
   const double margin = model->parts().policy.slope_margin_rad;
   const auto at = [&](double pull) {
@@ -158,16 +158,16 @@ TEST(GroundModel, CategoryFollowsThePullThatTheSlopeAsksFor) {
   EXPECT_EQ(at(std::tan(0.2 - margin) - 1e-9), Category::Dangerous);
 }
 
-TEST(GroundModel, CategoryProbabilityIsTheNormalTail) {
+TEST(GroundModel, CategoryProbabilityIsTheNormalTailProbability) {
   const auto model = testGround();
   const double edge = std::tan(model->parts().policy.slope_margin_rad);
-  const Ranked ranked = model->category({.pull = {edge + 0.05, 0.05}, .sinkage = {0.1, 0.0}}, 0.0);
+  const RankedCategory ranked = model->category({.pull = {edge + 0.05, 0.05}, .sinkage = {0.1, 0.0}}, 0.0);
   EXPECT_EQ(ranked.category, Category::Safe);
   // Closed form: P(pull > edge) one standard deviation above it.
   EXPECT_NEAR(ranked.probability, 0.5 * std::erfc(-1.0 / std::numbers::sqrt2), 1e-12);
 }
 
-TEST(GroundModel, RefusesWithTheReason) {
+TEST(GroundModel, InfeasibilityNamesItsReason) {
   const auto model = testGround();
   GroundBelief belief = certain(*model);
   EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::None);
@@ -176,7 +176,7 @@ TEST(GroundModel, RefusesWithTheReason) {
   EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::Sinkage);
 }
 
-TEST(GroundModel, DoubtCosts) {
+TEST(GroundModel, UncertaintyIncreasesRiskAndCost) {
   const auto model = testGround();
   GroundBelief doubtful = certain(*model);
   doubtful.pull.std = 0.1;
@@ -185,22 +185,22 @@ TEST(GroundModel, DoubtCosts) {
             model->cost_J_per_m(model->state(0, certain(*model), 0.05)));
 }
 
-TEST(GroundModel, DriveCostGivesFiniteCostExactlyWhereNothingRefuses) {
+TEST(GroundModel, CostIsFiniteExactlyWhereTheStateIsFeasible) {
   const auto model = testGround();
-  const DriveCost cost(model->limits(),
-                       {model->ground(0, model->prior(0)), model->ground(1, model->prior(1))});
+  const TravelCost cost(model->limits(),
+                        {model->ground(0, model->prior(0)), model->ground(1, model->prior(1))});
   for (const double slope : {0.0, 0.1, 0.2, 0.3, 0.5})
     for (int step = 0; step < 32; ++step) {
       const double angle = step * std::numbers::pi / 16.0;
       const CellCode cell({.dz_dx = slope, .dz_dy = 0.0, .curve = static_cast<std::uint8_t>(step % 2)});
       const Direction heading{std::cos(angle), std::sin(angle)};
-      const DriveState state = cost.detail(cell, heading);
+      const TravelState state = cost.detail(cell, heading);
       EXPECT_EQ(std::isfinite(cost.costPerMetre(cell, heading)), state.refusal == Refusal::None)
           << slope << " " << angle;
     }
 }
 
-TEST(GroundModel, NamesWhatIsWrong) {
+TEST(GroundModel, EmptyAndDuplicateClassesAreRejected) {
   GroundModel::Parts parts{.rover = testRover(), .classes = {}, .policy = {}};
   EXPECT_REFUSED(GroundModel{parts}, std::invalid_argument, "classes is empty, must hold at least one");
   parts.classes = {GroundClass{.number = 1, .soil = testSand()},
@@ -209,10 +209,10 @@ TEST(GroundModel, NamesWhatIsWrong) {
 }
 
 // Property: threads that ask together for what is worked out when it is first asked for get one answer, that of one thread alone.
-TEST(GroundModel, ThreadsThatAskTogetherGetOneAnswer) {
+TEST(GroundModel, ConcurrentRequestsYieldTheSingleThreadedResult) {
   const auto together = testGround(), alone = testGround();
   const GroundModel copy = *together;
-  std::array<DriveState, 4> states;
+  std::array<TravelState, 4> states;
   {
     std::array<std::jthread, 4> threads;
     for (std::size_t k = 0; k < threads.size(); ++k)
@@ -221,8 +221,8 @@ TEST(GroundModel, ThreadsThatAskTogetherGetOneAnswer) {
         states[k] = model.state(1, model.prior(1), 0.1);
       });
   }
-  const DriveState expected = alone->state(1, alone->prior(1), 0.1);
-  for (const DriveState& state : states) {
+  const TravelState expected = alone->state(1, alone->prior(1), 0.1);
+  for (const TravelState& state : states) {
     EXPECT_EQ(state.energy_J_per_m, expected.energy_J_per_m);
     EXPECT_EQ(state.weak, expected.weak);
   }
@@ -230,7 +230,7 @@ TEST(GroundModel, ThreadsThatAskTogetherGetOneAnswer) {
 }
 
 // Property: what is worked out later was held against its range at once.
-TEST(GroundModel, RefusesASoilOutOfRangeThatNoCellHas) {
+TEST(GroundModel, InvalidSoilOfAnUnusedClassIsRejected) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes.push_back({.number = 9, .soil = testSand()});
   parts.classes.back().soil.friction_angle_rad = -1.0;
@@ -238,7 +238,7 @@ TEST(GroundModel, RefusesASoilOutOfRangeThatNoCellHas) {
                  "friction_angle_rad = -1, must be in [0, 1.5708]");
 }
 
-TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {
+TEST(GroundModel, SteadyWheelMatchesTheForwardModel) {
   const auto model = testGround();
   const terramech::Rover rover = testRover();
   for (const double slip : {0.1, 0.3, 0.5}) {
@@ -256,7 +256,7 @@ TEST(GroundModel, SteadyWheelsAreThoseOfTheForwardModel) {
   EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.value);
 }
 
-TEST(GroundModel, CategoryEdgesAreTheTangentsOfSlopeAndMargin) {
+TEST(GroundModel, CategoryThresholdsAreTangentsOfSlopePlusMinusMargin) {
   const auto model = testGround();
   const double margin = model->parts().policy.slope_margin_rad;
   for (const double slope : {-0.3, 0.0, 0.1, 0.4}) {

@@ -31,14 +31,14 @@ WheelSwath::Ground& at(Around& around, const WheelSwath& swath, maps::Cell offse
                                          swath.reach())];
 }
 
-TEST(WheelSwath, OneGroundStaysWhatItIs) {
+TEST(WheelSwath, UniformGroundIsUnchanged) {
   const WheelSwath swath(testRover(), 1.0, 0.0);
   const WheelSwath::Judged judged = swath.judged(all(swath, strong()));
   EXPECT_DOUBLE_EQ(judged.belief.pull.value, 0.3);
   EXPECT_EQ(judged.weakest_class, 0);
 }
 
-TEST(WheelSwath, WheelsInATrapBesidePullByTheMean) {
+TEST(WheelSwath, PullIsTheMeanOverTheWheels) {
   const WheelSwath swath(testRover(), 1.0, 0.0);
   Around around = all(swath, strong());
   for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
@@ -51,7 +51,7 @@ TEST(WheelSwath, WheelsInATrapBesidePullByTheMean) {
   EXPECT_DOUBLE_EQ(judged.belief.pull.std, 0.05) << "the greatest doubt";
 }
 
-TEST(WheelSwath, CornersCount) {
+TEST(WheelSwath, DiagonalNeighboursAreIncluded) {
   const WheelSwath swath(testRover(), 1.0, 0.0);
   Around around = all(swath, strong());
   at(around, swath, {1, 1}) = trap();
@@ -59,7 +59,7 @@ TEST(WheelSwath, CornersCount) {
   EXPECT_LE(swath.judged(around).belief.pull.value, 0.75 * 0.3 - 0.25 * 0.25 + 1e-12);
 }
 
-TEST(WheelSwath, PoseErrorReachesFarther) {
+TEST(WheelSwath, PoseErrorExtendsTheReach) {
   const WheelSwath exact(testRover(), 0.25, 0.0), unsure(testRover(), 0.25, 0.6);
   EXPECT_GE(unsure.reach(), exact.reach() + 2);
   Around around = all(unsure, strong());
@@ -69,7 +69,7 @@ TEST(WheelSwath, PoseErrorReachesFarther) {
 
 // Property: wherever the middle stands in the cell, whatever the heading, the wheels pull together no less than
 // is said, up to the steps of places and headings; nor is it ever better than the cell's own ground.
-TEST(WheelSwath, IsTheLeastOfAllStandings) {
+TEST(WheelSwath, PullIsTheMinimumOverPositionsAndHeadings) {
   std::mt19937_64 random(5);
   const auto drawn = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);

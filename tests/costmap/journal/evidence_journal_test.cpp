@@ -52,7 +52,7 @@ JournalRow row(std::int64_t line) {
               .place = {}, .pull = {0.1, 0.05}, .sinkage = {0.2, std::numeric_limits<double>::infinity()}}};
 }
 
-TEST_F(EvidenceJournalTest, GivesRowsBackToTheBit) {
+TEST_F(EvidenceJournalTest, RowsRoundTripExactly) {
   EvidenceJournal journal(path());
   journal.append(kIdA, {row(7)});
   ASSERT_EQ(journal.rows(kIdA).size(), 1U);
@@ -86,7 +86,7 @@ const char* const kJournal010 =
     "-2500.5, 1), ('a.csv', 3, 1, '', 1.5, 2, 40, 0.2, 0.1, 0.05, 0.2, 9e999, NULL, 0);"
     "PRAGMA application_id = 1413565525; PRAGMA user_version = 3; ";
 
-TEST_F(EvidenceJournalTest, TakesOverAJournalOfTheRelease010) {
+TEST_F(EvidenceJournalTest, MigratesAJournalOfRelease010) {
   change(path(), kJournal010);
   for (int opening = 0; opening < 2; ++opening) {
     EvidenceJournal journal(path());
@@ -105,7 +105,7 @@ TEST_F(EvidenceJournalTest, TakesOverAJournalOfTheRelease010) {
 }
 
 // Formats 1, 2 and 4 to 8 were written by no release.
-TEST_F(EvidenceJournalTest, RefusesOtherFormatsByOneLine) {
+TEST_F(EvidenceJournalTest, UnknownFormatsAreRejectedWithOneLine) {
   for (const int format : {1, 2, 4, 5, 6, 7, 8}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append(kIdA, {row(7)}); }
@@ -122,7 +122,7 @@ TEST_F(EvidenceJournalTest, RefusesOtherFormatsByOneLine) {
   }
 }
 
-TEST_F(EvidenceJournalTest, ADriveCountsOnce) {
+TEST_F(EvidenceJournalTest, DriveIsAppendedOnce) {
   EvidenceJournal journal(path());
   journal.append(kIdA, {row(1), row(2)});
   journal.append(kIdA, {row(1), row(2)});
@@ -130,7 +130,7 @@ TEST_F(EvidenceJournalTest, ADriveCountsOnce) {
   EXPECT_THAT(journal.drives(), testing::ElementsAre(kIdA));
 }
 
-TEST_F(EvidenceJournalTest, ADriveThatGoesOnIsOneDrive) {
+TEST_F(EvidenceJournalTest, ContinuedDriveReplacesItsEarlierPart) {
   EvidenceJournal journal(path());
   journal.append(kIdA, {row(1)});
   journal.append(kIdOther, {row(9)});
@@ -140,7 +140,7 @@ TEST_F(EvidenceJournalTest, ADriveThatGoesOnIsOneDrive) {
   EXPECT_EQ(journal.rows(kIdAb)[2].line, 3);
 }
 
-TEST_F(EvidenceJournalTest, WhatIsNotCommittedIsNotThere) {
+TEST_F(EvidenceJournalTest, UncommittedRowsAreDiscarded) {
   EvidenceJournal journal(path());
   {
     const EvidenceJournal::Transaction transaction(journal);
@@ -157,7 +157,7 @@ TEST_F(EvidenceJournalTest, WhatIsNotCommittedIsNotThere) {
 }
 
 // Property: no change to a row by another hand is replayed, whichever column, whether or not the value is possible.
-TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
+TEST_F(EvidenceJournalTest, ModifiedRowsAreRejected) {
   for (const char* sql :
        {"UPDATE evidence SET pull = 9e999", "UPDATE evidence SET pull = NULL",
         "UPDATE evidence SET pull = 0.11", "UPDATE evidence SET sinkage_std = 0",
@@ -178,7 +178,7 @@ TEST_F(EvidenceJournalTest, RefusesRowsThatWereChanged) {
 }
 
 // Property: a drive's entry is its rows' and nobody else's. The ids were not checked: replay ended by 0 with no row used.
-TEST_F(EvidenceJournalTest, RefusesDrivesThatWereChanged) {
+TEST_F(EvidenceJournalTest, ModifiedDriveEntriesAreRejected) {
   for (const char* sql :
        {"UPDATE drive SET id = zeroblob(1000000) WHERE number = 1",
         "UPDATE drive SET id = CAST(id AS BLOB) WHERE number = 1",
@@ -208,7 +208,7 @@ TEST_F(EvidenceJournalTest, RefusesDrivesThatWereChanged) {
 }
 
 // A trigger that deletes, and a view in the place of a table, lost rows in silence.
-TEST_F(EvidenceJournalTest, RefusesWhatItDidNotMake) {
+TEST_F(EvidenceJournalTest, ForeignSchemaObjectsAreRejected) {
   for (const char* format : {"", "; PRAGMA user_version = 3", "; PRAGMA user_version = 0"})
     for (const char* sql :
          {"CREATE TRIGGER t AFTER INSERT ON evidence BEGIN DELETE FROM evidence; END",
@@ -228,14 +228,14 @@ TEST_F(EvidenceJournalTest, RefusesWhatItDidNotMake) {
 }
 
 // SQLite takes these for databases that are in no file: rows in them are gone with the process.
-TEST_F(EvidenceJournalTest, RefusesNamesThatAreNoFiles) {
+TEST_F(EvidenceJournalTest, InMemoryAndUriNamesAreRejected) {
   for (const char* name : {"", ":memory:", "file:zz.db?mode=memory", "file:zz.db", "folder/"})
     EXPECT_THROW(EvidenceJournal{name}, InputError) << name;
   EXPECT_THROW(EvidenceJournal(path()).append("a", {row(1)}), std::invalid_argument);
 }
 
 // Property: rows whose drive was taken off the list are missed, not passed over.
-TEST_F(EvidenceJournalTest, RefusesRowsOfADriveThatIsNotListed) {
+TEST_F(EvidenceJournalTest, RowsOfAnUnlistedDriveAreRejected) {
   { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   EXPECT_EQ(EvidenceJournal(path()).drives().size(), 1U);
   change(path(), "DELETE FROM drive");
@@ -243,7 +243,7 @@ TEST_F(EvidenceJournalTest, RefusesRowsOfADriveThatIsNotListed) {
 }
 
 // Rows of 0.1.0 have no checksum: their values are judged by themselves.
-TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
+TEST_F(EvidenceJournalTest, ImpossibleValuesAreRejected) {
   for (const char* sql : {"pull = 9e999", "pull = NULL", "x_m = 9e999", "pull = 'x'"}) {
     std::filesystem::remove(path());
     change(path(), (kJournal010 + ("UPDATE evidence SET " + std::string(sql))).c_str());
@@ -252,7 +252,7 @@ TEST_F(EvidenceJournalTest, RefusesValuesThatNoWheelGives) {
   }
 }
 
-TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
+TEST_F(EvidenceJournalTest, BoundsRoundTripExactly) {
   JournalRow bounded = row(3);
   bounded.observation.here = {-0.1 / 3.0, 2.0 / 3.0};
   JournalRow alone = bounded;
@@ -269,7 +269,7 @@ TEST_F(EvidenceJournalTest, BoundsComeBackToTheBit) {
 }
 
 // SQLite's message quotes the damaged schema: the line holds no byte that is no text.
-TEST_F(EvidenceJournalTest, ADamagedSchemaIsOnePrintableLine) {
+TEST_F(EvidenceJournalTest, DamagedSchemaErrorIsOnePrintableLine) {
   { EvidenceJournal(path()).append(kIdA, {row(1)}); }
   const auto read = [](const std::string& name) {
     std::ifstream file(name, std::ios::binary);
@@ -295,13 +295,13 @@ TEST_F(EvidenceJournalTest, ADamagedSchemaIsOnePrintableLine) {
   EXPECT_GT(quoted, 0);
 }
 
-TEST_F(EvidenceJournalTest, RefusesAFormatOfTheFuture) {
+TEST_F(EvidenceJournalTest, NewerFormatIsRejected) {
   { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   change(path(), "PRAGMA user_version = 99");
   EXPECT_THROW(EvidenceJournal{path()}, InputError);
 }
 
-TEST_F(EvidenceJournalTest, RefusesWhatIsNoJournal) {
+TEST_F(EvidenceJournalTest, FilesThatAreNoJournalAreRejected) {
   std::ofstream(path("text.db")) << std::string(5000, 'x');
   EXPECT_THROW(EvidenceJournal{path("text.db")}, InputError);
   EXPECT_THROW(EvidenceJournal{"/nonexistent/evidence.db"}, InputError);
@@ -338,7 +338,7 @@ std::int64_t killedAfter(const std::string& path, useconds_t microseconds) {
   return told;
 }
 
-TEST_F(EvidenceJournalTest, AKilledWriterLosesAtMostTheRowBeingWritten) {
+TEST_F(EvidenceJournalTest, KilledWriterLosesAtMostOneRow) {
   // 200 kills at scattered moments, from before the first row on.
   for (unsigned kill = 0; kill < 200; ++kill) {
     const std::string file = path(std::to_string(kill).append(".db").c_str());
@@ -352,7 +352,7 @@ TEST_F(EvidenceJournalTest, AKilledWriterLosesAtMostTheRowBeingWritten) {
   }
 }
 
-TEST_F(EvidenceJournalTest, TwoWritersDoNotCorruptIt) {
+TEST_F(EvidenceJournalTest, ConcurrentWritersKeepTheJournalIntact) {
   { const EvidenceJournal made(path()); }
   std::vector<pid_t> children;
   for (int writer = 0; writer < 2; ++writer) {

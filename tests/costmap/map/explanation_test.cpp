@@ -21,7 +21,7 @@ const Cause& cause(const Explanation& explanation, const std::string& name) {
 
 const std::vector<std::string> kPlain(12, "111111111111");
 
-TEST(Explain, GivesTheNumbersBehindASafeCell) {
+TEST(Explain, SafeCellListsItsCauses) {
   const Explanation e = explain(mapOf(kPlain, 0.05), {6, 6});
   EXPECT_EQ(e.category, Category::Safe);
   // Closed form: the drawn plane. Tolerance: heights of 1000 m are floats, 6e-5 m apart.
@@ -31,7 +31,7 @@ TEST(Explain, GivesTheNumbersBehindASafeCell) {
   EXPECT_GT(cause(e, "drawbar_pull_over_load").std, 0.0);
 }
 
-TEST(Explain, HeadingDecides) {
+TEST(Explain, CategoryDependsOnHeading) {
   const TraversabilityMap map = mapOf(kPlain, 0.2);
   const Explanation up = explain(map, {6, 6}, Direction{1, 0});
   const Explanation down = explain(map, {6, 6}, Direction{-1, 0});
@@ -41,7 +41,7 @@ TEST(Explain, HeadingDecides) {
 }
 
 // Property: without a heading the category is that of the map, refusals included, and no better than in the worst heading.
-TEST(Explain, CategoryIsThatOfTheMapAndOfTheWorstHeading) {
+TEST(Explain, CategoryWithoutHeadingIsThatOfTheMapAndWorstHeading) {
   for (int k = 0; k < 30; ++k) {
     const TraversabilityMap map = mapOf(kPlain, 0.0133 * k);
     const Explanation cell = explain(map, {6, 6});
@@ -54,7 +54,7 @@ TEST(Explain, CategoryIsThatOfTheMapAndOfTheWorstHeading) {
   }
 }
 
-TEST(Explain, SaysWhichHazardRefuses) {
+TEST(Explain, VerdictNamesTheHazard) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '#';
   const Explanation e = explain(mapOf(site), {6, 6});
@@ -62,7 +62,7 @@ TEST(Explain, SaysWhichHazardRefuses) {
   EXPECT_NE(e.verdict.find("keep-out"), std::string::npos);
 }
 
-TEST(Explain, UnseenIsUnknown) {
+TEST(Explain, UnseenCellIsUnknown) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';
   const Explanation unseen = explain(mapOf(site), {6, 6});
@@ -71,7 +71,7 @@ TEST(Explain, UnseenIsUnknown) {
 }
 
 // Property: where the policy opens it, it is said why it is no longer refused, and as what it is driven.
-TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
+TEST(Explain, UnseenCellOpenedByPolicyIsReported) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';
   const Explanation open = explain(mapOf(site, 0.0, {.allow_unknown = true}), {6, 6});
@@ -83,7 +83,7 @@ TEST(Explain, UnseenGroundThatThePolicyOpensIsSaidToBe) {
 }
 
 // Property: what wheels met on ground that nobody has seen refuses it and is said, opened or not.
-TEST(Explain, UnseenGroundThatHeldAWheelIsSaidToBeRefused) {
+TEST(Explain, UnseenCellWithImmobilisationEvidenceIsRefused) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';
   TraversabilityMap map = mapOf(site, 0.0, {.allow_unknown = true});

@@ -53,7 +53,7 @@ Direction heading(int step) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-bool equal(const DriveState& a, const DriveState& b) {
+bool equal(const TravelState& a, const TravelState& b) {
   return a.energy_J_per_m == b.energy_J_per_m && a.time_s_per_m == b.time_s_per_m &&
          a.risk_per_m == b.risk_per_m && a.refusal == b.refusal && a.category == b.category;
 }
@@ -68,7 +68,7 @@ std::shared_ptr<const GroundModel> declaring(int classes) {
 
 // Property: however many classes are declared, a map costs what it costs with those that its cells have, before and after it
 // is learned: classes that no cell has take no numbers away.
-TEST(GroundCurves, ClassesThatNoCellHasChangeNothing) {
+TEST(GroundCurves, UnusedClassesDoNotAffectCosts) {
   const std::vector<std::string> rows{"1122112211", "1111222211", "1212121211", "1111111111", "2222111122"};
   TraversabilityMap few(drawn(rows, 0.1), declaring(2), {}), many(drawn(rows, 0.1), declaring(250), {});
   const auto same = [&] {
@@ -97,7 +97,7 @@ TEST(GroundCurves, ClassesThatNoCellHasChangeNothing) {
 // Property: what is published after each of many drives is what is published at once. The numbers of the curves
 // may differ, what they say may not. The classes as a whole are known: where they move by less than a step of
 // their prior, ground that was learned elsewhere keeps its number.
-TEST(GroundCurves, ChangesArePublishedAsTheWholeIs) {
+TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
   std::mt19937_64 random(21);
   GroundModel::Parts parts = testGround()->parts();
   for (GroundClass& ground : parts.classes) ground.mean_std = 1e-9;
@@ -126,7 +126,7 @@ TEST(GroundCurves, ChangesArePublishedAsTheWholeIs) {
 
 // Property: what explain calls dangerous in a heading, or unknown, may not be driven in that heading; what it
 // allows costs something finite; the numbers behind the cost and the cost agree.
-TEST(GroundCurves, WhatIsCalledDangerousIsRefused) {
+TEST(GroundCurves, DangerousAndUnknownHeadingsHaveInfiniteCost) {
   std::mt19937_64 random(22);
   int dangerous = 0, allowed = 0;
   for (int trial = 0; trial < 4; ++trial) {
@@ -154,7 +154,7 @@ TEST(GroundCurves, WhatIsCalledDangerousIsRefused) {
 }
 
 // Property: a hazard more, whatever kind, lowers no cost.
-TEST(GroundCurves, AHazardLowersNoCost) {
+TEST(GroundCurves, AddedHazardNeverLowersACost) {
   std::mt19937_64 random(23);
   for (int trial = 0; trial < 10; ++trial) {
     const MapLayers without = anySite(random);
@@ -178,7 +178,7 @@ TEST(GroundCurves, AHazardLowersNoCost) {
 }
 
 // A line beside a trap: half the wheels stand in it.
-TEST(GroundCurves, GroundBesideATrapIsJudgedByItsWheels) {
+TEST(GroundCurves, CellsNextToWeakGroundUseTheWheelMean) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (std::string& row : rows) row.replace(12, 6, 6, '2');
   const TraversabilityMap map = mapOf(rows);
@@ -193,7 +193,7 @@ TEST(GroundCurves, GroundBesideATrapIsJudgedByItsWheels) {
 }
 
 // Property: ground of more kinds than there are curves is refused or costs more than it need, never less.
-TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
+TEST(GroundCurves, CurveTableOverflowIsConservative) {
   std::mt19937_64 random(24);
   std::vector<GroundClass> classes;
   for (int number = 1; number <= 252; ++number) {
@@ -216,8 +216,9 @@ TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
       blocked += code.curve() == CellCode::kBlocked && map.surface().hazards(cell) == Hazard::None;
       for (int k = 0; k < 16; ++k) {
         const double along = code.dzDx() * heading(k).x + code.dzDy() * heading(k).y;
-        const double exact = model->cost_J_per_m(model->state(
-            map.surface().classIndex(cell), *map.ground(cell), DriveCurve::gradient(DriveCurve::bin(along))));
+        const double exact =
+            model->cost_J_per_m(model->state(map.surface().classIndex(cell), *map.ground(cell),
+                                             TravelCurve::gradient(TravelCurve::bin(along))));
         cheaper += static_cast<double>(map.published()->cost().costPerMetre(code, heading(k))) <
                    (1.0 - 1e-6) * exact;
       }
@@ -227,7 +228,7 @@ TEST(GroundCurves, RunningOutOfCurvesErrsTowardsDanger) {
 }
 
 // The finest steps that do are taken, and a map that fits them again gets them back.
-TEST(GroundCurves, CoarserStepsMakeRoom) {
+TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
   std::mt19937_64 random(25);
   TraversabilityMap map(drawn(std::vector<std::string>(80, std::string(80, '1'))), testGround(), {});
   for (int row = 0; row < 80; row += 2)
@@ -251,7 +252,7 @@ TEST(GroundCurves, CoarserStepsMakeRoom) {
 }
 
 // A long rover two cells from a cell that the class raster leaves out: its wheels may stand on it.
-TEST(GroundCurves, GroundWithoutAClassUnderAWheelIsUnknown) {
+TEST(GroundCurves, UnclassifiedCellUnderAWheelIsUnknown) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = 3.0;
   MapLayers layers = drawn(std::vector<std::string>(kSide, std::string(kSide, '2')));

@@ -25,7 +25,7 @@ TraversabilityMap fromBytes(const std::string& bytes) {
   return readMap(stream, {.name = "map.ot", .threads = 1});
 }
 
-TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
+TEST(MapFile, CostGridAndBytesRoundTrip) {
   const TraversabilityMap map = site();
   const std::string bytes = bytesOf(map);
   const TraversabilityMap back = fromBytes(bytes);
@@ -39,7 +39,7 @@ TEST(MapFile, ComesBackWithTheSameCostGridAndBytes) {
             map.published()->cost().costPerMetre(cell, {0.6, 0.8}));
 }
 
-TEST(MapFile, KeepsCostLayers) {
+TEST(MapFile, CostLayersRoundTrip) {
   MapLayers layers = drawn({"1122", "1122", "1111"});
   CostLayer own{.name = "shadow", .added_J_per_m = maps::Raster<float>(layers.elevation.grid(), 3.0F)};
   own.added_J_per_m[{3, 2}] = NAN;
@@ -59,7 +59,7 @@ TEST(MapFile, KeepsCostLayers) {
   EXPECT_EQ(back.surface().hazards({0, 0}), map.surface().hazards({0, 0}));
 }
 
-TEST(MapFile, KeepsTheCoordinateSystem) {
+TEST(MapFile, CoordinateSystemRoundTrips) {
   MapLayers layers = drawn({"11", "11"});
   maps::CoordinateSystem moon{
       .name = "Moon pole", .ellipsoid = maps::kMoon, .projection = {}, .wkt = "A\nB\\n"};
@@ -73,7 +73,7 @@ TEST(MapFile, KeepsTheCoordinateSystem) {
 }
 
 // Without PROJ such a map has metres alone, and keeps its coordinate system for machines that have it.
-TEST(MapFile, AForeignSystemHasNoPlacesUnlessSomebodyKnowsThem) {
+TEST(MapFile, UnsupportedSystemRoundTripsWithoutGeographicCoordinates) {
   MapLayers layers = drawn({"11", "11"});
   layers.elevation.georeference.emplace(
       maps::CoordinateSystem{.name = "CH1903 / LV03",
@@ -95,7 +95,7 @@ TEST(MapFile, AForeignSystemHasNoPlacesUnlessSomebodyKnowsThem) {
   EXPECT_NE(known.elevation().places(), nullptr);
 }
 
-TEST(MapFile, KeepsTheEffectsOfItsGround) {
+TEST(MapFile, GroundEffectsRoundTrip) {
   GroundModel::Parts parts = testGround()->parts();
   terramech::Effect curve{.name = "empirical",
                           .covariate = "slip",
@@ -118,7 +118,7 @@ TEST(MapFile, KeepsTheEffectsOfItsGround) {
   EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
 }
 
-TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
+TEST(MapFile, CrossSlopeParametersRoundTrip) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes[0].soil.digging_exponent = 0.1;
   parts.classes[0].soil.slip_sinkage_exponent = 0.3;
@@ -137,7 +137,7 @@ TEST(MapFile, KeepsWhatSoilAndRoverNeedAcrossASlope) {
 }
 
 // A place where a driver got stuck stays refused after a restart.
-TEST(MapFile, KeepsRefusedPlaces) {
+TEST(MapFile, RefusedAreasRoundTrip) {
   TraversabilityMap map = mapOf(std::vector<std::string>(12, std::string(12, '1')));
   map.refuse({106.0, 206.0}, 2.1);
   map.refuse({101.0, 201.0}, 1.0);
@@ -157,20 +157,20 @@ TEST(MapFile, KeepsRefusedPlaces) {
   EXPECT_THROW(map.refuse({NAN, 206.0}, 1.0), std::invalid_argument);
 }
 
-TEST(MapFile, StockOctoMapReadsItAndStopsBehindTheNodes) {
+TEST(MapFile, OctoMapReadsTheTree) {
   std::istringstream stream(bytesOf(site()));
   const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));
   ASSERT_NE(tree, nullptr);
   EXPECT_EQ(tree->getTreeType(), "TraversabilityTree");
 }
 
-TEST(MapFile, RefusesEveryTruncation) {
+TEST(MapFile, EveryTruncationIsRejected) {
   const std::string bytes = bytesOf(site());
   for (std::size_t length = 0; length < bytes.size(); length += 7)
     EXPECT_THROW(fromBytes(bytes.substr(0, length)), InputError) << length;
 }
 
-TEST(MapFile, RefusesEveryFlippedBit) {
+TEST(MapFile, EveryFlippedBitIsRejected) {
   const std::string bytes = bytesOf(site());
   for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += 5) {
     std::string damaged = bytes;
@@ -179,12 +179,12 @@ TEST(MapFile, RefusesEveryFlippedBit) {
   }
 }
 
-TEST(MapFile, RefusesWhatStandsBehindItsEnd) {
+TEST(MapFile, TrailingBytesAreRejected) {
   EXPECT_THROW(fromBytes(bytesOf(site()) + "x"), InputError);
   EXPECT_THROW(fromBytes(bytesOf(site()) + bytesOf(site())), InputError);
 }
 
-TEST(MapFile, KeepsTheDrivesThatWentIn) {
+TEST(MapFile, DriveListRoundTrips) {
   TraversabilityMap map = site();
   map.noteDrive("b");
   map.noteDrive("first part");
@@ -193,7 +193,7 @@ TEST(MapFile, KeepsTheDrivesThatWentIn) {
 }
 
 // A map of another version is refused by one line that states the version and the remedy.
-TEST(MapFile, NamesTheVersionThatItReads) {
+TEST(MapFile, OtherVersionIsRejectedNamingBothVersions) {
   std::string bytes = bytesOf(site());
   bytes[bytes.size() - 12] = 3;
   try {
@@ -205,7 +205,7 @@ TEST(MapFile, NamesTheVersionThatItReads) {
   }
 }
 
-TEST(MapFile, SaysWhatIsMissing) {
+TEST(MapFile, InaccessiblePathsAreRejected) {
   EXPECT_THROW(readMap("/nonexistent/map.ot"), InputError);
   EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);
 }

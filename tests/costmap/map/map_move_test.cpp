@@ -65,7 +65,7 @@ std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
 
 // Property: after moves, drives, a refusal and new ground the map is, bit by bit, what is built at once from the same
 // layers and the evidence that is left.
-TEST(MapMove, MovedEqualsBuiltAtOnce) {
+TEST(MapMove, MovedMapEqualsARebuiltMap) {
   std::mt19937 random(3);
   for (const Cell tiles : {Cell{1, 0}, Cell{0, -1}, Cell{-1, 1}, Cell{2, 0}}) {
     const maps::Grid before = window({0, 0}), after = window(tiles);
@@ -107,7 +107,7 @@ TEST(MapMove, MovedEqualsBuiltAtOnce) {
   }
 }
 
-TEST(MapMove, ThereAndBackForgetsWhatFellOff) {
+TEST(MapMove, MovingBackDoesNotRestoreDroppedCells) {
   const maps::Grid grid = window({0, 0});
   const TraversabilityMap map(layersOf(grid, grid), testGround(), {});
   const TraversabilityMap back = map.moved({1, 0}).moved({-1, 0});
@@ -116,7 +116,7 @@ TEST(MapMove, ThereAndBackForgetsWhatFellOff) {
   EXPECT_EQ(back.elevation().elevation_m[Cell(100, 10)], map.elevation().elevation_m[Cell(100, 10)]);
 }
 
-TEST(MapMove, WhatLeavesNothingIsRefused) {
+TEST(MapMove, MoveWithoutOverlapIsRejected) {
   const maps::Grid grid = window({0, 0});
   const TraversabilityMap map(layersOf(grid, grid), testGround(), {});
   for (const Cell tiles : {Cell{3, 0}, Cell{0, -3}, Cell{2000000000, 0}, Cell{0, -2147483647}}) {

@@ -147,7 +147,7 @@ struct Case {
   int rounds = 8;
   int most_drives =
       4;  // few enough for the numbers of cost curves: a map that ran out of them rounds coarser
-  DrivePolicy policy{};
+  TravelPolicy policy{};
 };
 
 // Property: after patches and drives in any order the map is, bit by bit, what is built at once from the layers as
@@ -185,12 +185,12 @@ void patchedIsAtOnce(const Case& how) {
   }
 }
 
-TEST(MapSurface, PatchedEqualsBuiltAtOnce) {
+TEST(MapSurface, PatchedEqualsFullBuild) {
   for (unsigned seed = 1; seed <= 2; ++seed) patchedIsAtOnce({.seed = seed});
 }
 
 // The rover keeps clear of what lies further off than its footprint reaches.
-TEST(MapSurface, PatchedEqualsBuiltAtOnceUnderASmallFootprint) {
+TEST(MapSurface, PatchedEqualsFullBuildWithSmallFootprint) {
   patchedIsAtOnce({.seed = 41,
                    .resolution_m = 0.05,
                    .footprint_m = 0.1,
@@ -199,22 +199,22 @@ TEST(MapSurface, PatchedEqualsBuiltAtOnceUnderASmallFootprint) {
                    .policy = {.pose_error_m = 0.0}});
 }
 
-TEST(MapSurface, PatchedEqualsBuiltAtOnceWhereCurvesRunOut) {
+TEST(MapSurface, PatchedEqualsFullBuildWithCurveOverflow) {
   for (unsigned seed = 31; seed <= 31; ++seed) patchedIsAtOnce({.seed = seed, .most_drives = 100});
 }
 
-TEST(MapSurface, PatchedEqualsBuiltAtOnceOnFourThreads) {
+TEST(MapSurface, PatchedEqualsFullBuildOnFourThreads) {
   for (unsigned seed = 11; seed <= 11; ++seed) patchedIsAtOnce({.seed = seed, .threads = 4});
 }
 
-TEST(MapSurface, PatchedEqualsBuiltAtOnceWhereTheUnseenIsOpen) {
+TEST(MapSurface, PatchedEqualsFullBuildWithUnknownAllowed) {
   for (unsigned seed = 21; seed <= 21; ++seed)
     patchedIsAtOnce({.seed = seed, .policy = {.allow_unknown = true}});
 }
 
 // A strip of two metres without data between heights that differ: open where the slope between them is, whatever lies in it no cliff
 // that it could be is.
-TEST(MapSurface, WhatIsNotSeenBetweenTwoHeightsIsAsSteepAsTheyAllow) {
+TEST(MapSurface, OpenedUnseenCellsUseTheSlopeBetweenKnownHeights) {
   for (const double fall_m : {0.2, 5.0}) {
     MapLayers layers;
     layers.elevation.elevation_m =

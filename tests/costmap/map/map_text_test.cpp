@@ -34,7 +34,7 @@ std::string replaced(std::string lines, const std::string& old, const std::strin
   return lines.replace(at, old.size(), by);
 }
 
-TEST(MapText, ComesBackToTheSameBits) {
+TEST(MapText, RoundTripIsExact) {
   const MapText back = parsed(written(example()), "m");
   EXPECT_EQ(back.grid, example().grid);
   EXPECT_EQ(back.source, example().source);
@@ -50,7 +50,7 @@ TEST(MapText, ComesBackToTheSameBits) {
 }
 
 // Property: where the mass lies is kept; a rover read with it in the middle would tip later than the one that drives.
-TEST(MapText, KeepsWhereTheMassLies) {
+TEST(MapText, CentreOfMassRoundTrips) {
   MapText text = example();
   text.ground.rover.centre_of_mass_ahead_m = 0.07;
   text.ground.rover.centre_of_mass_left_m = -0.03;
@@ -65,7 +65,7 @@ TEST(MapText, KeepsWhereTheMassLies) {
 
 // Property: every field of the coordinate system is kept; a planetocentric latitude read as a geographic one
 // is up to 20 km off on Mars.
-TEST(MapText, KeepsTheWholeCoordinateSystem) {
+TEST(MapText, CoordinateSystemRoundTripsCompletely) {
   for (const bool planetocentric : {false, true}) {
     MapText text = example();
     text.coordinate_system = {.name = "Mars / Ocentric",
@@ -91,7 +91,7 @@ TEST(MapText, KeepsTheWholeCoordinateSystem) {
   }
 }
 
-TEST(MapText, ALineMissingUnknownOrNoNumberIsRefused) {
+TEST(MapText, MissingUnknownAndNonNumericLinesAreRejected) {
   const std::string lines = written(example());
   const auto refusal = [&](const std::string& text) {
     try {

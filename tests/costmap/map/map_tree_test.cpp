@@ -7,7 +7,7 @@
 namespace talus::costmap {
 namespace map_tree_test {
 
-TEST(MapTree, HoldsEveryCellAtItsHeight) {
+TEST(MapTree, TreeContainsEveryCellAtItsHeight) {
   const TraversabilityMap map =
       mapOf({"11111222", "11111222", "11?11222", "11111#22", "11111122", "30111122"}, 0.3);
   const TraversabilityTree tree = treeOf(map);

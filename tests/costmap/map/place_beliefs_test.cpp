@@ -10,7 +10,7 @@ namespace talus::costmap {
 namespace place_beliefs_test {
 
 // Property: what is kept from cell to cell does not show, in whatever order cells of several classes are asked for.
-TEST(PlaceBeliefs, EqualsAskingTheMapCellByCell) {
+TEST(PlaceBeliefs, CachedBeliefsEqualTheMap) {
   std::vector<std::string> rows(40, std::string(20, '1') + std::string(20, '2'));
   rows[5][5] = '?';
   rows[6][6] = '#';

@@ -30,7 +30,7 @@ struct Case {
   bool costs = false;         // a layer of joules
   bool runs_out = false;      // of curves
   bool forgets = false;       // some of what was learned
-  DrivePolicy policy{};
+  TravelPolicy policy{};
 };
 
 class Sequence {
@@ -213,7 +213,7 @@ void runAll(Case how, unsigned seeds) {
 }
 
 // Property: also where some of what was learned is forgotten again.
-TEST(PublishOrder, EqualsAllAtOnceWhereReadingsAreForgotten) {
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithForgottenReadings) {
   int forgotten = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Sequence sequence({.seed = seed, .levels = seed == 4, .forgets = true});
@@ -226,29 +226,29 @@ TEST(PublishOrder, EqualsAllAtOnceWhereReadingsAreForgotten) {
 
 // Property: whatever was learned, patched, refused and moved, in pieces of any size, the costs are bit for bit those of the
 // whole map published at once.
-TEST(PublishOrder, EqualsAllAtOnce) {
+TEST(PublishOrder, IncrementalEqualsFullPublication) {
   runAll({.seed = 1, .rounds = 30}, 4);
 }
 
-TEST(PublishOrder, EqualsAllAtOnceReadingByReading) {
+TEST(PublishOrder, IncrementalEqualsFullPublicationForSingleReadings) {
   runAll({.seed = 11, .rounds = 60, .most_readings = 1}, 2);
 }
 
 // More places than a process takes, and blocks of several cells.
-TEST(PublishOrder, EqualsAllAtOnceWhereEvidenceIsDense) {
+TEST(PublishOrder, IncrementalEqualsFullPublicationForDenseEvidence) {
   runAll({.seed = 21, .resolution_m = 0.25, .rounds = 25, .most_readings = 80, .pull_spread = 0.05}, 2);
 }
 
-TEST(PublishOrder, EqualsAllAtOnceWithLevels) {
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithLevels) {
   runAll({.seed = 31, .resolution_m = 1.0, .rounds = 25, .levels = true}, 2);
 }
 
-TEST(PublishOrder, EqualsAllAtOnceWhereTheUnseenIsOpen) {
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithUnknownAllowed) {
   runAll({.seed = 41, .rounds = 20, .policy = {.allow_unknown = true, .pose_error_m = 0.0}}, 2);
 }
 
 // Property: where curves run out, what is published piece by piece is nowhere cheaper.
-TEST(PublishOrder, IsNotCheaperWhereCurvesRunOut) {
+TEST(PublishOrder, IncrementalCostIsNotLowerOnCurveOverflow) {
   runAll({.seed = 51, .rounds = 10, .most_readings = 40, .pull_spread = 0.5, .costs = true, .runs_out = true},
          1);
 }

@@ -21,7 +21,7 @@ Category categoryOf(const TraversabilityMap& map, maps::Cell cell) {
   return static_cast<Category>(map.belief(cell).category);
 }
 
-TEST(TraversabilityMap, EachCellIsWhatTheDrawingSays) {
+TEST(TraversabilityMap, CategoriesAndHazardsMatchTheTestSite) {
   const TraversabilityMap map = mapOf(kSite);
   EXPECT_EQ(categoryOf(map, {3, 1}), Category::Safe);
   EXPECT_EQ(categoryOf(map, {2, 3}), Category::Unknown);
@@ -32,7 +32,7 @@ TEST(TraversabilityMap, EachCellIsWhatTheDrawingSays) {
   EXPECT_GT(map.belief({3, 1}).pull_mean, map.belief({6, 4}).pull_mean) << "sand pulls better than dust";
 }
 
-TEST(TraversabilityMap, PublishesWhatItBelieves) {
+TEST(TraversabilityMap, PublishedCostsMatchTheBeliefs) {
   const TraversabilityMap map = mapOf(kSite);
   const auto grid = map.published();
   EXPECT_EQ(grid->version(), 1U);
@@ -42,7 +42,7 @@ TEST(TraversabilityMap, PublishesWhatItBelieves) {
   EXPECT_LT(grid->cost().costPerMetre(grid->at({3, 1}), {}), grid->cost().costPerMetre(grid->at({6, 4}), {}));
 }
 
-TEST(TraversabilityMap, ClimbingCostsMoreThanDescendingOnTheSameCells) {
+TEST(TraversabilityMap, ClimbingCostsMoreThanDescending) {
   const TraversabilityMap map = mapOf({8, "11111111"}, 0.08);
   const auto grid = map.published();
   const CellCode cell = grid->at({4, 4});
@@ -50,7 +50,7 @@ TEST(TraversabilityMap, ClimbingCostsMoreThanDescendingOnTheSameCells) {
   EXPECT_GT(grid->cost().costPerMetre(cell, {1, 0}), grid->cost().costPerMetre(cell, {-1, 0}));
 }
 
-TEST(TraversabilityMap, RefusesLayersOfAnotherGrid) {
+TEST(TraversabilityMap, LayersOnAnotherGridAreRejected) {
   MapLayers layers = drawn(kSite);
   layers.classes =
       maps::Raster<std::uint8_t>(maps::Grid{.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}});
@@ -58,13 +58,13 @@ TEST(TraversabilityMap, RefusesLayersOfAnotherGrid) {
                  "classes lies on another grid than the elevation");
 }
 
-TEST(TraversabilityMap, UnknownOpensOnlyWhenAsked) {
+TEST(TraversabilityMap, UnknownIsTraversableOnlyOnRequest) {
   const TraversabilityMap map = mapOf(kSite, 0.0, {.allow_unknown = true});
   const auto grid = map.published();
   EXPECT_TRUE(std::isfinite(grid->cost().costPerMetre(grid->at({2, 3}), {})));
 }
 
-TEST(TraversabilityMap, BandsAndThreadsDoNotShow) {
+TEST(TraversabilityMap, ResultIsIndependentOfBandsAndThreads) {
   // Property: 600 rows are three bands; the metrics equal those of the whole raster, whatever the threads.
   const maps::Grid grid{.width = 40, .height = 600, .resolution_m = 0.5, .south_west = {}};
   MapLayers layers;
@@ -89,7 +89,7 @@ TEST(TraversabilityMap, BandsAndThreadsDoNotShow) {
 
 // Readers on other threads, while versions come: each is whole (what was refused together is refused
 // together), none is older than the one before, and one that is held does not change.
-TEST(TraversabilityMap, ReadersSeeWholeVersionsInOrder) {
+TEST(TraversabilityMap, ConcurrentReadersObserveConsistentVersionsInOrder) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(300, '1')));
   const auto refused = [](const CostGrid& grid, int column) {
     return grid.at({column, 10}).curve() == CellCode::kBlocked;

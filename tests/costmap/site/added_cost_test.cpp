@@ -40,7 +40,7 @@ CostLayer layer(const maps::Grid& grid, const std::string& name, float J_per_m) 
   return {.name = name, .added_J_per_m = maps::Raster<float>(grid, J_per_m), .unseen_J_per_m = J_per_m};
 }
 
-TraversabilityMap with(MapLayers layers, std::vector<CostLayer> costs, const DrivePolicy& policy = {}) {
+TraversabilityMap with(MapLayers layers, std::vector<CostLayer> costs, const TravelPolicy& policy = {}) {
   layers.costs = std::move(costs);
   return TraversabilityMap(std::move(layers), testGround(policy), {});
 }
@@ -60,7 +60,7 @@ void inEachHeading(const maps::Grid& grid, const Check& check) {
 
 // Property: sums of two digits are exact; the cost of a metre is that without layers and the sum of theirs, in every heading,
 // across slopes too, and nothing else is allowed or refused.
-TEST(AddedCost, RoundValuesAreAddedExactly) {
+TEST(AddedCost, TwoDigitSumsAreExact) {
   const MapLayers ground = hills(30);
   const maps::Grid grid = ground.elevation.grid();
   std::vector<CostLayer> costs{layer(grid, "shadow", 0.0F), layer(grid, "radio", 10.0F)};
@@ -101,12 +101,12 @@ TEST(AddedCost, ValuesAreRoundedUp) {
 }
 
 // Property: whatever is added to a layer, no cost in any heading falls and nothing that was refused is allowed.
-TEST(AddedCost, AHazardMoreNeverLowersACost) {
+TEST(AddedCost, AddedLayerNeverLowersACost) {
   std::mt19937 random(11);
   for (int round = 0; round < 2; ++round) {
     const MapLayers ground = hills(40);
     const maps::Grid grid = ground.elevation.grid();
-    const DrivePolicy policy{.allow_unknown = round % 2 == 1};
+    const TravelPolicy policy{.allow_unknown = round % 2 == 1};
     CostLayer less = layer(grid, "own", 0.0F);
     for (float& v : less.added_J_per_m.values()) {
       const double kind = uniform(random);
@@ -135,7 +135,7 @@ TEST(AddedCost, AHazardMoreNeverLowersACost) {
 
 // Property: where 254 curves do not suffice for the values, nothing costs less than was asked for, and coarser steps
 // leave open what was open.
-TEST(AddedCost, WhereCurvesRunOutNothingIsCheaper) {
+TEST(AddedCost, CurveOverflowNeverLowersACost) {
   std::mt19937 random(12);
   const MapLayers ground = hills(60);
   const maps::Grid grid = ground.elevation.grid();
@@ -152,7 +152,7 @@ TEST(AddedCost, WhereCurvesRunOutNothingIsCheaper) {
   EXPECT_GT(allowed, 10000);
 }
 
-TEST(AddedCost, RefusalsAndCellsWithoutDataFollowThePolicy) {
+TEST(AddedCost, RefusedAndNoDataCellsFollowThePolicy) {
   const MapLayers ground = drawn({"11111111", "11111111", "11111111", "11111111", "11111111", "11111111"});
   const maps::Grid grid = ground.elevation.grid();
   CostLayer own = layer(grid, "own", 5.0F);
@@ -175,7 +175,7 @@ TEST(AddedCost, RefusalsAndCellsWithoutDataFollowThePolicy) {
 
 // Property: new ground, new weights and what wheels teach keep what a layer adds; a patch that lifts keep-out lifts no
 // refusal of a layer.
-TEST(AddedCost, PatchesWeightsAndWheelsKeepIt) {
+TEST(AddedCost, PatchesWeightsAndEvidenceKeepTheAddedCost) {
   MapLayers ground = hills(30);
   const maps::Grid grid = ground.elevation.grid();
   CostLayer own = layer(grid, "own", 0.0F);
@@ -211,7 +211,7 @@ TEST(AddedCost, PatchesWeightsAndWheelsKeepIt) {
 }
 
 // Property: the same with four classes in patches, whose borders are kinds of ground of their own.
-TEST(AddedCost, ManyClassesUnderManyValuesStayOpen) {
+TEST(AddedCost, ManyClassesAndValuesStayFeasible) {
   std::mt19937 random(13);
   MapLayers ground = hills(80);
   const maps::Grid grid = ground.elevation.grid();
@@ -237,10 +237,10 @@ TEST(AddedCost, ManyClassesUnderManyValuesStayOpen) {
   });
 }
 
-TEST(AddedCost, UnseenGroundCostsItToo) {
+TEST(AddedCost, AddedCostAppliesToOpenedUnseenCells) {
   const MapLayers ground = drawn({"1111111", "1111111", "111?111", "1111111", "1111111"});
   const maps::Grid grid = ground.elevation.grid();
-  const DrivePolicy open{.allow_unknown = true};
+  const TravelPolicy open{.allow_unknown = true};
   const TraversabilityMap plain = with(ground, {}, open),
                           dearer = with(ground, {layer(grid, "own", 10.0F)}, open);
   ASSERT_TRUE(std::isfinite(costAt(plain, {3, 2}, 0)));
@@ -248,7 +248,7 @@ TEST(AddedCost, UnseenGroundCostsItToo) {
 }
 
 // Property: what a class learns counts under a layer as it does beside it.
-TEST(AddedCost, WhatAClassLearnsCountsUnderIt) {
+TEST(AddedCost, ClassEvidenceAppliesUnderALayer) {
   const MapLayers ground = drawn(std::vector<std::string>(90, std::string(90, '1')));
   const maps::Grid grid = ground.elevation.grid();
   TraversabilityMap plain = with(ground, {}), dearer = with(ground, {layer(grid, "own", 10.0F)});
@@ -266,7 +266,7 @@ TEST(AddedCost, WhatAClassLearnsCountsUnderIt) {
   EXPECT_NEAR(costAt(dearer, far, 0) - costAt(plain, far, 0), 10.0, 3e-7 * costAt(plain, far, 0) + 1e-3);
 }
 
-TEST(AddedCost, WhatCannotBeIsOneLine) {
+TEST(AddedCost, InvalidLayersAreRejectedWithOneLine) {
   const MapLayers ground = drawn({"111", "111"});
   maps::Grid other = ground.elevation.grid();
   other.width = 2;

@@ -102,7 +102,7 @@ std::vector<Wrong> wrongPatches() {
   };
 }
 
-TEST(SurfacePatch, IsRefusedInOneLineAndLeavesTheMapAsItWas) {
+TEST(SurfacePatch, InvalidPatchIsRejectedWithOneLineAndMapUnchanged) {
   TraversabilityMap map = flatMap();
   const auto before = map.published();
   for (const Wrong& wrong : wrongPatches()) {
@@ -115,7 +115,7 @@ TEST(SurfacePatch, IsRefusedInOneLineAndLeavesTheMapAsItWas) {
 }
 
 // A map is refused what a patch of it is refused: no such height and no such share of rocks would count as none.
-TEST(SurfacePatch, MapsAreHeldToTheSame) {
+TEST(SurfacePatch, MapLayersAreValidatedLikePatches) {
   for (const float bad : {1e30F, INFINITY, -INFINITY}) {
     MapLayers layers = flat();
     layers.elevation.elevation_m[{1, 2}] = bad;
@@ -141,7 +141,7 @@ TEST(SurfacePatch, MapsAreHeldToTheSame) {
   }
 }
 
-TEST(SurfacePatch, ClassesNeedAMapWithClasses) {
+TEST(SurfacePatch, ClassPatchRequiresAMapWithClasses) {
   MapLayers layers = flat();
   layers.classes = {};
   TraversabilityMap map(std::move(layers), testGround(), {});
@@ -151,7 +151,7 @@ TEST(SurfacePatch, ClassesNeedAMapWithClasses) {
 }
 
 // Property: a class that a later patch brings costs what it costs on a map that began with it.
-TEST(SurfacePatch, BringsAClassThatTheMapDidNotHave) {
+TEST(SurfacePatch, NewClassCostsAsOnAMapBuiltWithIt) {
   MapLayers with = flat();
   const SurfacePatch patch = [] {
     SurfacePatch dust;
@@ -174,7 +174,7 @@ TEST(SurfacePatch, BringsAClassThatTheMapDidNotHave) {
 }
 
 // Property: only tiles that the change reaches are new; the others are shared with the version before.
-TEST(SurfacePatch, SharesTheTilesThatItDoesNotReach) {
+TEST(SurfacePatch, PatchSharesUnaffectedTiles) {
   MapLayers layers;
   const maps::Grid grid{.width = 640, .height = 640, .resolution_m = 0.5, .south_west = {}};
   layers.elevation.elevation_m = maps::Raster<float>(grid, 0.0F);
@@ -189,7 +189,7 @@ TEST(SurfacePatch, SharesTheTilesThatItDoesNotReach) {
 }
 
 // A map that begins with nothing takes its heights from the first patch, at whatever level that is.
-TEST(SurfacePatch, BeginsAMapThatNobodyHasSeen) {
+TEST(SurfacePatch, FirstPatchSetsTheBaseElevation) {
   MapLayers layers;
   const maps::Grid grid{.width = 60, .height = 60, .resolution_m = 0.05, .south_west = {}};
   layers.elevation.elevation_m = maps::Raster<float>(grid, NAN);
@@ -223,7 +223,7 @@ WheelObservation anywhere(std::mt19937_64& random) {
 
 // Property: what wheels read on ground of a known class before its heights are seen counts once they are, beside that
 // ground and on it, as on a map that began with the heights; likewise where the map began with none.
-TEST(SurfacePatch, OfGroundThatWasDrivenBeforeItWasSeenLosesNoEvidence) {
+TEST(SurfacePatch, EvidenceFromBeforeThePatchIsRetained) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937_64 random(seed);
     MapLayers whole = flat();
@@ -264,7 +264,7 @@ TEST(SurfacePatch, OfGroundThatWasDrivenBeforeItWasSeenLosesNoEvidence) {
 
 // Two threads: each patch lands whole or is refused because the other thread changes the map; after all of them
 // landed the map is that of one thread.
-TEST(SurfacePatch, OfTwoThreadsAtOnceIsTakenOrRefusedWhole) {
+TEST(SurfacePatch, ConcurrentPatchesAreAtomic) {
   TraversabilityMap map = flatMap();
   const auto keepPatching = [&](double x_m) {
     for (int k = 0; k < 40;) try {

@@ -8,7 +8,7 @@
 #include <site_fixture.hpp>
 #include <unistd.h>
 
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/map/explanation.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
@@ -74,7 +74,7 @@ CellBelief roadBelief(const TraversabilityMap& map, double x) {
   return map.belief(cell, map.surface().floors().of(map.grid().index(cell))[0]);
 }
 
-TEST(Bridge, WhatIsDrivenBeneathTellsNothingAboutTheDeck) {
+TEST(Bridge, EvidenceBelowTheDeckDoesNotAffectTheDeckCell) {
   TraversabilityMap map = mapOf(bridge());
   const CellBelief deck = map.belief(cellAt(map, 20.0)), road = roadBelief(map, 20.0);
   addDrive(map, drive(kRoad_m, 17.0, 23.0), nullptr);
@@ -90,7 +90,7 @@ TEST(Bridge, WhatIsDrivenBeneathTellsNothingAboutTheDeck) {
   EXPECT_TRUE(has(below.hazards, Hazard::Unknown)) << "its shape is not judged";
 }
 
-TEST(Bridge, ClassesOfTheRasterLearnFromTheirTopAlone) {
+TEST(Bridge, RasterClassIsNotUpdatedFromTheLowerFloor) {
   OctomapGround ground = bridge();
   MapLayers layers;
   layers.classes = maps::Raster<std::uint8_t>(ground.surface.grid(), 2);
@@ -107,7 +107,7 @@ TEST(Bridge, ClassesOfTheRasterLearnFromTheirTopAlone) {
   EXPECT_GT(roadBelief(map, 20.0).evidence, 0.0F);
 }
 
-TEST(Bridge, TheDeckTellsNothingAboutTheRoad) {
+TEST(Bridge, EvidenceOnTheDeckDoesNotAffectTheRoad) {
   TraversabilityMap map = mapOf(bridge());
   addDrive(map, drive(kDeck_m, 17.0, 23.0), nullptr);
   EXPECT_GT(map.belief(cellAt(map, 20.0)).evidence, 0.0F);
@@ -115,7 +115,7 @@ TEST(Bridge, TheDeckTellsNothingAboutTheRoad) {
   EXPECT_EQ(roadBelief(map, 20.0).pull_mean, static_cast<float>(map.evidence().classBelief(0).pull.value));
 }
 
-TEST(Bridge, GroundInFrontOfItSpeaksForTheRoadBeneath) {
+TEST(Bridge, EvidenceBeforeTheBridgeExtendsToTheRoadBelow) {
   TraversabilityMap map = mapOf(bridge());
   addDrive(map, drive(kRoad_m, 8.0, 15.5), nullptr);
   const float away = static_cast<float>(map.evidence().classBelief(0).pull.value);
@@ -124,7 +124,7 @@ TEST(Bridge, GroundInFrontOfItSpeaksForTheRoadBeneath) {
 }
 
 // A road that climbs by a voxel every metre and a half, under a deck far above it.
-TEST(Bridge, AClimbingRoadIsOneFloor) {
+TEST(Bridge, ClimbingRoadIsOneFloor) {
   octomap::OcTree tree(kVoxel_m);
   const auto road_m = [](int x) { return kVoxel_m * (x / 3) + 0.25; };
   for (int x = 0; x < 80; ++x)
@@ -153,7 +153,7 @@ TEST(Bridge, AClimbingRoadIsOneFloor) {
   EXPECT_EQ(map.evidence().floorEvidence().size(), 1U);
 }
 
-TEST(Bridge, WithoutAHeightOrAFloorARowIsOnTop) {
+TEST(Bridge, RowsWithoutHeightOrFloorAreAssignedToTheTop) {
   TraversabilityMap map = mapOf(bridge());
   terramech::Telemetry rows = drive(kRoad_m, 17.0, 23.0);
   std::erase_if(rows.numbers, [](const auto& column) { return column.name == "z_m"; });
@@ -167,7 +167,7 @@ TEST(Bridge, WithoutAHeightOrAFloorARowIsOnTop) {
 }
 
 // The slope of the deck says nothing about the road beneath it.
-TEST(Bridge, ARowWithoutASlopeTakesThatOfItsOwnLevel) {
+TEST(Bridge, RowWithoutSlopeUsesTheSlopeOfItsOwnFloor) {
   TraversabilityMap map = mapOf(bridge());
   const auto without_slope = [](double z_m) {
     terramech::Telemetry rows = drive(z_m, 17.0, 23.0);
@@ -179,7 +179,7 @@ TEST(Bridge, ARowWithoutASlopeTakesThatOfItsOwnLevel) {
   EXPECT_GT(addDrive(map, without_slope(kDeck_m), nullptr).used, 0U);
 }
 
-TEST(Bridge, BelowACeilingTheRoadIsTheMap) {
+TEST(Bridge, BelowTheCeilingTheRoadIsTheMapSurface) {
   TraversabilityMap map = mapOf(bridge(2.0));
   EXPECT_EQ(map.surface().hazards(cellAt(map, 20.0)), Hazard::None);
   addDrive(map, drive(kDeck_m, 17.0, 23.0), nullptr);
@@ -188,7 +188,7 @@ TEST(Bridge, BelowACeilingTheRoadIsTheMap) {
   EXPECT_GT(map.belief(cellAt(map, 20.0)).evidence, 0.0F);
 }
 
-TEST(Bridge, BothLevelsSurviveFileAndJournalToTheBit) {
+TEST(Bridge, BothFloorsRoundTripThroughFileAndJournal) {
   const auto path = std::filesystem::path(::testing::TempDir()) / ("bridge" + std::to_string(::getpid()));
   std::filesystem::remove(path);
   TraversabilityMap map = mapOf(bridge()), rebuilt = mapOf(bridge());
@@ -210,7 +210,7 @@ TEST(Bridge, BothLevelsSurviveFileAndJournalToTheBit) {
   EXPECT_EQ(roadBelief(back, 20.0), roadBelief(map, 20.0));
 }
 
-TEST(Bridge, IsExplained) {
+TEST(Bridge, ExplanationListsBothFloors) {
   TraversabilityMap map = mapOf(bridge());
   addDrive(map, drive(kRoad_m, 17.0, 23.0), nullptr);
   const Explanation told = explain(map, cellAt(map, 20.0));

@@ -7,7 +7,7 @@ constexpr Hazard kAll[] = {Hazard::Unknown, Hazard::Slope,   Hazard::Step,     H
                            Hazard::Rocks,   Hazard::KeepOut, Hazard::Obstacle, Hazard::Near};
 
 // Property: hazards are a set; each of the 256 subsets holds its members and nothing else.
-TEST(CellBelief, HazardsAreASet) {
+TEST(CellBelief, HazardSubsetsAreRepresentedExactly) {
   for (unsigned subset = 0; subset < 256; ++subset) {
     Hazard set = Hazard::None;
     for (unsigned k = 0; k < 8; ++k)
@@ -18,13 +18,13 @@ TEST(CellBelief, HazardsAreASet) {
   }
 }
 
-TEST(CellBelief, AFloorIsUnknownGroundThatWheelsSpokeFor) {
+TEST(CellBelief, FloorRequiresUnknownHazardAndEvidence) {
   EXPECT_TRUE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Unknown | Hazard::Near}));
   EXPECT_FALSE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Near}));
   EXPECT_FALSE(ofFloor({.evidence = 0.0F, .hazards = Hazard::Unknown}));
 }
 
-TEST(CellBelief, NothingIsBelievedOfACellBeforeAnyData) {
+TEST(CellBelief, DefaultBeliefIsUnknown) {
   const CellBelief none;
   EXPECT_EQ(none.category, 3);  // unknown
   EXPECT_EQ(none.confidence, 0);

@@ -9,7 +9,7 @@
 namespace talus::costmap {
 namespace floors_test {
 
-TEST(Floors, AWheelStandsOnTheNearest) {
+TEST(Floors, WheelIsAssignedToTheNearestFloor) {
   const Floors floors({{5, 3.0F}, {2, 1.0F}, {5, -2.0F}}, 9);
   ASSERT_EQ(floors.of(5).size(), 2U);
   EXPECT_EQ(floors.of(5)[0].height_m, -2.0F);
@@ -23,7 +23,7 @@ TEST(Floors, AWheelStandsOnTheNearest) {
   EXPECT_FALSE(floors.under(5, std::nan(""), 8.0).has_value()) << "an unknown height is on top";
 }
 
-TEST(Floors, RefuseWhatLiesOutside) {
+TEST(Floors, FloorsOutsideTheMapAreRejected) {
   EXPECT_REFUSED(Floors({{9, 1.0F}}, 9), std::invalid_argument,
                  "a floor of cell 9 at 1.000000 m, must be a height in one of 9 cells");
   EXPECT_REFUSED(Floors({{1, std::numeric_limits<float>::infinity()}}, 9), std::invalid_argument,

@@ -14,7 +14,7 @@ maps::Grid grid(int side, double resolution_m) {
   return {.width = side, .height = side, .resolution_m = resolution_m, .south_west = {}};
 }
 
-TEST(Inflate, KeepsHalfTheRoversWidthFromAKeepOutCell) {
+TEST(Inflate, KeepOutCellsAreInflatedByHalfTheRoverWidth) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
   hazards[{5, 5}] = Hazard::KeepOut;
   HazardLimits limits;
@@ -29,7 +29,7 @@ TEST(Inflate, KeepsHalfTheRoversWidthFromAKeepOutCell) {
 }
 
 // A free lane narrower than the rover between rocks is none.
-TEST(Inflate, KeepsHalfTheRoversWidthFromRocks) {
+TEST(Inflate, RocksAreInflatedByHalfTheRoverWidth) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
   for (int row = 0; row < 11; ++row) hazards[{2, row}] = hazards[{7, row}] = Hazard::Rocks;
   HazardLimits limits;
@@ -39,7 +39,7 @@ TEST(Inflate, KeepsHalfTheRoversWidthFromRocks) {
 }
 
 // Outside the map is as unseen as a hole in it.
-TEST(Inflate, KeepsHalfTheRoversWidthFromTheEdgeOfTheMap) {
+TEST(Inflate, MapEdgeIsInflatedByHalfTheRoverWidth) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
   HazardLimits limits;
   limits.inflation_m = 0.2;
@@ -55,7 +55,7 @@ TEST(Inflate, KeepsHalfTheRoversWidthFromTheEdgeOfTheMap) {
 }
 
 // The middle of the rover may be anywhere in a cell, beside the edge too.
-TEST(Inflate, KeepsCellsWiderThanTheRoverClearToo) {
+TEST(Inflate, NeighboursOfCellsWiderThanTheRoverAreInflated) {
   maps::Raster<Hazard> hazards(grid(7, 5.0), Hazard::None);
   hazards[{3, 3}] = Hazard::Unknown;
   inflate(hazards, HazardLimits::of(testRover()));
@@ -63,13 +63,13 @@ TEST(Inflate, KeepsCellsWiderThanTheRoverClearToo) {
   EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 16);
 }
 
-TEST(HazardLimits, ReliefOfALargeFootprintCountsInProportion) {
+TEST(HazardLimits, ReliefLimitScalesWithWheelbaseOverFootprint) {
   const HazardLimits limits = HazardLimits::of(testRover());
   EXPECT_DOUBLE_EQ(reliefShare(limits, 0.5), 1.0);
   EXPECT_DOUBLE_EQ(reliefShare(limits, 8.0), 0.1);  // Closed form: wheelbase 0.8 m over 8 m
 }
 
-TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
+TEST(ShapeJudge, EachExceededLimitIsNamed) {
   const HazardLimits limits{
       .max_gradient = 0.3, .max_step_m = 0.1, .max_roughness_m = 0.05, .wheelbase_m = 1.0};
   const ShapeJudge judge(limits, {.footprint_m = 2.0, .cell_m = 0.5});
@@ -84,7 +84,7 @@ TEST(ShapeJudge, NamesEachLimitThatIsPassed) {
 }
 
 // Property: in a box alone is as everywhere, there; nothing else is touched.
-TEST(Hazards, InflatedInABoxIsAsEverywhere) {
+TEST(Hazards, InflationInABoxEqualsFullInflation) {
   std::mt19937 random(5);
   const maps::Grid grid{.width = 30, .height = 24, .resolution_m = 0.5, .south_west = {}};
   for (int trial = 0; trial < 200; ++trial) {

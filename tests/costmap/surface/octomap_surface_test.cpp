@@ -45,7 +45,7 @@ void expectSlopeUnderSlab(const OctomapGround& ground) {
   EXPECT_NEAR(floors.of(map.grid().index({4, 3}))[0].height_m, 0.15, 1e-6);
 }
 
-TEST(OctomapSurface, ReadsFullAndBinaryAndColour) {
+TEST(OctomapSurface, ReadsFullBinaryAndColourTrees) {
   octomap::OcTree tree(0.1);
   fill(tree);
   std::stringstream full, binary, coloured;
@@ -59,7 +59,7 @@ TEST(OctomapSurface, ReadsFullAndBinaryAndColour) {
   expectSlopeUnderSlab(octomapGround(coloured, "c.ot"));
 }
 
-TEST(OctomapSurface, TakesTheGroundBelowACeiling) {
+TEST(OctomapSurface, CeilingSelectsTheGroundBelow) {
   octomap::OcTree tree(0.1);
   fill(tree);
   std::stringstream stream;
@@ -74,7 +74,7 @@ TEST(OctomapSurface, TakesTheGroundBelowACeiling) {
 }
 
 // A rock of two voxels' height above the ground leaves no room to drive under, and a hole in a scan is none.
-TEST(OctomapSurface, AFloorNeedsHeadroom) {
+TEST(OctomapSurface, FloorRequiresFreeHeadroom) {
   for (const double slab_m : {0.35, 0.55, 0.65}) {
     octomap::OcTree tree(0.1);
     tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
@@ -86,7 +86,7 @@ TEST(OctomapSurface, AFloorNeedsHeadroom) {
   }
 }
 
-TEST(OctomapSurface, RefusesEveryTruncationAndSurvivesDamage) {
+TEST(OctomapSurface, EveryTruncationIsRejected) {
   octomap::OcTree tree(0.1);
   fill(tree);
   for (const bool binary : {false, true}) {
@@ -111,7 +111,7 @@ std::string oneCube(int depth, const std::string& resolution) {
 }
 
 // Closed form: a cube of side 2^(16 - depth) from the lowest key on; its top voxel is at side - 0.5 - 2^15.
-TEST(OctomapSurface, ACubeIsAFloorAsWideAsItself) {
+TEST(OctomapSurface, LargeLeafIsASurfaceOfItsFullWidth) {
   std::istringstream stream(oneCube(6, "0.1"));
   const OctomapGround ground = octomapGround(stream, "cube.ot");
   EXPECT_EQ(ground.surface.grid().width, 1024);
@@ -121,14 +121,14 @@ TEST(OctomapSurface, ACubeIsAFloorAsWideAsItself) {
 }
 
 // Property: few bytes that state much are refused before the memory or the time is taken.
-TEST(OctomapSurface, CubesAsLargeAsTheTreeAreRefused) {
+TEST(OctomapSurface, OversizedLeavesAreRejected) {
   for (const int depth : {0, 1}) {
     std::istringstream stream(oneCube(depth, "0.1"));
     EXPECT_REFUSED(octomapGround(stream, "cube.ot"), InputError, "columns, more than 4e8") << depth;
   }
 }
 
-TEST(OctomapSurface, VoxelsOfImpossibleSizeAreRefused) {
+TEST(OctomapSurface, VoxelSizesOutOfRangeAreRejected) {
   for (const char* resolution : {"1e-300", "1e-4", "1e7", "1e308"}) {
     std::istringstream stream(oneCube(16, resolution));
     EXPECT_REFUSED(octomapGround(stream, "cube.ot"), InputError, "must be 0.001 m to 1000 km") << resolution;
@@ -139,7 +139,7 @@ TEST(OctomapSurface, VoxelsOfImpossibleSizeAreRefused) {
   }
 }
 
-TEST(OctomapSurface, NamesAForeignTree) {
+TEST(OctomapSurface, UnsupportedTreeTypeIsRejected) {
   std::istringstream stream("# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\ndata\n");
   EXPECT_THROW(octomapGround(stream, "x.ot"), InputError);
   EXPECT_FALSE(octomapType("/dev/null").has_value());

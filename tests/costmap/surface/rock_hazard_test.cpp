@@ -26,13 +26,13 @@ TEST(RockHazard, MatchesItsDefinition) {
     }
 }
 
-TEST(RockHazard, NoRocksNoHazard) {
+TEST(RockHazard, WithoutRocksTheHazardIsZero) {
   EXPECT_EQ(rockHazard(0.0, {.diameter_m = 0.1, .area_m2 = 1.0}), 0.0);
   EXPECT_EQ(rockHazard(std::numeric_limits<double>::quiet_NaN(), {.diameter_m = 0.1, .area_m2 = 1.0}), 0.0);
 }
 
 // Property: more rocks are never less of a hazard. By its formula nine tenths of rocks left 0.55 of such places free.
-TEST(RockHazard, NeverFallsWithTheShareOfRocks) {
+TEST(RockHazard, HazardIsMonotoneInRockAbundance) {
   const RockCrossing fido{.diameter_m = 0.46, .area_m2 = 0.7};
   double last = 0.0;
   for (int percent = 1; percent <= 100; ++percent) {

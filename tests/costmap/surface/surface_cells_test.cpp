@@ -9,13 +9,13 @@ namespace surface_cells_test {
 
 constexpr maps::Grid kGrid{.width = 21, .height = 13, .resolution_m = 0.5, .south_west = {3.0, -7.0}};
 
-TEST(SurfaceKeys, HeightsComeBackToHalfAVoxel) {
+TEST(SurfaceKeys, HeightsRoundTripWithinHalfAVoxel) {
   const SurfaceKeys keys(kGrid, -4500.0);
   for (const double height : {-4510.3, -4500.0, -4499.9, -4321.1})
     EXPECT_NEAR(keys.heightOf_m(keys.key({0, 0}, height)[2]), height, 0.25 + 1e-9);
 }
 
-TEST(SurfaceKeys, TreeCoordinatesAreMapMetresLessTheOrigin) {
+TEST(SurfaceKeys, TreeCoordinatesAreMapMetresMinusOrigin) {
   const SurfaceKeys keys(kGrid, 0.0);
   // Closed form: OctoMap's voxel k spans (k - 32768) to (k - 32767) times the resolution.
   for (const maps::Cell cell : {maps::Cell{0, 0}, maps::Cell{20, 12}, maps::Cell{7, 3}}) {
@@ -25,7 +25,7 @@ TEST(SurfaceKeys, TreeCoordinatesAreMapMetresLessTheOrigin) {
   }
 }
 
-TEST(SurfaceKeys, HeightsBeyondTheTreeAreClampedAndTooManyCellsRefused) {
+TEST(SurfaceKeys, HeightsAreClampedAndTooManyCellsRejected) {
   const SurfaceKeys keys(kGrid, 0.0);
   EXPECT_EQ(keys.key({0, 0}, 1e9)[2], 65535);
   EXPECT_EQ(keys.key({0, 0}, -1e9)[2], 0);
@@ -35,7 +35,7 @@ TEST(SurfaceKeys, HeightsBeyondTheTreeAreClampedAndTooManyCellsRefused) {
 }
 
 // Property: every block holds the lowest and the highest key of its cells, by brute force.
-TEST(SurfacePyramid, BlocksHoldTheRangeOfTheirCells) {
+TEST(SurfacePyramid, BlocksContainTheKeyRangeOfTheirCells) {
   const SurfaceKeys keys(kGrid, 0.0);
   maps::Raster<float> z(kGrid);
   std::mt19937 random(6);

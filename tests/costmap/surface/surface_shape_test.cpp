@@ -10,7 +10,7 @@ namespace surface_shape_test {
 
 // Property: what is measured in a box is, bit by bit, what terrainMetrics() measures of the whole; each cell of the
 // box comes once, and a height changes no cell beyond reach().
-TEST(SurfaceShape, OfABoxIsThatOfTheWhole) {
+TEST(SurfaceShape, ShapeOfABoxEqualsTheWhole) {
   std::mt19937 random(3);
   const maps::Grid grid{.width = 50, .height = 320, .resolution_m = 0.5, .south_west = {3.0, 4.0}};
   maps::Raster<float> elevation_m(grid);
@@ -38,7 +38,7 @@ TEST(SurfaceShape, OfABoxIsThatOfTheWhole) {
   }
 }
 
-TEST(SurfaceShape, AHeightReachesNoFurtherThanSaid) {
+TEST(SurfaceShape, HeightChangesAreConfinedToTheReach) {
   const maps::Grid grid{.width = 41, .height = 41, .resolution_m = 0.5, .south_west = {}};
   maps::Raster<float> elevation_m(grid, 0.0F);
   elevation_m[{20, 20}] = 1.0F;

@@ -20,7 +20,7 @@ MapLayers cliff() {
   return layers;
 }
 
-TEST(SurfaceTree, ColourTreeHasALeafACellAndStockReadsIt) {
+TEST(SurfaceTree, ColourTreeHasOneLeafPerCellAndIsReadByOctoMap) {
   const TraversabilityMap map(cliff(), testGround(), {});
   const auto tree = colorTree({map.elevation().elevation_m, map.surface().keys()},
                               [&](maps::Cell c) { return map.belief(c); });
@@ -49,7 +49,7 @@ std::string streamed(const TraversabilityMap& map) {
 
 // Property: writing node by node gives the bytes of a tree that was built, on even ground and rough, with
 // evidence and without, where all is alike and where nothing is.
-TEST(SurfaceTree, StreamedBytesAreThoseOfTheTree) {
+TEST(SurfaceTree, StreamedBytesEqualTheTree) {
   EXPECT_EQ(streamed(TraversabilityMap(drawn({"??", "??"}), testGround(), {})),
             held(TraversabilityMap(drawn({"??", "??"}), testGround(), {})));
   EXPECT_EQ(streamed(mapOf({"1"})), held(mapOf({"1"})));
@@ -74,7 +74,7 @@ TEST(SurfaceTree, StreamedBytesAreThoseOfTheTree) {
 }
 
 // Property: leaf by leaf the stream says of each cell what the tree says.
-TEST(SurfaceTree, LeavesOfTheStreamAreThoseOfTheTree) {
+TEST(SurfaceTree, StreamedLeavesEqualTheTree) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(33, '1')), 0.2);
   map.learn({.time_s = 1.0, .place = {110.0, 210.0}, .pull = {0.1, 0.05}, .sinkage = {0.2, 0.05}});
   map.publish();
@@ -89,7 +89,7 @@ TEST(SurfaceTree, LeavesOfTheStreamAreThoseOfTheTree) {
   EXPECT_EQ(leaves, tree.getNumLeafNodes());
 }
 
-TEST(SurfaceTree, NoElevationNoTree) {
+TEST(SurfaceTree, WithoutElevationTheTreeIsEmpty) {
   MapLayers layers = drawn({"??", "??"});
   const TraversabilityMap map(std::move(layers), testGround(), {});
   EXPECT_EQ(treeOf(map).size(), 0U);

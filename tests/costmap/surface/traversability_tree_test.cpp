@@ -38,7 +38,7 @@ TraversabilityTree fromBytes(const std::string& bytes) {
   return readTree(stream, "map.ot");
 }
 
-TEST(TraversabilityTree, PrunesEqualGroundButKeepsTheOddCell) {
+TEST(TraversabilityTree, EqualCellsArePrunedAndDifferingCellsKept) {
   const TraversabilityTree tree = sample();
   // Property: 64 equal cells but one leave far fewer leaves, and each cell still answers.
   EXPECT_LT(tree.getNumLeafNodes(), 12U);
@@ -47,14 +47,14 @@ TEST(TraversabilityTree, PrunesEqualGroundButKeepsTheOddCell) {
   EXPECT_EQ(tree.find(OcTreeKey(100, 100, 100)), nullptr);
 }
 
-TEST(TraversabilityTree, SplitsAPrunedCubeWithoutLosingItsBelief) {
+TEST(TraversabilityTree, SplittingAPrunedCubeKeepsTheOtherCells) {
   TraversabilityTree tree = sample();
   tree.at(OcTreeKey(32775, 32775, 32770)).pull_mean = -0.1F;
   EXPECT_EQ(*tree.find(OcTreeKey(32774, 32775, 32770)), sandy());
   EXPECT_EQ(tree.find(OcTreeKey(32775, 32775, 32770))->pull_mean, -0.1F);
 }
 
-TEST(TraversabilityTree, SameTreeSameBytesAndBack) {
+TEST(TraversabilityTree, SerialisationIsDeterministicAndRoundTrips) {
   const std::string bytes = bytesOf(sample());
   EXPECT_EQ(bytes, bytesOf(sample()));
   EXPECT_EQ(bytes, bytesOf(fromBytes(bytes)));
@@ -62,7 +62,7 @@ TEST(TraversabilityTree, SameTreeSameBytesAndBack) {
   EXPECT_EQ(bytes, bytesOf(TraversabilityTree(copy)));
 }
 
-TEST(TraversabilityTree, IsRegisteredWithOctoMapsOwnReader) {
+TEST(TraversabilityTree, TypeIsRegisteredWithOctoMap) {
   std::istringstream stream(bytesOf(sample()));
   const std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));
   const auto* ours = dynamic_cast<TraversabilityTree*>(tree.get());
@@ -70,13 +70,13 @@ TEST(TraversabilityTree, IsRegisteredWithOctoMapsOwnReader) {
   EXPECT_EQ(bytesOf(*ours), bytesOf(sample()));
 }
 
-TEST(TraversabilityTree, RefusesEveryTruncation) {
+TEST(TraversabilityTree, EveryTruncationIsRejected) {
   const std::string bytes = bytesOf(sample());
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_THROW(fromBytes(bytes.substr(0, length)), InputError) << length;
 }
 
-TEST(TraversabilityTree, SurvivesAnyDamagedByte) {
+TEST(TraversabilityTree, DamagedBytesAreReadOrRejected) {
   const std::string bytes = bytesOf(sample());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     std::string damaged = bytes;
@@ -88,7 +88,7 @@ TEST(TraversabilityTree, SurvivesAnyDamagedByte) {
   }
 }
 
-TEST(TraversabilityTree, NamesAForeignTree) {
+TEST(TraversabilityTree, UnsupportedTreeTypeIsNamedInTheError) {
   try {
     fromBytes("# Octomap OcTree file\nid ColorOcTree\nsize 1\nres 0.1\ndata\n");
     FAIL();

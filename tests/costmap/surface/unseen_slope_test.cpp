@@ -18,7 +18,7 @@ maps::Raster<float> plane(double dz_dx, double dz_dy) {
 }
 
 // Closed form: on a plane the heights beside a hole say the plane's slope, however wide the hole; single precision.
-TEST(UnseenSlope, OfAPlaneIsThePlanes) {
+TEST(UnseenSlope, PlaneSlopeIsRecovered) {
   std::mt19937 random(1);
   maps::Raster<float> z = plane(0.3, -0.2);
   for (float& height : z.values())
@@ -36,7 +36,7 @@ TEST(UnseenSlope, OfAPlaneIsThePlanes) {
   EXPECT_GT(seen, 700);
 }
 
-TEST(UnseenSlope, BeyondItsReachNothingIsKnown) {
+TEST(UnseenSlope, SlopeIsZeroBeyondTheReach) {
   maps::Raster<float> z({.width = 400, .height = 3, .resolution_m = 1.0, .south_west = {}}, kNone);
   z[{100, 1}] = 0.0F;
   z[{150, 1}] = -25.0F;

@@ -13,7 +13,7 @@ namespace danger_watch_test {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-WheelReading level(double slip, double sinkage_over_radius, double torque_Nm = kNone) {
+TelemetryReading level(double slip, double sinkage_over_radius, double torque_Nm = kNone) {
   return {.place = {},
           .load_N = terramech::wheelLoad_N(testRover()),
           .slip = slip,
@@ -22,7 +22,7 @@ WheelReading level(double slip, double sinkage_over_radius, double torque_Nm = k
           .drawbar_pull_N = kNone};
 }
 
-TEST(DangerWatch, OrdinaryReadingsBoundNothing) {
+TEST(DangerWatch, OrdinaryReadingsYieldNoBound) {
   const auto model = testGround();
   for (const double slip : {-1.0, -0.2, 0.3, 0.69, kNone, -kInfinite})
     for (const double z : {0.0, 0.49, kNone})
@@ -30,7 +30,7 @@ TEST(DangerWatch, OrdinaryReadingsBoundNothing) {
 }
 
 // Closed form: tan(slope - margin) is where ground of that slope is dangerous.
-TEST(DangerWatch, EachChannelSpeaksForItself) {
+TEST(DangerWatch, EachChannelBoundsIndependently) {
   const auto model = testGround();
   const DangerWatch watch(*model);
   const double margin = model->parts().policy.slope_margin_rad;
@@ -39,11 +39,11 @@ TEST(DangerWatch, EachChannelSpeaksForItself) {
   EXPECT_LT(watch.hear(0, level(0.85, kNone), 0.0).most_pull, level_limit);
   EXPECT_LT(watch.hear(0, level(0.1, kNone, 99.0), 0.0).most_pull, level_limit);
   EXPECT_LT(watch.hear(0, level(0.1, kNone, kInfinite), 0.0).most_pull, level_limit);
-  for (const WheelReading& held :
+  for (const TelemetryReading& held :
        {level(0.93, kNone), level(kInfinite, kNone), level(1.2, 0.0), level(0.1, 0.8), level(kNone, 0.8),
         level(0.1, 2.3), level(0.1, kInfinite)})
     EXPECT_LT(watch.hear(0, held, 0.3).most_pull, never) << held.slip << ' ' << held.sinkage_m;
-  WheelReading spinning = level(kNone, kNone);
+  TelemetryReading spinning = level(kNone, kNone);
   spinning.speed_slip = 0.95;
   EXPECT_LT(watch.hear(0, spinning, 0.3).most_pull, never);
   const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
@@ -55,12 +55,12 @@ TEST(DangerWatch, EachChannelSpeaksForItself) {
 
 // Closed form: at its slip ground of the class would have climbed at(slip); what the slope was less than that the ground
 // is weaker, but for two standard deviations, 0.05. In a rut the class's rut is what it would have climbed.
-TEST(DangerWatch, FromSlip07OnTheSlopeBoundsThePull) {
+TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
   const auto model = testGround();
   const DangerWatch watch(*model);
   for (const double slip : {0.7, 0.72, 0.79})
     for (const int pass : {1, 3}) {
-      WheelReading reading = level(slip, kNone);
+      TelemetryReading reading = level(slip, kNone);
       reading.pass = pass;
       const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
       EXPECT_NEAR(watch.hear(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05, 1e-12);
@@ -70,7 +70,7 @@ TEST(DangerWatch, FromSlip07OnTheSlopeBoundsThePull) {
 }
 
 // Closed form: two standard deviations of the reading and of the class together.
-TEST(DangerWatch, ASuspectedPullBoundsTheGroundFarBelowItsClass) {
+TEST(DangerWatch, SuspectedPullFarBelowTheClassBounds) {
   const auto model = testGround();
   const double prior = model->prior(0).pull.value, class_std = model->parts().classes[0].pull_std;
   const double far = 2.0 * std::hypot(0.05, class_std);
@@ -86,7 +86,7 @@ TEST(DangerWatch, ASuspectedPullBoundsTheGroundFarBelowItsClass) {
 }
 
 // Property: more slip, more sinkage and less slope never bound less.
-TEST(DangerWatch, IsMonotone) {
+TEST(DangerWatch, BoundsAreMonotoneInSlipSinkageAndSlope) {
   const auto model = testGround();
   const DangerWatch watch(*model);
   const auto most = [](const GroundBound& b) { return std::isnan(b.most_pull) ? 9.0 : b.most_pull; };

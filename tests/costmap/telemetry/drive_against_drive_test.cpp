@@ -56,7 +56,7 @@ class OneFaultyDrive : public ::testing::TestWithParam<Fault> {};
 
 // Property: of what a sound drive takes from the class a faulty one gives back 5 in 100 at most, where the sound one read little; in
 // either order the same, to the bit. (Where the readings of all drives count as one it gives back 84, 86, 7 and 89 in 100.)
-TEST_P(OneFaultyDrive, FreesNothingThatASoundOneRefused) {
+TEST_P(OneFaultyDrive, DoesNotRaiseWhatASoundDriveLowered) {
   TraversabilityMap sound = sand(), both = sand(), turned = sand();
   const Drive first = soundDrive(sound, 1);
   Drive second = soundDrive(sound, 2);
@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Each, GentleDrive,
                          [](const auto& each) { return each.param.name; });
 
 // Property: a journal's replay tells drives apart as the telemetry did, to the bit.
-TEST(DriveAgainstDrive, AJournalTellsThemApart) {
+TEST(DriveAgainstDrive, JournalReplayDistinguishesDrives) {
   const std::string path = ::testing::TempDir() + "drive_against_drive.db";
   std::filesystem::remove(path);
   TraversabilityMap map = sand(), again = sand();
@@ -147,7 +147,7 @@ TEST(DriveAgainstDrive, AJournalTellsThemApart) {
 }
 
 // Property: slip that is read too small from half way on raises nothing, and the finding says why and what to do.
-TEST(DriveAgainstDrive, ASensorThatStepsOnTheWayRaisesNothing) {
+TEST(DriveAgainstDrive, SlipBiasFromMidDriveRaisesNothing) {
   TraversabilityMap map = sand();
   const TraversabilityMap before = sand();
   Drive drive = soundDrive(map, 1);

@@ -109,7 +109,7 @@ std::vector<Row> afterGoodRows(const std::vector<Row>& last, bool with_slope) {
   return rows;
 }
 
-TEST(Danger, OfOneChannelRefusesItsPlaceWhateverElseIsMissing) {
+TEST(Danger, OneDangerousChannelRefusesThePlaceWithOthersMissing) {
   const std::vector<std::vector<Row>> logs{
       {{0, 0, 0.95}, {1, 0, 0.95}},
       {{0, 0, 0.93}, {1, 0, 1.0}},
@@ -131,7 +131,7 @@ TEST(Danger, OfOneChannelRefusesItsPlaceWhateverElseIsMissing) {
 
 // Property: where the map has no elevation or no class, danger refuses the place and what lies within the error of the pose, unknown
 // ground allowed or not, and keeps it refused when the ground is patched in: by its class where that is known.
-TEST(Danger, OfUnobservedGroundIsKeptUntilItIsSeenAndAfter) {
+TEST(Danger, DangerOnUnobservedGroundIsRetainedAfterPatching) {
   for (const bool allow_unknown : {false, true})
     for (const char hole : {'?', '9'})
       for (const bool by_sinkage : {false, true}) {
@@ -159,7 +159,7 @@ TEST(Danger, OfUnobservedGroundIsKeptUntilItIsSeenAndAfter) {
       }
 }
 
-TEST(Danger, OfDeepWheelsAtLittleSlipRefuses) {
+TEST(Danger, DeepSinkageAtLowSlipRefusesThePlace) {
   for (const terramech::Rover& rover : rovers())
     for (const double z : {0.85, 0.9, 1.08, 1.9})
       for (const double slip : {0.1, 0.2}) {
@@ -173,7 +173,7 @@ TEST(Danger, OfDeepWheelsAtLittleSlipRefuses) {
 }
 
 // Standing, reversing and a thousand good rows at the place itself.
-TEST(Danger, NothingReadAfterwardsFreesThePlace) {
+TEST(Danger, LaterReadingsDoNotRemoveARefusal) {
   for (const double slip_after : {0.0, -0.1, 0.05}) {
     TraversabilityMap map = plain(testRover(), testSand());
     std::vector<Row> rows = afterGoodRows({{.time_s = 0, .x_m = 0, .slip = 0.95, .slope_rad = 0.0}}, true);
@@ -189,7 +189,7 @@ TEST(Danger, NothingReadAfterwardsFreesThePlace) {
 }
 
 // What carries DP/W -0.05 lets a wheel spin on the level: a thousand such rows must not average to a mean that passes.
-TEST(Danger, NumbersDoNotAverageItAway) {
+TEST(Danger, ManyDangerousReadingsDoNotAverageOut) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise(0.0, 0.01);
   TraversabilityMap map = plain(testRover(), testSand());
@@ -206,7 +206,7 @@ TEST(Danger, NumbersDoNotAverageItAway) {
 
 // Property: one wheel of six meets pits, its fellows none. All of its pits are refused, in any order of the rows of a
 // moment, and after a spike.
-TEST(Danger, EachPitOfOneWheelIsRefused) {
+TEST(Danger, EveryPitOfOneWheelIsRefused) {
   const terramech::Rover rover = rovers()[1];
   std::mt19937_64 random(8);
   for (int trial = 0; trial < 5; ++trial) {
@@ -240,7 +240,7 @@ TEST(Danger, EachPitOfOneWheelIsRefused) {
 }
 
 // Property: the order of rows within a moment does not show in any cell.
-TEST(Danger, TheOrderOfAMomentsRowsDoesNotShow) {
+TEST(Danger, ResultIsIndependentOfRowOrderWithinAMoment) {
   const terramech::Rover rover = rovers()[1];
   std::mt19937_64 random(4);
   std::vector<Row> sorted, shuffled;
@@ -271,7 +271,7 @@ TEST(Danger, TheOrderOfAMomentsRowsDoesNotShow) {
 }
 
 // A sensor that the others contradict: its place is refused, no other ground is believed to be weaker.
-TEST(Danger, OfASuspectedReadingSpreadsNothingAndTeachesNothing) {
+TEST(Danger, SuspectedReadingRefusesOnlyItsPlace) {
   const std::vector<Row> calm = afterGoodRows({}, true), spike = afterGoodRows({{0, 0, 0.95}}, true);
   TraversabilityMap before = plain(testRover(), testSand()), after = plain(testRover(), testSand());
   addDrive(before, tableOf(calm));
@@ -286,7 +286,7 @@ TEST(Danger, OfASuspectedReadingSpreadsNothingAndTeachesNothing) {
 }
 
 // Rows that no fit may use: each holds one number that is danger, and mostly one that is no number.
-TEST(Danger, OfARowThatTheReaderRejectsCountsAndIsReplayed) {
+TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
   const std::string path = std::filesystem::temp_directory_path() / ("danger" + std::to_string(::getpid()));
   const double radius_m = testRover().wheel.radius_m;
   for (const auto& [slip, sinkage_m, heading_rad] :
@@ -316,7 +316,7 @@ TEST(Danger, OfARowThatTheReaderRejectsCountsAndIsReplayed) {
 
 // A row that was rejected may have any heading wrong: what it says is taken as read straight downhill, and so the place is
 // refused downhill, too, where a reading uphill would leave it.
-TEST(Danger, OfARejectedRowTrustsNoHeading) {
+TEST(Danger, RejectedRowIsAssumedToBeDownhill) {
   for (const bool rejected : {false, true}) {
     terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));
     if (rejected) {
@@ -337,7 +337,7 @@ TEST(Danger, OfARejectedRowTrustsNoHeading) {
 
 // Property: a channel that is danger refuses its place, whatever the row's other numbers are: missing, infinite, the
 // greatest double, or plausible and impossible. In rows that the reader rejects, and in those that it takes.
-TEST(Danger, OfAChannelIsHeardWhateverElseTheRowSays) {
+TEST(Danger, DangerousChannelRefusesThePlaceForAnyOtherValues) {
   constexpr double kMost = std::numeric_limits<double>::max();
   const std::vector<double> any{0.0, kNone, kInfinite, -kInfinite, kMost, -kMost, 1e300, -1e300, 1e-320};
   const std::vector<double> plausible{kNone, 0.0, 1e-14, -1e-14, 1e14, -1e14, 1.5707963, -1.5707963, 3.0};

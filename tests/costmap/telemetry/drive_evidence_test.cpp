@@ -55,7 +55,7 @@ std::string bytesOf(const TraversabilityMap& map) {
   return stream.str();
 }
 
-TEST(AddDrive, DustDrivenAsSandIsLearnedAsWeak) {
+TEST(AddDrive, DustDrivenAsSandIsEstimatedAsWeak) {
   TraversabilityMap map = mapOf(wide());
   const GroundBelief before = *map.ground({30, 30});
   const DriveReport report = addDrive(map, drive());
@@ -75,7 +75,7 @@ terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, st
 }
 
 // Property: the order of rows and a wrong clock lose no weak ground.
-TEST(AddDrive, ADriveTheOtherWayRoundOrWithAWrongClockIsLearnedAsWeak) {
+TEST(AddDrive, WeakGroundIsDetectedForReversedRowsAndWrongClock) {
   TraversabilityMap forward = mapOf(wide());
   addDrive(forward, drive());
   terramech::Telemetry reversed = drive(), late = drive(), back = drive();
@@ -98,7 +98,7 @@ TEST(AddDrive, ADriveTheOtherWayRoundOrWithAWrongClockIsLearnedAsWeak) {
   }
 }
 
-TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {
+TEST(DriveIntake, PartsEqualTheWhole) {
   TraversabilityMap whole = mapOf(wide()), parts = mapOf(wide());
   const DriveReport expected = addDrive(whole, drive());
   DriveIntake intake(parts);
@@ -112,7 +112,7 @@ TEST(DriveIntake, PartsTeachWhatTheWholeDoes) {
 }
 
 // A log that was sent while it grew counted its first rows again each time.
-TEST(AddDrive, AFileThatGrewAddsItsNewRowsAlone) {
+TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("grown" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   TraversabilityMap whole = mapOf(wide()), grown = mapOf(wide()), rebuilt = mapOf(wide());
@@ -170,7 +170,7 @@ terramech::Telemetry climb(bool told) {
   return out;
 }
 
-TEST(AddDrive, LoadTransferIsWorkedOutWhereTheFileLeavesItOut) {
+TEST(AddDrive, LoadTransferIsComputedIfTheFileOmitsIt) {
   TraversabilityMap right = mapOf(wide()), even = mapOf(wide());
   const std::string nothing_raises =
       "no row may raise an estimate: slopes vary by less than 0.03 (standard deviation of the gradient); "
@@ -183,7 +183,7 @@ TEST(AddDrive, LoadTransferIsWorkedOutWhereTheFileLeavesItOut) {
   EXPECT_NEAR(even.ground({24, 30})->pull.value, right.ground({24, 30})->pull.value, 1e-6);
 }
 
-TEST(Replay, RebuildsTheMapFromTheJournalToTheBit) {
+TEST(Replay, ReplayRebuildsTheMapExactly) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("replay" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   TraversabilityMap map = mapOf(wide()), rebuilt = mapOf(wide());

@@ -29,7 +29,7 @@ terramech::Telemetry table() {
 
 // Property: the order of columns, columns that no map learns from and empty ones are not the drive's. Such a file counted
 // for a second time.
-TEST(DriveId, IsOfWhatIsUsedInAnyOrder) {
+TEST(DriveId, IdIsIndependentOfColumnOrderAndUnusedColumns) {
   const std::string id = driveId(table());
   terramech::Telemetry turned = table();
   std::ranges::reverse(turned.numbers);
@@ -53,7 +53,7 @@ TEST(DriveId, IsOfWhatIsUsedInAnyOrder) {
 }
 
 // Property: whatever used value differs is another drive, in rejected rows, too, and so is another order of rows.
-TEST(DriveId, IsOfEveryUsedValue) {
+TEST(DriveId, IdDependsOnEveryUsedValue) {
   std::set<std::string> ids{driveId(table())};
   std::size_t tables = 1;
   const auto add = [&](auto&& change) {
@@ -75,7 +75,7 @@ TEST(DriveId, IsOfEveryUsedValue) {
 }
 
 // Property: a drive in parts is that drive.
-TEST(DriveId, IsTheSameHoweverDivided) {
+TEST(DriveId, IdIsIndependentOfDivision) {
   terramech::Telemetry first = table(), second = table();
   for (auto* columns : {&first.numbers, &second.numbers})
     for (auto& column : *columns) column.values.erase(column.values.begin() + (columns == &first.numbers));

@@ -60,7 +60,7 @@ terramech::Soil soilOf(unsigned seed) {
 
 // Property: settled, a drive in any parts leaves the map and the journal of the same rows as one file, to the bit; also where
 // it was settled on the way.
-TEST(DriveParts, SettledTheyTeachWhatTheWholeDoes) {
+TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("talus_drive_parts_" + std::to_string(::getpid()) + ".db"))
           .string();
@@ -93,7 +93,7 @@ TEST(DriveParts, SettledTheyTeachWhatTheWholeDoes) {
 // Property: where nothing is settled, no sensor is biased and time does not decrease, how a drive is divided does not show.
 // Pinned: by what comes to be known of the sensors, and of the strength of all ground, later it lies up to 0.035 in DP/W from the whole, to
 // either side.
-TEST(DriveParts, UnsettledTheyTeachTheSameHoweverDivided) {
+TEST(DriveParts, UnsettledPartsAreIndependentOfDivision) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     std::mt19937_64 random(seed);
     TraversabilityMap whole = sand(), few = sand(), many = sand();
@@ -116,7 +116,7 @@ TEST(DriveParts, UnsettledTheyTeachTheSameHoweverDivided) {
   }
 }
 
-TEST(DriveParts, RowsThatAreNotKeptAreNotSettled) {
+TEST(DriveParts, SettlingRequiresRetainedRows) {
   TraversabilityMap map = sand();
   DriveIntake intake(map);
   EXPECT_REFUSED(intake.settle(), std::logic_error, "IntakeOptions::settles = false, must be true to settle");

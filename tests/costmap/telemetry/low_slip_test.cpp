@@ -124,7 +124,7 @@ terramech::WheelForces onWheel(const terramech::Soil& soil, double slip) {
 // Property: of ground that is weaker than its class, read at slips from 0.05 to 0.45 with the errors of good sensors, one
 // reading is stronger than the truth by more than its deviation, and by 1.645 of it, no more often than the normal
 // distribution has (0.16 and 0.05); with torque and sinkage and without.
-TEST(LowSlip, AReadingOfWeakGroundPromisesNoMoreThanItsDeviation) {
+TEST(LowSlip, SingleReadingOnWeakGroundIsCalibrated) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
   for (const terramech::SoilPrior& prior : priors()) {
@@ -140,12 +140,13 @@ TEST(LowSlip, AReadingOfWeakGroundPromisesNoMoreThanItsDeviation) {
         const double slip = uniform(random), truth = onWheel(soil, kReferenceSlip).drawbar_pull_N / load_N;
         const terramech::WheelForces at = onWheel(soil, slip);
         const double none = std::numeric_limits<double>::quiet_NaN();
-        const WheelReading reading{.load_N = load_N,
-                                   .slip = slip + 0.03 * normal(random),
-                                   .torque_Nm = felt ? at.torque_Nm * (1.0 + 0.03 * normal(random)) : none,
-                                   .sinkage_m = felt ? at.sinkage_m * (1.0 + 0.03 * normal(random)) : none,
-                                   .gradient = at.drawbar_pull_N / load_N + 0.01 * normal(random),
-                                   .drawbar_pull_N = none};
+        const TelemetryReading reading{
+            .load_N = load_N,
+            .slip = slip + 0.03 * normal(random),
+            .torque_Nm = felt ? at.torque_Nm * (1.0 + 0.03 * normal(random)) : none,
+            .sinkage_m = felt ? at.sinkage_m * (1.0 + 0.03 * normal(random)) : none,
+            .gradient = at.drawbar_pull_N / load_N + 0.01 * normal(random),
+            .drawbar_pull_N = none};
         if (truth >= model->prior(0).pull.value) continue;
         const auto seen = observer.observe(0, reading);
         ASSERT_TRUE(seen);
@@ -163,7 +164,7 @@ TEST(LowSlip, AReadingOfWeakGroundPromisesNoMoreThanItsDeviation) {
 // Property: of soils drawn about their class and driven at slips up to 0.45, the pull at the reference slip, and the
 // steepest slope that is driven beyond it, are too high by more than the stated deviation, and by 1.645 of it, in no more
 // worlds than the normal distribution has (0.16 and 0.05; two deviations of the count are allowed).
-TEST(LowSlip, PromisesNoMoreThanItsDeviation) {
+TEST(LowSlip, PullAndMaximumSlopeAreCalibrated) {
   std::mt19937_64 random(5);
   std::array<std::array<int, 2>, kCells.size()> above{}, beyond{};
   int worlds = 0;
@@ -173,7 +174,7 @@ TEST(LowSlip, PromisesNoMoreThanItsDeviation) {
     for (int i = 0; i < 12; ++i, ++worlds) {
       const terramech::Soil truth = drawn(prior, random);
       const terramech::MobilityCurve own(truth, testRover());
-      const double pull = own.reference().drawbar_pull_over_load, steepest = ExpectedDrive(own).last();
+      const double pull = own.reference().drawbar_pull_over_load, steepest = ExpectedTravel(own).last();
       const TraversabilityMap map =
           driven(model, height_m, truth, {.felt = i % 2 == 0, .seed = 100U + static_cast<unsigned>(i)});
       for (std::size_t c = 0; c < kCells.size(); ++c) {
@@ -198,7 +199,7 @@ TEST(LowSlip, PromisesNoMoreThanItsDeviation) {
 
 // Property: of ground that is weaker by strength a reading at little slip says what it is at the reference slip; its
 // departure at its slip is far less than that.
-TEST(LowSlip, WeakGroundIsSeenAsItIsAtTheReferenceSlip) {
+TEST(LowSlip, StrengthDeficitIsExtrapolatedToTheReferenceSlip) {
   for (const terramech::SoilPrior& prior : {priors()[0], priors()[1], firm()}) {
     const auto model = modelOf(prior);
     const terramech::Rover rover = testRover();
@@ -228,7 +229,7 @@ TEST(LowSlip, WeakGroundIsSeenAsItIsAtTheReferenceSlip) {
 // Property: a drive at little slip leaves the chance that 12 degrees are too steep, which they are, at 0.85 of what it was or
 // more where the soil is several deviations off its class, weaker and quicker to give its strength, or where its slip is read
 // too small. (No reading can know a modulus that the class does not know; 0.4 to 0.85 of it was left by the shift.)
-TEST(LowSlip, WhatTellsLittleLowersNoRisk) {
+TEST(LowSlip, LowSlipDriveDoesNotReduceRiskOnSteepSlopes) {
   const auto model = modelOf(firm());
   const auto soil = [](double friction_rad, double modulus_m) {
     terramech::Soil out = firm().mean;

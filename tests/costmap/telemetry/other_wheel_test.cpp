@@ -43,7 +43,7 @@ std::size_t findings(const DriveReport& report) {
   return count;
 }
 
-TEST(OwnWheel, Raises) {
+TEST(OwnWheel, ReadingsOfTheRoverWheelRaiseEstimates) {
   const TraversabilityMap before = sand();
   TraversabilityMap silent = sand(), stated = sand();
   terramech::Telemetry table = drive();
@@ -57,7 +57,7 @@ TEST(OwnWheel, Raises) {
 }
 
 // Property: one finding, and no cell is better in mean or tail.
-TEST(OtherWheel, RaisesNothing) {
+TEST(OtherWheel, ReadingsOfAnotherWheelRaiseNothing) {
   const TraversabilityMap before = sand();
   for (const char* column : {"wheel_radius_m", "wheel_width_m", "load_N"}) {
     terramech::Telemetry table = drive();
@@ -78,7 +78,7 @@ TEST(OtherWheel, RaisesNothing) {
 }
 
 // Property: the journal of a light rover raises nothing for a heavy one; nor do rows that do not say whose they are.
-TEST(OtherJournal, RaisesNothing) {
+TEST(OtherJournal, JournalOfAnotherRoverRaisesNothing) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("other" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   {

@@ -21,7 +21,7 @@ Response lineOf(double slope, double scatter, int pairs, double spread = 0.3) {
   return out;
 }
 
-TEST(Response, FollowsWhereTheSlopeStandsOut) {
+TEST(Response, FollowsRequiresASignificantSlope) {
   EXPECT_TRUE(lineOf(0.5, 0.02, 60).follows(kClaim));
   EXPECT_FALSE(lineOf(0.5, 0.02, 11).follows(kClaim)) << "too few";
   EXPECT_FALSE(lineOf(0.0, 0.02, 60).follows(kClaim)) << "stuck";
@@ -30,7 +30,7 @@ TEST(Response, FollowsWhereTheSlopeStandsOut) {
   EXPECT_FALSE(lineOf(0.5, 0.0, 60, 0.05).follows(kClaim)) << "the cause hardly varies";
 }
 
-TEST(Response, LeavesOutWhatIsNotKnown) {
+TEST(Response, NanPairsAreIgnored) {
   Response out;
   out.add(std::nan(""), 1.0);
   out.add(1.0, std::nan(""));
@@ -43,7 +43,7 @@ TEST(Response, LeavesOutWhatIsNotKnown) {
 }
 
 // Property: what follows for a hundred rows and then stands still follows as a whole, but not of late.
-TEST(ResponseSeries, SeesWhatChangedOfLate) {
+TEST(ResponseSeries, RecentWindowDetectsALateChange) {
   ResponseSeries series;
   for (int i = 0; i < 150; ++i) {
     const double cause = 0.2 * std::sin(0.4 * i);
@@ -54,7 +54,7 @@ TEST(ResponseSeries, SeesWhatChangedOfLate) {
   EXPECT_GE(series.recent(0.05).size(), 24U);
 }
 
-TEST(ResponseSeries, GoesBackUntilTheCauseVaries) {
+TEST(ResponseSeries, RecentWindowExtendsUntilTheCauseVaries) {
   ResponseSeries series;
   for (int i = 0; i < 20; ++i) series.add(0.2 * (i % 2), 0.2 * (i % 2));
   for (int i = 0; i < 60; ++i) series.add(0.1, 0.1);

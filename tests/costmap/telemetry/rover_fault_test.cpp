@@ -112,7 +112,7 @@ const std::vector<RoverFault>& faults() {
 class OneFaultyRoverSensor : public ::testing::TestWithParam<RoverFault> {};
 
 // Property: the ground is as weak as its class or weaker, and the map knows its class: nothing is freed.
-TEST_P(OneFaultyRoverSensor, FreesNothing) {
+TEST_P(OneFaultyRoverSensor, FaultyRoverSensorRaisesNothing) {
   for (const int wheels : {4, 6})
     for (const terramech::Soil& truth : {weakSand(), weakerSand()}) {
       const TraversabilityMap before = mapOf(weakSand(), wheels);
@@ -127,7 +127,7 @@ TEST_P(OneFaultyRoverSensor, FreesNothing) {
 INSTANTIATE_TEST_SUITE_P(Each, OneFaultyRoverSensor, ::testing::ValuesIn(faults()),
                          [](const auto& one) { return std::string(one.param.name); });
 
-TEST(SoundRover, LearnsThatGroundIsFirmer) {
+TEST(SoundRover, SoundDriveRaisesEstimatesOnFirmerGround) {
   for (const int wheels : {4, 6}) {
     const TraversabilityMap before = mapOf(weakSand(), wheels);
     TraversabilityMap after = mapOf(weakSand(), wheels);
@@ -138,7 +138,7 @@ TEST(SoundRover, LearnsThatGroundIsFirmer) {
   }
 }
 
-TEST(SoundRover, LearnsThatGroundIsWeaker) {
+TEST(SoundRover, SoundDriveLowersEstimatesOnWeakerGround) {
   const TraversabilityMap before = mapOf(testSand(), 6);
   TraversabilityMap after = mapOf(testSand(), 6);
   addDrive(after, tableOf(driveOver(before, weakerSand(), 1)));

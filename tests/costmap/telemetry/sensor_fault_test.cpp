@@ -99,7 +99,7 @@ int raised(const TraversabilityMap& before, const TraversabilityMap& after) {
   return cells;
 }
 
-TEST(FaultyDrive, ASoundDriveOverSeveralPlacesRaises) {
+TEST(FaultyDrive, SoundDriveOverSeveralPlacesRaisesEstimates) {
   const TraversabilityMap before = hills();
   TraversabilityMap after = hills();
   const DriveReport report = addDrive(after, tableOf(soundDrive(before)));
@@ -116,7 +116,7 @@ struct Fault {
 
 class SensorFault : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(SensorFault, RaisesNothing) {
+TEST_P(SensorFault, FaultySensorRaisesNothing) {
   const TraversabilityMap before = hills();
   TraversabilityMap after = hills();
   std::vector<Row> rows = soundDrive(before);
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(One, SensorFault,
                          [](const auto& one) { return std::string(one.param.name); });
 
 // Property: a bias of slip of any size makes nothing better than it was believed to be, or than a sound sensor makes it.
-TEST(FaultyDrive, ABiasOfSlipRaisesNothingBeyondASoundSensor) {
+TEST(FaultyDrive, SlipBiasRaisesNothingBeyondASoundSensor) {
   const TraversabilityMap before = hills();
   for (const terramech::Soil& soil : {firmerSand(), testSand()})
     for (const double bias : {-0.2, -0.08, -0.03, 0.05}) {
@@ -194,7 +194,7 @@ TEST(FaultyDrive, ABiasOfSlipRaisesNothingBeyondASoundSensor) {
 }
 
 // Torque and sinkage sensors alone raise nothing beyond what slip and slope do.
-TEST(FaultyDrive, TorqueAndSinkageRaiseNothingByThemselves) {
+TEST(FaultyDrive, TorqueAndSinkageAloneRaiseNothing) {
   const TraversabilityMap before = hills();
   for (const double torque : {1.3, 1.0, 0.0})
     for (const double sinkage : {1.0, 0.2, 0.0}) {
@@ -217,7 +217,7 @@ TEST(FaultyDrive, TorqueAndSinkageRaiseNothingByThemselves) {
 }
 
 // Property: rows of danger that are put into a drive anywhere make no ground better than the drive without them.
-TEST(FaultyDrive, RowsOfDangerRaiseNothing) {
+TEST(FaultyDrive, DangerousRowsRaiseNothing) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (int trial = 0; trial < 3; ++trial) {
@@ -240,7 +240,7 @@ TEST(FaultyDrive, RowsOfDangerRaiseNothing) {
 }
 
 // Property: two rows of a trap in the middle of a sound drive: the ground there is weaker for it.
-TEST(FaultyDrive, ATrapThatLooksLikeASpikeCounts) {
+TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimateDespiteSpikeFilter) {
   TraversabilityMap before = hills(), after = hills();
   std::vector<Row> rows = soundDrive(before);
   addDrive(before, tableOf(rows));
@@ -257,7 +257,7 @@ TEST(FaultyDrive, ATrapThatLooksLikeASpikeCounts) {
 
 // Property: wheels sunk 0.85 r at little slip contradict the slope and look like a datum that is off; the depth
 // counts all the same.
-TEST(FaultyDrive, DeepWheelsAtLittleSlipCount) {
+TEST(FaultyDrive, DeepSinkageAtLowSlipLowersTheEstimate) {
   const TraversabilityMap before = hills();
   TraversabilityMap after = hills();
   std::vector<Row> rows = soundDrive(before);

@@ -8,7 +8,7 @@
 namespace talus::costmap {
 namespace sensor_watch_test {
 
-WheelReading at(double time_s, double slip) {
+TelemetryReading at(double time_s, double slip) {
   return {.time_s = time_s,
           .place = {},
           .load_N = 50.0,
@@ -17,14 +17,14 @@ WheelReading at(double time_s, double slip) {
           .sinkage_m = 0.01};
 }
 
-TEST(SensorWatch, BelievesAQuietDrive) {
+TEST(SensorWatch, QuietDriveIsAccepted) {
   const auto model = testGround();
   SensorWatch watch(*model);
   for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3))).has_value());
   EXPECT_TRUE(watch.findings().empty());
 }
 
-TEST(SensorWatch, SeesStuckValuesAndSpikes) {
+TEST(SensorWatch, StuckValuesAndSpikesAreRejected) {
   const auto model = testGround();
   SensorWatch watch(*model, {.stuck_rows = 8});
   for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
@@ -37,7 +37,7 @@ TEST(SensorWatch, SeesStuckValuesAndSpikes) {
 }
 
 // Property: rows whose time decreases are as good as others, or a file in another order would lose its weak ground.
-TEST(SensorWatch, ASeriesBeginsAnewWhereTimeDecreases) {
+TEST(SensorWatch, DecreasingTimeStartsANewSeries) {
   const auto model = testGround();
   SensorWatch watch(*model, {.stuck_rows = 8});
   for (int i = 0; i < 40; ++i) {
@@ -52,10 +52,10 @@ TEST(SensorWatch, ASeriesBeginsAnewWhereTimeDecreases) {
 }
 
 // One sensor of several stands still; one that is rounded to few steps may.
-TEST(SensorWatch, OneSensorThatStandsStillIsNamed) {
+TEST(SensorWatch, SingleStuckSensorIsNamed) {
   const auto model = testGround();
   const auto reading = [](int i) {
-    WheelReading r = at(0.1 * i, 0.1 + 0.001 * (i % 7));
+    TelemetryReading r = at(0.1 * i, 0.1 + 0.001 * (i % 7));
     r.torque_Nm = 0.5 + 0.003 * (i % 11);
     r.sinkage_m = 0.001 * (i / 40);  // in whole millimetres
     return r;
@@ -64,7 +64,7 @@ TEST(SensorWatch, OneSensorThatStandsStillIsNamed) {
   for (int i = 0; i < 40; ++i) EXPECT_FALSE(watch.refuse("w", reading(i)).has_value()) << i;
   int believed = 0;
   for (int i = 40; i < 100; ++i) {
-    WheelReading r = reading(i);
+    TelemetryReading r = reading(i);
     r.torque_Nm = 0.51;
     const auto reason = watch.refuse("w", r);
     believed += reason ? 0 : 1;
@@ -74,7 +74,7 @@ TEST(SensorWatch, OneSensorThatStandsStillIsNamed) {
   EXPECT_FALSE(watch.refuse("w", reading(100)).has_value()) << "it moves again";
 }
 
-TEST(SensorWatch, SlipThatAllGroundSharesIsReported) {
+TEST(SensorWatch, SlipExcessCommonToAllGroundIsReported) {
   const auto model = testGround();
   SensorWatch shared(*model), scattered(*model), little(*model);
   for (int i = 0; i < 40; ++i) {
@@ -89,7 +89,7 @@ TEST(SensorWatch, SlipThatAllGroundSharesIsReported) {
   EXPECT_FALSE(little.slipExcess().has_value());
 }
 
-TEST(SensorWatch, AStepThatStaysIsGroundNotASpike) {
+TEST(SensorWatch, PersistentStepIsNotASpike) {
   const auto model = testGround();
   SensorWatch watch(*model);
   for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
@@ -98,7 +98,7 @@ TEST(SensorWatch, AStepThatStaysIsGroundNotASpike) {
   EXPECT_LE(refused, 3);  // Closed form: a median of five follows after three
 }
 
-TEST(SensorWatch, AnOffsetInTheTorqueShowsAgainstTheSlope) {
+TEST(SensorWatch, TorqueOffsetIsDetectedAgainstTheSlope) {
   const auto model = testGround();
   SensorWatch watch(*model);
   for (int i = 0; i < 40; ++i)
@@ -108,27 +108,27 @@ TEST(SensorWatch, AnOffsetInTheTorqueShowsAgainstTheSlope) {
   EXPECT_EQ(watch.findings().size(), 1U);
 }
 
-TEST(SensorWatch, NoDrivenWheelSlipsBackwardsOnAClimb) {
+TEST(SensorWatch, NegativeSlipOfADrivenWheelUphillIsRejected) {
   const auto model = testGround();
   SensorWatch watch(*model);
-  WheelReading up = at(1.0, -0.1);
+  TelemetryReading up = at(1.0, -0.1);
   up.gradient = 0.1;
   EXPECT_NE(watch.refuse("w", up).value_or("").find("biased"), std::string::npos);
-  WheelReading down = at(2.0, -0.1);
+  TelemetryReading down = at(2.0, -0.1);
   down.gradient = -0.1;
   EXPECT_FALSE(watch.refuse("w", down).has_value()) << "braking downhill is no lie";
-  WheelReading pushed = at(3.0, -0.1);
+  TelemetryReading pushed = at(3.0, -0.1);
   pushed.gradient = 0.1;
   pushed.torque_Nm = -1.0;
   EXPECT_FALSE(watch.refuse("w", pushed).has_value()) << "a braked wheel may be pushed";
 }
 
-TEST(SensorWatch, CountsGapsAndDropouts) {
+TEST(SensorWatch, GapsAndDropoutsAreCounted) {
   const auto model = testGround();
   SensorWatch watch(*model);
   double time_s = 0.0;
   for (int i = 0; i < 60; ++i) {
-    WheelReading r = at(time_s, 0.1 + 0.01 * (i % 3));
+    TelemetryReading r = at(time_s, 0.1 + 0.01 * (i % 3));
     if (i % 20 == 19) r.torque_Nm = std::nan("");
     EXPECT_FALSE(watch.refuse("w", r).has_value()) << i;
     time_s += i == 40 ? 7.5 : 0.1;
@@ -139,7 +139,7 @@ TEST(SensorWatch, CountsGapsAndDropouts) {
   EXPECT_EQ(lines[1], "1 gaps in time, the longest of 7.500000 s");
 }
 
-TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
+TEST(SensorWatch, JumpAtAllWheelsIsNotASpike) {
   const auto model = testGround();
   SensorWatch watch(*model);
   const auto moment = [&](double time_s, double left, double right) {
@@ -153,7 +153,7 @@ TEST(SensorWatch, WhatJumpsAtAllWheelsIsTheRover) {
   EXPECT_FALSE(both[0].has_value());
   EXPECT_FALSE(both[1].has_value());
   // A wheel that is refused for another reason has no say.
-  WheelReading backwards = at(4.0, -0.5);
+  TelemetryReading backwards = at(4.0, -0.5);
   backwards.gradient = 0.3;
   const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"rear", backwards}});
   EXPECT_FALSE(three[0].has_value()) << three[0].value_or("");

@@ -11,7 +11,7 @@
 #include <rover_drive.hpp>
 #include <site_map.hpp>
 
-#include <talus/costmap/evidence/class_lessons.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/costmap/telemetry/slip_fit.hpp>
 
@@ -49,7 +49,7 @@ float risk(const TraversabilityMap& map, maps::Cell cell) {
 
 // Property: by a slip that is read too small, weak ground is no safer than before the drive: where it was driven, beside
 // that, nor elsewhere.
-TEST(SharedError, OfTheSlipOfAllWheelsLowersNoRisk) {
+TEST(SharedError, UnderreadSlipOfAllWheelsLowersNoRisk) {
   const TraversabilityMap before = sand();
   for (const terramech::Soil& truth : {weakerBy(400.0, 0.1), weakerBy(700.0, 0.2)})
     for (const auto& [scale, shift] : {std::pair(1.0, -0.1), {1.0, -0.2}, {1.0, -0.25}, {0.5, 0.0}}) {
@@ -88,7 +88,7 @@ Shared sharedAt(const GroundModel& model, double slip, bool in_rut, double of_se
 }
 
 // The slip sensor of a drive (SlipFit, which is tested by itself).
-std::shared_ptr<const FittedDrive> sensorOf(const GroundModel& model, const Drive& drive) {
+std::shared_ptr<const SlipPosterior> sensorOf(const GroundModel& model, const Drive& drive) {
   SlipFit fit(model);
   for (std::size_t i = 0; i < drive.rows.size(); i += 4) {
     SlipFit::Moment moment{.run = drive.run[i],
@@ -105,7 +105,7 @@ std::shared_ptr<const FittedDrive> sensorOf(const GroundModel& model, const Driv
 // Closed form: numbers take the deviation m of the class as a whole to m c / sqrt(m^2 + c^2), c the mean of the error that
 // the readings of a drive share, and leave its ground that from place to place. A drive over gentle hills, at slips about
 // 0.1, sees half of a departure and less, and is known by that to within 2 %.
-TEST(SharedError, LeavesOfADriveAtLittleSlipWhatItsSlipsTell) {
+TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   const TraversabilityMap before = sand();
   TraversabilityMap after = sand();
   const Drive drive = driveOver(after, testSand(), 1, {8.5, 23.5, 38.5});
@@ -160,7 +160,7 @@ Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
 
 // Property: a drive whose slip is right and whose wheels work near the reference slip makes ground surer, the more the
 // nearer; most where the rover climbed. The margins are those of readings that need not be taken to another slip.
-TEST(SharedError, LeavesWhatASoundDriveTells) {
+TEST(SharedError, SoundDriveReducesStdMostWhereItDrove) {
   constexpr double kSteep_m = 1.5;
   const TraversabilityMap before = mapOf(testSand(), 4, kSteep_m);
   TraversabilityMap after = mapOf(testSand(), 4, kSteep_m);
@@ -175,7 +175,7 @@ TEST(SharedError, LeavesWhatASoundDriveTells) {
 
 // Closed form: however many drives, the class is known no better than p c^2 / (p + c^2), p its prior and c the shared
 // error; without one it is.
-TEST(SharedError, IsNotAveragedAwayByDrives) {
+TEST(SharedError, ClassStdIsBoundedBelowBySharedErrorOverManyDrives) {
   for (const double shared : {0.0, 0.045}) {
     TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
     const GroundClass& ground = map.model().parts().classes[0];
@@ -200,7 +200,7 @@ TEST(SharedError, IsNotAveragedAwayByDrives) {
 
 // Property: ground with evidence of its own that is no weaker than its class is as sure as ground of the class that
 // nobody drove on, or surer; also where some of the evidence may only lower.
-TEST(SharedError, LeavesDrivenGroundNoLessSureThanItsClass) {
+TEST(SharedError, DrivenGroundIsNoLessCertainThanItsClass) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
     TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));

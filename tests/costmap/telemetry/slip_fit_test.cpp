@@ -32,8 +32,8 @@ double pullOf(const terramech::Soil& soil) {
 }
 
 // By the rows of a drive, of a map that takes its ground for test sand.
-std::shared_ptr<const FittedDrive> fitted(const TraversabilityMap& map, const Drive& drive,
-                                          const std::function<double(double)>& read) {
+std::shared_ptr<const SlipPosterior> fitted(const TraversabilityMap& map, const Drive& drive,
+                                            const std::function<double(double)>& read) {
   constexpr std::size_t kWheels = 4;
   SlipFit fit(map.model());
   for (std::size_t i = 0; i < drive.rows.size(); i += kWheels) {
@@ -55,7 +55,7 @@ struct Sensor {
 // Property: of ground of any strength the offset is found to within 0.02, the scale to within 0.2, and what a decision counts on is
 // no more than the ground has, by more than 0.02; of a sound sensor it is no less than that by more than 0.07, and not less than the class where the
 // ground is stronger.
-TEST(SlipFit, TellsStrengthFromTheSensor) {
+TEST(SlipFit, SlipBiasAndStrengthAreSeparated) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   const double of_class = map.model().prior(0).pull.value;
   for (const double strength : {0.85, 0.93, 1.0, 1.1, 1.2}) {
@@ -78,7 +78,7 @@ TEST(SlipFit, TellsStrengthFromTheSensor) {
 }
 
 // Property: a greater shear modulus, which a sensor of a scale above 1 would look like, counts as weak ground.
-TEST(SlipFit, AGreaterShearModulusIsWeakGround) {
+TEST(SlipFit, LargerShearModulusIsEstimatedAsWeakGround) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   for (const double modulus : {1.0, 1.5, 2.0, 3.0}) {
     const terramech::Soil soil = sand(1.1, modulus);
@@ -88,7 +88,7 @@ TEST(SlipFit, AGreaterShearModulusIsWeakGround) {
 }
 
 // Closed form: without a moment nothing is told; and moments on one slope alone leave most of it open.
-TEST(SlipFit, OneSlopeTellsLittle) {
+TEST(SlipFit, ConstantSlopeLeavesStrengthUnidentified) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   SlipFit fit(map.model());
   EXPECT_TRUE(std::isinf(fit.fitted(none)->departure[0].std));
@@ -102,7 +102,7 @@ TEST(SlipFit, OneSlopeTellsLittle) {
 
 // Property: what a map believes of its class after a drive is the drive's ground to within 0.02 where that is weaker, and where it is stronger
 // goes at least a quarter of the way to it and never beyond; the slips may all be read 0.1 too small.
-TEST(SlipFit, MapsLearnStrength) {
+TEST(SlipFit, ClassEstimateFollowsGroundStrengthDespiteSlipOffset) {
   for (const double strength : {0.85, 0.93, 1.1, 1.2, 1.3})
     for (const double offset : {0.0, -0.1}) {
       TraversabilityMap map = mapOf(testSand(), 4);
@@ -153,7 +153,7 @@ struct FineCurve {
 
 // The posterior by (B3), (B4), drawn: draws from the prior, weighed by their likelihood, give its mean to within four of their own
 // standard errors, and its variance to a fifth.
-TEST(SlipFit, IsThePosteriorOfItsModel) {
+TEST(SlipFit, FitMatchesImportanceSamplingOfThePosterior) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   const GroundClass& ground = map.model().parts().classes[0];
   const double p = ground.pull_std, q = ground.mean_std;

@@ -23,7 +23,7 @@ StepWatch watchOf(std::mt19937_64& random, int places, double place_std, double 
   return watch;
 }
 
-TEST(StepWatch, FindsAStepBySizeAndSign) {
+TEST(StepWatch, StepSizeAndSignAreRecovered) {
   std::mt19937_64 random(1);
   for (const double step : {-0.1, 0.1, -0.06, 0.2})
     for (const double at : {0.25, 0.5, 0.8})
@@ -33,7 +33,7 @@ TEST(StepWatch, FindsAStepBySizeAndSign) {
 
 // Statistical: ground that differs from place to place is no step, nor is a step below the least; of 2000 drives 2 at most are
 // taken for one.
-TEST(StepWatch, ScatterIsNoStep) {
+TEST(StepWatch, ScatterYieldsNoStep) {
   std::mt19937_64 random(2);
   int found = 0;
   for (int round = 0; round < 2000; ++round)
@@ -42,7 +42,7 @@ TEST(StepWatch, ScatterIsNoStep) {
   EXPECT_EQ(watchOf(random, 200, 0.005, 0.02, 0.5).step(), 0.0);
 }
 
-TEST(StepWatch, NeedsThreePlacesOnEitherSide) {
+TEST(StepWatch, StepRequiresThreePlacesOnEitherSide) {
   StepWatch watch(kLeast);
   for (std::size_t i = 0; i < 3 * StepWatch::kRows; ++i) watch.add(0.0);
   for (std::size_t i = 0; i < 3 * StepWatch::kRows - 1; ++i) watch.add(0.2);

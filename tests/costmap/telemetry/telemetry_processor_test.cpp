@@ -52,7 +52,7 @@ std::vector<double>& column(terramech::Telemetry& t, const std::string& name) {
   throw std::logic_error(name);
 }
 
-TEST(TelemetryProcessor, SuspectedReadingsCountWhereTheyShowDanger) {
+TEST(TelemetryProcessor, SuspectedDangerousReadingsBoundThePlace) {
   terramech::Telemetry t = quiet(12);
   column(t, "slip")[9] = 0.93;
   column(t, "slip")[10] = -0.6;
@@ -68,7 +68,7 @@ TEST(TelemetryProcessor, SuspectedReadingsCountWhereTheyShowDanger) {
 }
 
 // Below the slip that is danger by itself: what the reading would say of the pull bounds its place all the same.
-TEST(TelemetryProcessor, ASuspectedPullBoundsItsPlace) {
+TEST(TelemetryProcessor, SuspectedPullBoundsThePlace) {
   terramech::Telemetry t = quiet(12);
   column(t, "slip")[9] = 0.68;
   column(t, "slope_rad")[9] = -0.25;
@@ -79,7 +79,7 @@ TEST(TelemetryProcessor, ASuspectedPullBoundsItsPlace) {
   EXPECT_LT(results[9].observation->here.most_pull, testGround()->prior(0).pull.value - 0.2);
 }
 
-TEST(TelemetryProcessor, NothingMayRaiseBeforeItIsProven) {
+TEST(TelemetryProcessor, ObservationsMayNotRaiseBeforeSensorsAreValidated) {
   for (const auto& result : resultsOf(quiet(60))) {
     ASSERT_TRUE(result.observation);
     EXPECT_FALSE(result.observation->pull_may_raise);
@@ -88,7 +88,7 @@ TEST(TelemetryProcessor, NothingMayRaiseBeforeItIsProven) {
 }
 
 // Property: torque that is not proven makes no wheel stronger than slip and slope do.
-TEST(TelemetryProcessor, UnprovenTorqueHidesNoWeakness) {
+TEST(TelemetryProcessor, UnvalidatedTorqueNeverIncreasesThePull) {
   terramech::Telemetry with = quiet(20), without = quiet(20);
   for (terramech::Telemetry* t : {&with, &without}) column(*t, "slip").assign(20, 0.6);
   column(with, "torque_Nm").assign(20, 6.0);
@@ -100,7 +100,7 @@ TEST(TelemetryProcessor, UnprovenTorqueHidesNoWeakness) {
   }
 }
 
-TEST(TelemetryProcessor, SaysWhatIsMissing) {
+TEST(TelemetryProcessor, MissingInputsAreNamed) {
   terramech::Telemetry t = quiet(3);
   for (const char* name : {"slope_rad", "torque_Nm", "sinkage_m"}) column(t, name).assign(3, NAN);
   for (const auto& result : resultsOf(t)) {

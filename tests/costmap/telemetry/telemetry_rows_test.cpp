@@ -32,7 +32,7 @@ terramech::Telemetry table() {
   return out;
 }
 
-TEST(TelemetryRows, TakesTheRowsOwnSlopeElseTheMapsAlongTheHeading) {
+TEST(TelemetryRows, SlopeOfTheRowOverridesTheMapSlope) {
   const TraversabilityMap map = ramp();
   const terramech::Telemetry t = table();
   const TelemetryRows rows(t, map, 0.5);
@@ -45,7 +45,7 @@ TEST(TelemetryRows, TakesTheRowsOwnSlopeElseTheMapsAlongTheHeading) {
   EXPECT_NEAR(rows.mapGradient(0), 0.1, 1e-3);
 }
 
-TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
+TEST(TelemetryRows, PoseErrorOfTheRowOverridesTheStatedOne) {
   const TraversabilityMap map = ramp();
   const terramech::Telemetry t = table();
   const TelemetryRows rows(t, map, 0.5);
@@ -55,7 +55,7 @@ TEST(TelemetryRows, PoseErrorIsTheRowsElseTheOneStated) {
   EXPECT_EQ(rows.reading(4).pose_std_m, 1000.0) << "the journal takes no more";
 }
 
-TEST(TelemetryRows, SpeedsOfRimAndRoverAreASlip) {
+TEST(TelemetryRows, SlipFollowsFromTravelAndRimSpeed) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   t.numbers.push_back({"speed_mps", {0.01, 0.05, 0.0, -0.05, 0.02}});
@@ -70,7 +70,7 @@ TEST(TelemetryRows, SpeedsOfRimAndRoverAreASlip) {
 }
 
 // A slope beyond vertical is none; a row that is not to be trusted may have gone straight down.
-TEST(TelemetryRows, TheLeastGradientTrustsNoImpossibleSlope) {
+TEST(TelemetryRows, LeastGradientIgnoresImpossibleSlopes) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   for (auto& column : t.numbers)
@@ -85,7 +85,7 @@ TEST(TelemetryRows, TheLeastGradientTrustsNoImpossibleSlope) {
   EXPECT_NEAR(rows.steepestDescent(3), std::tan(-0.3), 1e-12);
 }
 
-TEST(TelemetryRows, AMomentIsAllWheelsOfOneTime) {
+TEST(TelemetryRows, MomentContainsAllWheelsOfOneTime) {
   const TraversabilityMap map = ramp();
   const terramech::Telemetry t = table();
   const TelemetryRows rows(t, map, 0.5);
@@ -94,7 +94,7 @@ TEST(TelemetryRows, AMomentIsAllWheelsOfOneTime) {
 }
 
 // Wheels and runs in any order within a time; the second row of a wheel is a moment of its own.
-TEST(TelemetryRows, TheOrderWithinATimeDoesNotShow) {
+TEST(TelemetryRows, MomentsAreIndependentOfRowOrderWithinATime) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   t.numbers[4].values.assign(5, 1.0);
@@ -103,7 +103,7 @@ TEST(TelemetryRows, TheOrderWithinATimeDoesNotShow) {
             (std::vector<std::vector<std::size_t>>{{2, 0}, {4}, {1, 3}}));
 }
 
-TEST(TelemetryRows, TheLeastSlopeIsTheSteepestDescentWithoutAHeading) {
+TEST(TelemetryRows, LeastGradientWithoutHeadingIsTheSteepestDescent) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(0), 0.1, 1e-3) << "the map's, less than the rover's";
@@ -112,7 +112,7 @@ TEST(TelemetryRows, TheLeastSlopeIsTheSteepestDescentWithoutAHeading) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(TelemetryRows(t, map, 0.5).leastGradient(i), -0.1, 1e-3);
 }
 
-TEST(TelemetryRows, SpeedsOfRimAndRoverAreSlip) {
+TEST(TelemetryRows, SpeedSlipIsSignSymmetricAndNanIfUndefined) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   t.numbers.push_back({"speed_mps", {0.005, 0.1, 0.0, NAN, 0.1}});
@@ -129,7 +129,7 @@ TEST(TelemetryRows, SpeedsOfRimAndRoverAreSlip) {
   EXPECT_NEAR(back.reading(1).speed_slip, 0.0, 1e-12);
 }
 
-TEST(TelemetryRows, NamesAColumnThatIsMissing) {
+TEST(TelemetryRows, MissingColumnIsNamed) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
   t.numbers.erase(t.numbers.begin() + 3);

@@ -5,7 +5,7 @@
 namespace talus::maps {
 namespace ellipsoid_test {
 
-TEST(Ellipsoid, BodiesByTheirRadius) {
+TEST(Ellipsoid, BodyNameFollowsFromTheRadius) {
   EXPECT_EQ(bodyName(kEarth), "Earth");
   EXPECT_EQ(bodyName(kMoon), "Moon");
   EXPECT_EQ(bodyName(kMars), "Mars");
@@ -15,7 +15,7 @@ TEST(Ellipsoid, BodiesByTheirRadius) {
   EXPECT_EQ(bodyName({11267.0, 0.0}), "body of radius 11.3 km");
 }
 
-TEST(Ellipsoid, PlanetocentricLatitudeIsTheAngleAtTheCentre) {
+TEST(Ellipsoid, PlanetocentricLatitudeMatchesClosedForm) {
   // Closed form: tan(planetocentric) = (1 - f)^2 tan(geographic). Tolerance: rounding.
   for (const double latitude : {-1.2, -0.3, 0.0, 0.08, 0.9}) {
     const double axes = 1.0 - kMars.flattening;
@@ -24,7 +24,7 @@ TEST(Ellipsoid, PlanetocentricLatitudeIsTheAngleAtTheCentre) {
   }
 }
 
-TEST(Ellipsoid, OnASphereBothLatitudesAreOne) {
+TEST(Ellipsoid, LatitudesAreEqualOnASphere) {
   EXPECT_NEAR(planetocentricLatitude(kMoon, 0.7), 0.7, 1e-15);
   EXPECT_NEAR(geographicLatitude(kMoon, -0.7), -0.7, 1e-15);
 }

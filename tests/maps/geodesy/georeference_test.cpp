@@ -17,7 +17,7 @@ CoordinateSystem lunarPole() {
                          .standard_parallel_1_rad = -std::numbers::pi / 2}};
 }
 
-TEST(Georeference, PolarStereographicOfASphere) {
+TEST(Georeference, PolarStereographicMatchesClosedForm) {
   // Closed form: rho = 2 R tan(colatitude / 2).
   const Georeference georeference(lunarPole());
   const Point p = georeference.forward({-85 * kDegree, 30 * kDegree});
@@ -26,7 +26,7 @@ TEST(Georeference, PolarStereographicOfASphere) {
   EXPECT_NEAR(p.y_m, rho * std::cos(30 * kDegree), 1e-6);
 }
 
-TEST(Georeference, EquirectangularIsTrueAlongItsParallel) {
+TEST(Georeference, EquirectangularHasUnitScaleOnItsStandardParallel) {
   // Closed form: on the parallel of 30 degrees one map metre east is one of ground, and so is one north
   // everywhere.
   const Georeference georeference(
@@ -38,7 +38,7 @@ TEST(Georeference, EquirectangularIsTrueAlongItsParallel) {
   EXPECT_NEAR(scale.y_m, 1.0, 1e-9);
 }
 
-TEST(Georeference, PlanetocentricLatitudesAreThoseOfTheCentre) {
+TEST(Georeference, ReverseConvertsPlanetocentricLatitudes) {
   // Closed form: tan(planetocentric) = (b / a)^2 tan(geographic).
   CoordinateSystem system{.name = "Mars / Ocentric",
                           .ellipsoid = kMars,
@@ -52,7 +52,7 @@ TEST(Georeference, PlanetocentricLatitudesAreThoseOfTheCentre) {
   EXPECT_NEAR(planetocentric.forward({expected, 0.01}).y_m, p.y_m, 1e-6);
 }
 
-TEST(Georeference, DistanceIsAlongTheBody) {
+TEST(Georeference, DistanceIsMeasuredOnTheEllipsoid) {
   // Closed form: a quarter of the Moon's meridian, pole to equator.
   const Georeference georeference(lunarPole());
   const Point equator = georeference.forward({0.0, 0.0});
@@ -60,7 +60,7 @@ TEST(Georeference, DistanceIsAlongTheBody) {
               1e-3);
 }
 
-TEST(Georeference, NotANumberWhereTheProjectionDoesNotReach) {
+TEST(Georeference, PointsOutsideTheProjectionAreNan) {
   const Georeference plate(
       {.name = "plate", .ellipsoid = kMoon, .projection = {.method = ProjectionMethod::Equirectangular}});
   EXPECT_TRUE(std::isnan(plate.reverse({0, 3e6}).latitude_rad));
@@ -68,7 +68,7 @@ TEST(Georeference, NotANumberWhereTheProjectionDoesNotReach) {
 }
 
 // Of such a map only metres are known until PROJ is there.
-TEST(Georeference, AForeignSystemReachesNoPlaces) {
+TEST(Georeference, UnsupportedSystemHasNoGeographicCoordinates) {
   const Georeference swiss(
       {.name = "LV03", .ellipsoid = kEarth, .projection = {.method = ProjectionMethod::Foreign}, .wkt = "A"});
   EXPECT_FALSE(swiss.reachesPlaces());
@@ -78,7 +78,7 @@ TEST(Georeference, AForeignSystemReachesNoPlaces) {
   EXPECT_TRUE(std::isnan(swiss.distance_m({0, 0}, {1, 0})));
 }
 
-TEST(Georeference, RefusesParametersOutOfRange) {
+TEST(Georeference, ParametersOutOfRangeAreRejected) {
   CoordinateSystem system = lunarPole();
   system.projection.scale = 0.0;
   EXPECT_REFUSED(Georeference{system}, std::invalid_argument, "scale must be > 0");

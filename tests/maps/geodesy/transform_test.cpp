@@ -53,7 +53,7 @@ std::vector<GeoPoint> places(ProjectionMethod method) {
   return out;
 }
 
-TEST(Transform, EveryMethodComesBack) {
+TEST(Transform, EveryProjectionRoundTrips) {
   for (ProjectionMethod method :
        {TransverseMercator, Mercator, Equirectangular, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));
@@ -66,7 +66,7 @@ TEST(Transform, EveryMethodComesBack) {
 }
 
 // Property: angles are kept, so east and north stay square and equally long. Tolerance: differences of 1e-6.
-TEST(Transform, ConformalMethodsKeepAngles) {
+TEST(Transform, ConformalProjectionsPreserveAngles) {
   for (ProjectionMethod method : {TransverseMercator, Mercator, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));
     for (const GeoPoint& p : places(method)) {
@@ -77,7 +77,7 @@ TEST(Transform, ConformalMethodsKeepAngles) {
   }
 }
 
-TEST(Transform, ClosedFormsOfTheSphere) {
+TEST(Transform, ProjectionsMatchClosedFormsOnTheSphere) {
   const GeoPoint p{20 * kDegree, 12 * kDegree};
   const auto at = [&](const Projection& of) { return makeTransform(kSphere, of)->forward(p); };
   // Closed form: y = R ln tan(pi/4 + phi/2) on Mercator's map.
@@ -89,7 +89,7 @@ TEST(Transform, ClosedFormsOfTheSphere) {
 }
 
 // Property: a conic is true along its standard parallels, on either half of the body.
-TEST(Transform, TheConicIsTrueAlongItsParallels) {
+TEST(Transform, ConicHasUnitScaleOnItsStandardParallels) {
   for (const double half : {1.0, -1.0}) {
     const auto transform = makeTransform(kFlat, {.method = LambertConformalConic,
                                                  .latitude_of_origin_rad = half * 35 * kDegree,

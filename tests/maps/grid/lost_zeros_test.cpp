@@ -48,7 +48,7 @@ Height zeroed(const Height& height, int begin, int end) {
 }
 
 // Property: a block of zeros in ground that is not near 0 is lost as a whole, wherever it lies, with a cell around it.
-TEST(LostZeros, ABlockOfZerosInGroundElsewhereIsLost) {
+TEST(LostZeros, BlockOfZerosWithinOtherElevationsIsLost) {
   for (const double level : {-2500.0, -3.0, 2.0, 150.0})
     for (const int cells : {1, 7, 128, 1024})
       for (int begin = 0; begin + cells <= kWidth * kHeight; begin += 331) {
@@ -64,14 +64,14 @@ TEST(LostZeros, ABlockOfZerosInGroundElsewhereIsLost) {
 }
 
 // A number that lies across the edge of what was lost, its upper bytes 0.
-TEST(LostZeros, APartOfANumberIsLost) {
+TEST(LostZeros, PartiallyZeroedNumberIsLost) {
   EXPECT_EQ(lostCount([](int c, int r) {
               return r == 20 && c >= 20 && c <= 30 ? (c == 20 ? 1e-39 : 0.0) : 150 + rough(c, r);
             }),
             11U);
 }
 
-TEST(LostZeros, GroundThatComesDownToZeroKeepsItsZeros) {
+TEST(LostZeros, ContinuousTerrainAtZeroElevationIsKept) {
   // A sea beside a shore, a plain beside dunes, a lake between hills, a crater in a plain, a map at its datum.
   EXPECT_EQ(lostCount([](int c, int r) { return std::max(0.0, 0.1 * (c - 25) + 0.3 * rough(c, r)); }), 0U);
   EXPECT_EQ(
@@ -82,7 +82,7 @@ TEST(LostZeros, GroundThatComesDownToZeroKeepsItsZeros) {
   EXPECT_EQ(lostCount([](int c, int r) { return std::round(100 * rough(c, r)) / 100; }), 0U);
 }
 
-TEST(LostZeros, ALevelMapWallsAndSpikesOnItAndHolesAreGround) {
+TEST(LostZeros, LevelMapsWallsSpikesAndHolesAreKept) {
   EXPECT_EQ(lostCount([](int, int) { return 0.0; }), 0U);
   EXPECT_EQ(lostCount([](int c, int) { return c / 2 == 12 ? 5.0 : 0.0; }), 0U);         // a wall of two cells
   EXPECT_EQ(lostCount([](int c, int) { return c > 30 ? 5.0 : 0.0; }), 0U);              // an edge
@@ -93,7 +93,7 @@ TEST(LostZeros, ALevelMapWallsAndSpikesOnItAndHolesAreGround) {
 }
 
 // Regions are judged one by one, also where they meet only further down.
-TEST(LostZeros, OneRegionIsLostAndAnotherIsASea) {
+TEST(LostZeros, RegionsAreClassifiedSeparately) {
   std::size_t count = 0;
   const auto drawing = lost(
       [](int c, int r) {
@@ -124,7 +124,7 @@ std::size_t lostRocks(const Height& share) {
 
 // Property: where 0 is an ordinary value, ground between fields of rocks is ground, whatever its border; cells that follow each
 // other in the rows of a file are lost where rocks lie all around.
-TEST(LostZeros, WhereZeroIsOrdinaryOnlyWhatFilesLoseIsLost) {
+TEST(LostZeros, InMapsWithManyZerosOnlyRunsInFileOrderAreLost) {
   EXPECT_GT(lostCount(rockFields), 1000U);
   EXPECT_EQ(lostRocks(rockFields), 0U);
   EXPECT_EQ(lostRocks([](int c, int r) { return r < 20 ? 0.0 : rockFields(c, r); }), 0U);

@@ -19,7 +19,7 @@ constexpr Grid kGrid{.width = 7, .height = 5, .resolution_m = 0.5, .south_west =
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Property: against each cell's points sorted by themselves, in any order of the cloud.
-TEST(PointHeights, AreThePercentileOfEachCellsPoints) {
+TEST(PointHeights, HeightsArePercentilesOfThePointsOfACell) {
   std::mt19937 random(7);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   std::vector<CloudPoint> cloud;
@@ -52,7 +52,7 @@ TEST(PointHeights, AreThePercentileOfEachCellsPoints) {
   }
 }
 
-TEST(PointHeights, PointsThatAreNoneAreLeftOut) {
+TEST(PointHeights, NonFiniteAndOutsidePointsAreIgnored) {
   const double infinite = std::numeric_limits<double>::infinity();
   const std::vector<CloudPoint> cloud{{10.1, -1.9, 1.0}, {10.1, -1.9, kNaN}, {10.2, -1.8, infinite},
                                       {kNaN, -1.9, 9.0}, {1e300, 0.0, 9.0},  {10.3, -1.9, 1e300},
@@ -60,7 +60,7 @@ TEST(PointHeights, PointsThatAreNoneAreLeftOut) {
   EXPECT_EQ((heightsOf(cloud, kGrid)[{0, 0}]), 1.0F);
 }
 
-TEST(PointHeights, WhatGivesNoHeightIsRefused) {
+TEST(PointHeights, InvalidOptionsAndEmptyCloudsAreRejected) {
   const std::vector<CloudPoint> one{{10.1, -1.9, 1.0}}, off{{0.0, 0.0, 1.0}};
   const auto refusal = [](const std::vector<CloudPoint>& cloud, const HeightChoice& choice) -> std::string {
     try {

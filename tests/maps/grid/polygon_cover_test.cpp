@@ -98,7 +98,7 @@ Polygon drawnAtRandom(std::mt19937& random) {
 
 // Property: whatever place lies in a polygon, by the angles that its rings turn about it, has its cell closed; a closed
 // cell has its boundary or, as a whole, the polygon's ground; none that was closed is opened. Rings cross themselves.
-TEST(PolygonCover, ClosesAllThatRingsWindRound) {
+TEST(PolygonCover, CoversCellsOfNonZeroWindingNumber) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> column(0.0, 24.0), row(0.0, 18.0);
   Raster<std::uint8_t> all(kGrid);
@@ -129,7 +129,7 @@ TEST(PolygonCover, ClosesAllThatRingsWindRound) {
 }
 
 // Closed form: a box of 3 x 2 cells, drawn twice, over itself and the other way round.
-TEST(PolygonCover, ARingDrawnTwiceCountsAsOnce) {
+TEST(PolygonCover, RepeatedRingCountsOnce) {
   const Ring once = placed(box(2.5, 2.5, 7.5, 5.5));
   EXPECT_EQ(closed({once, {}}), 6U);
   EXPECT_EQ(closed({joined(once, once), {}}), 6U);
@@ -138,14 +138,14 @@ TEST(PolygonCover, ARingDrawnTwiceCountsAsOnce) {
 }
 
 // Closed form: of 8 x 8 cells the 4 x 4 that lie in the hole as a whole are open; an island in it is closed.
-TEST(PolygonCover, AHoleIsOpenAndAnIslandInItIsNot) {
+TEST(PolygonCover, HolesStayOpenAndIslandsAreCovered) {
   const Ring outer = placed(box(0.5, 0.5, 15.5, 15.5)), hole = placed(box(3.5, 3.5, 12.5, 12.5));
   EXPECT_EQ(closed({outer, {hole}}), 64U - 16U);
   EXPECT_EQ(closed({outer, {hole, placed(box(6.5, 6.5, 7.5, 7.5))}}), 64U - 15U);
   EXPECT_EQ(closed({outer, {hole, hole}}), 64U);
 }
 
-TEST(PolygonCover, RingsWithoutGroundAreKnown) {
+TEST(PolygonCover, RingsWithoutAreaAreDetected) {
   const Ring outer = box(5e6, 5e6, 5e6 + 1.3, 5e6 + 0.7);
   Ring turned = outer;
   turned.pop_back();

@@ -123,7 +123,7 @@ std::vector<Format> formats() {
 }
 
 // Brute force: every format that is opened, cut at twenty places and before its last bytes.
-TEST(CompleteFile, NoFormatMakesHeightsOfWhatIsCutOff) {
+TEST(CompleteFile, TruncatedFileOfAnyFormatIsRejectedOrNoData) {
   for (const Format& format : formats()) {
     const TemporaryFolder folder;
     const std::string path = folder / format.name, data = format.data.empty() ? path : folder / format.data;
@@ -146,7 +146,7 @@ bool hasNoCheck(const std::string& driver) {
 }
 
 // Brute force: blocks of every format overwritten by zeros, as a disk does that lost a sector or a page.
-TEST(CompleteFile, NoFormatMakesHeightsOfZeroedBlocks) {
+TEST(CompleteFile, ZeroedBlocksOfAnyFormatAreRejectedOrNoData) {
   for (const Format& format : formats()) {
     if (hasNoCheck(format.driver)) continue;
     const TemporaryFolder folder;
@@ -170,7 +170,7 @@ TEST(CompleteFile, NoFormatMakesHeightsOfZeroedBlocks) {
 
 // A driver that is allowed has its row above. USGSDEM: GDAL writes none that it reads; profiles it does not find are no data
 // (usgsdemdataset.cpp fills them first).
-TEST(CompleteFile, EveryFormatIsCut) {
+TEST(CompleteFile, EveryAllowedFormatIsCovered) {
   std::set<std::string> cut{"USGSDEM"};
   for (const Format& format : formats()) cut.insert(format.driver);
   const std::vector<std::string> allowed = rasterFormats();
@@ -195,7 +195,7 @@ void writeHalf(const std::string& path, std::optional<double> nodata, GDALDataTy
             CE_None);
 }
 
-TEST(CompleteFile, BlocksThatWereNeverWrittenAreRefusedOrNoData) {
+TEST(CompleteFile, UnwrittenBlocksAreRejectedOrNoData) {
   const TemporaryFolder folder;
   const std::string path = folder / "half.tif";
   writeHalf(path, std::nullopt);
@@ -218,7 +218,7 @@ TEST(CompleteFile, BlocksThatWereNeverWrittenAreRefusedOrNoData) {
               HasSubstr("is cut short or half written"));
 }
 
-TEST(CompleteFile, ATextOrArchiveSmallerThanItsCellsIsRefusedBeforeItIsRead) {
+TEST(CompleteFile, TextGridSmallerThanItsCellCountIsRejected) {
   const TemporaryFolder folder;
   EXPECT_THAT(
       refusal([&] {
@@ -229,7 +229,7 @@ TEST(CompleteFile, ATextOrArchiveSmallerThanItsCellsIsRefusedBeforeItIsRead) {
       HasSubstr("is cut short: 63 of 800000000 bytes"));
 }
 
-TEST(CompleteFile, APointFileThatEndsWithinANumberIsRefused) {
+TEST(CompleteFile, PointFileTruncatedWithinANumberIsRejected) {
   const TemporaryFolder folder;
   std::string text;
   for (int row = 0; row < 4; ++row)
@@ -256,7 +256,7 @@ std::vector<float> heights(const std::string& values) {
 }
 
 // Closed form: a grid of whole numbers holds what it says, words for "not a number" included.
-TEST(TextGrid, NanAmongWholeNumbersIsNoData) {
+TEST(TextGrid, NanInAWholeNumberGridIsNoData) {
   for (const char* word : {"nan", "NaN", "-nan", "-9999", "1.#QNAN", "-1.#IND"}) {
     const auto values = heights(std::string("1 ") + word + " 3\n4 5 6\n");
     ASSERT_EQ(values.size(), 6U);
@@ -267,14 +267,14 @@ TEST(TextGrid, NanAmongWholeNumbersIsNoData) {
   EXPECT_EQ(heights("1 2,5 +3\n4. .5 6e0\n"), (std::vector<float>{4.0F, 0.5F, 6.0F, 1.0F, 2.5F, 3.0F}));
 }
 
-TEST(TextGrid, InfiniteHeightsAreNoGround) {
+TEST(TextGrid, InfiniteElevationsAreNoData) {
   for (const char* word : {"inf", "INF", "-inf", "infinity", "1.#INF", "1e999"}) {
     const auto values = heights(std::string("1 ") + word + " 3\n4 5 6\n");
     EXPECT_TRUE(std::isnan(values[4])) << word << ' ' << values[4];
   }
 }
 
-TEST(TextGrid, AWordIsRefusedWithItsLine) {
+TEST(TextGrid, NonNumericFieldIsRejectedWithItsLine) {
   for (const char* word : {"abc", "NA", "x", "--", "0x7f", "12abc", "1,5,2", "1.5.2", "null", "+-3", "*"}) {
     const std::string text = std::string("1 2 3\n4 ") + word + " 6\n";
     EXPECT_THAT(refusal([&] { heights(text); }),
@@ -287,7 +287,7 @@ TEST(TextGrid, AWordIsRefusedWithItsLine) {
       HasSubstr("l.asc:2: '1111"));
 }
 
-TEST(TextGrid, ClassesAndRocksAreHeldToTheSame) {
+TEST(TextGrid, ClassAndRockGridsAreValidatedEqually) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);  // four by three cells
   const std::string header = "ncols 4\nnrows 3\nxllcorner 500000\nyllcorner 4999970\ncellsize 10\n";

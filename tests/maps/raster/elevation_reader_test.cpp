@@ -12,7 +12,7 @@ namespace elevation_reader_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(ElevationReader, RowsBecomeSouthFirstAndNodataNaN) {
+TEST(ElevationReader, RowsAreReadSouthFirstAndNodataAsNan) {
   const TemporaryFolder folder;
   const ElevationMap map = readElevation(write({.rows = kHill, .nodata = -1}, folder / "hill.tif"));
   EXPECT_EQ(map.grid(), (Grid{.width = 4, .height = 5, .resolution_m = 10, .south_west = {500000, 4999950}}));
@@ -26,7 +26,7 @@ TEST(ElevationReader, RowsBecomeSouthFirstAndNodataNaN) {
 }
 
 // Closed form: the mean of two by two pixels; of those that there are in the north and east.
-TEST(ElevationReader, AnOverviewHoldsMeans) {
+TEST(ElevationReader, OverviewCellsAreMeans) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
   const ElevationMap map = readElevation(path, {.overview = 2});
@@ -40,7 +40,7 @@ TEST(ElevationReader, AnOverviewHoldsMeans) {
 
 // Property: every cell of an overview is the mean of the cells under it, and none of the map is left out, whichever way
 // the rows of the file run.
-TEST(ElevationReader, AnOverviewCoversTheWholeMap) {
+TEST(ElevationReader, OverviewCoversTheWholeMap) {
   const TemporaryFolder folder;
   for (const double down : {-10.0, 10.0}) {
     RasterFile file{.rows = {}, .transform = std::array<double, 6>{500000, 10, 0, 5000000, 0, down}};
@@ -81,7 +81,7 @@ RasterFile zeroedFile() {
   return file;
 }
 
-TEST(ElevationReader, AZeroedPartIsNoDataUnlessItIsKept) {
+TEST(ElevationReader, ZeroedRegionIsNoDataUnlessKeptOnRequest) {
   const TemporaryFolder folder;
   const std::string path = write(zeroedFile(), folder / "zeroed.tif");
   const ElevationMap map = readElevation(path);
@@ -102,7 +102,7 @@ TEST(ElevationReader, AZeroedPartIsNoDataUnlessItIsKept) {
 }
 
 // What windows are planned on is held to the same limit as what is read whole: 6.4e9 cells were planned on for minutes.
-TEST(ElevationReader, TheGridOfAMapIsHeldToMaxCells) {
+TEST(ElevationReader, MapGridIsLimitedByMaxCells) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill}, folder / "hill.tif");
   EXPECT_THAT(refusal([&] { elevationGrid(path, {.resolution_m = 1e-3}); }), HasSubstr("are too many"));
@@ -110,7 +110,7 @@ TEST(ElevationReader, TheGridOfAMapIsHeldToMaxCells) {
   EXPECT_EQ(elevationGrid(path, {.max_cells = 20}).size(), 20U);
 }
 
-TEST(ElevationReader, EveryFormatGivesTheSameMap) {
+TEST(ElevationReader, EveryFormatYieldsTheSameMap) {
   const TemporaryFolder folder;
   // PDS4 holds no false easting.
   const RasterFile mars{.rows = kHill,
@@ -146,7 +146,7 @@ TEST(ElevationReader, EveryFormatGivesTheSameMap) {
   }
 }
 
-TEST(ElevationReader, WindowIsTheSamePartOfTheMap) {
+TEST(ElevationReader, WindowEqualsThatPartOfTheMap) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
   const ElevationMap whole = readElevation(path);
@@ -160,7 +160,7 @@ TEST(ElevationReader, WindowIsTheSamePartOfTheMap) {
   EXPECT_EQ(readElevation(path, {.window = Window{a, b}}).grid(), part.grid());
 }
 
-TEST(ElevationReader, SouthUpRastersAreTurned) {
+TEST(ElevationReader, SouthUpRastersAreFlipped) {
   const TemporaryFolder folder;
   const ElevationMap up = readElevation(write({.rows = kHill}, folder / "north.tif"));
   auto turned = kHill;
@@ -172,14 +172,14 @@ TEST(ElevationReader, SouthUpRastersAreTurned) {
   EXPECT_EQ(down.elevation_m.values(), up.elevation_m.values());
 }
 
-TEST(ElevationReader, CoarserOnRequestIsTheMean) {
+TEST(ElevationReader, CoarserResolutionIsTheMean) {
   const TemporaryFolder folder;
   const ElevationMap map = readElevation(
       write({.rows = drawn({"1133", "1133", "5577", "5577"})}, folder / "blocks.tif"), {.resolution_m = 20});
   EXPECT_EQ(map.elevation_m.values(), (std::vector<float>{5, 7, 1, 3}));
 }
 
-TEST(ElevationReader, BadInputIsOneLineWithARemedy) {
+TEST(ElevationReader, InvalidInputYieldsAOneLineErrorWithARemedy) {
   const TemporaryFolder folder;
   const std::string good = write({.rows = kHill, .nodata = -1}, folder / "good.tif");
   const std::string ascii = write({.rows = kHill, .driver = "AAIGrid"}, folder / "cut.asc");
@@ -242,7 +242,7 @@ TEST(ElevationReader, BadInputIsOneLineWithARemedy) {
 }
 
 // Property: whatever the bytes, a file is read or refused in one line; nothing else comes out.
-TEST(ElevationReader, DamagedFilesAreReadOrRefused) {
+TEST(ElevationReader, DamagedFilesAreReadOrRejectedWithOneLine) {
   const TemporaryFolder folder;
   const std::string good = write({.rows = kHill, .nodata = -1}, folder / "good.tif");
   std::ifstream file(good, std::ios::binary);

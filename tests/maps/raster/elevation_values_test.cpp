@@ -12,7 +12,7 @@ namespace elevation_values_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(ElevationValues, ScaleOffsetUnitAndIntegers) {
+TEST(ElevationValues, AppliesScaleOffsetUnitAndIntegerTypes) {
   const TemporaryFolder folder;
   const ElevationMap scaled = readElevation(write(
       {.rows = kHill, .type = GDT_Int16, .nodata = -1, .scale = 0.5, .offset = 100}, folder / "scaled.tif"));
@@ -25,7 +25,7 @@ TEST(ElevationValues, ScaleOffsetUnitAndIntegers) {
   EXPECT_FLOAT_EQ((twice.elevation_m[{0, 0}]), 10 * 0.3048F);
 }
 
-TEST(ElevationValues, HeightsFromTheBodysCentreLoseItsRadius) {
+TEST(ElevationValues, BodyRadiusIsSubtractedFromRadialHeights) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill,
                                   .crs = "IAU_2015:30135",
@@ -37,7 +37,7 @@ TEST(ElevationValues, HeightsFromTheBodysCentreLoseItsRadius) {
   EXPECT_FLOAT_EQ((readElevation(path).elevation_m[{0, 0}]), 2.5F);
 }
 
-TEST(ElevationValues, UndeclaredMarksAreNoData) {
+TEST(ElevationValues, UndeclaredNodataValuesAreNoData) {
   const TemporaryFolder folder;
   auto rows = kHill;
   rows[0][0] = -9999;
@@ -50,7 +50,7 @@ TEST(ElevationValues, UndeclaredMarksAreNoData) {
 }
 
 // Closed form: an international foot is 0.3048 m, one of the US survey 1200/3937 m.
-TEST(ElevationValues, UnitsOfABand) {
+TEST(ElevationValues, BandUnitsAreConvertedToMetres) {
   const Dataset raster = memoryRaster(1, 1);
   GDALRasterBand& band = *raster->GetRasterBand(1);
   const auto scale = [&](const char* unit, std::size_t said) {
@@ -68,7 +68,7 @@ TEST(ElevationValues, UnitsOfABand) {
   EXPECT_EQ(scale("furlong", 1), 1.0);  // unknown: metres, and said
 }
 
-TEST(ElevationValues, HeightIsNumberTimesScalePlusOffset) {
+TEST(ElevationValues, ElevationIsValueTimesScalePlusOffset) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> values{-1, 0, 10, nan, 2e30F};
   std::vector<std::string> notes;
@@ -82,7 +82,7 @@ TEST(ElevationValues, HeightIsNumberTimesScalePlusOffset) {
 }
 
 // Property: a customary mark counts as one only where it is the least value of all.
-TEST(ElevationValues, ADeepPlaceIsNoMark) {
+TEST(ElevationValues, NodataMarkerCountsOnlyAsTheMinimumValue) {
   std::vector<std::string> notes;
   std::vector<float> trench{-9999, -10500, 3};
   decodeHeights(trench, {}, notes);

@@ -10,7 +10,7 @@ namespace gdal_dataset_test {
 
 using testing::HasSubstr;
 
-TEST(GdalDataset, OnlyAFileWithBytesIsReadable) {
+TEST(GdalDataset, OnlyNonEmptyRegularFilesAreReadable) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "inner");
   const auto line = [](const std::string& path) { return refusal([&] { requireReadableFile(path); }); };
@@ -23,7 +23,7 @@ TEST(GdalDataset, OnlyAFileWithBytesIsReadable) {
   EXPECT_THAT(line("/dev/zero"), testing::HasSubstr("is a device"));
 }
 
-TEST(GdalDataset, OpensARasterAndRefusesTheRest) {
+TEST(GdalDataset, OpensRastersAndRejectsOtherFiles) {
   const TemporaryFolder folder;
   const Dataset raster = openRaster(write({.rows = kHill}, folder / "hill.tif"));
   EXPECT_EQ(raster->GetRasterXSize(), 4);
@@ -33,7 +33,7 @@ TEST(GdalDataset, OpensARasterAndRefusesTheRest) {
 }
 
 // Closed form: 4 x 5 cells of 4 bytes; one byte less is a file cut short.
-TEST(GdalDataset, AnEnviFileHasAllItsBytes) {
+TEST(GdalDataset, TruncatedEnviFileIsRejected) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .driver = "ENVI"}, folder / "hill.img");
   EXPECT_EQ(refusal([&] { openRaster(path); }), "accepted");
@@ -41,7 +41,7 @@ TEST(GdalDataset, AnEnviFileHasAllItsBytes) {
   EXPECT_THAT(refusal([&] { openRaster(path); }), HasSubstr("is cut short: 79 of 80 bytes"));
 }
 
-TEST(GdalDataset, ErrorsAreKeptAndNotPrinted) {
+TEST(GdalDataset, ErrorsAreCapturedAndNotPrinted) {
   testing::internal::CaptureStderr();
   {
     const GdalErrors errors;
@@ -58,7 +58,7 @@ TEST(GdalDataset, ErrorsAreKeptAndNotPrinted) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(GdalDataset, AMemoryRasterIsOneBandOfZeros) {
+TEST(GdalDataset, MemoryRasterIsOneBandOfZeros) {
   const Dataset raster = memoryRaster(3, 2);
   ASSERT_EQ(raster->GetRasterCount(), 1);
   std::array<float, 6> values{1, 1, 1, 1, 1, 1};
@@ -69,7 +69,7 @@ TEST(GdalDataset, AMemoryRasterIsOneBandOfZeros) {
 }
 
 // A log would overwrite the file that it names; a cache of none changes the order of blocks in a GeoTIFF.
-TEST(GdalDataset, TheEnvironmentDoesNotChangeWhatGdalWrites) {
+TEST(GdalDataset, EnvironmentVariablesDoNotAffectGdal) {
   registerDrivers();
   for (const char* name : {"CPL_LOG", "CPL_DEBUG", "GDAL_CONFIG_FILE", "GDAL_CACHEMAX"}) {
     ::setenv(name, "victim.txt", 1);
@@ -79,7 +79,7 @@ TEST(GdalDataset, TheEnvironmentDoesNotChangeWhatGdalWrites) {
 }
 
 // Writing without GTiff (GDAL_SKIP=GTiff in the environment) ended by a signal.
-TEST(GdalDataset, ADriverThatIsMissingIsTold) {
+TEST(GdalDataset, MissingDriverIsReported) {
   EXPECT_EQ(std::string(GDALGetDriverShortName(&driverNamed("MEM"))), "MEM");
   EXPECT_THAT(refusal([] { driverNamed("NoSuchDriver"); }), HasSubstr("driver NoSuchDriver: is missing"));
 }

@@ -9,7 +9,7 @@ namespace geotiff_writer_test {
 
 using testing::HasSubstr;
 
-TEST(GeoTiffWriter, WhatIsWrittenIsReadBack) {
+TEST(GeoTiffWriter, RoundTripIsExact) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   Raster<float> slope(dem.grid(), 0.5F);
@@ -33,7 +33,7 @@ TEST(GeoTiffWriter, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(files, 3) << "no file may be left beside";
 }
 
-TEST(GeoTiffWriter, RefusesWhatCannotBeWritten) {
+TEST(GeoTiffWriter, InvalidPathOrLayersAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   EXPECT_THAT(refusal([&] {

@@ -10,7 +10,7 @@ namespace layer_reader_test {
 
 using testing::HasSubstr;
 
-TEST(LayerReader, ClassesOnTheSameCells) {
+TEST(LayerReader, ClassesOnTheMapGridAreExact) {
   const TemporaryFolder folder;
   const std::string path =
       write({.rows = drawn({"1122", "1.22", "3333"}), .type = GDT_Int16, .nodata = -1}, folder / "c.tif");
@@ -18,7 +18,7 @@ TEST(LayerReader, ClassesOnTheSameCells) {
 }
 
 // GDAL would drop the imaginary part of each.
-TEST(LayerReader, ComplexNumbersAreRefused) {
+TEST(LayerReader, ComplexNumbersAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = readElevation(write({.rows = drawn({"1111", "1111", "1111"})}, folder / "d.tif"));
   for (const GDALDataType type : {GDT_CInt16, GDT_CInt32, GDT_CFloat32, GDT_CFloat64}) {
@@ -30,7 +30,7 @@ TEST(LayerReader, ComplexNumbersAreRefused) {
 }
 
 // Rock abundance of some 0.3, a part of it zeroed: whether rocks lie there is not known.
-TEST(LayerReader, AZeroedPartOfRocksIsUnseen) {
+TEST(LayerReader, ZeroedRegionOfRockAbundanceIsUnseen) {
   const TemporaryFolder folder;
   RasterFile dem, rocks;
   for (int row = 0; row < 20; ++row) {
@@ -48,7 +48,7 @@ TEST(LayerReader, AZeroedPartOfRocksIsUnseen) {
   EXPECT_EQ((read.unseen[{10, 2}]), 0);
 }
 
-TEST(LayerReader, FinerShiftedClassesLieWhereTheyAre) {
+TEST(LayerReader, FinerShiftedClassesAreAlignedToTheMap) {
   const TemporaryFolder folder;
   // Cells of 5 m that cover the eastern three columns.
   const std::string path = write({.rows = drawn({"112233", "112233", "112233", "112233", "445566", "445566"}),
@@ -59,7 +59,7 @@ TEST(LayerReader, FinerShiftedClassesLieWhereTheyAre) {
 }
 
 // Property: against brute force over every pixel that reaches into a cell, for random sizes, places and orders.
-TEST(LayerReader, ACellTakesTheWeakestClassThatReachesIntoIt) {
+TEST(LayerReader, ACellTakesTheWeakestClassOfOverlappingPixels) {
   std::mt19937 random(7);
   const auto among = [&random](int lowest, int highest) {
     return std::uniform_int_distribution(lowest, highest)(random);
@@ -105,7 +105,7 @@ TEST(LayerReader, ACellTakesTheWeakestClassThatReachesIntoIt) {
 
 // Property: every place of a pixel that lies askew, by its geotransform or its CRS, has a class in the map that is no stronger;
 // and no cell has a class of which no place lies in it or its neighbours. Places by a fine lattice over each pixel.
-TEST(LayerReader, PixelsThatLieAskewAreSeenInEachCell) {
+TEST(LayerReader, RotatedPixelsAreFoundInEveryCellTheyOverlap) {
   std::mt19937 random(5);
   const TemporaryFolder folder;
   std::vector dem_rows(40, std::vector<double>(40));
@@ -156,7 +156,7 @@ TEST(LayerReader, PixelsThatLieAskewAreSeenInEachCell) {
 }
 
 // Property: pixels of the cells' own size, or a part of it, stay in their cells wherever the map lies, however its numbers round.
-TEST(LayerReader, NoPixelReachesIntoTheNextCellByRounding) {
+TEST(LayerReader, RoundingDoesNotSpreadPixelsToNeighbourCells) {
   const TemporaryFolder folder;
   std::mt19937 random(11);
   for (const std::size_t parts : {std::size_t{1}, std::size_t{3}}) {
@@ -185,7 +185,7 @@ TEST(LayerReader, NoPixelReachesIntoTheNextCellByRounding) {
 }
 
 // Closed form: one pixel of a sixteenth of a cell.
-TEST(LayerReader, ACellTakesTheGreatestShareOfRocksAndKnowsWhatIsNotSeen) {
+TEST(LayerReader, ACellTakesTheMaximumRockShareAndMarksUnseenPixels) {
   const TemporaryFolder folder;
   std::vector rows(12, std::vector<double>(16, 0.1));
   rows[5][6] = 0.9;
@@ -205,7 +205,7 @@ TEST(LayerReader, ACellTakesTheGreatestShareOfRocksAndKnowsWhatIsNotSeen) {
     }
 }
 
-TEST(LayerReader, ClassesInAnotherCrsAreCarriedOver) {
+TEST(LayerReader, ClassesAreReprojectedToTheMapCrs) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const Georeference& g = *dem.georeference;
@@ -220,7 +220,7 @@ TEST(LayerReader, ClassesInAnotherCrsAreCarriedOver) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, dem)), "1122\n1122\n1122\n");
 }
 
-TEST(LayerReader, WithoutACrsTheLayerHasTheMapsCoordinates) {
+TEST(LayerReader, LayerWithoutCrsUsesMapCoordinates) {
   const TemporaryFolder folder;
   const RasterFile file{.rows = drawn({"1234", "2345", "3456"}), .crs = "", .transform = std::nullopt};
   const ElevationMap local = readElevation(write(file, folder / "dem.tif"), {.resolution_m = 2.0});
@@ -231,7 +231,7 @@ TEST(LayerReader, WithoutACrsTheLayerHasTheMapsCoordinates) {
 }
 
 // The greatest of what lies in a cell, whatever is not known or refused beside it.
-TEST(LayerReader, FinerJoulesAreTakenByTheGreatest) {
+TEST(LayerReader, FinerCostLayerIsReducedByMaximum) {
   const TemporaryFolder folder;
   auto rows = drawn({"11223344", "15223349", "11223344", "11223344", "77777777", "77777777"});
   rows[0][2] = -1;        // no data in a quarter of a cell
@@ -254,7 +254,7 @@ TEST(LayerReader, FinerJoulesAreTakenByTheGreatest) {
   EXPECT_EQ(added.dearest_J_per_m, 9.0F);
 }
 
-TEST(LayerReader, JoulesOnTheSameCellsAreExact) {
+TEST(LayerReader, CostLayerOnTheMapGridIsExact) {
   const TemporaryFolder folder;
   const std::string path =
       write({.rows = drawn({"1122", "1.22", "3333"}), .type = GDT_Float64, .nodata = -1}, folder / "j.tif");
@@ -274,7 +274,7 @@ TEST(LayerReader, JoulesOnTheSameCellsAreExact) {
               HasSubstr("has no band 2"));
 }
 
-TEST(LayerReader, RockAbundanceFindsItsBandAndIsAShare) {
+TEST(LayerReader, RockAbundanceBandIsFoundByNameAndMustBeAFraction) {
   const TemporaryFolder folder;
   auto rows = drawn({"0000", "0000", "0000"});
   for (auto& row : rows)
@@ -286,7 +286,7 @@ TEST(LayerReader, RockAbundanceFindsItsBandAndIsAShare) {
               HasSubstr("rock abundance 9 is not a fraction from 0 to 1; divide percents by 100"));
 }
 
-TEST(LayerReader, BadLayersAreRefused) {
+TEST(LayerReader, InvalidLayersAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const std::string afar =

@@ -18,7 +18,7 @@ std::string file(const std::string& header, const std::string& data) {
   return out + header + data;
 }
 
-TEST(NumpyArray, WholeNumbersInEitherByteOrder) {
+TEST(NumpyArray, ReadsIntegersOfEitherByteOrder) {
   const std::string little = file("{'descr': '<i2', 'fortran_order': False, 'shape': (2, 2), }\n",
                                   std::string("\1\0\2\0\xff\xff\0\1", 8));
   EXPECT_THAT(parseNumpy(little, "a").values, ElementsAre(1, 2, -1, 256));
@@ -28,7 +28,7 @@ TEST(NumpyArray, WholeNumbersInEitherByteOrder) {
   EXPECT_THAT(parseNumpy(big, "a").values, ElementsAre(1, 256));
 }
 
-TEST(NumpyArray, FortranOrderAndSingleNumbers) {
+TEST(NumpyArray, ReadsFortranOrderAndScalars) {
   const std::string fortran =
       file("{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3), }\n", "\1\2\3\4\5\6");
   EXPECT_THAT(parseNumpy(fortran, "a").values, ElementsAre(1, 3, 5, 2, 4, 6));
@@ -38,7 +38,7 @@ TEST(NumpyArray, FortranOrderAndSingleNumbers) {
   EXPECT_TRUE(parseNumpy(one, "a").shape.empty());
 }
 
-TEST(NumpyArray, ANumberWithoutDataIsRefused) {
+TEST(NumpyArray, TruncatedDataIsRejected) {
   EXPECT_REFUSED(parseNumpy(file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }\n", ""), "a"),
                  InputError, "the file is cut short");
   EXPECT_REFUSED(
@@ -46,7 +46,7 @@ TEST(NumpyArray, ANumberWithoutDataIsRefused) {
       InputError, "the file is cut short");
 }
 
-TEST(NumpyArray, AnExtentIsAWholeNumber) {
+TEST(NumpyArray, ExtentsMustBeDecimalIntegers) {
   for (const auto& [shape, text] : {std::pair{"(-1, 3)", "has the extent '-1'"},
                                     {"(1.5, 2)", "has the extent '1.5'"},
                                     {"(3e0,)", "has the extent '3e0'"},
@@ -61,7 +61,7 @@ TEST(NumpyArray, AnExtentIsAWholeNumber) {
 }
 
 // Matching takes stack for each character: a header of version 2 may have 4 GB of them.
-TEST(NumpyArray, ALongHeaderIsRefused) {
+TEST(NumpyArray, HeaderAboveItsLimitIsRejected) {
   for (const char* filling : {"1,", " "}) {
     std::string shape;
     while (shape.size() < 1'000'000) shape += filling;
@@ -74,7 +74,7 @@ TEST(NumpyArray, ALongHeaderIsRefused) {
   }
 }
 
-TEST(NumpyArray, BadBytesAreRefused) {
+TEST(NumpyArray, MalformedArraysAreRejected) {
   const auto line = [](const std::string& bytes) {
     try {
       parseNumpy(bytes, "x.npy");
@@ -98,7 +98,7 @@ TEST(NumpyArray, BadBytesAreRefused) {
       HasSubstr("cut short"));
 }
 
-TEST(NumpyArray, VersionOrderAndLengthAreThoseOfTheFormat) {
+TEST(NumpyArray, VersionOrderAndLengthFollowTheFormat) {
   const std::string good = file("{'descr': '|u1', 'fortran_order': False, 'shape': (3,), }\n", "abc");
   EXPECT_NO_THROW(parseNumpy(good, "a"));
   for (const char version : {'\0', '\4', '\xff'}) {

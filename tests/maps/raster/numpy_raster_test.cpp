@@ -15,7 +15,7 @@ namespace numpy_raster_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(NumpyRaster, ReadsTheMapOfJacksboroThatMatplotlibShips) {
+TEST(NumpyRaster, ReadsTheJacksboroElevationMap) {
   const std::string path = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
   TALUS_REQUIRE(std::filesystem::exists(path), "python-matplotlib-data is not installed");
   const ElevationMap map = readElevation(path);
@@ -56,7 +56,7 @@ std::string npz(const std::string& path, const std::vector<std::pair<std::string
   return path;
 }
 
-TEST(NumpyRaster, AnArrayIsARasterOfItsRows) {
+TEST(NumpyRaster, ArrayRowsAreRasterRows) {
   const TemporaryFolder folder;
   std::vector<std::string> notes;
   const Dataset raster = openNumpyRaster(folder.write("z.npy", npy("2, 3", {1, 2, 3, 4, 5, 6})), notes);
@@ -67,7 +67,7 @@ TEST(NumpyRaster, AnArrayIsARasterOfItsRows) {
   EXPECT_NE(raster->GetGeoTransform(transform.data()), CE_None);
 }
 
-TEST(NumpyRaster, LimitsAreTheOuterEdges) {
+TEST(NumpyRaster, LimitsAreOuterEdges) {
   const TemporaryFolder folder;
   const std::string path = npz(folder / "z.npz", {{"elevation", npy("2, 4", std::vector<double>(8, 5.0))},
                                                   {"xmin", npy("", {1000})},
@@ -84,7 +84,7 @@ TEST(NumpyRaster, LimitsAreTheOuterEdges) {
   EXPECT_TRUE(notes.empty());
 }
 
-TEST(NumpyRaster, WhatIsNoElevationGridIsRefused) {
+TEST(NumpyRaster, ArraysThatAreNoElevationGridAreRejected) {
   const TemporaryFolder folder;
   std::vector<std::string> notes;
   const auto line = [&](const std::string& path) { return refusal([&] { openNumpyRaster(path, notes); }); };
@@ -114,7 +114,7 @@ std::string stored(const std::string& name, const std::string& content) {
          number(directory.size(), 4) + number(file.size(), 4) + number(0, 2);
 }
 
-TEST(NumpyRaster, AChangedByteOfAnArchiveIsRefused) {
+TEST(NumpyRaster, ModifiedArchiveIsRejected) {
   const TemporaryFolder folder;
   std::vector<std::string> notes;
   const std::string whole = stored("elevation.npy", npy("2, 3", {1, 2, 3, 4, 5, 6}));

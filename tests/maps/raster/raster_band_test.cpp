@@ -12,7 +12,7 @@ namespace raster_band_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(RasterBand, TakesTheBandNamedLikeElevation) {
+TEST(RasterBand, BandNamedLikeElevationIsChosen) {
   const TemporaryFolder folder;
   const std::string path =
       write({.rows = kHill, .names = {"slope of dem", "DEM", "rocks"}}, folder / "stack.tif");
@@ -23,11 +23,11 @@ TEST(RasterBand, TakesTheBandNamedLikeElevation) {
 }
 
 // A wish for elevation as the reader has it.
-BandWish wish(const std::string& path, std::optional<int> band = {}) {
+BandCriteria wish(const std::string& path, std::optional<int> band = {}) {
   return {.path = path, .band = band, .words = {"elev", "dem"}, .others = {"slope"}};
 }
 
-TEST(RasterBand, TheBandAskedForElseTheFirst) {
+TEST(RasterBand, RequestedBandElseTheFirstIsChosen) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .names = {"albedo", "slope of dem"}}, folder / "two.tif");
   const Dataset file = openRaster(path);
@@ -41,7 +41,7 @@ TEST(RasterBand, TheBandAskedForElseTheFirst) {
                 HasSubstr("no such band; it has 2 bands, from 1"));
 }
 
-TEST(RasterBand, APictureIsNoElevation) {
+TEST(RasterBand, ColourImageIsRejected) {
   const Dataset picture = memoryRaster(3, 3);
   picture->GetRasterBand(1)->SetColorInterpretation(GCI_RedBand);
   std::vector<std::string> notes;
@@ -50,7 +50,7 @@ TEST(RasterBand, APictureIsNoElevation) {
   EXPECT_EQ(chooseBand(*picture, wish("photo.png", 1), notes), 1);
 }
 
-TEST(RasterBand, PixelsOfABoxFirstRowFirst) {
+TEST(RasterBand, PixelsAreReadFirstRowFirst) {
   const TemporaryFolder folder;
   const Dataset file = openRaster(write({.rows = kHill}, folder / "hill.tif"));
   EXPECT_THAT(readPixels(*file, 1, {.column = 1, .row = 0, .width = 2, .height = 2}, "a"),
@@ -60,13 +60,13 @@ TEST(RasterBand, PixelsOfABoxFirstRowFirst) {
 }
 
 // Closed form: means of two by two pixels of the drawing.
-TEST(RasterBand, AnOverviewIsTheMean) {
+TEST(RasterBand, OverviewIsTheMean) {
   const TemporaryFolder folder;
   const Dataset file = openRaster(write({.rows = drawn({"1135", "3379"})}, folder / "m.tif"));
   EXPECT_THAT(readPixels(*file, 1, {.width = 4, .height = 2}, "a", 2), testing::ElementsAre(2, 6));
 }
 
-TEST(RasterBand, MaskedAndInfinitePixelsAreNaN) {
+TEST(RasterBand, MaskedAndInfinitePixelsAreNan) {
   const TemporaryFolder folder;
   auto rows = kHill;
   rows[0][1] = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ TEST(RasterBand, MaskedAndInfinitePixelsAreNaN) {
   EXPECT_EQ(values[2], 3.0F);
 }
 
-TEST(RasterBand, NorthUpTurnsTheRows) {
+TEST(RasterBand, NorthUpReversesTheRows) {
   const Grid grid{.width = 2, .height = 3};
   EXPECT_THAT(northUp(grid, {1, 2, 3, 4, 5, 6}).values(), testing::ElementsAre(5, 6, 3, 4, 1, 2));
 }

@@ -13,7 +13,7 @@ namespace raster_frame_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(RasterFrame, WithoutACrsTheResolutionMustBeGiven) {
+TEST(RasterFrame, WithoutCrsTheResolutionIsRequired) {
   const TemporaryFolder folder;
   const std::string path =
       write({.rows = kHill, .crs = "", .transform = std::array<double, 6>{-20, 0.5, 0, 30, 0, -0.5}},
@@ -28,7 +28,7 @@ TEST(RasterFrame, WithoutACrsTheResolutionMustBeGiven) {
 }
 
 // A cone of 20 degrees on a map of degrees keeps its slope once it is in metres.
-TEST(RasterFrame, DegreesBecomeTrueMetresOnEachBody) {
+TEST(RasterFrame, GeographicCoordinatesBecomeMetresOnEachBody) {
   const TemporaryFolder folder;
   for (const auto& [crs, radius_m, latitude_deg] :
        {std::tuple{"EPSG:4326", 6371000.0, 62.0}, std::tuple{"IAU_2015:49900", 3396190.0, -4.6},
@@ -59,7 +59,7 @@ TEST(RasterFrame, DegreesBecomeTrueMetresOnEachBody) {
 }
 
 // A raster that lies on no body was read as if its longitude were one of the others.
-TEST(RasterFrame, DegreesBeyondTheBodyAreRefused) {
+TEST(RasterFrame, DegreesOutOfRangeAreRejected) {
   const TemporaryFolder folder;
   const auto read = [&folder](double east_deg, double north_deg) {
     const RasterFile file{.rows = std::vector<std::vector<double>>(4, std::vector<double>(4, 1.0)),
@@ -76,7 +76,7 @@ TEST(RasterFrame, DegreesBeyondTheBodyAreRefused) {
         << east_deg << ", " << north_deg;
 }
 
-TEST(RasterFrame, ObliqueAndOblongPixelsAreResampled) {
+TEST(RasterFrame, RotatedAndNonSquarePixelsAreResampled) {
   const TemporaryFolder folder;
   std::vector<std::vector<double>> rows(40, std::vector<double>(40));
   const std::array<double, 6> turned{500000, 8, 6, 5000000, 6, -8};
@@ -91,7 +91,7 @@ TEST(RasterFrame, ObliqueAndOblongPixelsAreResampled) {
   EXPECT_NEAR(elevationAt(map.elevation_m, {500300, 4999990}).value(), 30.0, 0.01);
 }
 
-TEST(RasterFrame, StretchedProjectionsAreMadeTrue) {
+TEST(RasterFrame, DistortedProjectionsAreReprojectedToTrueScale) {
   const TemporaryFolder folder;
   // At 60 degrees north this projection shows a metre of ground as two from west to east.
   const std::string path =
@@ -106,7 +106,7 @@ TEST(RasterFrame, StretchedProjectionsAreMadeTrue) {
 }
 
 // Closed form: US survey feet of 1200/3937 m; the first row lies in the south when y grows downwards.
-TEST(RasterFrame, FeetAndRowsFromTheSouth) {
+TEST(RasterFrame, FeetAreConvertedAndSouthUpRowsDetected) {
   const TemporaryFolder folder;
   const std::string path =
       write({.rows = kHill, .crs = "EPSG:2227", .transform = std::array<double, 6>{6e6, 10, 0, 2e6, 0, 10}},

@@ -42,12 +42,12 @@ std::string virtualRaster(const std::string& source, const std::string& more = "
          "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>";
 }
 
-TEST_F(ReferencedFiles, AVirtualRasterNeedsLeave) {
+TEST_F(ReferencedFiles, VirtualRasterRequiresPermission) {
   EXPECT_THAT(said(virtualRaster("a.tif")), testing::HasSubstr("--allow-vrt"));
   EXPECT_EQ(said(virtualRaster("a.tif"), true), "");
 }
 
-TEST_F(ReferencedFiles, NothingLeavesTheFolder) {
+TEST_F(ReferencedFiles, ReferencesOutsideTheFolderAreRejected) {
   for (const char* source : {"/etc/passwd", "../a.tif", "..", "sub/a.tif", "/vsicurl/http://127.0.0.1/a.tif",
                              "http://127.0.0.1/a.tif", "NETCDF:a.nc:z", "C:\\a.tif", "&#47;etc&#47;passwd"}) {
     EXPECT_THAT(said(virtualRaster(source), true), testing::HasSubstr("no file of its own folder")) << source;
@@ -67,7 +67,7 @@ TEST_F(ReferencedFiles, NothingLeavesTheFolder) {
             "");
 }
 
-TEST_F(ReferencedFiles, PlainNamesAndOtherFilesPass) {
+TEST_F(ReferencedFiles, PlainNamesAndOtherFilesAreAccepted) {
   EXPECT_EQ(said("<Product_Observational><file_name>image.img</file_name></Product_Observational>"), "");
   EXPECT_EQ(said("Object = IsisCube\n  ^Core = core.cub\n"), "");
   EXPECT_EQ(said("PDS_VERSION_ID = PDS3\n^IMAGE = (\"IMAGE.IMG\", 3 <BYTES>)\n"), "");
@@ -76,7 +76,7 @@ TEST_F(ReferencedFiles, PlainNamesAndOtherFilesPass) {
 }
 
 // A GeoTIFF that is none, which GDAL by itself would follow.
-TEST_F(ReferencedFiles, OpeningFollowsNone) {
+TEST_F(ReferencedFiles, OpeningChecksReferencesOfVirtualRasters) {
   const std::string path = folder_.write("label", virtualRaster("/etc/passwd"));
   EXPECT_REFUSED(openRaster(path), InputError,
                  "is a virtual raster, which names other files; pass --allow-vrt");
@@ -87,7 +87,7 @@ TEST_F(ReferencedFiles, OpeningFollowsNone) {
 }
 
 // Each way in which XML writes a text, and each in which a keyword's value may stand apart from it.
-TEST_F(ReferencedFiles, NoSpellingHidesAName) {
+TEST_F(ReferencedFiles, EscapedReferencesAreDetected) {
   for (const char* source : {"<![CDATA[/etc/passwd]]>", "<!-- a -->/etc/passwd", " \n/etc/passwd"}) {
     EXPECT_THAT(said(virtualRaster(source), true), HasSubstr("no file of its own folder")) << source;
     EXPECT_THAT(said("<?xml version=\"1.0\"?><!--" + std::string(5000, ' ') +
@@ -108,7 +108,7 @@ TEST_F(ReferencedFiles, NoSpellingHidesAName) {
             "");
 }
 
-TEST_F(ReferencedFiles, EveryLevelIsChecked) {
+TEST_F(ReferencedFiles, NestedReferencesAreChecked) {
   folder_.write("inner.vrt", virtualRaster("/etc/passwd"));
   EXPECT_THAT(said(virtualRaster("inner.vrt"), true), HasSubstr("inner.vrt: names '/etc/passwd'"));
   folder_.write("inner.vrt",
@@ -124,7 +124,7 @@ TEST_F(ReferencedFiles, EveryLevelIsChecked) {
   EXPECT_EQ(checked("v2", true), "");
 }
 
-TEST_F(ReferencedFiles, LinksStayInTheFolder) {
+TEST_F(ReferencedFiles, SymbolicLinksOutOfTheFolderAreRejected) {
   write({.rows = kHill}, elsewhere_ / "secret.tif");
   fs::create_symlink(elsewhere_ / "secret.tif", folder_ / "a.tif");
   EXPECT_THAT(said(virtualRaster("a.tif"), true), HasSubstr("leads out of the folder"));
@@ -138,7 +138,7 @@ TEST_F(ReferencedFiles, LinksStayInTheFolder) {
   EXPECT_EQ(said(virtualRaster("c.tif"), true), "");
 }
 
-TEST_F(ReferencedFiles, WhatLiesBesideIsAFileOfTheFolder) {
+TEST_F(ReferencedFiles, SidecarFilesMustBeRegularFiles) {
   const std::string map = write({.rows = kHill}, folder_ / "map.tif");
   for (const char* name :
        {"map.tif.aux.xml", "map.tif.ovr", "map.tif.msk", "map.prj", "map.hdr", "map.TFW", "map_rpc.txt"}) {

@@ -34,7 +34,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 class AgainstProj : public testing::TestWithParam<Case> {};
 
-TEST_P(AgainstProj, ForwardToAMillimetreAndBack) {
+TEST_P(AgainstProj, ForwardAndReverseMatchProj) {
   OGRSpatialReference crs = reference(GetParam().definition);
   std::unique_ptr<OGRSpatialReference> degrees(crs.CloneGeogCS());
   degrees->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -63,7 +63,7 @@ TEST_P(AgainstProj, ForwardToAMillimetreAndBack) {
 }
 
 // The same system once more, from its numbers alone.
-TEST_P(AgainstProj, SurvivesBeingWrittenAndReadBack) {
+TEST_P(AgainstProj, SystemRoundTripsThroughItsParameters) {
   const CoordinateSystem first = coordinateSystem(reference(GetParam().definition), "test");
   if (first.projection.method == ProjectionMethod::Foreign) GTEST_SKIP() << "lives by its WKT";
   CoordinateSystem bare = first;
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"EPSG:27572", {{47, 3}}},      // prime meridian of Paris
         Case{"IAU_2015:49910", {{-4.6, 137.4}}}, Case{"IAU_2015:30135", {{-85, 30}}}));
 
-TEST(SpatialReference, PlanetocentricLatitudesOnAnEllipsoid) {
+TEST(SpatialReference, PlanetocentricLatitudesOnAnEllipsoidMatchProj) {
   // Measured by others: PROJ 9.1, IAU_2015:49912 to 49902.
   const Georeference ours(coordinateSystem(reference("IAU_2015:49912"), "test"));
   EXPECT_TRUE(ours.system().planetocentric);
@@ -126,7 +126,7 @@ TEST(SpatialReference, PlanetocentricLatitudesOnAnEllipsoid) {
   EXPECT_NEAR(place.longitude_rad / kDegree, 134.964838864922, 1e-10);
 }
 
-TEST(SpatialReference, RefusesWhatHasNoMetresEastAndNorth) {
+TEST(SpatialReference, SystemsWithoutEastNorthMetresAreRejected) {
   const auto refusal = [](const char* definition) {
     try {
       coordinateSystem(reference(definition), "map.tif");
@@ -152,7 +152,7 @@ double off_m(const Georeference& georeference, Point point, GeoPoint stated_deg)
 }
 
 // A latitude and longitude on Earth is what a receiver of GPS shows, whatever the datum of the map.
-TEST(SpatialReference, PlacesOnEarthAreThoseOfWgs84) {
+TEST(SpatialReference, GeographicCoordinatesOnEarthAreWgs84) {
   struct Known {
     const char* definition;
     Point point;
@@ -188,7 +188,7 @@ TEST(SpatialReference, WebMercatorIsSpherical) {
 }
 
 // Property: what is kept as numbers, for machines without PROJ, is what PROJ says at the place of the map.
-TEST(SpatialReference, KeepsNumbersWhereTheyAreRight) {
+TEST(SpatialReference, ParametersAreKeptForExactlySupportedProjections) {
   for (const char* own : {"EPSG:32610", "EPSG:3031", "EPSG:3413", "IAU_2015:49910", "IAU_2015:30135"})
     EXPECT_NE(at(own, {500000, 500000}).system().projection.method, ProjectionMethod::Foreign) << own;
   const Georeference pole = at("IAU_2015:49912", {8000000, -300000});
@@ -196,7 +196,7 @@ TEST(SpatialReference, KeepsNumbersWhereTheyAreRight) {
   EXPECT_NE(pole.system().projection.method, ProjectionMethod::Foreign);
 }
 
-TEST(SpatialReference, LocalProjectionIsTrueAtItsCentre) {
+TEST(SpatialReference, LocalProjectionHasUnitScaleAtItsCentre) {
   for (const char* definition :
        {"EPSG:4326", "EPSG:4277", "IAU_2015:49901", "IAU_2015:49902", "IAU_2015:30100"})
     for (double latitude_deg : {-88.0, -30.0, 0.0, 62.0}) {

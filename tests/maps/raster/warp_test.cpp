@@ -23,7 +23,7 @@ std::string plane(const TemporaryFolder& folder) {
   return write({.rows = rows}, folder / "plane.tif");
 }
 
-TEST(Warp, TheSameCellsHoldTheSameValues) {
+TEST(Warp, IdenticalGridKeepsValues) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(write({.rows = kHill, .nodata = -1}, folder / "hill.tif"));
   const Grid grid{.width = 4, .height = 5, .resolution_m = 10, .south_west = {500000, 4999950}};
@@ -37,7 +37,7 @@ TEST(Warp, TheSameCellsHoldTheSameValues) {
   }
 }
 
-TEST(Warp, APlaneStaysAPlaneBetweenItsCells) {
+TEST(Warp, InterpolationReproducesAPlane) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(plane(folder));
   const Grid grid{.width = 8, .height = 6, .resolution_m = 5, .south_west = {500101, 4999903}};
@@ -53,7 +53,7 @@ TEST(Warp, APlaneStaysAPlaneBetweenItsCells) {
   }
 }
 
-TEST(Warp, CoarserByTheAverageIsTheMeanOfThePixels) {
+TEST(Warp, AverageResamplingIsTheMeanOfPixels) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(plane(folder));
   const Dataset coarse = warp(*source, {.resolution = 20, .method = "average"}, "test");
@@ -63,7 +63,7 @@ TEST(Warp, CoarserByTheAverageIsTheMeanOfThePixels) {
 }
 
 // Property: a value that is declared no data, by the caller over the file, never enters a mean.
-TEST(Warp, NoDataIsNotMixedIn) {
+TEST(Warp, NoDataIsExcludedFromMeans) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(write({.rows = drawn({"9911", "9911"})}, folder / "marks.tif"));
   const Dataset coarse = warp(*source, {.resolution = 20, .method = "average", .nodata = 9.0}, "test");
@@ -73,7 +73,7 @@ TEST(Warp, NoDataIsNotMixedIn) {
   EXPECT_EQ(values[1], 1.0F);
 }
 
-TEST(Warp, ReadsAfterTheSourceIsClosed) {
+TEST(Warp, ResultIsIndependentOfTheClosedSource) {
   const TemporaryFolder folder;
   Dataset source = openRaster(plane(folder));
   const Dataset same = warp(*source, {.method = "near"}, "test");
@@ -81,13 +81,13 @@ TEST(Warp, ReadsAfterTheSourceIsClosed) {
   EXPECT_EQ(pixels(*same).front(), 100.0F);
 }
 
-TEST(Warp, TakesTheBandThatIsAskedFor) {
+TEST(Warp, RequestedBandIsResampled) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(write({.rows = kHill, .names = {"a", "b"}}, folder / "two.tif"));
   EXPECT_EQ(pixels(*warp(*source, {.band = 2, .method = "near"}, "test")).front(), 1001.0F);
 }
 
-TEST(Warp, WhatCannotBeResampledIsRefused) {
+TEST(Warp, InvalidCrsIsRejected) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(plane(folder));
   EXPECT_THAT(refusal([&] { warp(*source, {.wkt = "no CRS at all"}, "a.tif"); }),

@@ -9,12 +9,12 @@ namespace talus::maps {
 namespace zip_directory_test {
 
 // Printed in: every catalogue of CRCs, the check value of CRC-32/ISO-HDLC.
-TEST(ZipDirectory, TheChecksumIsThatOfZip) {
+TEST(ZipDirectory, ChecksumMatchesCrc32) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
   EXPECT_EQ(crc32(""), 0U);
 }
 
-TEST(ZipDirectory, WhatHasNoneIsRefused) {
+TEST(ZipDirectory, FileWithoutDirectoryIsRejected) {
   const TemporaryFolder folder;
   for (const std::string& bytes :
        {std::string("x"), std::string(100, 'x'), "PK\5\6" + std::string(18, '\xff')})

@@ -8,7 +8,7 @@
 namespace talus::maps {
 namespace crater_field_test {
 
-TEST(CraterField, SizesFollowTheLaw) {
+TEST(CraterField, SizesFollowThePowerLaw) {
   const Grid grid{.width = 3000, .height = 3000, .resolution_m = 1.0};
   const auto craters =
       craterField(grid, {.seed = 1, .least_diameter_m = 4, .greatest_diameter_m = 400, .density = 0.04});
@@ -20,7 +20,7 @@ TEST(CraterField, SizesFollowTheLaw) {
   EXPECT_NEAR(static_cast<double>(larger(4)), 0.04 * 3800 * 3800 / 16, 100);
 }
 
-TEST(CraterField, FreshCraterHasTheProportionsOfFreshOnes) {
+TEST(CraterField, FreshCraterMatchesPikeProportions) {
   const Crater crater{.centre = {}, .radius_m = 10, .age = 0};
   // Printed in: Pike (1977): depth a fifth of the diameter, rim 0.036 of it. The rounding of the rim takes
   // some.

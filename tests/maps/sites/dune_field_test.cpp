@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace dune_field_test {
 
-TEST(DuneField, SlipFacesLieAtTheAngleOfRepose) {
+TEST(DuneField, SlipFacesHaveTheAngleOfRepose) {
   const DuneField dunes({.seed = 3, .wavelength_m = 60, .height_m = 4, .repose_rad = 0.576, .wind_rad = 0.0});
   int faces = 0;
   for (double y = 0; y < 600; y += 7)
@@ -22,7 +22,7 @@ TEST(DuneField, SlipFacesLieAtTheAngleOfRepose) {
   EXPECT_GT(faces, 500);
 }
 
-TEST(DuneField, SandIsContinuousExceptNowhere) {
+TEST(DuneField, SurfaceIsContinuous) {
   const DuneField dunes({.seed = 4});
   for (double y = 0; y < 300; y += 3.1)
     for (double x = 0; x < 300; x += 0.1)

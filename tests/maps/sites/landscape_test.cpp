@@ -29,7 +29,7 @@ std::vector<Ground> groundAt(SiteKind kind, std::uint64_t seed) {
 }
 
 // Property: a place is a function of kind, grid and seed alone.
-TEST(Landscape, TheSeedDecides) {
+TEST(Landscape, SameSeedReproducesTheGround) {
   for (SiteKind kind : kKinds) {
     const auto first = groundAt(kind, 9), again = groundAt(kind, 9), other = groundAt(kind, 10);
     int differing = 0;
@@ -42,7 +42,7 @@ TEST(Landscape, TheSeedDecides) {
   }
 }
 
-TEST(Landscape, RockSharesLieInTheRangesStated) {
+TEST(Landscape, RockSharesAreWithinTheStatedRange) {
   // Printed in: golombek_rapp_1997, Viking and Pathfinder met 1 to 35 %.
   for (const Ground& g : groundAt(SiteKind::Rocks, 4)) {
     ASSERT_TRUE(g.rock_share >= 0.01 && g.rock_share <= 0.35);
@@ -55,7 +55,7 @@ TEST(Landscape, RockSharesLieInTheRangesStated) {
     ASSERT_TRUE(g.soil == SiteClass::Rock ? g.rock_share <= 0.25 : g.rock_share == 0.0);
 }
 
-TEST(Landscape, RollingGroundStaysWithinItsAmplitude) {
+TEST(Landscape, RollingGroundIsWithinItsAmplitude) {
   // Closed form: octaves of 0.03 x 0.6 x 160 m, each 2^-0.9 of the last, of a noise within sqrt(2).
   const double greatest_m = std::sqrt(2.0) * 0.03 * 0.6 * 160 / (1 - std::exp2(-0.9));
   double least = 0.0, most = 0.0;
@@ -68,7 +68,7 @@ TEST(Landscape, RollingGroundStaysWithinItsAmplitude) {
   EXPECT_GT(most - least, 0.1 * greatest_m);
 }
 
-TEST(Landscape, AnUnknownKindIsRefused) {
+TEST(Landscape, UnknownKindIsRejected) {
   EXPECT_REFUSED(makeLandscape(kGrid, {.kind = static_cast<SiteKind>(9)}), std::invalid_argument,
                  "unknown kind");
 }

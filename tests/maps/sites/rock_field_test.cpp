@@ -8,7 +8,7 @@
 namespace talus::maps {
 namespace rock_field_test {
 
-TEST(Rock, IsHalfASphere) {
+TEST(Rock, RockIsAHemisphere) {
   const Rock rock{{0, 0}, 2.0};
   // Closed form: sqrt(R^2 - d^2).
   EXPECT_DOUBLE_EQ(rock.height_m(0.0), 2.0);
@@ -17,7 +17,7 @@ TEST(Rock, IsHalfASphere) {
   EXPECT_EQ(rock.height_m(5.0), 0.0);
 }
 
-TEST(RockField, CoversTheShareOfGroundThatTheSizeLawSays) {
+TEST(RockField, CoveredAreaMatchesTheSizeDistribution) {
   const Grid grid{.width = 800, .height = 800, .resolution_m = 1.0, .south_west = {100.0, -50.0}};
   const double k = 0.1;
   const RockOptions options{.seed = 3, .least_diameter_m = 0.5, .greatest_diameter_m = 4.0};
@@ -38,7 +38,7 @@ TEST(RockField, CoversTheShareOfGroundThatTheSizeLawSays) {
   EXPECT_NEAR(larger_than_1_m2 / 640000.0, share(1.0) - share(4.0), 0.06 * share(1.0));
 }
 
-TEST(RockField, LeavesBareGroundAloneAndRepeatsWithItsSeed) {
+TEST(RockField, RocksLieOnlyWhereAbundanceIsPositiveAndSeedReproduces) {
   const Grid grid{.width = 64, .height = 64, .resolution_m = 1.0};
   const auto half = [](Point p) { return p.x_m < 32.0 ? 0.0 : 0.2; };
   const auto first = rockField(grid, half, {.seed = 5});

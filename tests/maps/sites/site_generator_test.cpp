@@ -22,7 +22,7 @@ std::vector<std::uint32_t> bits(const Site& site) {
   return out;
 }
 
-TEST(SiteGenerator, SameSeedSameBitsWhateverTheThreads) {
+TEST(SiteGenerator, ResultIsIndependentOfThreadCountAndReproducedBySeed) {
   for (SiteKind kind : kKinds) {
     const SiteOptions options{.kind = kind, .width = 150, .height = 200, .seed = 5};
     SiteOptions threads = options;
@@ -34,7 +34,7 @@ TEST(SiteGenerator, SameSeedSameBitsWhateverTheThreads) {
   }
 }
 
-TEST(SiteGenerator, EverySiteIsWholeAndVaried) {
+TEST(SiteGenerator, EverySiteIsCompleteWithSeveralClasses) {
   for (SiteKind kind : kKinds) {
     const Site site = generateSite({.kind = kind, .width = 400, .height = 400, .seed = 2});
     EXPECT_DOUBLE_EQ(validFraction(site.map.elevation_m), 1.0);
@@ -55,7 +55,7 @@ TEST(SiteGenerator, EverySiteIsWholeAndVaried) {
   }
 }
 
-TEST(SiteGenerator, RefusesNonsense) {
+TEST(SiteGenerator, InvalidOptionsAreRejected) {
   EXPECT_REFUSED(generateSite({.width = 4}), std::invalid_argument,
                  "width = 4.000000, must be 8 to 20000 cells");
   EXPECT_REFUSED(generateSite({.height = 30000}), std::invalid_argument,
@@ -66,7 +66,7 @@ TEST(SiteGenerator, RefusesNonsense) {
 }
 
 // Property: outside the blocky ground (abundance over 0.2) what the classes call rock is what boulders cover.
-TEST(SiteGenerator, RockClassCoversTheBoulders) {
+TEST(SiteGenerator, RockClassAreaMatchesRockAbundance) {
   const Site site =
       generateSite({.kind = SiteKind::Rocks, .width = 300, .height = 300, .resolution_m = 0.25});
   double share = 0.0, abundance = 0.0;

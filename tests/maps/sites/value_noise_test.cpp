@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace value_noise_test {
 
-TEST(ValueNoise, MixedIsSplitMix64) {
+TEST(ValueNoise, MixedMatchesSplitMix64) {
   // Printed in: Vigna's splitmix64.c run from the states 0 and 1234567, whose increment is in `mixed`.
   EXPECT_EQ(mixed(0), 0xE220A8397B1DCDAFULL);
   EXPECT_EQ(mixed(1234567), 6457827717110365317ULL);
@@ -15,9 +15,9 @@ TEST(ValueNoise, MixedIsSplitMix64) {
 }
 
 // Property: mean 1/2 and variance 1/12 of the uniform distribution; tolerance: five standard errors.
-TEST(ValueNoise, ARandomRowIsUniform) {
+TEST(ValueNoise, RandomRowIsUniform) {
   constexpr int kCount = 100000;
-  RandomRow random(7);
+  RandomSequence random(7);
   double sum = 0.0, squares = 0.0;
   for (int i = 0; i < kCount; ++i) {
     const double value = random();
@@ -29,7 +29,7 @@ TEST(ValueNoise, ARandomRowIsUniform) {
   EXPECT_NEAR(squares / kCount, 1.0 / 12, 5 * std::sqrt(1.0 / 180 / kCount));
 }
 
-TEST(ValueNoise, GradientNoiseIsZeroAtWholeNumbersAndHasABound) {
+TEST(ValueNoise, GradientNoiseIsZeroOnTheLatticeAndBounded) {
   const GradientNoise noise(3);
   double greatest = 0.0;
   std::mt19937 random(1);
@@ -44,7 +44,7 @@ TEST(ValueNoise, GradientNoiseIsZeroAtWholeNumbersAndHasABound) {
 }
 
 // Property: value and slope are continuous where two squares meet (fifth-order curves).
-TEST(ValueNoise, GradientNoiseHasNoEdges) {
+TEST(ValueNoise, GradientNoiseIsSmoothAcrossCells) {
   const GradientNoise noise(11);
   constexpr double h = 1e-5;
   for (int i = -20; i < 20; ++i) {
@@ -58,7 +58,7 @@ TEST(ValueNoise, GradientNoiseHasNoEdges) {
   }
 }
 
-TEST(ValueNoise, AnOctaveIsHalfAsLongAndLowerByTheHurstExponent) {
+TEST(ValueNoise, OctaveHalvesWavelengthAndScalesByHurstExponent) {
   const GradientNoise noise(5);
   const FractalGround one({.seed = 5, .longest_m = 30.0, .shortest_m = 30.0, .amplitude_m = 2.0});
   const FractalGround two(

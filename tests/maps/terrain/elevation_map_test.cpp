@@ -8,14 +8,14 @@ namespace elevation_map_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-TEST(ElevationMap, ValidFractionCountsTheCellsWithData) {
+TEST(ElevationMap, ValidFractionIsTheShareOfCellsWithData) {
   Raster<float> z({.width = 4, .height = 2, .resolution_m = 1.0, .south_west = {}}, 1.0F);
   EXPECT_EQ(validFraction(z), 1.0);
   z[{1, 1}] = z[{3, 0}] = kNaN;
   EXPECT_EQ(validFraction(z), 0.75);
 }
 
-TEST(ElevationMap, ElevationBetweenCentresIsBilinear) {
+TEST(ElevationMap, InterpolationIsBilinear) {
   const Grid grid{.width = 6, .height = 5, .resolution_m = 2.0, .south_west = {100.0, 50.0}};
   Raster<float> z(grid);
   // Closed form: a + b x + c y + d x y is its own bilinear interpolation.
@@ -34,7 +34,7 @@ TEST(ElevationMap, ElevationBetweenCentresIsBilinear) {
 }
 
 // Closed form: between the outermost centres and the edge of the map nothing is extrapolated.
-TEST(ElevationMap, BeyondTheOutermostCentresTheElevationIsTheirs) {
+TEST(ElevationMap, ElevationIsConstantBeyondTheOutermostCentres) {
   Raster<float> z(Grid{.width = 3, .height = 2, .resolution_m = 2.0});
   for (int r = 0; r < 2; ++r)
     for (int c = 0; c < 3; ++c) z[{c, r}] = static_cast<float>(10 * c + r);
@@ -44,7 +44,7 @@ TEST(ElevationMap, BeyondTheOutermostCentresTheElevationIsTheirs) {
   EXPECT_FALSE(elevationAt(z, {6.0, 1.0}));
 }
 
-TEST(ElevationMap, NoElevationOutsideTheMapOrBesideAHole) {
+TEST(ElevationMap, OutsideTheMapAndNextToNoDataThereIsNoElevation) {
   Raster<float> z({.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}}, 5.0F);
   z[{1, 1}] = kNaN;
   EXPECT_FALSE(elevationAt(z, {-0.1, 2.0}));

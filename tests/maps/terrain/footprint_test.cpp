@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace footprint_test {
 
-TEST(Footprint, HoldsTheCellsWhoseCentresLieWithinTheRadius) {
+TEST(Footprint, ContainsCellsWithCentresWithinTheRadius) {
   for (const double radius : {1.5, 2.0, 2.9, 5.0, 7.3}) {
     const Footprint disc = discFootprint(radius);
     std::set<std::pair<int, int>> held;
@@ -21,12 +21,12 @@ TEST(Footprint, HoldsTheCellsWhoseCentresLieWithinTheRadius) {
   }
 }
 
-TEST(Footprint, ASmallRadiusGivesThreeByThreeCells) {
+TEST(Footprint, SmallRadiusYieldsThreeByThreeCells) {
   EXPECT_EQ(discFootprint(0.1).offsets.size(), 9U);
   EXPECT_EQ(discFootprint(0.1).reach, 1);
 }
 
-TEST(Footprint, ItsSumsAreThoseOfTheOffsets) {
+TEST(Footprint, MomentsMatchTheOffsets) {
   for (const double radius : {1.0, 3.0, 6.4}) {
     const Footprint disc = discFootprint(radius);
     double x = 0.0, xy = 0.0, xx = 0.0, yy = 0.0;

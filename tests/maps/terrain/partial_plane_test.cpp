@@ -10,7 +10,7 @@ namespace partial_plane_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-TEST(PartialPlane, IsTheLeastSquaresPlaneOfTheCellsThatAreThere) {
+TEST(PartialPlane, MatchesLeastSquaresOverCellsWithData) {
   const Grid grid{.width = 9, .height = 9, .resolution_m = 0.5, .south_west = {}};
   const Footprint disc = discFootprint(2.0);
   std::mt19937 random(11);
@@ -48,7 +48,7 @@ TEST(PartialPlane, IsTheLeastSquaresPlaneOfTheCellsThatAreThere) {
   EXPECT_GT(fitted, 60);
 }
 
-TEST(PartialPlane, NothingWhereTooLittleIsKnown) {
+TEST(PartialPlane, TooFewOrCollinearCellsYieldNoPlane) {
   const Grid grid{.width = 5, .height = 5, .resolution_m = 1.0, .south_west = {}};
   Raster<float> z(grid, kNaN);
   const Footprint disc = discFootprint(1.5);

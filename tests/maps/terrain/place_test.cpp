@@ -24,7 +24,7 @@ ElevationMap localMap() {
           .notes = {}};
 }
 
-TEST(Place, MetresOrDegrees) {
+TEST(Place, ParsesMetresAndDegrees) {
   EXPECT_EQ(std::get<Point>(parsePlace("12.5,-3e2")), (Point{12.5, -300}));
   EXPECT_EQ(std::get<Point>(parsePlace(" +1 , 2")), (Point{1, 2}));
   const GeoPoint place = std::get<GeoPoint>(parsePlace("-4.59d,137.44d"));
@@ -32,7 +32,7 @@ TEST(Place, MetresOrDegrees) {
   EXPECT_DOUBLE_EQ(place.longitude_rad, 137.44 * kDegree);
 }
 
-TEST(Place, BadTextIsQuoted) {
+TEST(Place, InvalidTextIsQuotedInTheError) {
   for (const char* text : {"", "1", "1,2,3", "a,b", "1,", "nan,1", "1d,2", "91d,0d", "0d,361d", "1,2x",
                            "inf,0", "1;2", "010,1", "1d,-007d"}) {
     const std::string line = refusal([&] { parsePlace(text); });
@@ -41,7 +41,7 @@ TEST(Place, BadTextIsQuoted) {
   }
 }
 
-TEST(Place, OutsideSaysWhereTheMapIs) {
+TEST(Place, PositionOutsideTheMapIsRejectedWithTheMapExtent) {
   EXPECT_EQ(locate(Point{119.9, -50}, localMap(), "--start"), (Point{119.9, -50}));
   EXPECT_THAT(refusal([] {
                 locate(Point{5, 900}, localMap(), "--start 5,900");
@@ -52,7 +52,7 @@ TEST(Place, OutsideSaysWhereTheMapIs) {
 }
 
 // The line that says what the map spans names its border: that is a place of the map.
-TEST(Place, TheBorderBelongsToTheMap) {
+TEST(Place, MapBorderIsInsideTheMap) {
   const ElevationMap map = localMap();
   for (const Point corner : {Point{100, -50}, Point{120, -50}, Point{100, -10}, Point{120, -10}}) {
     const Point at = locate(corner, map, "--goal");
@@ -66,7 +66,7 @@ TEST(Place, TheBorderBelongsToTheMap) {
               HasSubstr("lies outside the map"));
 }
 
-TEST(Place, DegreesThroughTheMapsGeoreference) {
+TEST(Place, DegreesAreConvertedByTheMapGeoreference) {
   ElevationMap map = localMap();
   map.georeference.emplace(CoordinateSystem{.name = "Moon", .ellipsoid = kMoon});
   const GeoPoint place = map.georeference->reverse({110, -30});
@@ -80,7 +80,7 @@ TEST(Place, DegreesThroughTheMapsGeoreference) {
               HasSubstr("at 28.647890d,28.647890d lies outside"));
 }
 
-TEST(Place, WindowHasFourNumbers) {
+TEST(Place, WindowRequiresFourNumbersOfOneUnit) {
   const Window window = parseWindow("1,2,3,4");
   EXPECT_EQ(std::get<Point>(window.second), (Point{3, 4}));
   for (const char* mixed : {"5,5,65d,65d", "5d,5d,65,65"})

@@ -39,7 +39,7 @@ std::vector<std::vector<float>> rowsOf(const Footprint& disc, int width, auto&& 
   return rows;
 }
 
-TEST(PlaneKernel, APlaneIsItsOwnFit) {
+TEST(PlaneKernel, FitReproducesAPlane) {
   const Footprint disc = discFootprint(2.5);
   const auto rows = rowsOf(
       disc, 13, [](int c, int r) { return 0.125F * static_cast<float>(c) - 0.25F * static_cast<float>(r); });
@@ -53,7 +53,7 @@ TEST(PlaneKernel, APlaneIsItsOwnFit) {
   }
 }
 
-TEST(PlaneKernel, EveryKernelGivesTheSameBits) {
+TEST(PlaneKernel, KernelsAreBitIdentical) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> height(-3.0F, 3.0F), chance(0.0F, 1.0F);
   for (const double radius : {1.0, 2.5, 4.0}) {
@@ -80,7 +80,7 @@ TEST(PlaneKernel, EveryKernelGivesTheSameBits) {
 
 // Far below the datum, where floats are coarse.
 #if defined(__x86_64__)
-TEST(PlaneKernel, BothTwinsGiveTheSameBitsFarFromTheDatum) {
+TEST(PlaneKernel, KernelsAreBitIdenticalFarFromTheDatum) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
   const Footprint footprint = discFootprint(3.2);
   const int width = 61;

@@ -73,7 +73,7 @@ class SlowSteps {
 };
 
 // Property: the kernel is the definition, on rough ground with holes, for any footprint and span.
-TEST(StepHeight, IsThatOfEveryPairByTheDefinition) {
+TEST(StepHeight, MatchesThePairwiseDefinition) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int trial = 0; trial < 24; ++trial) {
@@ -101,7 +101,7 @@ TEST(StepHeight, IsThatOfEveryPairByTheDefinition) {
 
 // A sheer edge through the middle in any direction, on ground of any slope: nowhere on it less than its height, less
 // what of the slope a pair across it may not show.
-TEST(StepHeight, ASheerStepHasItsHeightWhateverTheCellsAndTheSlope) {
+TEST(StepHeight, VerticalStepHasItsHeightForAnyCellSizeSlopeAndDirection) {
   for (const double cell_m : {0.1, 0.25, 0.5, 1.0})
     for (const double slope : {0.0, 0.2, -0.45})
       for (int k = 0; k < 12; ++k) {
@@ -125,7 +125,7 @@ TEST(StepHeight, ASheerStepHasItsHeightWhateverTheCellsAndTheSlope) {
 }
 
 // Smooth ground is no step: what is left is the change of slope from cell to cell, curvature times the square of the distance.
-TEST(StepHeight, SmoothSteepGroundHasNone) {
+TEST(StepHeight, SmoothSteepGroundHasNoStep) {
   for (const double cell_m : {0.25, 1.0}) {
     const Grid grid{.width = 80, .height = 80, .resolution_m = cell_m, .south_west = {}};
     const Raster<float> plane = surface(grid, [](double x, double y) { return 0.466 * x + 0.1 * y; });
@@ -143,7 +143,7 @@ TEST(StepHeight, SmoothSteepGroundHasNone) {
 }
 
 // A scarp that the map's resampling has spread over a wheel's diameter is as high.
-TEST(StepHeight, AScarpWithinTheSpanCountsAsWhole) {
+TEST(StepHeight, ScarpWithinTheSpanHasItsFullHeight) {
   const Grid grid{.width = 61, .height = 5, .resolution_m = 0.1, .south_west = {}};
   const Raster<float> z =
       surface(grid, [](double x, double) { return 0.4 * std::clamp((x - 3.05) / 0.3, 0.0, 1.0); });
@@ -153,7 +153,7 @@ TEST(StepHeight, AScarpWithinTheSpanCountsAsWhole) {
 }
 
 // Property: NaN-free or not, wide or narrow, every kernel gives the same bits.
-TEST(StepHeight, EveryKernelGivesTheSameBits) {
+TEST(StepHeight, KernelsAreBitIdentical) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-4501.0F, -4499.0F);
   for (const int span : {1, 3})

@@ -60,7 +60,7 @@ Expected leastSquares(const Raster<float>& z, Cell middle, double radius_m) {
           residual.maxCoeff() - residual.minCoeff()};
 }
 
-TEST(TerrainMetrics, TiltedPlaneIsExactEverywhereAlsoAtTheEdges) {
+TEST(TerrainMetrics, TiltedPlaneIsExactIncludingEdges) {
   const Grid grid{.width = 37, .height = 21, .resolution_m = 0.5, .south_west = {1000, -300}};
   const Raster<float> z = surface(grid, [](double x, double y) { return 0.25 * x - 0.5 * y; });
   for (double radius_m : {0.0, 1.0, 2.6}) {
@@ -79,7 +79,7 @@ TEST(TerrainMetrics, TiltedPlaneIsExactEverywhereAlsoAtTheEdges) {
   }
 }
 
-TEST(TerrainMetrics, AgreesWithLeastSquaresOnRoughGroundWithHoles) {
+TEST(TerrainMetrics, MatchesLeastSquaresOnRoughGroundWithHoles) {
   const Grid grid{.width = 45, .height = 33, .resolution_m = 2.0};
   for (double holes : {0.0, 0.02})
     for (double radius_m : {2.83, 4.0, 7.3}) {
@@ -97,7 +97,7 @@ TEST(TerrainMetrics, AgreesWithLeastSquaresOnRoughGroundWithHoles) {
     }
 }
 
-TEST(TerrainMetrics, SmallFootprintFallsBackToThreeByThreeAndSaysSo) {
+TEST(TerrainMetrics, SmallFootprintFallsBackToThreeByThreeAndReportsIt) {
   const Raster<float> z = noise({.width = 9, .height = 9, .resolution_m = 5.0}, 0.0);
   const TerrainMetrics small = terrainMetrics(z, {.radius_m = 0.6});
   const TerrainMetrics block = terrainMetrics(z, {.radius_m = 5.0 * std::sqrt(2.0)});
@@ -107,7 +107,7 @@ TEST(TerrainMetrics, SmallFootprintFallsBackToThreeByThreeAndSaysSo) {
   EXPECT_EQ(small.dz_dx.values(), block.dz_dx.values());
 }
 
-TEST(TerrainMetrics, ReliefOfARockIsItsHeight) {
+TEST(TerrainMetrics, ReliefOfARockEqualsItsHeight) {
   // Closed form: over many cells the plane hardly sees one rock.
   Raster<float> z(Grid{.width = 41, .height = 41, .resolution_m = 0.1});
   z[{20, 20}] = 0.4F;
@@ -117,7 +117,7 @@ TEST(TerrainMetrics, ReliefOfARockIsItsHeight) {
   EXPECT_EQ((m.relief_m[{5, 5}]), 0.0F);
 }
 
-TEST(TerrainMetrics, NoDataStaysNoData) {
+TEST(TerrainMetrics, NoDataIsPreserved) {
   Raster<float> z(Grid{.width = 20, .height = 12, .resolution_m = 1.0}, kNaN);
   // One cell alone, three in a corner, and a line have no plane; a block of four does.
   z[{2, 2}] = 1.0F;
@@ -133,7 +133,7 @@ TEST(TerrainMetrics, NoDataStaysNoData) {
   EXPECT_EQ((m.dz_dx[{15, 5}]), 0.0F);
 }
 
-TEST(TerrainMetrics, SameBitsWhateverTheThreads) {
+TEST(TerrainMetrics, ResultIsIndependentOfThreadCount) {
   const Raster<float> z = noise({.width = 133, .height = 301, .resolution_m = 1.0}, 0.01);
   const auto bits = [&](int threads) {
     const TerrainMetrics m = terrainMetrics(z, {.radius_m = 2.0, .threads = threads});
@@ -146,7 +146,7 @@ TEST(TerrainMetrics, SameBitsWhateverTheThreads) {
   EXPECT_EQ(bits(1), bits(5));
 }
 
-TEST(TerrainMetrics, GradientErrorIsThatOfRepeatedNoise) {
+TEST(TerrainMetrics, GradientStdMatchesScatterUnderWhiteNoise) {
   // Property: the stated standard error is the spread of gradients that white noise makes.
   const TerrainMetrics m =
       terrainMetrics(noise({.width = 300, .height = 300, .resolution_m = 2.0}, 0.0), {.radius_m = 5.0});
@@ -161,7 +161,7 @@ TEST(TerrainMetrics, GradientErrorIsThatOfRepeatedNoise) {
   EXPECT_NEAR(std::sqrt(spread / stated), 1.0, 0.02);
 }
 
-TEST(TerrainMetrics, StopsWhenToldTo) {
+TEST(TerrainMetrics, StopsOnRequest) {
   std::stop_source source;
   source.request_stop();
   const TerrainMetrics m = terrainMetrics(noise({.width = 50, .height = 50}, 0.0), {},
@@ -169,7 +169,7 @@ TEST(TerrainMetrics, StopsWhenToldTo) {
   EXPECT_TRUE(std::isnan(m.dz_dx[{25, 25}]));
 }
 
-TEST(TerrainMetrics, RefusesNonsense) {
+TEST(TerrainMetrics, InvalidOptionsAreRejected) {
   const Raster<float> z(Grid{.width = 4, .height = 4});
   EXPECT_REFUSED(terrainMetrics(z, {.radius_m = -1}), std::invalid_argument,
                  "radius_m = -1.000000, must be finite and >= 0");

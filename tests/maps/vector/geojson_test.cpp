@@ -24,7 +24,7 @@ ElevationMap lunarMap() {
   return map;
 }
 
-TEST(GeoJson, GeometriesOfEveryNestingInOrder) {
+TEST(GeoJson, GeometriesOfAnyNestingAreFoundInOrder) {
   const json document = json::parse(R"({"type":"FeatureCollection","features":[
     {"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}},
     {"type":"Feature","geometry":null},
@@ -38,7 +38,7 @@ TEST(GeoJson, GeometriesOfEveryNestingInOrder) {
 }
 
 // Property: what has coordinates and no type, or a type that is no word, is no geometry.
-TEST(GeoJson, WithoutATypeThereIsNoGeometry) {
+TEST(GeoJson, ObjectsWithoutTypeAreNoGeometry) {
   EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":[{"coordinates":[1,2]},
     {"type":7,"coordinates":[1,2]}, 3, null, "x"]})"))
                   .empty());
@@ -46,7 +46,7 @@ TEST(GeoJson, WithoutATypeThereIsNoGeometry) {
   EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":{}})")).empty());
 }
 
-TEST(GeoJson, DegreesGoThroughTheMapsGeoreference) {
+TEST(GeoJson, DegreesAreConvertedByTheMapGeoreference) {
   const ElevationMap map = lunarMap();
   const json position = {0.03, -0.01, 12.0};
   const Point p = PositionReader(json{{"type", "Point"}}, map, "p.geojson")(position);
@@ -54,7 +54,7 @@ TEST(GeoJson, DegreesGoThroughTheMapsGeoreference) {
   EXPECT_EQ(p, expected);
 }
 
-TEST(GeoJson, LocalMetresWhereTheDocumentSaysSoOrTheMapHasNoCrs) {
+TEST(GeoJson, LocalCoordinatesAreMetresIfDeclaredOrWithoutMapCrs) {
   const ElevationMap map = lunarMap();
   for (const char* text :
        {R"({"type":"Point","crs":"local"})", R"({"type":"Feature","properties":{"crs":"local"}})",
@@ -66,7 +66,7 @@ TEST(GeoJson, LocalMetresWhereTheDocumentSaysSoOrTheMapHasNoCrs) {
 }
 
 // GeoJSON of 2008 names a CRS: positions in degrees are read, others are refused, and where the map has none, all are.
-TEST(GeoJson, ACrsIsKeptOrRefused) {
+TEST(GeoJson, NonDegreeCrsIsRejected) {
   const auto named = [](const std::string& name) {
     return json{{"type", "Point"}, {"crs", {{"type", "name"}, {"properties", {{"name", name}}}}}};
   };
@@ -93,7 +93,7 @@ TEST(GeoJson, ACrsIsKeptOrRefused) {
   EXPECT_NO_THROW(PositionReader(json{{"type", "Point"}, {"crs", nullptr}}, yard, "p.geojson"));
 }
 
-TEST(GeoJson, APositionThatIsNoneIsRefused) {
+TEST(GeoJson, InvalidPositionsAreRejected) {
   const ElevationMap map = lunarMap();
   const PositionReader read(json{{"type", "Point"}}, map, "p.geojson");
   for (const char* text : {"7", "[]", "[1]", R"(["1",2])", "[1,null]", "{}", "null"})
@@ -104,7 +104,7 @@ TEST(GeoJson, APositionThatIsNoneIsRefused) {
   EXPECT_THAT(refusal([&] { read(json{361, 0}); }), HasSubstr("is not a longitude and latitude"));
 }
 
-TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
+TEST(GeoJson, InvalidGeoJsonIsRejected) {
   const TemporaryFolder folder;
   const auto line = [&](const std::string& content) {
     return refusal([&] { readGeoJson(folder.write("a.json", content)); });
@@ -127,7 +127,7 @@ TEST(GeoJson, AFileThatIsNoGeoJsonIsRefused) {
 }
 
 // A tree in memory takes many times the bytes of its text.
-TEST(GeoJson, TheBudgetIsAskedBeforeTheFileIsParsed) {
+TEST(GeoJson, MemoryBudgetIsCheckedBeforeParsing) {
   const TemporaryFolder folder;
   std::string text = R"({"type":"Polygon","coordinates":[[])";
   while (text.size() < 5'000'000) text += ",[]";

@@ -8,7 +8,7 @@ namespace keep_out_reader_test {
 
 using testing::HasSubstr;
 
-TEST(KeepOutReader, EveryCellThatAnAreaTouches) {
+TEST(KeepOutReader, EveryCellTouchedByAPolygonIsClosed) {
   const TemporaryFolder folder;
   const std::string path = folder.write("k.geojson", R"({"type":"FeatureCollection","crs":"local","features":[
     {"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
@@ -17,7 +17,7 @@ TEST(KeepOutReader, EveryCellThatAnAreaTouches) {
 }
 
 // Drawing loops over the rows of a ring: one that reaches far is cut first, and covers the same cells.
-TEST(KeepOutReader, AreasThatReachFarAreCut) {
+TEST(KeepOutReader, PolygonsBeyondTheMapAreClipped) {
   const TemporaryFolder folder;
   const auto cells = [&](const std::string& ring) {
     const std::string path =
@@ -30,7 +30,7 @@ TEST(KeepOutReader, AreasThatReachFarAreCut) {
   EXPECT_THROW(cells("[1e9,1e9],[2e9,1e9],[2e9,2e9],[1e9,1e9]"), InputError);
 }
 
-TEST(KeepOutReader, DegreesOnTheMapsOwnBody) {
+TEST(KeepOutReader, DegreesAreConvertedOnTheBodyOfTheMap) {
   const TemporaryFolder folder;
   const ElevationMap mars =
       readElevation(write({.rows = drawn({"1234", "2345", "3456"}),
@@ -50,7 +50,7 @@ TEST(KeepOutReader, DegreesOnTheMapsOwnBody) {
   EXPECT_EQ(drawing(readKeepOut(path, mars).mask), "1000\n1000\n1000\n");
 }
 
-TEST(KeepOutReader, BadFilesAreRefused) {
+TEST(KeepOutReader, InvalidFilesAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const auto line = [&](const std::string& content) {
@@ -83,7 +83,7 @@ std::string collection(const std::string& geometry) {
 
 // Property: a feature beside a sound one closes ground, or is refused by its number. Of a box wound twice the even-odd rule
 // left its boundary alone, and every other fault passed in silence.
-TEST(KeepOutReader, EveryFeatureClosesGroundOrIsRefused) {
+TEST(KeepOutReader, EveryFeatureClosesCellsOrIsRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const std::string ring =
@@ -113,7 +113,7 @@ TEST(KeepOutReader, EveryFeatureClosesGroundOrIsRefused) {
 }
 
 // Property: a team has one file for many maps, so that what lies beside this one is told and not refused.
-TEST(KeepOutReader, AFeatureBesideTheMapIsTold) {
+TEST(KeepOutReader, PolygonOutsideTheMapIsReported) {
   const TemporaryFolder folder;
   const KeepOut areas =
       readKeepOut(folder.write("k.geojson",

@@ -7,7 +7,7 @@ namespace place_reader_test {
 
 using testing::HasSubstr;
 
-TEST(PlaceReader, FirstPointOfAGeoJsonFile) {
+TEST(PlaceReader, PlaceIsThePointOfAGeoJsonFile) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const std::string local = folder.write("p.geojson", R"({"type":"Feature","crs":"local","properties":{},
@@ -27,7 +27,7 @@ TEST(PlaceReader, FirstPointOfAGeoJsonFile) {
   EXPECT_THAT(refusal([&] { readPlace(line, dem, "--goal"); }), HasSubstr("holds no Point"));
 }
 
-TEST(PlaceReader, OfSeveralPointsItIsTheFirst) {
+TEST(PlaceReader, FirstOfSeveralPointsIsUsed) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const std::string many = folder.write(

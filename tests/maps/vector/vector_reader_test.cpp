@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -66,7 +67,7 @@ const std::map<std::string, std::string> kEndings{
     {"GPKG", "gpkg"}, {"ESRI Shapefile", "shp"}, {"FlatGeobuf", "fgb"}, {"GPX", "gpx"},
     {"KML", "kml"},   {"MapInfo File", "tab"},   {"GeoJSON", "geojson"}};
 
-TEST(VectorReader, APlaceComesFromEveryFormat) {
+TEST(VectorReader, EveryVectorFormatYieldsTheSamePlace) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   const GeoPoint place = map.places()->reverse({500300, 4999600});
@@ -85,7 +86,7 @@ TEST(VectorReader, APlaceComesFromEveryFormat) {
 }
 
 // Measured by others: PROJ's cs2cs; Bern's old observatory in LV95 is 600000, 200000 in LV03 by definition.
-TEST(VectorReader, AnyCrsBecomesTheMaps) {
+TEST(VectorReader, CoordinatesAreTransformedToTheMapCrs) {
   const TemporaryFolder folder;
   const std::vector<std::vector<double>> rows(100, std::vector<double>(100, 7.0));
   const ElevationMap map = readElevation(maps::write(
@@ -102,7 +103,7 @@ TEST(VectorReader, AnyCrsBecomesTheMaps) {
   }
 }
 
-TEST(VectorReader, KeepOutAreasComeFromAGeoPackage) {
+TEST(VectorReader, KeepOutPolygonsAreReadFromGeoPackage) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   const std::string path = write(
@@ -117,7 +118,7 @@ TEST(VectorReader, KeepOutAreasComeFromAGeoPackage) {
   EXPECT_THAT(refusal([&] { readKeepOut(line, map); }), HasSubstr("feature 1 'here': "));
 }
 
-TEST(VectorReader, RefusesWhatItCannotPlace) {
+TEST(VectorReader, LayersThatCannotBeGeoreferencedAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder), yard = hill(folder, "");
   const auto line = [&](const std::string& path, const ElevationMap& on) {
@@ -147,7 +148,7 @@ TEST(VectorReader, RefusesWhatItCannotPlace) {
 }
 
 // Property: of a file that is cut anywhere nothing is taken that the whole one does not have.
-TEST(VectorReader, AFileCutShortIsRefusedOrWhole) {
+TEST(VectorReader, TruncatedFileIsRejectedOrComplete) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   for (const std::string& driver : vectorFormats()) {
@@ -165,16 +166,46 @@ TEST(VectorReader, AFileCutShortIsRefusedOrWhole) {
   }
 }
 
-TEST(VectorReader, StaysWithinTheMemoryBudget) {
+// Property: rings with holes, parts and collections of a GeoPackage close the cells that the same geometries close as GeoJSON.
+TEST(VectorReader, KeepOutAreasAreTheSameInEveryForm) {
+  const TemporaryFolder folder;
+  const ElevationMap map = hill(folder);
+  const std::string ring = "(500105 4999105,500405 4999155,500355 4999455,500105 4999105)",
+                    hole = "(500205 4999185,500305 4999205,500285 4999285,500205 4999185)",
+                    other = "(500605 4999605,500705 4999605,500655 4999705,500605 4999605)";
+  for (const std::string& wkt :
+       {"POLYGON (" + ring + "," + hole + ")", "MULTIPOLYGON ((" + ring + "," + hole + "),(" + other + "))",
+        "GEOMETRYCOLLECTION (POLYGON (" + ring + "),POLYGON (" + other + "))"}) {
+    OGRGeometry* made = nullptr;
+    OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &made);
+    const std::unique_ptr<OGRGeometry> geometry(made);
+    const std::unique_ptr<char, decltype(&CPLFree)> text(geometry->exportToJson(), CPLFree);
+    const std::string file = folder.write(
+        "keep.geojson",
+        R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature","geometry":)" +
+            std::string(text.get()) + "}]}");
+    const KeepOut as_json = readKeepOut(file, map);
+    std::filesystem::remove(folder / "keep.gpkg");
+    EXPECT_EQ(
+        readKeepOut(write({.crs = "EPSG:32610", .wkt = {wkt}}, folder / "keep.gpkg"), map).mask.values(),
+        as_json.mask.values())
+        << wkt;
+    EXPECT_GT(std::ranges::count(as_json.mask.values(), 1), 100) << wkt;
+  }
+}
+
+TEST(VectorReader, RefusesMorePositionsThanAPathOrTheMemoryHas) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
   std::ostringstream wkt;
   wkt << "LINESTRING (0 0";
-  for (int i = 1; i < 1'000'000; ++i) wkt << "," << i % 90 << " 1";
+  for (int i = 1; i <= 1'000'000; ++i) wkt << "," << i % 90 << " 1";
   wkt << ")";
   const std::string path = write({.wkt = {wkt.str()}}, folder / "long.gpkg");
-  setMemoryBudget(150'000'000);
-  EXPECT_THAT(refusal([&] { readVector(path, map); }), HasSubstr("more than the memory budget"));
+  EXPECT_THAT(refusal([&] { readVector(path, map); }),
+              HasSubstr("contains 1000001 positions, more than a million; simplify its lines"));
+  setMemoryBudget(100'000'000);
+  EXPECT_THAT(refusal([&] { readKeepOut(path, map); }), HasSubstr("more than the memory budget"));
   setMemoryBudget(0);
 }
 

@@ -31,7 +31,7 @@ Dataset opened(const TemporaryFolder& folder, const std::string& name, const std
   return openVector(folder.write(name, bytes));
 }
 
-TEST(VectorWriter, AGeoPackageHasTheMapsCrsAndFields) {
+TEST(VectorWriter, GeoPackageHasTheMapCrsAndFields) {
   const TemporaryFolder folder;
   const ElevationMap map = mapOf(kMars, 137.0);
   const std::string bytes = vectorFile("GPKG", map, kLayers, "r.gpkg", "{}");
@@ -57,7 +57,7 @@ TEST(VectorWriter, AGeoPackageHasTheMapsCrsAndFields) {
   EXPECT_EQ(stored.line, (std::vector<Point>{{1.0, 2.0}, {3.0, 4.5}}));
 }
 
-TEST(VectorWriter, GpxAndKmlHavePlacesOfWgs84) {
+TEST(VectorWriter, GpxAndKmlCoordinatesAreWgs84) {
   const TemporaryFolder folder;
   const ElevationMap map = mapOf(kEarth, 7.0);
   const GeoPoint place = map.places()->reverse({3.0, 4.5});
@@ -83,7 +83,7 @@ TEST(VectorWriter, GpxAndKmlHavePlacesOfWgs84) {
   }
 }
 
-TEST(VectorWriter, GpxAndKmlAreOfEarthAlone) {
+TEST(VectorWriter, GpxAndKmlRequireAnEarthMap) {
   ElevationMap local = mapOf(kEarth, 0.0);
   local.georeference.reset();
   for (const char* driver : {"GPX", "KML"}) {
@@ -97,7 +97,7 @@ TEST(VectorWriter, GpxAndKmlAreOfEarthAlone) {
   EXPECT_EQ(refusal([&] { vectorFile("GPKG", local, kLayers, "r", ""); }), "accepted");
 }
 
-TEST(VectorWriter, AFileOfOtherProgramsHasNoDocument) {
+TEST(VectorWriter, ForeignGeoPackageHasNoStoredDocument) {
   const TemporaryFolder folder;
   const std::string path =
       folder.write("own.gpkg", vectorFile("GPKG", mapOf(kMoon, 0.0), kLayers, "own.gpkg"));

@@ -142,7 +142,7 @@ BenchmarkPlan plan() {
           .time_limit_s = 0.5};
 }
 
-TEST(BenchmarkLog, PlannerArenaCanReadIt) {
+TEST(BenchmarkLog, PlannerArenaReadsTheLog) {
   const BenchmarkPlan asked = plan();
   const auto runs = runBenchmark(asked);
   const ArenaReader arena(benchmarkLog(asked, runs, 0));
@@ -157,7 +157,7 @@ TEST(BenchmarkLog, PlannerArenaCanReadIt) {
   }
 }
 
-TEST(BenchmarkLog, FailuresAndEqualTimesCanBeReadToo) {
+TEST(BenchmarkLog, FailuresAndEqualTimesAreReadable) {
   BenchmarkPlan asked = plan();
   asked.planners = {"field"};
   asked.seeds = 3;

@@ -43,7 +43,7 @@ TEST(Benchmark, RunsEveryPlannerCaseAndSeed) {
   EXPECT_TRUE(std::isinf(bestKnown_J(plan, runs, 1)));
 }
 
-TEST(Benchmark, ARunThatDiesIsAResult) {
+TEST(Benchmark, CrashedRunIsARecordedResult) {
   BenchmarkPlan plan = smallPlan();
   plan.cases[0].map = nullptr;  // the run in its own process throws
   const BenchmarkJob job{.planner = "field", .case_index = 0, .seed = 1};
@@ -52,7 +52,7 @@ TEST(Benchmark, ARunThatDiesIsAResult) {
   EXPECT_TRUE(std::isinf(run.cost_J));
 }
 
-TEST(Benchmark, TheLogHasTheFormThatOmplReads) {
+TEST(Benchmark, LogFollowsTheOmplFormat) {
   const BenchmarkPlan plan = smallPlan();
   const std::string log = benchmarkLog(plan, runBenchmark(plan), 0);
   // Printed in: OMPL's "Sample benchmark log files" (ompl.kavrakilab.org/benchmark.html), the order of its
@@ -71,7 +71,7 @@ TEST(Benchmark, StopsBetweenRuns) {
   EXPECT_TRUE(runBenchmark(smallPlan(), {.progress = {}, .stop = stop.get_token()}).empty());
 }
 
-TEST(Benchmark, AStopEndsTheRunInWork) {
+TEST(Benchmark, StopEndsTheCurrentRun) {
   BenchmarkPlan plan = smallPlan();
   plan.planners = {"RRTstar"};
   plan.time_limit_s = 600.0;

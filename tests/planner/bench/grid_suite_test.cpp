@@ -43,7 +43,7 @@ double octile(const costmap::CostGrid& map, maps::Cell from, maps::Cell to) {
   return best[grid.index(to)];
 }
 
-TEST(GridSuite, KnowsTheWayRoundACorner) {
+TEST(GridSuite, ShortestPathAroundWallsMatchesClosedForm) {
   const auto map = drawn({".....", ".###.", ".###.", "....."});
   // Closed form: from 0.5,0.5 past the corner 4,1 to 4.5,3.5: hypot(3.5, 0.5) + hypot(0.5, 2.5).
   EXPECT_NEAR(shortestAroundWalls_m(*map, {0, 0}, {4, 3}), std::hypot(3.5, 0.5) + std::hypot(0.5, 2.5),
@@ -55,7 +55,7 @@ TEST(GridSuite, KnowsTheWayRoundACorner) {
 
 // Property: the any-angle optimum is no longer than the eight-neighbour one, and the field's route no shorter
 // than the optimum nor more than a hundredth longer.
-TEST(GridSuite, TheFieldReachesTheOptimum) {
+TEST(GridSuite, FieldIsWithinOnePercentOfTheOptimum) {
   double worst = 0.0;
   std::size_t cases = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed)
@@ -77,7 +77,7 @@ TEST(GridSuite, TheFieldReachesTheOptimum) {
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(GridSuite, RefusesOptionsOutOfRange) {
+TEST(GridSuite, OptionsOutOfRangeAreRejected) {
   EXPECT_REFUSED(gridCases(8, 1, 1), std::invalid_argument, "side = 8, must be >= 16");
   EXPECT_REFUSED(gridCases(32, 0, 1), std::invalid_argument, "pairs = 0, must be > 0");
 }

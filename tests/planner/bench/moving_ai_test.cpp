@@ -32,7 +32,7 @@ class MovingAi : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(MovingAi, ReadsCasesWithNorthOnTop) {
+TEST_F(MovingAi, ReadsCasesNorthUp) {
   // Closed form: from the south-west to the north-east corner around the block, without cutting corners, 7 m.
   write("room.scen", "version 1\n0\troom.map\t5\t4\t0\t3\t4\t0\t7\n");
   const auto cases = readMovingAi(path("room.scen"), 10);
@@ -50,7 +50,7 @@ TEST_F(MovingAi, ReadsCasesWithNorthOnTop) {
   EXPECT_GE(plan.cost_J, std::hypot(4.0, 3.0));
 }
 
-TEST_F(MovingAi, RefusesWhatItCannotRead) {
+TEST_F(MovingAi, InvalidFilesAreRejected) {
   EXPECT_THAT([&] { readMovingAi(path("none.scen"), 1); },
               ThrowsMessage<InputError>(HasSubstr("cannot be read")));
   write("bad.scen", "version 1\n0 room.map 5 4 0\n");
@@ -63,7 +63,7 @@ TEST_F(MovingAi, RefusesWhatItCannotRead) {
   EXPECT_THAT([&] { readMovingAi(path("short.scen"), 1); }, ThrowsMessage<InputError>(HasSubstr("shorter")));
 }
 
-TEST_F(MovingAi, TheMapLiesInTheScenariosFolder) {
+TEST_F(MovingAi, MapMustBeInTheScenarioFolder) {
   const auto scenario = [&](const std::string& map) {
     write("a.scen", "version 1\n0\t" + map + "\t5\t4\t0\t3\t4\t0\t7\n");
     return [this] { readMovingAi(path("a.scen"), 1); };

@@ -13,7 +13,7 @@ namespace slip_world_test {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(SlipWorld, SlipIsThePublishedCurve) {
+TEST(SlipWorld, SlipMatchesThePublishedCurve) {
   const SlipTerrain terrain{.gain_deg2 = 4e-3, .offset = 0.05, .noise = 0.05};
   // Closed form: 0.05 +- 4e-3 10^2.
   EXPECT_NEAR(terrain.slip(std::tan(10.0 * kDegree)), 0.45, 1e-12);
@@ -21,7 +21,7 @@ TEST(SlipWorld, SlipIsThePublishedCurve) {
   EXPECT_NEAR(terrain.slip(0.0), 0.05, 1e-12);
 }
 
-TEST(SlipWorld, HasTheSharesThatWereAskedFor) {
+TEST(SlipWorld, TerrainSharesMatchTheOptions) {
   const SlipWorld world = slipWorld({.seed = 5, .misclassification_rate = 0.2});
   std::array<int, 10> count{};
   int misclassification_rate = 0;
@@ -40,12 +40,12 @@ TEST(SlipWorld, HasTheSharesThatWereAskedFor) {
 
 // Property: without doubt and relief the cost is the time at the level's slip, and the drive, its errors
 // taken out, takes just that.
-TEST(SlipWorld, OnLevelGroundTheCostIsTheTime) {
+TEST(SlipWorld, CostOnLevelGroundIsTheTravelTime) {
   SlipWorld world =
       slipWorld({.seed = 3, .misclassification_rate = 0.0, .relief_m = 0.0, .risk_aware = false});
   for (float& error : world.error.values()) error = 0.0F;
   const std::vector<maps::Point> route{{5.5, 5.5}, {80.5, 60.5}, {20.5, 90.5}};
-  const SlipDrive drive = driven(world, route);
+  const SlipTraverse drive = driven(world, route);
   EXPECT_TRUE(drive.reached);
   EXPECT_LE(drive.max_slip, 0.1);
   // A tenth of a cell at each change of terrain is priced by the wrong one.
@@ -53,7 +53,7 @@ TEST(SlipWorld, OnLevelGroundTheCostIsTheTime) {
 }
 
 // Closed form: the mean of a Gaussian beyond its upper decile is 1.755 deviations above its mean.
-TEST(SlipWorld, DoubtIsTheTailOfTheMixture) {
+TEST(SlipWorld, RiskAwareCostIsTheTailOfTheMixture) {
   const SlipWorld world =
       slipWorld({.seed = 3, .misclassification_rate = 0.0, .relief_m = 0.0, .risk_aware = true, .tail = 0.1});
   const maps::Cell cell{10, 10};
@@ -63,11 +63,11 @@ TEST(SlipWorld, DoubtIsTheTailOfTheMixture) {
               10.0 / (1.0 - slip), 2e-3);
 }
 
-TEST(SlipWorld, TheRoverStandsWhereSlipReachesOne) {
+TEST(SlipWorld, RoverStopsAtSlipOne) {
   SlipWorld world = slipWorld({.seed = 2, .relief_m = 0.0});
   for (float& error : world.error.values()) error = 0.0F;
   world.error[{50, 20}] = 2.0F;
-  const SlipDrive stuck = driven(world, {{10.5, 20.5}, {90.5, 20.5}});
+  const SlipTraverse stuck = driven(world, {{10.5, 20.5}, {90.5, 20.5}});
   EXPECT_FALSE(stuck.reached);
   EXPECT_EQ(stuck.max_slip, 1.0);
   EXPECT_NEAR(stuck.time_s, 40.0 / 0.1, 0.15 * 400.0);  // it came 40 m far, slipping 0 to 0.1
@@ -75,7 +75,7 @@ TEST(SlipWorld, TheRoverStandsWhereSlipReachesOne) {
 }
 
 // Property, the paper's: heeding doubt brings more rovers to the goal than the mean of the terrain seen.
-TEST(SlipWorld, HeedingDoubtReachesMoreGoals) {
+TEST(SlipWorld, RiskAwarePlanningReachesMoreGoals) {
   int blind = 0, heedful = 0, asked = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const auto reached = [&](bool heed) {
@@ -103,14 +103,14 @@ TEST(SlipWorld, HeedingDoubtReachesMoreGoals) {
   RecordProperty("heedful", heedful);
 }
 
-TEST(SlipWorld, SameSeedSameWorld) {
+TEST(SlipWorld, SameSeedReproducesTheWorld) {
   const SlipWorld a = slipWorld({.seed = 7}), b = slipWorld({.seed = 7}), c = slipWorld({.seed = 8});
   EXPECT_EQ(a.truth.values(), b.truth.values());
   EXPECT_EQ(a.error.values(), b.error.values());
   EXPECT_NE(a.truth.values(), c.truth.values());
 }
 
-TEST(SlipWorld, RefusesOptionsOutOfRange) {
+TEST(SlipWorld, OptionsOutOfRangeAreRejected) {
   EXPECT_THAT([] { slipWorld({.side = 4}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("side = 4")));
   EXPECT_THAT([] { slipWorld({.misclassification_rate = 1.5}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("misclassification_rate")));

@@ -17,7 +17,7 @@ using testing::randomMap;
 
 // Property: the field over the corners is below the cost of every allowed motion between two corners, straight
 // or bent once, whatever its heading; on even patches, where it is sharp enough to be wrong.
-TEST(AdmissibleEdges, TheirFieldIsBelowEveryMotion) {
+TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
   int tried = 0, sharp = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     std::mt19937 random(seed);
@@ -60,7 +60,7 @@ TEST(AdmissibleEdges, TheirFieldIsBelowEveryMotion) {
 
 // Closed form: on even ground of 10 J/m no heading is dearer than another; the octagon under that circle has
 // edges no lower than cos(22.5 degrees) of it, and whole units take a 64th.
-TEST(AdmissibleEdges, OnEvenGroundAreNearTheOctagon) {
+TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
   const auto edges = admissibleEdges(drawn({"....", "....", "...."}));
   ASSERT_TRUE(edges);
   EXPECT_EQ(edges->padded().width, 5);  // corners, one more than cells
@@ -75,7 +75,7 @@ TEST(AdmissibleEdges, OnEvenGroundAreNearTheOctagon) {
 
 // Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; a step across a
 // blocked cell, or off the map, is none.
-TEST(AdmissibleEdges, ASideTakesTheCheaperCellAndBlockedGroundNone) {
+TEST(AdmissibleEdges, SideEdgeUsesTheCheaperCellAndBlockedCellsHaveNone) {
   const auto edges = admissibleEdges(drawn({"44", "..", "##"}));
   const auto step_J = [&](maps::Cell into, int heading) {
     return edges->into(edges->padded().index(into))[heading] * edges->units().unit_J();
@@ -87,20 +87,20 @@ TEST(AdmissibleEdges, ASideTakesTheCheaperCellAndBlockedGroundNone) {
   EXPECT_EQ(edges->into(edges->padded().index({2, 2}))[kEast], EdgeLayer::kBlocked);
 }
 
-TEST(AdmissibleEdges, NoneWhenStopped) {
+TEST(AdmissibleEdges, StopYieldsNoEdges) {
   std::stop_source source;
   source.request_stop();
   EXPECT_EQ(admissibleEdges(drawn({".."}), ProgressMonitor{.progress = {}, .stop = source.get_token()}),
             nullptr);
 }
 
-TEST(AdmissibleEdges, NoneWhereGroundCostsNothing) {
-  costmap::DriveCurve free_of_charge;
+TEST(AdmissibleEdges, ZeroCostGroundYieldsNoEdges) {
+  costmap::TravelCurve free_of_charge;
   free_of_charge.cost_J_per_m.fill(0.0F);
   const maps::Raster<costmap::CellCode> cells(
       {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}}, costmap::CellCode({.curve = 0}));
   const auto cost =
-      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{free_of_charge});
+      std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{free_of_charge});
   EXPECT_EQ(admissibleEdges(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost))), nullptr);
 }
 

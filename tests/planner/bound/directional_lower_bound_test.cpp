@@ -11,7 +11,7 @@ namespace directional_lower_bound_test {
 
 // Property: the gauge between the prices of neighbouring headings is nowhere above the cost, in any
 // direction, and every heading has a price.
-TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
+TEST(DirectionalLowerBounds, GaugeIsBelowTheCost) {
   for (const auto& cost :
        {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
     DirectionalLowerBounds headings(*cost);
@@ -40,17 +40,17 @@ TEST(DirectionalLowerBounds, TheirGaugeStaysBelowTheCost) {
 }
 
 // A cart that rolls at `level` joules a metre and lifts its weight: downhill it never pays less than nothing.
-std::shared_ptr<const costmap::DriveCost> rollingCart(double level_J_per_m, double weight_N) {
-  costmap::DriveCurve curve;
-  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+std::shared_ptr<const costmap::TravelCost> rollingCart(double level_J_per_m, double weight_N) {
+  costmap::TravelCurve curve;
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
     curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
-        std::max(0.1 * level_J_per_m, level_J_per_m + weight_N * costmap::DriveCurve::gradient(bin)));
-  return std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+        std::max(0.1 * level_J_per_m, level_J_per_m + weight_N * costmap::TravelCurve::gradient(bin)));
+  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
 }
 
 // Property: where a heading is allowed, prices are finite and no higher than the cost of their own heading,
 // also where the slope outweighs the rolling many times or the ground costs nothing.
-TEST(DirectionalLowerBounds, AreFiniteWhereverAHeadingIsAllowed) {
+TEST(DirectionalLowerBounds, BoundsAreFiniteForAllowedHeadingsAndBelowTheCost) {
   for (const double level_J_per_m : {100.0, 10.0, 1.0, 0.0}) {
     const auto cost = rollingCart(level_J_per_m, 1000.0);
     DirectionalLowerBounds headings(*cost);

@@ -22,7 +22,7 @@ ImprovableRegion around(double known_J, double tolerance_m = 0.0) {
 }
 
 // Closed form: at 10 J/m the places through which 25 m suffice are those of the ellipse with foci 20 m apart.
-TEST(ImprovableRegion, OnEvenGroundIsAnEllipse) {
+TEST(ImprovableRegion, RegionIsAnEllipseOnUniformGround) {
   const auto region = around(250.0);
   int inside = 0;
   for (double x = 0.25; x < 40.0; x += 0.5)
@@ -54,7 +54,7 @@ TEST(ImprovableRegion, BoundsAreBelowTheCost) {
 
 // Property: samples lie where the best cost can be beaten, also a lower one than that of the known route; they
 // reach every quarter of the ellipse, and the same engine gives the same.
-TEST(ImprovableRegion, SamplesLieInsideAndReachAllOfIt) {
+TEST(ImprovableRegion, SamplesCoverTheRegion) {
   const auto region = around(250.0);
   for (const double best_J : {250.0, 215.0, 1e9}) {
     ImprovableRegion::Engine engine(4), again(4);
@@ -71,7 +71,7 @@ TEST(ImprovableRegion, SamplesLieInsideAndReachAllOfIt) {
   }
 }
 
-TEST(ImprovableRegion, NoSampleWhereNothingCanBeBetter) {
+TEST(ImprovableRegion, NoSampleExistsIfNoImprovementIsPossible) {
   ImprovableRegion::Engine engine(1);
   maps::Point place;
   EXPECT_FALSE(around(250.0).sample(engine, 199.0, place));  // Closed form: 20 m at 10 J

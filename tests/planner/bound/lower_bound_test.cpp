@@ -14,7 +14,7 @@ using testing::randomMap;
 
 // Property: no polyline costs less, of which the best that the planner finds, refined as hard as we can, is
 // the sharpest.
-TEST(LowerBound, IsBelowEveryRouteFound) {
+TEST(LowerBound, BoundIsBelowEveryPlannedRoute) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const auto map =
         randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.1, .roughness = 0.02 * (seed % 12)});
@@ -50,7 +50,7 @@ std::shared_ptr<const costmap::CostGrid> ramps(unsigned seed) {
 
 // Property: no motion that happens to be allowed costs less, straight or bent once, of any length and
 // heading, also along the map's border.
-TEST(LowerBound, IsBelowRandomMotions) {
+TEST(LowerBound, BoundIsBelowRandomMotions) {
   int tried = 0, sharp = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = ramps(seed);
@@ -79,7 +79,7 @@ TEST(LowerBound, IsBelowRandomMotions) {
 }
 
 // Closed form: 10 J/m, where corners of cells alone would give away up to 7.6 %.
-TEST(LowerBound, IsTheStraightLineOnEvenGround) {
+TEST(LowerBound, BoundEqualsStraightLineCostOnUniformGround) {
   const auto map = drawn(std::vector<std::string>(200, std::string(200, '.')));
   const Segment ends{{10.5, 10.5}, {190.5, 80.5}};
   const double best = 10.0 * std::hypot(180.0, 70.0);
@@ -87,7 +87,7 @@ TEST(LowerBound, IsTheStraightLineOnEvenGround) {
 }
 
 // Closed form: 10 J/m, and 8 cells of another soil in the way of every straight line cost twice that.
-TEST(LowerBound, IsWithinTheOctagonWhereGroundChanges) {
+TEST(LowerBound, BoundIsWithinTheOctagonMetricForMixedGround) {
   std::vector<std::string> rows(200, std::string(200, '.'));
   for (std::string& row : rows) row.replace(96, 8, "11111111");
   const Segment ends{{10.5, 10.5}, {190.5, 80.5}};
@@ -97,7 +97,7 @@ TEST(LowerBound, IsWithinTheOctagonWhereGroundChanges) {
   EXPECT_GT(bound, 0.90 * best);
 }
 
-TEST(LowerBound, KnowsThatClimbingIsDear) {
+TEST(LowerBound, BoundIsHigherUphillThanDownhill) {
   // Closed form: a ramp of 0.2 costs 43 J/m straight up and 26 J/m down, ten on the flat.
   std::vector<std::string> rows(60, std::string(60, '>'));
   const auto map = drawn(rows);
@@ -106,7 +106,7 @@ TEST(LowerBound, KnowsThatClimbingIsDear) {
   EXPECT_GT(up, 1.3 * down);
 }
 
-TEST(LowerBound, ToleranceLowersIt) {
+TEST(LowerBound, ToleranceLowersTheBound) {
   const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
   const Segment ends{{5.5, 5.5}, {50.5, 50.5}};
   EXPECT_LT(LowerBound()(map, ends, 20.0), LowerBound()(map, ends, 0.0));
@@ -114,17 +114,17 @@ TEST(LowerBound, ToleranceLowersIt) {
 
 // Closed form: 50 m along a track of 1 J/m cost 50 J, though climbing there costs a thousand times that and
 // the ground beside it ten times.
-TEST(LowerBound, KnowsTheTrackWhoseSlopesOutweighItsRolling) {
-  costmap::DriveCurve track, ground;
+TEST(LowerBound, BoundIsValidIfSlopeCostDominatesRollingCost) {
+  costmap::TravelCurve track, ground;
   ground.cost_J_per_m.fill(10.0F);
-  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
     track.cost_J_per_m[static_cast<std::size_t>(bin)] =
-        static_cast<float>(std::max(0.1, 1.0 + 1000.0 * costmap::DriveCurve::gradient(bin)));
+        static_cast<float>(std::max(0.1, 1.0 + 1000.0 * costmap::TravelCurve::gradient(bin)));
   maps::Raster<costmap::CellCode> cells({.width = 60, .height = 20, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.curve = 1}));
   for (int column = 0; column < 60; ++column) cells[{column, 10}] = costmap::CellCode({.curve = 0});
   const auto cost =
-      std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{track, ground});
+      std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{track, ground});
   const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
   const Segment ends{{5.5, 10.5}, {55.5, 10.5}};
   EXPECT_NEAR(MotionCost(map)(ends), 50.0, 1e-6);

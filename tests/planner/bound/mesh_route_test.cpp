@@ -39,7 +39,7 @@ double legs_J(const MotionCost& cost, const Polyline& points) {
 
 // Property: the way leads from start to goal over ground that allows it, costs no less than is proven, and on average less
 // than the cheapest in 32 headings, unrefined both.
-TEST(MeshRoute, IsCheaperThanThirtyTwoHeadings) {
+TEST(MeshRoute, RouteIsCheaperThanWithThirtyTwoHeadings) {
   std::vector<double> ratios;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const auto map = hills(seed);
@@ -63,7 +63,7 @@ TEST(MeshRoute, IsCheaperThanThirtyTwoHeadings) {
 }
 
 // Property: of a start that no search leaves there is no way.
-TEST(MeshRoute, IsEmptyWhereNothingLeads) {
+TEST(MeshRoute, UnreachableGoalYieldsAnEmptyRoute) {
   maps::Raster<costmap::CellCode> cells({.width = 12, .height = 9, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.curve = 2}));
   for (int row = 0; row < 9; ++row)

@@ -14,7 +14,7 @@ namespace straight_bound_test {
 using testing::drawn;
 
 // Closed form: ten joules a metre on level ground, in every direction; a drawn ramp elsewhere has cheaper gradients.
-TEST(StraightBound, IsTheStraightLineOnEvenGround) {
+TEST(StraightBound, BoundEqualsStraightLineCostOnUniformGround) {
   const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
   for (int k = 0; k < 24; ++k) {
     const double angle = 0.2618 * k + 0.1;
@@ -27,7 +27,7 @@ TEST(StraightBound, IsTheStraightLineOnEvenGround) {
 }
 
 // Closed form: 30 J/m, and ground of 10 J/m so far aside that the way there alone costs more than the straight line.
-TEST(StraightBound, LeavesOutCheapGroundOutOfReach) {
+TEST(StraightBound, CheapGroundOutOfReachIsExcluded) {
   std::vector<std::string> rows(120, std::string(120, '2'));
   for (int k = 0; k < 20; ++k)
     rows[static_cast<std::size_t>(k)].replace(100, 20, std::string(20, '.'));  // north-east
@@ -41,7 +41,7 @@ TEST(StraightBound, LeavesOutCheapGroundOutOfReach) {
 // Closed form: a track of 10 J/m that begins 3 m behind the start and ends 3 m behind the goal makes the way round,
 // over
 // ground of 50 J/m at both ends, cheaper than the straight line of 1000 J.
-TEST(StraightBound, CountsATrackThatBeginsBehindTheStart) {
+TEST(StraightBound, CheapTrackBehindTheStartIsIncluded) {
   std::vector<std::string> rows(60, std::string(100, '4'));
   const auto track = [&rows](int column, int y) {
     rows[static_cast<std::size_t>(59 - y)][static_cast<std::size_t>(column)] = '.';
@@ -59,7 +59,7 @@ TEST(StraightBound, CountsATrackThatBeginsBehindTheStart) {
 }
 
 // Property: whatever route is known, no motion of those drawn costs less than the bound, by way of any third place.
-TEST(StraightBound, IsBelowEveryMotionWhateverRouteIsKnown) {
+TEST(StraightBound, BoundIsBelowEveryMotionForAnyKnownRoute) {
   std::size_t tried = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto map = testing::randomMap(

@@ -20,7 +20,7 @@ SubSolution::Parts partsOf(const MapPointer& map, const Segment& places,
   return {.map = map, .places = places, .known_J = known_J, .cheapest_J = cheapestMetre_J(*map)};
 }
 
-MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::DriveCost>& cost) {
+MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::TravelCost>& cost) {
   std::mt19937 random(seed);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
   maps::Raster<costmap::CellCode> cells(
@@ -35,7 +35,7 @@ MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::Driv
 
 // Property: in each triangle, along random headings, a metre takes no more of the solution over its excess than it
 // costs to drive. The gradient is that of a plane through three nodes, from their places.
-TEST(SubSolution, KeepsToTheCostInAllHeadings) {
+TEST(SubSolution, SlopeIsBoundedByTheCostInAllHeadings) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = randomGround(seed, seed % 2 == 0 ? testing::jaggedCost() : testing::driveCost());
     const SubSolution::Parts parts = partsOf(map, {{-3.3, 5.1}, {39.7, 35.2}});
@@ -74,7 +74,7 @@ TEST(SubSolution, KeepsToTheCostInAllHeadings) {
 }
 
 // The least that a drive over a plane costs: along one heading, or zigzag along two of 720.
-double leastOnPlane_J(const costmap::DriveCost& cost, costmap::CellCode code, const Segment& ends) {
+double leastOnPlane_J(const costmap::TravelCost& cost, costmap::CellCode code, const Segment& ends) {
   const double length_m = distance_m(ends.from, ends.to);
   const auto at = directionOf(ends);
   std::vector<costmap::Direction> headings;
@@ -95,7 +95,7 @@ double leastOnPlane_J(const costmap::DriveCost& cost, costmap::CellCode code, co
 
 // Property: on a plane, whose metre costs the same everywhere but not in all headings, the best drive costs no more
 // than half a percent above the bound, and never less than the bound.
-TEST(LowerBound, IsSharpOnPlanes) {
+TEST(LowerBound, BoundIsTightOnPlanes) {
   std::mt19937 random(11);
   for (int n = 0; n < 12; ++n) {
     const auto gradient = [&] { return (static_cast<int>(random() % 200) - 100) / 1024.0; };
@@ -118,7 +118,7 @@ TEST(LowerBound, IsSharpOnPlanes) {
 
 // Property: what is pruned by the cost of a known route leaves a proof, within what the order in which caps are chosen
 // changes of it (0.033 at most on this ground, whose cells have nothing to do with each other), and no route costs less.
-TEST(SubSolution, KnownRoutesOnlyCutTheSearchShort) {
+TEST(SubSolution, KnownRouteOnlyPrunesTheSearch) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto map = randomGround(seed, testing::driveCost());
     const Segment ends{{-3.3, 5.1}, {30.7, 25.2}};

@@ -2,7 +2,7 @@
 #include <numbers>
 #include <random>
 
-#include <talus/costmap/cost/drive_state.hpp>
+#include <talus/costmap/cost/travel_state.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
@@ -13,7 +13,7 @@ namespace annotation_test {
 
 // Flat and sloping ground whose states say what a metre is like.
 std::shared_ptr<const costmap::CostGrid> mapWithStates() {
-  auto states = std::make_shared<costmap::DriveTable>();
+  auto states = std::make_shared<costmap::TravelTable>();
   for (int bin = 0; bin < 512; ++bin) {
     auto& state = (*states)[static_cast<std::size_t>(bin)];
     const float g = static_cast<float>(bin - 256) / 256.0F;
@@ -23,15 +23,15 @@ std::shared_ptr<const costmap::CostGrid> mapWithStates() {
     state.risk_per_m = 0.01F;
     state.category = terramech::Category::Safe;
   }
-  const auto cost = std::make_shared<costmap::DriveCost>(
-      costmap::DriveCost::Limits{}, std::vector<costmap::DriveGround>{{testing::curve({}), states}});
+  const auto cost = std::make_shared<costmap::TravelCost>(
+      costmap::TravelCost::Limits{}, std::vector<costmap::GroundCost>{{testing::curve({}), states}});
   maps::Raster<costmap::CellCode> cells({.width = 4, .height = 2, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));
   cells[{2, 0}] = costmap::CellCode({.dz_dx = 0.25, .dz_dy = 0.125, .curve = 0});
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
 }
 
-TEST(Annotation, VerticesWhereCellsChange) {
+TEST(Annotation, VerticesLieOnCellBorders) {
   const auto map = mapWithStates();
   Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {3.5, 0.5}}, 40.0, 20.0};
   const Route route = annotated(plan, {.map = *map, .planner = "field"});
@@ -55,7 +55,7 @@ TEST(Annotation, VerticesWhereCellsChange) {
 
 // Property: the vertices of a route, read again as a polyline, make the same route, though they lie on sides of cells
 // to rounding only.
-TEST(Annotation, ARouteReadAgainIsTheSame) {
+TEST(Annotation, ReannotatedRouteIsUnchanged) {
   std::mt19937 random(3);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
   for (unsigned seed = 1; seed <= 50; ++seed) {
@@ -74,7 +74,7 @@ TEST(Annotation, ARouteReadAgainIsTheSame) {
   }
 }
 
-TEST(Annotation, ARouteWithAViolationIsNotHandedOut) {
+TEST(Annotation, RouteWithAViolationIsWithheld) {
   const auto map = testing::drawn({".#."});
   const AnnotationInput input{.map = *map, .planner = "field"};
   Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {0.9, 0.5}}, 4.0, 4.0};
@@ -95,7 +95,7 @@ TEST(Annotation, ARouteWithAViolationIsNotHandedOut) {
   EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::TimedOut) << "no route to check";
 }
 
-TEST(Annotation, DrivingBackDescends) {
+TEST(Annotation, ReversedRouteHasNegatedSlopes) {
   const auto map = mapWithStates();
   const Plan back{RouteStatus::Found, {}, {{3.5, 0.5}, {0.5, 0.5}}, 40.0, 20.0};
   const Route route = annotated(back, {.map = *map});
@@ -104,7 +104,7 @@ TEST(Annotation, DrivingBackDescends) {
   EXPECT_NEAR(route.summary.energy_J, 30.0, 1e-5);
 }
 
-TEST(Annotation, AStandstillHasOneVertex) {
+TEST(Annotation, ZeroLengthRouteHasOneVertex) {
   const auto map = mapWithStates();
   const Route route = annotated({RouteStatus::Found, {}, {{0.5, 0.5}}, 0.0, 0.0}, {.map = *map});
   EXPECT_EQ(route.vertices.size(), 1U);

@@ -12,11 +12,11 @@ namespace cell_judge_test {
 
 using Kind = CellJudgement::Kind;
 
-CellJudgement judged(const costmap::CellCode::Parts& parts, costmap::DriveCost::Limits limits = {}) {
+CellJudgement judged(const costmap::CellCode::Parts& parts, costmap::TravelCost::Limits limits = {}) {
   return CellJudge(testing::driveCost(limits)).of(costmap::CellCode(parts));
 }
 
-TEST(CellJudge, DearestHeadingOfAPlaneIsStraightUphill) {
+TEST(CellJudge, MostExpensiveHeadingOnAPlaneIsUphill) {
   const double g = 0.125;  // a node of the table
   const CellJudgement hill = judged({.dz_dx = g, .curve = 0});
   EXPECT_EQ(hill.kind, Kind::Open);
@@ -25,7 +25,7 @@ TEST(CellJudge, DearestHeadingOfAPlaneIsStraightUphill) {
   EXPECT_NEAR(CellJudge(testing::driveCost()).level_J_per_m(), 10.0, 1e-4);   // Closed form: curve 0
 }
 
-TEST(CellJudge, KindFollowsFromTheHeadingsThatAreRefused) {
+TEST(CellJudge, KindFollowsFromRefusedHeadings) {
   EXPECT_EQ(judged({.curve = costmap::CellCode::kUnknown}).kind, Kind::Unknown);
   EXPECT_EQ(judged({.curve = costmap::CellCode::kBlocked}).kind, Kind::Refused);
   // A slope of 0.33 where 0.28 along and 0.17 across are allowed: every heading breaks one of the two.
@@ -37,7 +37,7 @@ TEST(CellJudge, KindFollowsFromTheHeadingsThatAreRefused) {
 }
 
 // Independent derivation: 720 headings of random cells, each by itself.
-TEST(CellJudge, AgreesWithEachHeadingByItself) {
+TEST(CellJudge, MatchesBruteForceOverHeadings) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> gradient(-0.3, 0.3);
   const auto cost = testing::driveCost({.max_along = 0.28, .max_across = 0.17});

@@ -21,7 +21,7 @@ terramech::Rover rover(int wheels) {
   return made;
 }
 
-TEST(ChassisPlanner, GoesAroundWhatTheBellyWouldMeet) {
+TEST(ChassisPlanner, RouteAvoidsInsufficientGroundClearance) {
   const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
   maps::Raster<float> ground(map->grid());
   for (int r = 3; r < 20; ++r) ground[{10, r}] = 3.0F;  // a wall with a gap in the south
@@ -40,7 +40,7 @@ TEST(ChassisPlanner, GoesAroundWhatTheBellyWouldMeet) {
 }
 
 // Property: what was not sought for lack of time is not said to be missing.
-TEST(ChassisPlanner, AStopIsNoAnswer) {
+TEST(ChassisPlanner, StopYieldsCancelled) {
   const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
   maps::Raster<float> ground(map->grid());
   for (int r = 3; r < 20; ++r) ground[{10, r}] = 3.0F;

@@ -158,7 +158,7 @@ bool withinLimits(const Body& body) {
   return std::abs(std::asin(body.along_rise)) < 0.5 && std::abs(std::asin(body.across_rise)) < 0.5;
 }
 
-TEST(Chassis, BoundsAreNeverUnsafeForARigidBody) {
+TEST(Chassis, BoundsContainRigidBodyPoses) {
   // Property: wherever brute force settles the body, pitch, roll and clearance lie within the bounds; on fine
   // and coarse rasters, four wheels and six.
   int tried = 0;
@@ -179,7 +179,7 @@ TEST(Chassis, BoundsAreNeverUnsafeForARigidBody) {
   EXPECT_GT(tried, 300);
 }
 
-TEST(Chassis, BoundsAreNeverUnsafeForARockerBogie) {
+TEST(Chassis, BoundsContainRockerBogiePoses) {
   int tried = 0;
   for (unsigned seed = 1; seed <= 120; ++seed)
     for (const double resolution_m : {0.1, 0.5}) {
@@ -196,7 +196,7 @@ TEST(Chassis, BoundsAreNeverUnsafeForARockerBogie) {
   EXPECT_GT(tried, 150);
 }
 
-TEST(Chassis, SlackCoversAllPosesWithin) {
+TEST(Chassis, BoundsWithSlackContainNearbyPoses) {
   // Property: the bounds at a pose with slack hold the stances of every pose that moves no wheel further.
   const auto ground = terrain(7, 0.04, 0.2);
   std::mt19937 random(3);
@@ -217,7 +217,7 @@ TEST(Chassis, SlackCoversAllPosesWithin) {
   EXPECT_GT(tried, 300);
 }
 
-TEST(Chassis, OnAnEvenSlopeTheBoundsAreTheSlope) {
+TEST(Chassis, BoundsEqualTheSlopeOnAPlane) {
   maps::Raster<float> slope({.width = 40, .height = 40, .resolution_m = 0.2, .south_west = {}});
   for (int r = 0; r < 40; ++r)
     for (int c = 0; c < 40; ++c) slope[{c, r}] = static_cast<float>(0.2 * 0.2 * c);
@@ -232,7 +232,7 @@ TEST(Chassis, OnAnEvenSlopeTheBoundsAreTheSlope) {
   EXPECT_NEAR(stance->pitch_rad.high, std::asin(0.2), 0.02);
 }
 
-TEST(Chassis, ARockBetweenTheWheelsIsWhatTheBellyMeets) {
+TEST(Chassis, RockBetweenTheWheelsViolatesGroundClearance) {
   maps::Raster<float> flat({.width = 80, .height = 80, .resolution_m = 0.1, .south_west = {}});
   flat[{40, 40}] = 0.4F;
   const auto cart = rover(4);
@@ -247,7 +247,7 @@ TEST(Chassis, ARockBetweenTheWheelsIsWhatTheBellyMeets) {
   EXPECT_NE(chassis.refusal({{0.2, 0.2}, 0.0}), "");  // half the rover over the edge
 }
 
-TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
+TEST(Chassis, TurnInPlaceChecksEveryWheelCircle) {
   // The front left wheel passes a rock 107 degrees round its circle, between the poses at both ends and the
   // middle.
   maps::Raster<float> flat({.width = 80, .height = 80, .resolution_m = 0.1, .south_west = {}});
@@ -263,7 +263,7 @@ TEST(Chassis, ATurnInPlaceSweepsEveryWheelsCircle) {
       chassis.violations(PosePath{.start = {{4.0, 4.0}, 0.0}, .legs = {{{}, std::numbers::pi / 2}}}).empty());
 }
 
-TEST(Chassis, ARockerBogieHasThreeAxles) {
+TEST(Chassis, RockerBogieRequiresSixWheels) {
   const maps::Raster<float> flat({.width = 8, .height = 8, .resolution_m = 1.0, .south_west = {}});
   EXPECT_REFUSED(Chassis(flat, rover(4), Suspension::RockerBogie), std::invalid_argument,
                  "wheels.count = 4, must be 6 for a rocker-bogie");

@@ -20,11 +20,11 @@ namespace route_check_test {
 using testing::drawn;
 using testing::randomMap;
 
-TEST(RouteCheck, FindsNothingOnGoodGround) {
+TEST(RouteCheck, RouteOnTraversableGroundHasNoViolation) {
   EXPECT_TRUE(violations(*drawn({"...", "..."}), {{0.5, 0.5}, {2.5, 1.5}}).empty());
 }
 
-TEST(RouteCheck, NamesPlaceAndReason) {
+TEST(RouteCheck, ViolationHasPlaceAndReason) {
   const auto found = violations(*drawn({".#.?."}), {{0.5, 0.5}, {4.5, 0.5}});
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0], (Violation{{1.5, 0.5}, "blocked for any heading"}));
@@ -32,7 +32,7 @@ TEST(RouteCheck, NamesPlaceAndReason) {
 }
 
 // A corner belongs to the cell north-east of it: a route may end there whatever lies in the others.
-TEST(RouteCheck, ARouteMayEndOnACornerOfCells) {
+TEST(RouteCheck, RouteMayEndOnACellCorner) {
   const auto map = drawn({"...", "...", "#.."});
   EXPECT_TRUE(violations(*map, {{2.5, 2.5}, {1.0, 1.0}}).empty());
   EXPECT_TRUE(violations(*map, {{1.0, 1.0}, {2.5, 2.5}}).empty());
@@ -40,19 +40,19 @@ TEST(RouteCheck, ARouteMayEndOnACornerOfCells) {
   EXPECT_FALSE(violations(*drawn({"..#", "...", "..."}), {{0.5, 0.5}, {2.0, 2.0}}).empty()) << "in a wall";
 }
 
-TEST(RouteCheck, LeavingTheMapIsOne) {
+TEST(RouteCheck, LeavingTheMapIsAViolation) {
   const auto found = violations(*drawn({"..."}), {{0.5, 0.5}, {0.5, 3.5}});
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0].reason, "outside the map");
 }
 
-TEST(RouteCheck, CornersCount) {
+TEST(RouteCheck, CornerContactIsAViolation) {
   const auto map = drawn({"#.", ".#"});
   EXPECT_FALSE(violations(*map, {{0.5, 0.5}, {1.5, 1.5}}).empty());
   EXPECT_FALSE(violations(*map, {{0.5, 0.5}, {1.0, 1.0}, {1.5, 1.2}}).empty());
 }
 
-TEST(RouteCheck, ATurnMayNotPassHeadingsThatTip) {
+TEST(RouteCheck, TurnThroughTippingHeadingsIsAViolation) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = rover.track_m = 1.0;
   rover.centre_of_mass_height_m = 1.0;
@@ -68,7 +68,7 @@ TEST(RouteCheck, ATurnMayNotPassHeadingsThatTip) {
   }
 }
 
-TEST(RouteCheck, TiltDependsOnTheHeading) {
+TEST(RouteCheck, TiltLimitDependsOnHeading) {
   // A slope of 0.2 eastwards under limits of 0.3 along and 0.1 across: up and down it, not across it.
   maps::Raster<costmap::CellCode> cells({.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.2, .dz_dy = 0.0, .curve = 0}));
@@ -81,7 +81,7 @@ TEST(RouteCheck, TiltDependsOnTheHeading) {
 
 // Property: a polyline has violations exactly where MotionCost is infinite, and where fine sampling meets a
 // refusal.
-TEST(RouteCheck, AgreesWithMotionCostAndFineSampling) {
+TEST(RouteCheck, ViolationsMatchInfiniteMotionCostAndFineSampling) {
   std::mt19937 random(11);
   const auto coordinate = [&random] { return 20.0 * static_cast<double>(random()) / 4294967296.0; };
   int refused = 0;
@@ -114,7 +114,7 @@ TEST(RouteCheck, AgreesWithMotionCostAndFineSampling) {
 }
 
 // A slope that becomes steeper eastwards, on soil that is not quite known.
-costmap::TraversabilityMap steepening(const costmap::DrivePolicy& policy = {}) {
+costmap::TraversabilityMap steepening(const costmap::TravelPolicy& policy = {}) {
   costmap::MapLayers layers;
   const maps::Grid grid{.width = 120, .height = 20, .resolution_m = 0.5, .south_west = {}};
   layers.elevation.elevation_m = maps::Raster<float>(grid);
@@ -128,7 +128,7 @@ costmap::TraversabilityMap steepening(const costmap::DrivePolicy& policy = {}) {
 
 // Closed form: P(pull < gradient) of a normal belief is a straight line over the gradient in standard deviations,
 // 1/std steep, and crosses the quantile where the first danger is told.
-TEST(RouteMonitor, TellsWhereTheQuantileOfTheBeliefFallsShort) {
+TEST(RouteMonitor, DangerIsReportedWhereFailureProbabilityExceedsTheQuantile) {
   const costmap::TraversabilityMap map = steepening();
   const auto grid = map.published();
   const std::vector<maps::Point> up{{2.0, 5.25}, {58.0, 5.25}};
@@ -158,7 +158,7 @@ TEST(RouteMonitor, TellsWhereTheQuantileOfTheBeliefFallsShort) {
 }
 
 // Property: what violations() finds is a danger of probability 1, at any quantile; downhill nothing falls short.
-TEST(RouteMonitor, HoldsWhatTheCheckHolds) {
+TEST(RouteMonitor, ViolationsAreDangersWithProbabilityOne) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> share(0.01, 0.99);
   for (int trial = 0; trial < 50; ++trial) {
@@ -180,12 +180,12 @@ TEST(RouteMonitor, HoldsWhatTheCheckHolds) {
 }
 
 // Property: how often weak ground holds a rover changes the cost, not what is told of the ground.
-TEST(RouteMonitor, HearsOfWeakSoilWhateverHoldsTheRover) {
+TEST(RouteMonitor, DangerIsIndependentOfEntrapmentProbability) {
   const std::vector<maps::Point> up{{2.0, 5.25}, {58.0, 5.25}};
   const auto usual = dangers(*steepening().published(), up, 0.02);
   ASSERT_GT(usual.size(), 4U);
   for (const double entrapment : {0.0, 1e-300, 1.0}) {
-    costmap::DrivePolicy policy;
+    costmap::TravelPolicy policy;
     policy.entrapment = entrapment;
     const auto found = dangers(*steepening(policy).published(), up, 0.02);
     ASSERT_EQ(found.size(), usual.size()) << entrapment;
@@ -195,7 +195,7 @@ TEST(RouteMonitor, HearsOfWeakSoilWhateverHoldsTheRover) {
 }
 
 // A vertex that is nowhere costs no more than one beside the map.
-TEST(RouteCheck, FarVerticesLieOutsideTheMap) {
+TEST(RouteCheck, DistantVerticesAreOutsideTheMap) {
   const auto map = drawn({"....", "....", "...."});
   for (const double far : {1e3, 1e9, 1e14, 1e300}) {
     for (const maps::Point out : {maps::Point{far, 1.5}, maps::Point{1.5, -far}, maps::Point{-far, far}}) {
@@ -207,7 +207,7 @@ TEST(RouteCheck, FarVerticesLieOutsideTheMap) {
   }
 }
 
-TEST(RouteMonitor, RefusesWhatIsNoQuantileAndNoPlace) {
+TEST(RouteMonitor, InvalidQuantileAndPositionAreRejected) {
   const auto map = drawn({"..."});
   for (const double quantile : {0.0, 1.0, -1.0, static_cast<double>(NAN)})
     EXPECT_THROW(dangers(*map, {{0.5, 0.5}}, quantile), std::invalid_argument);

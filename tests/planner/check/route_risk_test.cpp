@@ -30,12 +30,12 @@ double withinFour(const RouteRisk& risk) {
   return 4 * risk.standard_error + 1e-9;
 }  // 4 sigma: 1 in 16000 by chance
 
-TEST(RouteRisk, OneStretchFailsAsOftenAsItSays) {
+TEST(RouteRisk, SingleSegmentRiskEqualsItsFailureProbability) {
   const RouteRisk risk = routeRisk(straight({0.2}, 1.0, 5.0), {.worlds = 20000});
   EXPECT_NEAR(risk.immobilisation, 0.2, withinFour(risk));  // Closed form: P(beta + u < 0) = p
 }
 
-TEST(RouteRisk, FarStretchesFailIndependentlyNearOnesTogether) {
+TEST(RouteRisk, DistantSegmentsAreIndependentAndNearOnesCorrelated) {
   const std::vector<double> failing(10, 0.05);
   // Closed form: independent stretches, 1 - (1 - p)^n; fully alike ones, p.
   const RouteRisk far =
@@ -47,7 +47,7 @@ TEST(RouteRisk, FarStretchesFailIndependentlyNearOnesTogether) {
               withinFour(near) + 0.002);  // 0.002: they are a millimetre apart, not at one place
 }
 
-TEST(RouteRisk, TheTailLooksAtTheWorstWorldsAndItsPlace) {
+TEST(RouteRisk, CvarIsTheTailMeanAtTheWorstPlace) {
   const RouteRisk risk = routeRisk(straight({1e-6, 0.3, 1e-6}, 10.0, 5.0));
   EXPECT_EQ(risk.worst_x_m, 10.0);
   // Closed form: E[u | u < -1.645] = -phi(1.645) / 0.05 = -2.063; beta of 0.3 is 0.524; 0.1 for 200 draws in
@@ -86,7 +86,7 @@ double heldShare(const Route& route, const RouteRiskOptions& options, int worlds
 
 // Property: from 1e-4 to 0.5 what is said is the share of drawn worlds that hold the rover, whether it rescues
 // itself or not, however much of the doubt its class shares.
-TEST(RouteRisk, IsTheShareOfWorldsThatHoldTheRover) {
+TEST(RouteRisk, RiskEqualsTheShareOfImmobilisedWorlds) {
   std::mt19937_64 random(8);
   const auto drawn = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -115,7 +115,7 @@ TEST(RouteRisk, IsTheShareOfWorldsThatHoldTheRover) {
 }
 
 // Closed form: a class that is wholly unsure fails everywhere or nowhere.
-TEST(RouteRisk, AClassThatIsUnsureAsAWholeFailsAsOne) {
+TEST(RouteRisk, FullySharedClassUncertaintyIsFullyCorrelated) {
   Route route = straight(std::vector<double>(40, 0.01), 5.0, 5.0);
   for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = 1.0;
   EXPECT_NEAR(routeRisk(route).immobilisation, 0.01, 1e-9);
@@ -126,7 +126,7 @@ TEST(RouteRisk, AClassThatIsUnsureAsAWholeFailsAsOne) {
 }
 
 // Property: what is handed out instead of a risk that a stop left undrawn is never below it, whatever hangs together.
-TEST(RouteRisk, TheBoundIsNeverBelowTheRisk) {
+TEST(RouteRisk, BoundIsAtLeastTheRisk) {
   std::mt19937_64 random(5);
   const auto drawn = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -151,7 +151,7 @@ TEST(RouteRisk, TheBoundIsNeverBelowTheRisk) {
 }
 
 // Property: a stop leaves a long route undrawn at once, and changes nothing of a short one.
-TEST(RouteRisk, AStopEndsTheDrawingOfALongRoute) {
+TEST(RouteRisk, StopEndsRiskAlongALongRoute) {
   std::stop_source stop;
   stop.request_stop();
   const ProgressMonitor stopped{.progress = {}, .stop = stop.get_token()};
@@ -162,7 +162,7 @@ TEST(RouteRisk, AStopEndsTheDrawingOfALongRoute) {
 }
 
 // Property: the risk ends with a stop, too, in either of its parts.
-TEST(RouteRisk, AStopEndsTheRiskOfALongRoute) {
+TEST(RouteRisk, StopEndsRouteRiskOfALongRoute) {
   std::stop_source stop;
   stop.request_stop();
   const ProgressMonitor stopped{.progress = {}, .stop = stop.get_token()};
@@ -175,7 +175,7 @@ TEST(RouteRisk, AStopEndsTheRiskOfALongRoute) {
 }
 
 // Property: classes that the route does not meet have no part in its risk.
-TEST(RouteRisk, DoesNotDependOnClassesElsewhere) {
+TEST(RouteRisk, RiskIsIndependentOfClassesNotOnTheRoute) {
   const auto over = [](int first, int second) {
     Route route = straight(std::vector<double>(40, 0.01), 2.0, 5.0);
     for (std::size_t i = 0; i < route.vertices.size(); ++i) {
@@ -188,24 +188,24 @@ TEST(RouteRisk, DoesNotDependOnClassesElsewhere) {
   EXPECT_EQ(routeRisk(over(0, 1)).cvar, routeRisk(over(7, 3)).cvar);
 }
 
-TEST(RouteRisk, GrowsAlongTheRoute) {
+TEST(RouteRisk, RiskIsMonotoneAlongTheRoute) {
   const std::vector<double> along = riskAlong(straight(std::vector<double>(20, 0.02), 2.0, 5.0), {});
   EXPECT_EQ(along.front(), 0.0);
   for (std::size_t i = 1; i < along.size(); ++i) EXPECT_GE(along[i], along[i - 1]);
 }
 
-TEST(RouteRisk, SafeGroundHasNone) {
+TEST(RouteRisk, SafeGroundHasZeroRisk) {
   EXPECT_EQ(routeRisk(straight({0.0, 0.0}, 1.0, 5.0)).immobilisation, 0.0);
   EXPECT_EQ(routeRisk(Route{}).immobilisation, 0.0);
 }
 
-TEST(RouteRisk, SameSeedSameBits) {
+TEST(RouteRisk, SameSeedReproducesTheRisk) {
   const Route route = straight({0.1, 0.2, 0.05}, 2.0, 5.0);
   EXPECT_EQ(routeRisk(route).cvar, routeRisk(route).cvar);
   EXPECT_NE(routeRisk(route, {.seed = 2}).cvar, routeRisk(route).cvar);
 }
 
-TEST(RouteRisk, RefusesOptionsOutOfRange) {
+TEST(RouteRisk, OptionsOutOfRangeAreRejected) {
   EXPECT_REFUSED(routeRisk(Route{}, {.correlation_length_m = 0.0}), std::invalid_argument,
                  "correlation_length_m must be > 0");
   EXPECT_REFUSED(routeRisk(Route{}, {.tail = 0.0}), std::invalid_argument, "tail must be in (0, 1]");

@@ -12,7 +12,7 @@ constexpr auto kAlways = [](std::uint64_t) { return true; };
 
 // Property: what lies within reach comes bucket by bucket, within a bucket as it came; also what is queued
 // in work. The ring is small, so it is gone round many times.
-TEST(BucketQueue, KeysWithinReachComeInOrder) {
+TEST(BucketQueue, KeysWithinRangeAreInBucketOrder) {
   for (const unsigned shift : {0U, 3U, 5U}) {
     std::mt19937 random(shift + 1);
     std::vector<std::uint64_t> keys{17};  // by index
@@ -37,7 +37,7 @@ TEST(BucketQueue, KeysWithinReachComeInOrder) {
   }
 }
 
-TEST(BucketQueue, WhatLiesBehindComesAtOnceAndWhatLiesTooFarComesEarly) {
+TEST(BucketQueue, PastKeysAreReturnedAtOnceAndDistantKeysAtTheLastBucket) {
   BucketQueue queue(0, 6);  // a ring of 8 buckets
   queue.startAt(50);
   queue.push(50, 0);
@@ -54,7 +54,7 @@ TEST(BucketQueue, WhatLiesBehindComesAtOnceAndWhatLiesTooFarComesEarly) {
   EXPECT_EQ(taken, (std::vector<std::pair<std::uint32_t, std::uint64_t>>{{0, 50}, {2, 50}, {1, 57}}));
 }
 
-TEST(BucketQueue, RestsWhereItIsToldAndGoesOn) {
+TEST(BucketQueue, RunPausesAndResumes) {
   BucketQueue queue(2, 40);
   for (const std::uint32_t key : {0U, 9U, 21U}) queue.push(key, key);
   std::vector<std::uint32_t> taken;

@@ -11,7 +11,7 @@ using testing::randomMap;
 
 // Property: however a patch changes, whether the field was whole or in parts, repaired is the same as found
 // anew.
-TEST(CostToGo, RepairedIsFoundAnew) {
+TEST(CostToGo, RepairEqualsRecomputation) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);
     const auto below = [&random](unsigned limit) { return static_cast<int>(random() % limit); };

@@ -48,7 +48,7 @@ maps::Raster<double> bruteForce(const MapPointer& map, maps::Cell goal) {
 
 // Property: the field is the brute-force one. Each edge is rounded by at most a unit, of which the cheapest
 // has 512.
-TEST(CostToGo, IsDijkstrasFieldOnRandomMaps) {
+TEST(CostToGo, MatchesDijkstraOnRandomMaps) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const auto map = randomMap({.width = 23, .height = 17, .seed = seed, .blocked = 0.25, .roughness = 0.35});
     const maps::Cell goal{static_cast<int>(seed % 23), static_cast<int>(seed % 17)};
@@ -67,7 +67,7 @@ TEST(CostToGo, IsDijkstrasFieldOnRandomMaps) {
   }
 }
 
-TEST(CostToGo, PathRunsFromStartToGoalOverAllowedSteps) {
+TEST(CostToGo, PathLeadsFromStartToGoalOverAllowedEdges) {
   const auto map = drawn({".....", ".###.", "...#.", "####.", "....."});
   CostToGo field(edgesOf(map), {{.cell = {0, 0}}});
   ASSERT_TRUE(field.settleAll());
@@ -82,14 +82,14 @@ TEST(CostToGo, PathRunsFromStartToGoalOverAllowedSteps) {
   EXPECT_NEAR(sum, *field.cost_J({0, 2}), 0.002 * sum);
 }
 
-TEST(CostToGo, NoWayIsSaid) {
+TEST(CostToGo, UnreachableCellHasNoCostAndNoPath) {
   CostToGo field(edgesOf(drawn({"..#..", "..#..", "..#.."})), {{.cell = {0, 0}}});
   ASSERT_TRUE(field.settleAll());
   EXPECT_FALSE(field.cost_J({4, 1}));
   EXPECT_TRUE(field.path({4, 1}).empty());
 }
 
-TEST(CostToGo, GoesOnWhereItStopped) {
+TEST(CostToGo, SearchResumesAfterSettlingACell) {
   const auto map = randomMap({.width = 60, .height = 50, .seed = 5});
   CostToGo whole(edgesOf(map), {{.cell = {3, 4}}}), parts(edgesOf(map), {{.cell = {3, 4}}});
   ASSERT_TRUE(whole.settleAll());
@@ -102,7 +102,7 @@ TEST(CostToGo, GoesOnWhereItStopped) {
       ASSERT_EQ(parts.units({column, row}), whole.units({column, row}));
 }
 
-TEST(CostToGo, NearestOfSeveralGoals) {
+TEST(CostToGo, FieldOfSeveralGoalsIsTheMinimum) {
   const auto edges = edgesOf(randomMap({.seed = 8}));
   CostToGo one(edges, {{.cell = {2, 2}}}), other(edges, {{.cell = {17, 15}}}),
       both(edges, {{.cell = {2, 2}}, {.cell = {17, 15}}});
@@ -114,7 +114,7 @@ TEST(CostToGo, NearestOfSeveralGoals) {
     }
 }
 
-TEST(CostToGo, StopsWhenAsked) {
+TEST(CostToGo, StopsOnRequest) {
   const auto edges = edgesOf(randomMap({.width = 50, .height = 50}));
   CostToGo field(edges, {{.cell = {5, 5}}});
   std::stop_source source;
@@ -124,7 +124,7 @@ TEST(CostToGo, StopsWhenAsked) {
 }
 
 // Property: vectors and scalars give the same bits, in the edges and in the field.
-TEST(CostToGo, VectorsAndScalarsAgree) {
+TEST(CostToGo, VectorAndScalarKernelsAreIdentical) {
   const auto map = randomMap({.width = 83, .height = 71, .seed = 6, .blocked = 0.2, .roughness = 0.4});
   const EdgeUnits units(map->cost(), 1.0);
   const auto best = std::make_shared<EdgeLayer>(map, units);

@@ -21,7 +21,7 @@ std::vector<maps::Cell> descentOf(const CostToGo& field, maps::Cell from) {
 
 // Property: steps of a descent are neighbours, and their edges sum to what the field says, to the unit; what
 // is left at the goal among it.
-TEST(Descent, PaysWhatTheFieldSays) {
+TEST(Descent, DescentCostEqualsTheField) {
   int walked = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const auto edges = edgesOf(randomMap({.seed = seed, .blocked = 0.2, .roughness = 0.3}));
@@ -49,13 +49,13 @@ TEST(Descent, PaysWhatTheFieldSays) {
 }
 
 // Closed form: on even ground two steps east and one north-east cost the same in any order; east comes first.
-TEST(Descent, OfEqualWaysTheFirstHeadingsWin) {
+TEST(Descent, TiesAreResolvedByHeadingOrder) {
   CostToGo field(edgesOf(drawn({"....", "...."})), {{.cell = {3, 1}}});
   ASSERT_TRUE(field.settleAll());
   EXPECT_EQ(descentOf(field, {0, 0}), (std::vector<maps::Cell>{{0, 0}, {1, 0}, {2, 0}, {3, 1}}));
 }
 
-TEST(Descent, OfAFieldThatIsNotSettledIsEmpty) {
+TEST(Descent, UnsettledFieldYieldsNoDescent) {
   CostToGo field(edgesOf(drawn({"....."})), {{.cell = {0, 0}}});
   EXPECT_TRUE(descentOf(field, {4, 0}).empty());  // no distance known
   const auto flat = [](std::size_t) { return 5U; };

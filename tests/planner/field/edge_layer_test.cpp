@@ -20,7 +20,7 @@ std::shared_ptr<const EdgeLayer> edgesOf(const MapPointer& map, int threads = 1)
 
 // Property: an edge is MotionCost between the centres, off by a unit and by 1/256 of what nodes side by side differ, less than half, a half step; the grid allows nothing
 // that the exact segment does not.
-TEST(EdgeLayer, AStepCostsWhatTheMotionBetweenTheCentresCosts) {
+TEST(EdgeLayer, EdgeCostMatchesTheMotionBetweenCentres) {
   int allowed = 0, blocked = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = randomMap({.width = 21, .height = 18, .seed = seed, .blocked = 0.2, .roughness = 0.35});
@@ -45,7 +45,7 @@ TEST(EdgeLayer, AStepCostsWhatTheMotionBetweenTheCentresCosts) {
 }
 
 // Property: updated for a patch, across the edges of tiles and at the map's border, is built anew.
-TEST(EdgeLayer, UpdatedIsBuiltAnew) {
+TEST(EdgeLayer, UpdateEqualsRebuild) {
   const auto map = randomMap({.width = 100, .height = 90, .seed = 7});
   for (const CellBox box : {CellBox{{60, 60}, {70, 68}}, {{0, 0}, {3, 89}}, {{99, 89}, {99, 89}}}) {
     const costmap::Revision revision{
@@ -61,7 +61,7 @@ TEST(EdgeLayer, UpdatedIsBuiltAnew) {
   }
 }
 
-TEST(EdgeLayer, StoppedIsNotComplete) {
+TEST(EdgeLayer, StoppedLayerIsIncomplete) {
   const auto map = randomMap({.width = 90, .height = 90});
   std::stop_source source;
   source.request_stop();
@@ -71,7 +71,7 @@ TEST(EdgeLayer, StoppedIsNotComplete) {
   EXPECT_TRUE(EdgeLayer(map, units).complete());
 }
 
-TEST(EdgeLayer, SameForAnyNumberOfThreads) {
+TEST(EdgeLayer, ResultIsIndependentOfThreadCount) {
   const auto map = randomMap({.width = 90, .height = 300, .seed = 2});
   const auto one = edgesOf(map, 1), three = edgesOf(map, 3);
   for (std::size_t i = 0; i < one->padded().size(); ++i)

@@ -20,10 +20,10 @@ std::vector<costmap::CellCode> randomCells(unsigned count) {
   return cells;
 }
 
-// Property: half a step costs half the cell's side (or diagonal) at DriveCost's price, and is
-// blocked where DriveCost refuses it; on other resolutions, limits and units too.
+// Property: half a step costs half the cell's side (or diagonal) at TravelCost's price, and is
+// blocked where TravelCost refuses it; on other resolutions, limits and units too.
 // Tolerance: nodes and sum are each rounded to a unit, shares to 1/128, and nodes side by side differ by less than half.
-TEST(EdgeUnits, AreHalfStepsOfDriveCost) {
+TEST(EdgeUnits, HalfEdgesMatchDriveCost) {
   int allowed = 0;
   for (const double limit : {0.2, 0.29, 0.4})
     for (const double coarsening : {1.0, 3.0}) {
@@ -48,7 +48,7 @@ TEST(EdgeUnits, AreHalfStepsOfDriveCost) {
   EXPECT_GT(allowed, 20'000);
 }
 
-TEST(EdgeUnits, VectorsAndScalarsAgree) {
+TEST(EdgeUnits, VectorAndScalarKernelsAreIdentical) {
   if (!vectorsRun(Kernels::Best)) GTEST_SKIP() << "no AVX2 on this machine";
   const EdgeUnits units(*testing::driveCost(), 1.0);
   const auto cells = randomCells(5'000);
@@ -58,18 +58,18 @@ TEST(EdgeUnits, VectorsAndScalarsAgree) {
   EXPECT_EQ(scalar, vector);
 }
 
-TEST(EdgeUnits, ExtendWhereCurvesWereOnlyAdded) {
+TEST(EdgeUnits, ExtendsDetectsAppendedCurves) {
   const auto curves = testing::driveCost()->curves();
-  const auto of = [](std::vector<costmap::DriveCurve> some) {
-    return EdgeUnits(costmap::DriveCost({}, std::move(some)), 1.0);
+  const auto of = [](std::vector<costmap::TravelCurve> some) {
+    return EdgeUnits(costmap::TravelCost({}, std::move(some)), 1.0);
   };
   // The cheapest and the dearest stay in front: the unit hangs on them.
-  const std::vector<costmap::DriveCurve> two{curves[0], curves[4]}, three{curves[0], curves[4], curves[2]},
+  const std::vector<costmap::TravelCurve> two{curves[0], curves[4]}, three{curves[0], curves[4], curves[2]},
       swapped{curves[4], curves[0]};
   EXPECT_TRUE(of(three).extends(of(two)));
   EXPECT_FALSE(of(two).extends(of(three)));
   EXPECT_FALSE(of(swapped).extends(of(two)));
-  EXPECT_FALSE(EdgeUnits(costmap::DriveCost({}, two), 2.0).extends(of(two)));
+  EXPECT_FALSE(EdgeUnits(costmap::TravelCost({}, two), 2.0).extends(of(two)));
 }
 
 }  // namespace edge_units_test

@@ -13,7 +13,7 @@ using testing::randomMap;
 
 // Property: every cell of the map whose centre is no farther than a cell off in column and row, and which the
 // exact motion reaches, at its cost; there and back are two questions.
-TEST(GridLinks, AreTheAllowedMotionsToNeighbours) {
+TEST(GridLinks, LinksAreTheAllowedMotionsToNeighbours) {
   int found = 0, uneven = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const MotionCost cost(randomMap({.width = 9, .height = 7, .seed = seed, .roughness = 0.4}));
@@ -41,14 +41,14 @@ TEST(GridLinks, AreTheAllowedMotionsToNeighbours) {
   EXPECT_GT(uneven, 5);
 }
 
-TEST(GridLinks, NoneFromOutsideTheMap) {
+TEST(GridLinks, PlacesOutsideTheMapHaveNoLinks) {
   const MotionCost cost(drawn({"...", "..."}));
   EXPECT_TRUE(linksFrom(cost, {-0.1, 0.5}).empty());
   EXPECT_TRUE(linksTo(cost, {1.5, 2.0}).empty());
 }
 
 // Property: at no cost the cells whose centres lie in the circle, also around a goal off the map; brute force.
-TEST(GridLinks, AFieldBeginsAtEveryAllowedCellWithinTheTolerance) {
+TEST(GridLinks, GoalCellsAreAllAllowedCellsWithinTolerance) {
   const auto map = randomMap({.width = 25, .height = 19, .seed = 3, .blocked = 0.3});
   const MotionCost cost(map);
   for (const maps::Point goal : {maps::Point{12.2, 9.9}, {0.5, 0.5}, {24.9, 18.9}, {-2.0, 10.0}})

@@ -23,7 +23,7 @@ Polyline routed(const MotionCost& cost, const Segment& places) {
 }
 
 // Closed form: around a wall of two cells, along centres: 2 east, 2 diagonally up and 2 down.
-TEST(GridRoute, GoesFromPlaceToPlaceAlongCentres) {
+TEST(GridRoute, RouteFollowsCellCentres) {
   const MotionCost cost(drawn({".......", ".......", "...#...", "...#..."}));
   const Polyline route = routed(cost, {{0.5, 1.5}, {6.5, 1.5}});
   EXPECT_EQ(route.front(), (maps::Point{0.5, 1.5}));
@@ -31,7 +31,7 @@ TEST(GridRoute, GoesFromPlaceToPlaceAlongCentres) {
   EXPECT_NEAR(cost.along(route), 10.0 * (4 + 2 * std::sqrt(2.0)), 1e-4);
 }
 
-TEST(GridRoute, EmptyWhereThereIsNoneOrStopped) {
+TEST(GridRoute, BlockedOrStoppedSearchYieldsNoRoute) {
   const MotionCost walled(drawn({"..#..", "..#.."})), open(drawn({".....", "....."}));
   EXPECT_TRUE(routed(walled, {{0.5, 0.5}, {4.5, 0.5}}).empty());
   EXPECT_TRUE(routed(walled, {{2.5, 0.5}, {4.5, 0.5}}).empty());  // begins on the wall
@@ -44,7 +44,7 @@ TEST(GridRoute, EmptyWhereThereIsNoneOrStopped) {
 }
 
 // Property: from the field before a change, the route is the one of the field found anew, point for point.
-TEST(GridRoute, AfterAChangeIsThatOfTheNewField) {
+TEST(GridRoute, PatchedFieldRouteEqualsThatOfTheNewField) {
   int compared = 0, moved = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     testing::Below below(seed);

@@ -18,7 +18,7 @@ std::shared_ptr<const costmap::CostGrid> with(const costmap::CostGrid& map,
 }
 
 // Property: the least box that holds the cells changed, over tiles of 64 cells and the map's border.
-TEST(MapChange, IsTheLeastBoxAroundTheCellsThatDiffer) {
+TEST(MapChange, ChangeIsTheMinimalBoxOfDifferingCells) {
   const auto map = randomMap({.width = 150, .height = 140, .seed = 4, .blocked = 0.0});
   for (unsigned seed = 1; seed <= 30; ++seed) {
     testing::Below below(seed);
@@ -37,7 +37,7 @@ TEST(MapChange, IsTheLeastBoxAroundTheCellsThatDiffer) {
   }
 }
 
-TEST(MapChange, NoneWhereNoCellDiffers) {
+TEST(MapChange, EqualMapsHaveNoChange) {
   const auto map = randomMap({.width = 70, .height = 70, .blocked = 1.0});
   EXPECT_FALSE(changedCells(*map, *map));
   EXPECT_FALSE(changedCells(*map, *with(*map, {{5, 5}, {68, 2}})));  // written anew, as before

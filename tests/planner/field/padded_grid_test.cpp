@@ -26,7 +26,7 @@ TEST(PaddedGrid, IndexAndCellAreInverse) {
 }
 
 // Closed form: one cell all around, as far as the grid goes.
-TEST(PaddedGrid, BoxesGrowToTheGridsEdge) {
+TEST(PaddedGrid, GrownBoxesAreClippedToTheGrid) {
   const PaddedGrid grid{.width = 10, .height = 6};
   const CellBox inner = grown({{4, 2}, {5, 3}}, 1, grid);
   EXPECT_EQ(inner.first, (maps::Cell{3, 1}));

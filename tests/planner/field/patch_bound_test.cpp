@@ -12,7 +12,7 @@ using testing::Trial;
 
 // Property: the bound is never above the field found anew, at any cell; and where nothing became cheaper it
 // is not below the old field, which is what keeps the search narrow.
-TEST(PatchBound, NeverAboveTheNewField) {
+TEST(PatchBound, BoundIsNeverAboveTheNewField) {
   int held = 0, gained = 0;
   for (const Change change : {Change::Anew, Change::Cheaper, Change::Dearer, Change::Either})
     for (unsigned seed = 1; seed <= 60; ++seed) {
@@ -35,7 +35,7 @@ TEST(PatchBound, NeverAboveTheNewField) {
 }
 
 // A wall that opens lets ground reach the goal that could not before: the old field bounds nothing there.
-TEST(PatchBound, SaysWhenItDoesNotHold) {
+TEST(PatchBound, InvalidBoundIsReported) {
   const std::vector<std::string> walled(11, ".....#.....");
   auto opened = walled;
   opened[5] = "...........";

@@ -14,7 +14,7 @@ constexpr std::uint64_t kAll = 1'000'000'000;
 
 // Property: however a patch changes, the distance of the start and the path from it, byte for byte, are those
 // of the field found anew, or both have no way.
-TEST(PatchedField, IsTheFieldFoundAnew) {
+TEST(PatchedField, PatchedFieldEqualsTheRecomputedField) {
   int compared = 0, without_way = 0, moved = 0;
   for (const Change change : {Change::Anew, Change::Cheaper, Change::Dearer, Change::Either})
     for (unsigned seed = 1; seed <= 100; ++seed) {
@@ -34,7 +34,7 @@ TEST(PatchedField, IsTheFieldFoundAnew) {
 }
 
 // Property: of several links the cheapest is the one that the field found anew names, with the same cost.
-TEST(PatchedField, BestOfSeveralLinks) {
+TEST(PatchedField, CheapestLinkEqualsThatOfTheRecomputedField) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const Trial trial = randomTrial(seed, Change::Either);
     std::vector<GridLink> links;
@@ -54,7 +54,7 @@ TEST(PatchedField, BestOfSeveralLinks) {
   }
 }
 
-TEST(PatchedField, GivesUpAfterSoManyCellsAndWhenStopped) {
+TEST(PatchedField, StopsAtCellLimitAndOnRequest) {
   const Trial trial = randomTrial(4, Change::Dearer);
   PatchedField field(trial.before, trial.box);
   EXPECT_EQ(field.settle({{trial.start, 0.0}}, 1), PatchedField::Outcome::TooMuch);

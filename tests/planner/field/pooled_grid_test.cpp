@@ -15,7 +15,7 @@ MapPointer rough(unsigned seed) {
   return randomMap({.width = 320, .height = 300, .seed = seed, .blocked = 0.05, .roughness = 0.12});
 }
 
-TEST(PooledGrid, KeepsMeanGradientAndCost) {
+TEST(PooledGrid, PoolingKeepsMeanGradientAndCost) {
   std::vector<std::string> rows(16, std::string(16, '^'));
   const auto map = drawn(rows);
   const auto coarse = pooled(*map, 8);
@@ -30,7 +30,7 @@ TEST(PooledGrid, KeepsMeanGradientAndCost) {
 // Closed form: half of the cells cost 10 and half 50 J/m on the flat: 30 on average, which the levels of
 // surcharge round by an eighth at most; mostly blocked ground is blocked, a third blocked costs half as much
 // again.
-TEST(PooledGrid, SurchargesWhatIsMixedOrBlocked) {
+TEST(PooledGrid, MixedAndBlockedCellsHaveASurcharge) {
   std::vector<std::string> rows;
   for (int row = 0; row < 8; ++row) rows.push_back("..44..44########.....###");
   const auto coarse = pooled(*drawn(rows), 8);
@@ -41,7 +41,7 @@ TEST(PooledGrid, SurchargesWhatIsMixedOrBlocked) {
               16.0 / 8);
 }
 
-TEST(PooledGrid, RepooledIsPooledAnew) {
+TEST(PooledGrid, PartialRepoolingEqualsFullPooling) {
   const MapPointer map = rough(5);
   const CellBox box{{37, 80}, {90, 131}};
   const costmap::Revision revision{

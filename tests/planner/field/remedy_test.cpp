@@ -7,7 +7,7 @@ namespace remedy_test {
 
 using testing::drawn;
 
-TEST(Remedy, APlaceIsNamedWithItsFaultAndTheNearestGround) {
+TEST(Remedy, InvalidPlaceNamesItsFaultAndTheNearestTraversableCell) {
   const auto map = drawn({"..#?.", "..##."});
   EXPECT_EQ(invalidPlace(*map, "start", {2.6, 0.5}),
             "start 2.60,0.50 lies on a blocked cell; the nearest traversable cell is 1.50,0.50");
@@ -19,7 +19,7 @@ TEST(Remedy, APlaceIsNamedWithItsFaultAndTheNearestGround) {
 
 // The cause is named: what stands in the cell, what it is kept clear of, or the rim; and a cell that is joined to the
 // other end is offered.
-TEST(Remedy, TheCauseIsNamed) {
+TEST(Remedy, InvalidPlaceNamesItsHazard) {
   using costmap::Hazard;
   const auto map = drawn({"######", "#..#.#", "#....#", "######"});
   const auto rocks = [](maps::Cell c) { return c == maps::Cell{3, 2} ? Hazard::Rocks : Hazard::Near; };
@@ -36,7 +36,7 @@ TEST(Remedy, TheCauseIsNamed) {
             "can be reached");
 }
 
-TEST(Remedy, GroundTooSteepForEveryHeadingIsDangerous) {
+TEST(Remedy, CellRefusedInEveryHeadingIsDangerous) {
   maps::Raster<costmap::CellCode> steep({.width = 2, .height = 1, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.9, .dz_dy = 0.9, .curve = 0}));
   const costmap::CostGrid map = costmap::flattened(steep, testing::driveCost());
@@ -45,7 +45,7 @@ TEST(Remedy, GroundTooSteepForEveryHeadingIsDangerous) {
             "traversable");
 }
 
-TEST(Remedy, AGoalMayEndWithinItsTolerance) {
+TEST(Remedy, GoalIsValidWithinItsTolerance) {
   const MotionCost cost(drawn({"..#..", "..#.."}));
   EXPECT_TRUE(mayEnd(cost, {1.5, 0.5}, 0.0));
   EXPECT_FALSE(mayEnd(cost, {2.5, 0.5}, 0.4));

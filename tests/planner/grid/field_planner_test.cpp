@@ -23,7 +23,7 @@ Problem problem(MapPointer map, maps::Point start, maps::Point goal) {
   return made;
 }
 
-TEST(FieldPlanner, RoundsAWallWithoutCuttingItsCorner) {
+TEST(FieldPlanner, RouteDoesNotCutCornersOfAWall) {
   const auto map = drawn({".......", "..###..", "....#..", "....#..", "......."});
   FieldPlanner planner;
   const Plan plan = planner.plan(problem(map, {3.5, 1.5}, {5.5, 2.5}));
@@ -36,7 +36,7 @@ TEST(FieldPlanner, RoundsAWallWithoutCuttingItsCorner) {
 
 // Property: routes over random maps keep every constraint, cost at most the grid's, and NoRoute is said
 // exactly where a flood over the grid says so.
-TEST(FieldPlanner, RoutesOnRandomMapsAreAllowed) {
+TEST(FieldPlanner, RoutesOnRandomMapsAreValidAndNoRouteIsExact) {
   int found = 0, none = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const auto map = randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.3, .roughness = 0.2});
@@ -56,7 +56,7 @@ TEST(FieldPlanner, RoutesOnRandomMapsAreAllowed) {
   EXPECT_GT(none, 5);
 }
 
-TEST(FieldPlanner, ThereAndBackDiffer) {
+TEST(FieldPlanner, CostDependsOnDirectionOfTravel) {
   // A ridge with a gentle, long side in the north: up over the steep side is dearer than down it.
   const auto map = drawn({"..>>..", "..>>..", "..>>.."});
   FieldPlanner planner;
@@ -66,7 +66,7 @@ TEST(FieldPlanner, ThereAndBackDiffer) {
 }
 
 // Property: on flat ground there and back cost the same.
-TEST(FieldPlanner, FlatGroundIsSymmetric) {
+TEST(FieldPlanner, CostIsSymmetricOnFlatGround) {
   const auto map = randomMap({.width = 30, .height = 30, .seed = 4, .blocked = 0.1, .roughness = 0.0});
   FieldPlanner planner;
   const double there = planner.plan(problem(map, {1.5, 1.5}, {28.5, 27.5})).cost_J;
@@ -74,7 +74,7 @@ TEST(FieldPlanner, FlatGroundIsSymmetric) {
   EXPECT_NEAR(there, back, 0.02 * there);
 }
 
-TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
+TEST(FieldPlanner, FailureNamesItsReason) {
   const auto map = drawn({"..#..", "..#..", "..#?."});
   FieldPlanner planner;
   const Plan walled = planner.plan(problem(map, {0.5, 0.5}, {4.5, 1.5}));
@@ -96,7 +96,7 @@ TEST(FieldPlanner, SaysWhyThereIsNoRoute) {
 }
 
 // Brute force is the check: planes that only headings near their contour may cross, in directions the grid lacks.
-TEST(FieldPlanner, HeadingsThatTheGridLacksAreFound) {
+TEST(FieldPlanner, HeadingsBetweenGridDirectionsAreUsed) {
   for (int k = 0; k < 24; ++k) {
     const double contour = 0.2 + k * 0.2618;
     const auto map = testing::contourPlane(contour);
@@ -110,7 +110,7 @@ TEST(FieldPlanner, HeadingsThatTheGridLacksAreFound) {
   }
 }
 
-TEST(FieldPlanner, ToleranceLetsARouteEndBesideABlockedGoal) {
+TEST(FieldPlanner, RouteEndsWithinToleranceOfABlockedGoal) {
   const auto map = drawn({".....", "...##", "...##"});
   FieldPlanner planner;
   auto asked = problem(map, {0.5, 0.5}, {4.5, 0.5});
@@ -121,7 +121,7 @@ TEST(FieldPlanner, ToleranceLetsARouteEndBesideABlockedGoal) {
   EXPECT_LE(std::hypot(plan.points.back().x_m - 4.5, plan.points.back().y_m - 0.5), 2.1);
 }
 
-TEST(FieldPlanner, ARouteEndsWhereItEntersTheTolerance) {
+TEST(FieldPlanner, RouteEndsAtTheToleranceCircle) {
   const auto map = drawn(std::vector<std::string>(10, std::string(40, '.')));
   FieldPlanner planner;
   auto asked = problem(map, {1.5, 5.5}, {35.5, 5.5});
@@ -133,7 +133,7 @@ TEST(FieldPlanner, ARouteEndsWhereItEntersTheTolerance) {
   EXPECT_NEAR(planner.plan(asked).cost_J, 0.0, 1e-9);
 }
 
-TEST(FieldPlanner, PassesViaPoints) {
+TEST(FieldPlanner, RoutePassesViaPoints) {
   const auto map = drawn(std::vector<std::string>(20, std::string(20, '.')));
   FieldPlanner planner;
   auto asked = problem(map, {1.5, 1.5}, {18.5, 1.5});
@@ -143,14 +143,14 @@ TEST(FieldPlanner, PassesViaPoints) {
   EXPECT_NE(std::find(plan.points.begin(), plan.points.end(), asked.via[0]), plan.points.end());
 }
 
-TEST(FieldPlanner, StartIsTheGoal) {
+TEST(FieldPlanner, StartEqualToGoalCostsZero) {
   FieldPlanner planner;
   const Plan plan = planner.plan(problem(drawn({"...", "..."}), {1.2, 0.7}, {1.2, 0.7}));
   EXPECT_EQ(plan.status, RouteStatus::Found);
   EXPECT_NEAR(plan.cost_J, 0.0, 1e-9);
 }
 
-TEST(FieldPlanner, SameBytesForAnyNumberOfThreadsAndAgain) {
+TEST(FieldPlanner, ResultIsIndependentOfThreadCountAndRepetition) {
   const auto map = randomMap({.width = 200, .height = 150, .seed = 12, .blocked = 0.1, .roughness = 0.15});
   auto asked = problem(map, {3.5, 4.5}, {190.1, 140.2});
   FieldPlanner one, two;
@@ -162,7 +162,7 @@ TEST(FieldPlanner, SameBytesForAnyNumberOfThreadsAndAgain) {
 }
 
 // Property: after a patch changed, the kept field gives the same bytes as a planner that starts from nothing.
-TEST(FieldPlanner, ReplansAsIfAnew) {
+TEST(FieldPlanner, ReplanningEqualsPlanningAnew) {
   const auto map = randomMap({.width = 200, .height = 200, .seed = 3, .blocked = 0.05, .roughness = 0.15});
   auto asked = problem(map, {5.5, 5.5}, {190.5, 180.5});
   FieldPlanner kept;
@@ -179,7 +179,7 @@ TEST(FieldPlanner, ReplansAsIfAnew) {
   EXPECT_NE(after.points, before.points);
 }
 
-TEST(FieldPlanner, CancelAndTimeLimitAreStatuses) {
+TEST(FieldPlanner, StopAndTimeLimitHaveTheirStatuses) {
   const auto map = randomMap({.width = 60, .height = 60, .blocked = 0.0});
   FieldPlanner planner;
   auto asked = problem(map, {1.5, 1.5}, {50.5, 50.5});

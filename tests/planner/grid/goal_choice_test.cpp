@@ -21,7 +21,7 @@ std::vector<maps::Point> goalsOf(const Problem& problem) {
 
 // Property: the answer is the cheapest of the plans to each goal alone, by every kind of planner, with and
 // without a via point; its bound holds for every one of them.
-TEST(GoalChoice, IsTheBestOfTheSinglePlans) {
+TEST(GoalChoice, ResultIsTheCheapestOfTheSingleGoalPlans) {
   int not_the_first = 0;
   for (const std::string planner : {"field", "hybrid", "RRTstar"})
     for (unsigned seed = 1; seed <= (planner == "RRTstar" ? 1 : 6); ++seed) {  // sampling takes its time
@@ -58,7 +58,7 @@ TEST(GoalChoice, IsTheBestOfTheSinglePlans) {
   EXPECT_GT(not_the_first, 4);
 }
 
-TEST(GoalChoice, PassesOverGoalsThatCannotBeReached) {
+TEST(GoalChoice, UnreachableGoalsAreSkipped) {
   const auto map = drawn({"..........", "..#####...", "..#.#.....", "..###.....", ".........."});
   Problem problem{
       .map = map, .start = {1.5, 2.5}, .goal = {3.5, 2.5}, .other_goals = {{2.5, 2.5}, {8.5, 2.5}}};
@@ -72,7 +72,7 @@ TEST(GoalChoice, PassesOverGoalsThatCannotBeReached) {
   EXPECT_EQ(NamedPlanner().plan(problem).status, RouteStatus::StartInvalid);
 }
 
-TEST(GoalChoice, LeavesOutGoalsThatCannotBeCheaper) {
+TEST(GoalChoice, GoalsThatCannotBeCheaperAreNotPlanned) {
   Problem problem{.map = drawn({"............................................................"}),
                   .start = {1.5, 0.5},
                   .goal = {55.5, 0.5},
@@ -86,7 +86,7 @@ TEST(GoalChoice, LeavesOutGoalsThatCannotBeCheaper) {
   EXPECT_EQ(asked, (std::vector<maps::Point>{{3.5, 0.5}}));  // 54 metres are dearer than 2 on any ground
 }
 
-TEST(GoalChoice, StopsWhenAsked) {
+TEST(GoalChoice, StopsOnRequest) {
   std::stop_source stop;
   Problem problem{
       .map = drawn({"....", "...."}), .start = {0.5, 0.5}, .goal = {3.5, 1.5}, .other_goals = {{2.5, 0.5}}};

@@ -38,7 +38,7 @@ double bruteForce(const MotionCost& cost, maps::Cell from, maps::Cell to) {
   return best[grid.index(to)];
 }
 
-TEST(ManyHeadings, AsCheapAsBruteForce) {
+TEST(ManyHeadings, CostMatchesBruteForce) {
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const MotionCost cost(
@@ -58,7 +58,7 @@ TEST(ManyHeadings, AsCheapAsBruteForce) {
   EXPECT_GT(found, 8);
 }
 
-TEST(ManyHeadings, EndsWithinTheTolerance) {
+TEST(ManyHeadings, RouteEndsWithinTheTolerance) {
   const MotionCost cost(drawn({"......#", "......#", "......."}));
   const Polyline route = manyHeadingsRoute(cost, {{0.4, 1.6}, {6.5, 1.5}}, 1.5, kInfinity);
   ASSERT_GE(route.size(), 2U);

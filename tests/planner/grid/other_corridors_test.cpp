@@ -38,7 +38,7 @@ std::vector<Polyline> others(const std::shared_ptr<const costmap::CostGrid>& map
 }
 
 // Closed form: of three gaps the one in the middle is on the way; the others are tried, each once.
-TEST(OtherCorridors, AreTheOtherGapsOfAWall) {
+TEST(OtherCorridors, AlternativesUseTheOtherGapsOfAWall) {
   const auto map = testing::drawn(wallWithGaps(80, 60, {10, 30, 50}));
   const Segment places{{3.5, 30.5}, {76.5, 30.5}};
   const auto found = others(map, places, {.most = 9, .within = 0.5});
@@ -59,7 +59,7 @@ TEST(OtherCorridors, AreTheOtherGapsOfAWall) {
 
 // Property: on ground where each heading has its price, the way back over the ground turned upside down costs what the way
 // there costs: every corridor is allowed and within the share of the best grid route that was asked for, but for the ends.
-TEST(OtherCorridors, CostNoMoreThanAskedForWhereHeadingsDiffer) {
+TEST(OtherCorridors, AlternativesAreWithinTheCostShare) {
   int found = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto map =
@@ -97,7 +97,7 @@ std::shared_ptr<const costmap::CostGrid> blocks(unsigned seed) {
 
 // Property: with other corridors a route is never dearer, and sometimes cheaper, where eight headings rank the ways between
 // blocks wrongly.
-TEST(OtherCorridors, MakeNoRouteDearer) {
+TEST(OtherCorridors, AlternativesNeverIncreaseTheRouteCost) {
   int cheaper = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     Problem problem{.map = blocks(seed), .start = {2.5, 14.5}, .goal = {97.5, 61.5}, .prove = false};

@@ -21,7 +21,7 @@ using testing::randomMap;
 
 // Property: allowed, from end to end, above the lower bound, and no dearer than the cheapest way in 32 headings by
 // much.
-TEST(PointRoute, NearTheCheapest) {
+TEST(PointRoute, CostIsWithinTwoPercentOfThirtyTwoHeadings) {
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const auto map = randomMap({.width = 14, .height = 12, .seed = seed, .blocked = 0.15, .roughness = 0.2});
@@ -45,7 +45,7 @@ TEST(PointRoute, NearTheCheapest) {
   EXPECT_GT(found, 8);
 }
 
-TEST(PointRoute, EndsWithinTheTolerance) {
+TEST(PointRoute, RouteEndsWithinTheTolerance) {
   const MotionCost cost(drawn({"......#", "......#", "......."}));
   const Polyline route = pointRoute(cost, {{0.4, 1.6}, {6.5, 1.5}}, 1.5, kInfinity);
   ASSERT_GE(route.size(), 2U);
@@ -55,7 +55,7 @@ TEST(PointRoute, EndsWithinTheTolerance) {
 
 // Property: on ground of two narrow arcs of headings, whose routes tack, no place on the way that is prescribed makes
 // the route that is found cheaper by much.
-TEST(PointRoute, NoViaMakesARouteOfFewHeadingsCheaper) {
+TEST(PointRoute, ViaPointsDoNotReduceTheCost) {
   int compared = 0;
   double worst = 1.0;
   for (unsigned seed = 1; seed <= 40; ++seed) {

@@ -17,7 +17,7 @@ MapPointer rough(unsigned seed) {
 }
 
 // Property: allowed, through every via point, and near what the whole field gives.
-TEST(TubePlanner, IsNearTheWholeField) {
+TEST(TubePlanner, CostIsWithinThreePercentOfTheFullField) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Problem problem{.map = rough(seed),
                           .start = {10.5, 12.5},
@@ -36,7 +36,7 @@ TEST(TubePlanner, IsNearTheWholeField) {
 }
 
 // Property: the same bytes with two threads, and after a change as when planned anew.
-TEST(TubePlanner, SameBytesReplannedAndWithTwoThreads) {
+TEST(TubePlanner, ResultIsIndependentOfThreadCountAndReplanning) {
   const MapPointer map = rough(3);
   Problem problem{.map = map, .start = {10.5, 12.5}, .goal = {300.5, 280.5}, .prove = false};
   TubePlanner planner;
@@ -58,7 +58,7 @@ TEST(TubePlanner, SameBytesReplannedAndWithTwoThreads) {
 
 // A gap that the pooled map does not show: the whole field finds it. Without a gap it proves that there is
 // none.
-TEST(TubePlanner, TheWholeFieldIsTheProof) {
+TEST(TubePlanner, FullFieldIsUsedIfThePooledMapHasNoRoute) {
   std::vector<std::string> rows(200, std::string(200, '.'));
   for (std::string& row : rows) row.replace(96, 8, "########");
   const Problem closed{.map = drawn(rows), .start = {20.5, 60.5}, .goal = {180.5, 60.5}};
@@ -70,7 +70,7 @@ TEST(TubePlanner, TheWholeFieldIsTheProof) {
   EXPECT_TRUE(violations(*open.map, plan.points).empty());
 }
 
-TEST(TubePlanner, NothingToDriveWhereStartIsGoal) {
+TEST(TubePlanner, StartEqualToGoalCostsZero) {
   const Problem problem{.map = drawn(std::vector<std::string>(100, std::string(100, '.'))),
                         .start = {45.5, 49.5},
                         .goal = {45.5, 49.5}};
@@ -80,7 +80,7 @@ TEST(TubePlanner, NothingToDriveWhereStartIsGoal) {
   EXPECT_EQ(plan.points, (Polyline{problem.start}));
 }
 
-TEST(TubePlanner, SaysWhatIsWrongWithAPlace) {
+TEST(TubePlanner, InvalidStartAndGoalAreReported) {
   std::vector<std::string> rows(100, std::string(100, '.'));
   rows[50].replace(40, 10, "##########");
   const Problem problem{.map = drawn(rows), .start = {45.5, 49.5}, .goal = {90.5, 90.5}};

@@ -27,7 +27,7 @@ constexpr TubeOptions kNarrow{.margin_cells = 8.0, .leg_cells = 100.0, .overlap_
 
 // Property: beside a guide that is the whole field's own way the tube finds a way as cheap, in one leg, but
 // for the rounding of edges; in several legs never a cheaper one.
-TEST(TubeSearch, FindsTheWholeFieldsWayBesideIt) {
+TEST(TubeSearch, RouteInTheTubeMatchesTheFullField) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     Problem problem{
         .map = randomMap({.width = 300, .height = 260, .seed = seed, .blocked = 0.1, .roughness = 0.15}),
@@ -60,7 +60,7 @@ MapPointer walled(int gap_row) {
   return drawn(rows);
 }
 
-TEST(TubeSearch, WidensUntilThereIsAWay) {
+TEST(TubeSearch, TubeWidensUntilARouteExists) {
   const Problem problem{.map = walled(330), .start = {20.5, 60.5}, .goal = {380.5, 60.5}};
   const Polyline guide{problem.start, problem.goal};
   TubeOptions options{.margin_cells = 48.0, .leg_cells = 1e4, .widenings = 0};
@@ -74,7 +74,7 @@ TEST(TubeSearch, WidensUntilThereIsAWay) {
 
 // A patch that gets cheaper northwards draws the way to the wall of the first tube; touching it makes it
 // wider.
-TEST(TubeSearch, WidensWhereTheWallIsTouched) {
+TEST(TubeSearch, TubeWidensIfTheRouteTouchesItsBorder) {
   std::vector<std::string> rows(400, std::string(400, '.'));
   for (int row = 0; row < 200; ++row)
     rows[static_cast<std::size_t>(399 - row)].replace(150, 100, std::string(100, "44443210"[row / 25]));
@@ -89,7 +89,7 @@ TEST(TubeSearch, WidensWhereTheWallIsTouched) {
 }
 
 // A leg that would end in a pocket is joined with the next.
-TEST(TubeSearch, JoinsLegsThatMeetWhereNothingLeads) {
+TEST(TubeSearch, BlockedLegIsJoinedWithTheNext) {
   std::vector<std::string> rows(100, std::string(400, '.'));
   for (int row = 40; row < 60; ++row)
     for (int column = 270; column < 290; ++column)
@@ -104,7 +104,7 @@ TEST(TubeSearch, JoinsLegsThatMeetWhereNothingLeads) {
   EXPECT_NEAR(cost.along(way), cost.along(wholeFieldRoute(problem)), 1e-2 * cost.along(way));
 }
 
-TEST(TubeSearch, StoppedGivesNothing) {
+TEST(TubeSearch, StopYieldsNoRoute) {
   std::stop_source source;
   source.request_stop();
   ProgressMonitor watch;

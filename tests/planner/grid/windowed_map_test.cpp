@@ -9,7 +9,7 @@ namespace windowed_map_test {
 
 using namespace testing;
 
-TEST(WindowedMap, TilesBesideALineAreThoseOfTheWholeMapToTheBit) {
+TEST(WindowedMap, TilesBesideALineEqualTheFullMap) {
   // Property: the same cell codes as of the map built as a whole, and the rest unknown.
   int asked = 0;
   WindowedMap map = windows(asked);
@@ -38,7 +38,7 @@ TEST(WindowedMap, TilesBesideALineAreThoseOfTheWholeMapToTheBit) {
   EXPECT_EQ(asked, before);  // what is held is not built again
 }
 
-TEST(WindowedMap, SaysWhatItCannotDo) {
+TEST(WindowedMap, InvalidOptionsAreRejected) {
   EXPECT_REFUSED(WindowedMap({.grid = kWhole}), std::invalid_argument, "no overview");
   int asked = 0;
   WindowedMap map = windows(asked);

@@ -17,7 +17,7 @@ Problem problemOn(const WindowedMap& map, maps::Point start, maps::Point goal) {
 
 // Property: the legs meet at the via point, the plan costs what the map of its tiles says, and that map is the
 // whole one's grid, of which only a part was built.
-TEST(WindowedPlan, ALegAtATimeOnTheTilesBesideIt) {
+TEST(WindowedPlan, LegsMeetAtViaPointsAndOnlyNearbyTilesAreBuilt) {
   int asked = 0;
   WindowedMap map = windows(asked);
   Problem problem = problemOn(map, {150.0, 0.0}, {900.0, 600.0});
@@ -31,7 +31,7 @@ TEST(WindowedPlan, ALegAtATimeOnTheTilesBesideIt) {
   EXPECT_LT(map.cellsBuilt(), kWhole.size());
 }
 
-TEST(WindowedPlan, WhereTheOverviewShowsNoWayItSaysWhatToDo) {
+TEST(WindowedPlan, MissingOverviewRouteNamesARemedy) {
   int asked = 0;
   const WindowedMap open = windows(asked);
   const costmap::CostGrid& overview = *open.overview();

@@ -22,7 +22,7 @@ PlanRequest across() {
   return request;
 }
 
-TEST(MakePlanner, GivesThePlannerOfThatNameWithoutALibrary) {
+TEST(MakePlanner, CreatesThePlannerOfTheGivenName) {
   EXPECT_EQ(makePlanner()->capabilities().planner, "field");
   const auto planner = makePlanner("field");
   planner->set_map(testing::drawn(kOpen));
@@ -30,7 +30,7 @@ TEST(MakePlanner, GivesThePlannerOfThatNameWithoutALibrary) {
   EXPECT_THROW(makePlanner("no-such"), std::invalid_argument);
 }
 
-TEST(MakePlanner, HeadingsAndATurningRadiusAreKeptOrRefused) {
+TEST(MakePlanner, HeadingsAndTurningRadiusAreMetOrRejected) {
   PlanRequest request = across();
   request.start_heading_rad = request.goal_heading_rad = std::numbers::pi / 2;
   request.kinematics = Kinematics{.turning_radius_m = 3.0, .may_reverse = false};
@@ -51,7 +51,7 @@ TEST(MakePlanner, HeadingsAndATurningRadiusAreKeptOrRefused) {
   EXPECT_EQ(route.summary.drive->cusps, 0);
 }
 
-TEST(MakePlanner, SeedThreadsAndTimeAreThoseOfTheSettings) {
+TEST(MakePlanner, SeedThreadsAndTimeLimitComeFromSettings) {
   const auto planner = makePlanner();
   planner->set_map(testing::drawn(kOpen));
   planner->configure({.planner = "RRTstar", .seed = 3, .time_limit_s = 0.2});
@@ -60,7 +60,7 @@ TEST(MakePlanner, SeedThreadsAndTimeAreThoseOfTheSettings) {
   EXPECT_THROW(planner->configure({.threads = 0}), std::invalid_argument);
 }
 
-TEST(MakePlanner, TheRouteIsThatOfTheInnerPlanner) {
+TEST(MakePlanner, RouteCostEqualsThatOfTheInnerPlanner) {
   // Property: the door adds checks and annotation, and changes no cost.
   const auto map = testing::randomMap({.width = 60, .height = 50, .seed = 11, .blocked = 0.05});
   NamedPlanner inner("field");
@@ -82,7 +82,7 @@ TEST(MakePlanner, TheRouteIsThatOfTheInnerPlanner) {
   EXPECT_GT(found, 0);
 }
 
-TEST(MakePlanner, AChassisAndARiskLimitAreKept) {
+TEST(MakePlanner, ChassisAndRiskLimitAreEnforced) {
   // A step of 0.5 m across the map, with a gap in the north that the cost map alone does not know.
   const maps::Grid grid{.width = 40, .height = 30, .resolution_m = 1.0, .south_west = {}};
   maps::Raster<float> steps(grid, 0.0F);

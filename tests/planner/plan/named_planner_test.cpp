@@ -20,7 +20,7 @@ Problem across(unsigned seed) {
           .kinematics = {.turning_radius_m = 1.5}};
 }
 
-TEST(NamedPlanner, IsTheFieldUnlessNamed) {
+TEST(NamedPlanner, DefaultIsTheFieldPlanner) {
   EXPECT_EQ(NamedPlanner().name(), plannerNames().front());
   EXPECT_EQ(NamedPlanner("rrt*").name(), "RRTstar");  // spelling is forgiven
   EXPECT_THROW(NamedPlanner("no-such"), std::invalid_argument);
@@ -28,7 +28,7 @@ TEST(NamedPlanner, IsTheFieldUnlessNamed) {
 }
 
 // Property: exactly the planners that say so hand out drives.
-TEST(NamedPlanner, DrivesAreOfThosePlannersThatSaySo) {
+TEST(NamedPlanner, DrivesAreReturnedExactlyIfDeclared) {
   int drives = 0;
   for (const std::string name : {"field", "hybrid", "RRTstarSE2"}) {
     NamedPlanner planner(name);
@@ -42,7 +42,7 @@ TEST(NamedPlanner, DrivesAreOfThosePlannersThatSaySo) {
 }
 
 // Property: what is kept from one plan to the next does not change the next; other maps and goals between.
-TEST(NamedPlanner, AnswersDoNotDependOnEarlierOnes) {
+TEST(NamedPlanner, ResultIsIndependentOfEarlierPlans) {
   NamedPlanner kept;
   int found = 0;
   for (unsigned seed = 1; seed <= 4; ++seed)
@@ -58,7 +58,7 @@ TEST(NamedPlanner, AnswersDoNotDependOnEarlierOnes) {
 }
 
 // Property: each cost that is called back with is lower than the one before, and the last is the plan's.
-TEST(NamedPlanner, CallsBackWithBetterCostsWhileSampling) {
+TEST(NamedPlanner, ReportsDecreasingCostsWhileSampling) {
   NamedPlanner planner("InformedRRTstar");
   std::vector<double> costs;
   planner.onBetter([&costs](double cost_J) { costs.push_back(cost_J); });
@@ -69,7 +69,7 @@ TEST(NamedPlanner, CallsBackWithBetterCostsWhileSampling) {
   EXPECT_NEAR(costs.back(), plan.cost_J, 1e-9 * plan.cost_J);
 }
 
-TEST(NamedPlanner, MarksARouteOfWorkThatWasStopped) {
+TEST(NamedPlanner, StoppedPlanIsMarkedInterrupted) {
   std::stop_source stop;
   Problem problem = across(3);
   problem.watch.stop = stop.get_token();

@@ -11,7 +11,7 @@ namespace own_planner_test {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(OwnPlanner, ReplansOnANewerVersionOfTheMap) {
+TEST(OwnPlanner, ReplansOnAnUpdatedMap) {
   OwnPlanner planner;
   PlanRequest request;
   request.start = {0.5, 1.5};
@@ -25,7 +25,7 @@ TEST(OwnPlanner, ReplansOnANewerVersionOfTheMap) {
   EXPECT_THROW(planner.update(testing::drawn({"....", "...."})), std::invalid_argument);
 }
 
-TEST(OwnPlanner, PassesViaPointsAndTakesTheCheapestGoal) {
+TEST(OwnPlanner, ViaPointsAndCheapestGoalAreUsed) {
   OwnPlanner planner;
   EXPECT_TRUE(planner.capabilities().via_points);
   EXPECT_TRUE(planner.capabilities().several_goals);
@@ -41,7 +41,7 @@ TEST(OwnPlanner, PassesViaPointsAndTakesTheCheapestGoal) {
   EXPECT_TRUE(std::ranges::any_of(route.vertices, [](const RouteVertex& v) { return v.x_m == 7.5; }));
 }
 
-TEST(OwnPlanner, CancelledPlanningSaysSo) {
+TEST(OwnPlanner, StopYieldsCancelled) {
   OwnPlanner planner;
   planner.set_map(testing::drawn({"....", "...."}));
   std::stop_source stop;
@@ -53,7 +53,7 @@ TEST(OwnPlanner, CancelledPlanningSaysSo) {
   EXPECT_EQ(planner.plan(request).status, RouteStatus::Cancelled);
 }
 
-TEST(OwnPlanner, RefusesSettingsByName) {
+TEST(OwnPlanner, InvalidSettingsAreRejectedByName) {
   OwnPlanner planner;
   EXPECT_THAT([&] { planner.configure({.planner = "PRM*"}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("refused")));
@@ -64,7 +64,7 @@ TEST(OwnPlanner, RefusesSettingsByName) {
   EXPECT_THROW(planner.set_map(nullptr), std::invalid_argument);
 }
 
-TEST(OwnPlanner, RefusesWhatThePlannerDoesNotHonour) {
+TEST(OwnPlanner, UnsupportedRequestIsRejected) {
   OwnPlanner planner;
   planner.set_map(testing::drawn({"....", "...."}));
   PlanRequest request;
@@ -73,7 +73,7 @@ TEST(OwnPlanner, RefusesWhatThePlannerDoesNotHonour) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("start_heading_rad is not honoured")));
 }
 
-TEST(OwnPlanner, AnotherOneOfItsKindHasDefaultSettingsAndNoMap) {
+TEST(OwnPlanner, CreatedPlannerHasDefaultSettingsAndNoMap) {
   OwnPlanner planner;
   planner.configure({.planner = "hybrid"});
   planner.set_map(testing::drawn({"....", "...."}));
@@ -84,7 +84,7 @@ TEST(OwnPlanner, AnotherOneOfItsKindHasDefaultSettingsAndNoMap) {
 }
 
 // Property: settings that are refused change nothing.
-TEST(OwnPlanner, KeepsItsSettingsWhereNewOnesAreRefused) {
+TEST(OwnPlanner, RejectedSettingsLeaveThePlannerUnchanged) {
   OwnPlanner planner;
   planner.configure({.planner = "hybrid"});
   EXPECT_THROW(planner.configure({.planner = "no-such"}), std::invalid_argument);

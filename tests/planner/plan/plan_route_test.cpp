@@ -23,7 +23,7 @@ PlanRequest across() {
   return {.start = {120.0, -20.0}, .goal = {370.0, 160.0}};
 }
 
-TEST(PlanRoute, IsTheRouteOfMakePlannerWithTheElevationOfTheMap) {
+TEST(PlanRoute, RouteEqualsMakePlannerWithElevationAdded) {
   const costmap::TraversabilityMap map = built(kPart);
   for (const char* name : {"field", "hybrid"}) {
     const auto planner = makePlanner(name);
@@ -44,7 +44,7 @@ TEST(PlanRoute, IsTheRouteOfMakePlannerWithTheElevationOfTheMap) {
   }
 }
 
-TEST(PlanRoute, ElevationIsThatOfTheVersionThatWasPlannedOn) {
+TEST(PlanRoute, ElevationIsThatOfThePlannedVersion) {
   costmap::TraversabilityMap map = built(kPart);
   const auto before = map.published();
   maps::Raster<float> raised(kPart);
@@ -59,13 +59,13 @@ TEST(PlanRoute, ElevationIsThatOfTheVersionThatWasPlannedOn) {
   EXPECT_NEAR(new_route.vertices[0].elevation_m - old_route.vertices[0].elevation_m, 3.0, 1e-5);
 }
 
-TEST(PlanRoute, ElevationIsUnknownOnMapsWithoutHeights) {
+TEST(PlanRoute, ElevationIsNanWithoutHeights) {
   const Route route = planRoute(drawn({"....", "...."}), {.start = {0.5, 0.5}, .goal = {3.5, 1.5}});
   ASSERT_EQ(route.status, RouteStatus::Found) << route.reason;
   EXPECT_TRUE(std::isnan(route.vertices.front().elevation_m));
 }
 
-TEST(PlanRoute, StatesTheGoalThatItEndsAt) {
+TEST(PlanRoute, RouteStatesTheGoalItReaches) {
   PlanRequest request{.start = {1.5, 0.5}, .goal = {9.5, 0.5}};
   request.other_goals = {{8.5, 0.5}, {3.5, 0.5}};
   const auto map = drawn({".........."});
@@ -74,7 +74,7 @@ TEST(PlanRoute, StatesTheGoalThatItEndsAt) {
   EXPECT_EQ(planRoute(map, request).goal, 0U);
 }
 
-TEST(PlanRoute, RefusesARequestByName) {
+TEST(PlanRoute, InvalidRequestIsRejectedByName) {
   const auto map = drawn({"....", "...."});
   PlanRequest request{.start = {0.5, 0.5}, .goal = {3.5, 1.5}};
   EXPECT_THAT([&] { planRoute(nullptr, request); },
@@ -91,7 +91,7 @@ TEST(PlanRoute, RefusesARequestByName) {
   EXPECT_THAT([&] { planRoute(map, request); }, ThrowsMessage<std::invalid_argument>(HasSubstr("goal.x_m")));
 }
 
-TEST(PlanRoute, InWindowsIsThatOfTheWholeMapWithinAFewPercent) {
+TEST(PlanRoute, WindowedRouteIsWithinAFewPercentOfTheFullMap) {
   int asked = 0;
   WindowedMap map = windows(asked);
   const PlanRequest request{.start = {150.0, 0.0}, .goal = {1400.0, 850.0}};
@@ -106,7 +106,7 @@ TEST(PlanRoute, InWindowsIsThatOfTheWholeMapWithinAFewPercent) {
   EXPECT_NEAR(price_J, route.summary.cost, 1e-6 * price_J);
 }
 
-TEST(PlanRoute, InWindowsRefusesWhatItCannotDo) {
+TEST(PlanRoute, WindowedPlanningRejectsUnsupportedRequests) {
   int asked = 0;
   WindowedMap map = windows(asked);
   EXPECT_THAT([&] { planRoute(map, {}, {.planner = "hybrid"}); },

@@ -16,19 +16,19 @@ using ::testing::HasSubstr;
 
 // Ground 0: dear and safe; 1: cheap and risky; 2: as cheap, slower, half as risky.
 std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>& rows,
-                                                  const costmap::SoilDoubt& doubt = {}) {
+                                                  const costmap::SoilUncertainty& doubt = {}) {
   const auto ground = [](double energy, double time, double risk) {
-    costmap::DriveState state;
+    costmap::TravelState state;
     state.energy_J_per_m = static_cast<float>(energy);
     state.time_s_per_m = static_cast<float>(time);
     state.risk_per_m = static_cast<float>(risk);
-    auto table = std::make_shared<costmap::DriveTable>();
+    auto table = std::make_shared<costmap::TravelTable>();
     table->fill(state);
-    return costmap::DriveGround{.curve = {}, .states = table};
+    return costmap::GroundCost{.curve = {}, .states = table};
   };
   auto content = testing::drawn(rows)->content();
-  content.cost = std::make_shared<costmap::DriveCost>(
-      costmap::DriveCost::Limits{},
+  content.cost = std::make_shared<costmap::TravelCost>(
+      costmap::TravelCost::Limits{},
       std::vector{ground(20, 5, 1e-6), ground(10, 5, 1e-2), ground(10, 9, 5e-3)}, doubt);
   return costmap::reweighted(costmap::CostGrid(content), {.energy = 1.0, .time_W = 1.0, .risk_J = 1.0});
 }
@@ -44,7 +44,7 @@ Problem acrossRisk() {
   return problem;
 }
 
-TEST(RiskPlanner, KeepsTheLimitAtAPrice) {
+TEST(RiskPlanner, RiskLimitIsMetAtHigherCost) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
   const Plan free = planner.plan(problem);
@@ -60,13 +60,13 @@ TEST(RiskPlanner, KeepsTheLimitAtAPrice) {
   EXPECT_DOUBLE_EQ(safe.cost_J, MotionCost(problem.map).along(safe.points));
 }
 
-TEST(RiskPlanner, ALimitThatHoldsAnywayChangesNothing) {
+TEST(RiskPlanner, NonBindingLimitLeavesThePlanUnchanged) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
   EXPECT_EQ(planWithinRisk(problem, planner, 0.9).points, planner.plan(problem).points);
 }
 
-TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
+TEST(RiskPlanner, UnsatisfiableLimitReportsTheSafestRoute) {
   Problem problem = acrossRisk();
   problem.map = withRisk(std::vector<std::string>(20, std::string(40, '1')));
   NamedPlanner planner;
@@ -80,7 +80,7 @@ TEST(RiskPlanner, ALimitThatNothingKeepsFindsNone) {
 
 // Property: the risk that is told of the route is what is compared, and the plain route is a candidate: whatever it
 // has is within reach.
-TEST(RiskPlanner, TheRiskOfThePlainRouteIsAlwaysWithinReach) {
+TEST(RiskPlanner, LimitAtTheRiskOfTheUnconstrainedRouteIsFeasible) {
   for (const int columns : {3, 8, 20, 31}) {
     std::vector<std::string> rows(20, std::string(40, '1'));
     for (auto& row : rows)
@@ -105,7 +105,7 @@ std::function<Plan(const Problem&)> planning(NamedPlanner& planner) {
   return [&planner](const Problem& problem) { return planner.plan(problem); };
 }
 
-TEST(RiskPlanner, NoRouteOfTheParetoSetBeatsAnother) {
+TEST(RiskPlanner, ParetoSetHasNoDominatedRoute) {
   std::vector<std::string> rows(20, std::string(40, '0'));
   for (std::size_t r = 4; r < 12; ++r) rows[r].replace(5, 30, 30, '2');
   for (std::size_t r = 12; r < 20; ++r) rows[r].replace(5, 30, 30, '1');
@@ -134,7 +134,7 @@ Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
 }
 
 // Property: a part of the prices makes another set, which nothing would tell from the whole one.
-TEST(RiskPlanner, AParetoSetIsWholeOrNone) {
+TEST(RiskPlanner, StoppedParetoSetIsEmpty) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
   const std::size_t whole = paretoSet(problem, planning(planner), 3).size();
@@ -148,7 +148,7 @@ TEST(RiskPlanner, AParetoSetIsWholeOrNone) {
 }
 
 // Property: of the prices that were not tried nothing is claimed.
-TEST(RiskPlanner, AStoppedSearchSaysThatItWasStopped) {
+TEST(RiskPlanner, StoppedSearchIsReportedAsInterrupted) {
   const Problem problem = acrossRisk();
   int stops = 0;
   for (int n = 1; n < 40; ++n) {
@@ -164,7 +164,7 @@ TEST(RiskPlanner, AStoppedSearchSaysThatItWasStopped) {
   EXPECT_GE(stops, 5);
 }
 
-TEST(RiskPlanner, AMapWithoutNumbersToWeighSaysSo) {
+TEST(RiskPlanner, MapWithoutDriveStatesIsRejected) {
   Problem problem = acrossRisk();
   problem.map = testing::drawn({"...", "..."});
   NamedPlanner planner;

@@ -30,7 +30,7 @@ std::shared_ptr<const Chassis> stepped(const costmap::TraversabilityMap& map) {
 }
 
 // Property: a plugin that plans as Talus does gives Talus' route, by the same entry point.
-TEST(RoutePlanner, APluginsRouteIsCheckedAndAnnotatedAsOurs) {
+TEST(RoutePlanner, PluginRouteIsCheckedAndAnnotatedLikeOurs) {
   const costmap::TraversabilityMap map = built(kYard);
   RoutePlanner own, plugin(PluginPlanner(TALUS_PLUGIN));
   for (const bool chassis : {false, true}) {
@@ -47,7 +47,7 @@ TEST(RoutePlanner, APluginsRouteIsCheckedAndAnnotatedAsOurs) {
   }
 }
 
-TEST(RoutePlanner, APluginKeepsNoRiskLimit) {
+TEST(RoutePlanner, PluginRejectsARiskLimit) {
   RoutePlanner plugin(PluginPlanner(TALUS_PLUGIN));
   PlanRequest request = overTheYard();
   request.risk_limit = RiskLimit{};
@@ -55,7 +55,7 @@ TEST(RoutePlanner, APluginKeepsNoRiskLimit) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("risk_limit is not honoured")));
 }
 
-TEST(RoutePlanner, ParetoRoutesKeepTheChassisAndNoRiskLimit) {
+TEST(RoutePlanner, ParetoRoutesRespectTheChassisAndIgnoreTheRiskLimit) {
   const costmap::TraversabilityMap map = built(kYard);
   PlanRequest request = overTheYard();
   request.chassis = stepped(map);
@@ -65,7 +65,7 @@ TEST(RoutePlanner, ParetoRoutesKeepTheChassisAndNoRiskLimit) {
   for (const ParetoRoute& route : front) EXPECT_TRUE(request.chassis->violations(route.plan.points).empty());
 }
 
-TEST(RoutePlanner, IsDeterministicWithKeptState) {
+TEST(RoutePlanner, ReplanningIsDeterministic) {
   const auto map = randomMap({.width = 60, .height = 50, .seed = 11, .blocked = 0.05});
   RoutePlanner planner;
   const PlanRequest there{.start = map->grid().centre({2, 3}), .goal = map->grid().centre({55, 45})};

@@ -24,7 +24,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(PluginLoader, LoadsAPlannerAndPlansWithIt) {
+TEST(PluginLoader, LoadsAPluginAndPlans) {
   const auto planner = loadPlugin(TALUS_PLUGIN);
   EXPECT_EQ(planner->capabilities().interface_version, kPlannerInterfaceVersion);
   EXPECT_THAT(planner->capabilities().planners, ::testing::Contains("field"));
@@ -38,14 +38,14 @@ TEST(PluginLoader, LoadsAPlannerAndPlansWithIt) {
   EXPECT_GE(route.vertices.size(), 4u);  // Property: the way round two cells has at least two turns
 }
 
-TEST(PluginLoader, APlannerSurvivesItsLoader) {
+TEST(PluginLoader, PlannerOutlivesItsLoader) {
   std::unique_ptr<GlobalPlanner> another;
   const auto planner = loadPlugin(TALUS_PLUGIN);
   another = planner->create();
   EXPECT_EQ(another->capabilities().name, "talus");
 }
 
-TEST(PluginLoader, TheLibraryStaysAsLongAsWhatItCreated) {
+TEST(PluginLoader, LibraryStaysLoadedWhileItsPlannersExist) {
   std::unique_ptr<GlobalPlanner> another = loadPlugin(TALUS_PLUGIN)->create();
   another->set_map(testing::drawn({"....", "...."}));
   PlanRequest request;
@@ -54,7 +54,7 @@ TEST(PluginLoader, TheLibraryStaysAsLongAsWhatItCreated) {
   EXPECT_EQ(another->plan(request).status, RouteStatus::Found);
 }
 
-TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
+TEST(PluginLoader, OtherInterfaceVersionIsRejected) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
                                               HasSubstr("this program has 6"), HasSubstr("rebuild"))));
@@ -62,7 +62,7 @@ TEST(PluginLoader, AnotherInterfaceIsRefusedBeforeItIsTouched) {
 
 // Loading one may end the process by a signal: a child finds out.
 // The dynamic linker ends a process by an exit of its own, not by a signal, where the table of relative addresses holds another kind.
-TEST(PluginLoader, ALibraryThatTheLinkerGivesUpIsRefused) {
+TEST(PluginLoader, LibraryThatAbortsTheLinkerIsRejected) {
   std::ifstream file(TALUS_OTHER_PLUGIN, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const auto word = [&](std::size_t at) {
@@ -83,7 +83,7 @@ TEST(PluginLoader, ALibraryThatTheLinkerGivesUpIsRefused) {
 }
 
 // `talus plugins F.so` hung for ever.
-TEST(PluginLoader, ALibraryThatNeverEndsBeingLoadedOrUnloadedIsRefused) {
+TEST(PluginLoader, LibraryThatHangsOnLoadOrUnloadIsRejected) {
   for (const std::string path : {TALUS_ENDLESS_PLUGIN, TALUS_UNENDING_PLUGIN})
     EXPECT_THAT(
         [&] { loadPlugin(path, 0.2); },
@@ -92,7 +92,7 @@ TEST(PluginLoader, ALibraryThatNeverEndsBeingLoadedOrUnloadedIsRefused) {
 }
 
 // `plan --plugin F.so` ended the process that tried it, and left the child of the trial.
-TEST(PluginLoader, ATrialDoesNotOutliveTheProgram) {
+TEST(PluginLoader, TrialProcessEndsWithTheProgram) {
   for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
@@ -117,7 +117,7 @@ TEST(PluginLoader, ATrialDoesNotOutliveTheProgram) {
   }
 }
 
-TEST(PluginLoader, ATruncatedLibraryIsRefused) {
+TEST(PluginLoader, TruncatedLibraryIsRejected) {
   const auto cut = std::filesystem::temp_directory_path() / "talus_cut_plugin_test.so";
   const auto whole = std::filesystem::file_size(TALUS_PLUGIN);
   // Its end holds symbols that loading does without, with debug information most of the file.
@@ -130,7 +130,7 @@ TEST(PluginLoader, ATruncatedLibraryIsRefused) {
   std::filesystem::remove(cut);
 }
 
-TEST(PluginLoader, WhatIsNoPluginIsRefusedByName) {
+TEST(PluginLoader, FilesThatAreNoPluginAreRejectedByName) {
   EXPECT_THAT([] { loadPlugin("/nowhere/planner.so"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("/nowhere/planner.so"), HasSubstr("no such file"))));
   EXPECT_THROW(loadPlugin("/"), InputError);

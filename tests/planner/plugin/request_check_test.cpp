@@ -9,7 +9,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(RequestCheck, EachFieldThatIsNotHonouredIsRefusedByName) {
+TEST(RequestCheck, EachUnsupportedFieldIsRejectedByName) {
   // Property: a request with one field set passes exactly where the capability of that field is stated.
   struct Case {
     const char* field;
@@ -52,7 +52,7 @@ TEST(RequestCheck, EachFieldThatIsNotHonouredIsRefusedByName) {
   }
 }
 
-TEST(RequestCheck, AChassisIsRefusedWhereItIsNotHonoured) {
+TEST(RequestCheck, ChassisIsRejectedIfUnsupported) {
   const maps::Raster<float> flat({.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}}, 0.0F);
   terramech::Rover rover;
   rover.wheelbase_m = rover.track_m = 0.5;
@@ -62,7 +62,7 @@ TEST(RequestCheck, AChassisIsRefusedWhereItIsNotHonoured) {
   EXPECT_NO_THROW(requireHonoured(request, {.chassis = true}));
 }
 
-TEST(RequestCheck, ValuesOutOfRangeAreRefusedWithTheirBound) {
+TEST(RequestCheck, ValuesOutOfRangeAreRejectedWithTheirBound) {
   const PlannerCapabilities all{.headings = true, .turning_radius = true, .risk_limit = true};
   const auto refused = [&all](const PlanRequest& request) { return [&] { requireHonoured(request, all); }; };
   PlanRequest request;

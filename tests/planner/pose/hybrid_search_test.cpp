@@ -29,7 +29,7 @@ Pose end(const PosePath& path) {
   return pose;
 }
 
-TEST(HybridSearch, StraightAheadIsStraight) {
+TEST(HybridSearch, StraightGoalYieldsAStraightDrive) {
   HybridSearch search;
   auto ahead = problem(drawn(room(20, 5)));
   ahead.start_heading_rad = 0.0;
@@ -39,7 +39,7 @@ TEST(HybridSearch, StraightAheadIsStraight) {
   EXPECT_EQ(shape(plan.path).cusps, 0);
 }
 
-TEST(HybridSearch, ArrivesLookingAsAsked) {
+TEST(HybridSearch, GoalHeadingIsReached) {
   HybridSearch search;
   auto turned = problem(drawn(room(20, 12)));
   turned.start = {3.5, 6.5};
@@ -61,7 +61,7 @@ TEST(HybridSearch, ArrivesLookingAsAsked) {
   }
 }
 
-TEST(HybridSearch, OnlyReversingLeavesADeadEnd) {
+TEST(HybridSearch, DeadEndIsLeftOnlyInReverse) {
   // A corridor one cell wide, the rover looking into its closed end.
   HybridSearch search;
   auto dead_end = problem(drawn({"######", "#....#", "######"}));
@@ -75,7 +75,7 @@ TEST(HybridSearch, OnlyReversingLeavesADeadEnd) {
   EXPECT_EQ(search.plan(dead_end).status, RouteStatus::NoneFound);
 }
 
-TEST(HybridSearch, ARoverThatTurnsInPlaceThreadsTheCorridor) {
+TEST(HybridSearch, TurningInPlaceNegotiatesNarrowCorners) {
   HybridSearch search;
   auto corner = problem(drawn({"#####", "#...#", "#.#.#", "#.#.#", "#####"}));
   corner.start = {1.5, 1.5};
@@ -86,7 +86,7 @@ TEST(HybridSearch, ARoverThatTurnsInPlaceThreadsTheCorridor) {
   EXPECT_GT(shape(plan.path).turns_in_place, 0);
 }
 
-TEST(HybridSearch, WhatItFindsHoldsUnderADenseCheck) {
+TEST(HybridSearch, DriveCostMatchesDenseEvaluation) {
   // Property: on random sloping maps each drive costs what it says when priced anew in steps of a tenth of a
   // cell, never enters what is refused, and keeps the radius.
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -106,7 +106,7 @@ TEST(HybridSearch, WhatItFindsHoldsUnderADenseCheck) {
   }
 }
 
-TEST(HybridSearch, LooksFinerBeforeItSaysThatThereIsNone) {
+TEST(HybridSearch, SearchIsRefinedBeforeReportingFailure) {
   // Property: a drive that more headings and shorter motions find is found, too, by those that do not.
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -124,7 +124,7 @@ TEST(HybridSearch, LooksFinerBeforeItSaysThatThereIsNone) {
   EXPECT_GT(found, 10);
 }
 
-TEST(HybridSearch, SearchesAsLongAsItIsTold) {
+TEST(HybridSearch, HeuristicWeightTradesCostForExpansions) {
   // Property: the less a drive has to be near the estimate, the fewer poses are tried and the dearer it is.
   std::uint64_t expanded = 0, hasty_expanded = 0;
   double cost_J = 0.0, hasty_cost_J = 0.0;
@@ -145,7 +145,7 @@ TEST(HybridSearch, SearchesAsLongAsItIsTold) {
   EXPECT_LT(cost_J, 0.95 * hasty_cost_J);
 }
 
-TEST(HybridSearch, RefusesWhatCannotStart) {
+TEST(HybridSearch, InvalidStartAndGoalAreReported) {
   HybridSearch search;
   auto outside = problem(drawn(room(20, 5)));
   outside.start = {-1.0, 0.0};

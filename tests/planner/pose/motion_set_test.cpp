@@ -15,7 +15,7 @@ constexpr MotionSet::Options kOptions{.headings = 72, .step_cells = 1.5, .offset
 
 // Property: the end that a motion states is where its leg leads, at one of the set's headings; arcs keep the
 // radius, and without reversing none goes back.
-TEST(MotionSet, MotionsEndWhereTheirLegsLead) {
+TEST(MotionSet, StatedMotionEndsMatchTheirLegs) {
   const auto map = drawn({".....", "....."});
   for (const double radius_m : {0.0, 0.7, 4.0})
     for (const bool reverse : {true, false}) {
@@ -42,7 +42,7 @@ TEST(MotionSet, MotionsEndWhereTheirLegsLead) {
 }
 
 // Closed form: arcs of 200 times the radius are 200 times as long.
-TEST(MotionSet, WorkGrowsWithTheLengthOfItsMotions) {
+TEST(MotionSet, WorkIsProportionalToMotionLength) {
   const auto map = drawn({".....", "....."});
   const auto work = [&](double radius_m) {
     return MotionSet(*map, {.turning_radius_m = radius_m}, kOptions).work();
@@ -52,7 +52,7 @@ TEST(MotionSet, WorkGrowsWithTheLengthOfItsMotions) {
 }
 
 // Closed form: on even ground of 10 J/m a motion costs its length, and its turn in place or on the arc.
-TEST(MotionSet, OnEvenGroundAMotionCostsItsLengthAndItsTurn) {
+TEST(MotionSet, MotionCostOnUniformGroundIsLengthPlusTurn) {
   const auto map = drawn(std::vector<std::string>(9, std::string(9, '.')));
   for (const double radius_m : {0.0, 1.5}) {
     const Kinematics kinematics{.turning_radius_m = radius_m,
@@ -72,7 +72,7 @@ TEST(MotionSet, OnEvenGroundAMotionCostsItsLengthAndItsTurn) {
 
 // Closed form: on a ramp that climbs eastwards at 205/1024 (drawn_map.hpp), ahead is up and back is down. Between nodes of the curve a
 // parabola of 400 is off by 400 / 4 / 256^2.
-TEST(MotionSet, ReverseCostsWhatDrivingThatWayCosts) {
+TEST(MotionSet, ReverseCostEqualsDrivingInThatDirection) {
   const auto map = drawn(std::vector<std::string>(9, std::string(9, '>')));
   const MotionSet set(*map, {}, {.headings = 72, .step_cells = 1.5, .offset_rad = 0.0});
   const double g = 205.0 / 1024.0, back_J = 10 + 400 * g * g;
@@ -85,7 +85,7 @@ TEST(MotionSet, ReverseCostsWhatDrivingThatWayCosts) {
 
 // Property: infinite off the map and over blocked ground; on rough ground near the exact price, which quick
 // cost samples at stretches of half a cell.
-TEST(MotionSet, QuickCostIsNearTheExactOne) {
+TEST(MotionSet, QuickCostApproximatesTheExactCost) {
   const auto map = randomMap({.width = 30, .height = 30, .seed = 5, .blocked = 0.1, .roughness = 0.15});
   const MotionCost motion_cost(map);
   const Kinematics kinematics{.turning_radius_m = 2.0};

@@ -18,7 +18,7 @@ PoseProblem across(unsigned seed, const Kinematics& kinematics) {
           .watch = {}};
 }
 
-TEST(PoseSampling, NeverDearerNeverRefusedAndTheSameAgain) {
+TEST(PoseSampling, ImprovedDriveIsNeverCostlierAlwaysValidAndReproducible) {
   // Property: over random maps and all three ways to move.
   double gained = 0.0;
   for (unsigned seed = 1; seed <= 4; ++seed)

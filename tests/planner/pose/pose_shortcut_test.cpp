@@ -28,7 +28,7 @@ PosePath weaving(int bends) {
 
 // Closed form: on flat ground of 10 J/m nothing beats the straight line between the ends, and a weave of
 // small headings comes within a hundredth of it.
-TEST(PoseShortcut, AWeaveOnFlatGroundComesOutStraight) {
+TEST(PoseShortcut, WeavingDriveOnFlatGroundIsStraightened) {
   const auto map = drawn(std::vector<std::string>(20, std::string(40, '.')));
   const MotionCost motion(map);
   const PoseCost cost(motion, {.turning_radius_m = 2.0});
@@ -43,7 +43,7 @@ TEST(PoseShortcut, AWeaveOnFlatGroundComesOutStraight) {
 
 // Property: on random ground, with and without reversing, what comes out starts and ends where the drive did,
 // costs no more, and keeps the radius.
-TEST(PoseShortcut, KeepsTheEndsAndNeverCostsMore) {
+TEST(PoseShortcut, EndsAreKeptAndCostNeverIncreases) {
   int cheaper = 0;
   for (unsigned seed = 1; seed <= 20; ++seed)
     for (const bool reverse : {true, false}) {

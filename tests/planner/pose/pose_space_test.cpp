@@ -7,7 +7,7 @@
 namespace talus::planner {
 namespace pose_space_test {
 
-TEST(PoseSpace, WalksItsOwnCurves) {
+TEST(PoseSpace, InterpolationFollowsTheShortestCurve) {
   const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
   const MotionCost motion(map);
   for (const bool reverse : {true, false}) {

@@ -10,7 +10,7 @@ namespace talus::planner {
 namespace pose_table_test {
 
 // Property: behaves as a map from cell and heading that is infinite where nothing was set.
-TEST(PoseTable, IsAMapFromCellAndHeading) {
+TEST(PoseTable, TableMatchesAMapKeyedByCellAndHeading) {
   constexpr std::size_t kCells = 300, kHeadings = 7;
   PoseTable table(kCells, kHeadings);
   std::map<std::pair<std::size_t, std::size_t>, float> expected;

@@ -20,7 +20,7 @@ Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segme
   return cellRoute(cost, headings, places, tolerance_m).points;
 }
 
-TEST(CellRoute, FollowsAContourOfAnyDirection) {
+TEST(CellRoute, RouteFollowsAContourInAnyDirection) {
   for (int k = 0; k < 24; ++k) {
     const double contour = 0.13 + k * 0.2618;
     const maps::Point from{20.0 - 15.0 * std::cos(contour), 20.0 - 15.0 * std::sin(contour)};
@@ -33,7 +33,7 @@ TEST(CellRoute, FollowsAContourOfAnyDirection) {
 }
 
 // Both ways along a contour with some room beside it add up to every direction: the plane is climbed in turns.
-TEST(CellRoute, ClimbsInTurns) {
+TEST(CellRoute, RouteTacksUphill) {
   const auto map = testing::contourPlane(0.4);
   const Polyline way = routed(map, {{18.3, 18.2}, {20.4, 22.9}});
   ASSERT_FALSE(way.empty());
@@ -41,7 +41,7 @@ TEST(CellRoute, ClimbsInTurns) {
 }
 
 // Property: on random steep maps a way is allowed, and found nearly wherever the proof leaves one.
-TEST(CellRoute, IsAllowedAndMostlyFound) {
+TEST(CellRoute, RouteIsValidAndFoundUnlessProvenAbsent) {
   int found = 0, missed = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     const auto map =
@@ -120,7 +120,7 @@ void ask(const std::shared_ptr<const costmap::CostGrid>& map, unsigned seed, int
 
 // Property: where Reach leaves a way, one is found or its absence proven, and brute force agrees: with cones of nearly half a
 // turn that lead down between blocked cells, with one narrow arc on each side of the fall line, with both ways along a contour.
-TEST(CellRoute, ThreadsNarrowCones) {
+TEST(CellRoute, RoutesInNarrowConesMatchBruteForce) {
   Answers descents, arcs, contours;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     ask(testing::randomDescent(seed), seed, kSide * (kSide - 3) + kSide / 2, descents);
@@ -139,7 +139,7 @@ TEST(CellRoute, ThreadsNarrowCones) {
 }
 
 // The work limit is a count: it is kept, and one step more than the search takes changes nothing.
-TEST(CellRoute, KeepsItsWorkLimit) {
+TEST(CellRoute, WorkLimitIsEnforced) {
   const auto map = testing::contourPlane(0.4);
   const Segment places{{18.3, 18.2}, {20.4, 22.9}};
   const MotionCost cost(map);
@@ -155,7 +155,7 @@ TEST(CellRoute, KeepsItsWorkLimit) {
 }
 
 // Property: leaving out the cells from which the goal is out of reach changes no answer, and is never more work.
-TEST(CellRoute, LeavesOutWhatDoesNotLeadToTheGoal) {
+TEST(CellRoute, PruningUnreachableCellsKeepsTheResult) {
   std::size_t all = 0, some = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const auto map =
@@ -176,7 +176,7 @@ TEST(CellRoute, LeavesOutWhatDoesNotLeadToTheGoal) {
   EXPECT_LT(some, all);
 }
 
-TEST(CellRoute, EndsWithinTheTolerance) {
+TEST(CellRoute, RouteEndsWithinTheTolerance) {
   const auto map = testing::drawn({".....", "...##", "...##"});
   const Polyline way = routed(map, {{0.5, 0.5}, {4.5, 0.5}}, 2.1);
   ASSERT_FALSE(way.empty());

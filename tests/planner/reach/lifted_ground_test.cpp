@@ -24,8 +24,8 @@ struct Site {
   HazardsOf hazards;
 };
 
-costmap::DriveCurve upTo(double steepest, double cost_J) {
-  costmap::DriveCurve made = testing::curve({.factor = cost_J / 10.0, .steepest = steepest});
+costmap::TravelCurve upTo(double steepest, double cost_J) {
+  costmap::TravelCurve made = testing::curve({.factor = cost_J / 10.0, .steepest = steepest});
   return made;
 }
 
@@ -55,10 +55,10 @@ Site site(const std::vector<std::string>& rows, double gradient = 0.0, double pi
       }
       cells[{c, r}] = costmap::CellCode(parts);
     }
-  const costmap::DriveCurve nothing = upTo(-1.0, 10.0);
+  const costmap::TravelCurve nothing = upTo(-1.0, 10.0);
   return {std::make_shared<costmap::CostGrid>(costmap::flattened(
-              cells, std::make_shared<costmap::DriveCost>(
-                         costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
+              cells, std::make_shared<costmap::TravelCost>(
+                         costmap::TravelCost::Limits{.max_along = pitch, .max_across = 0.05},
                          std::vector{upTo(soil, 10.0), nothing}))),
           [hazards](maps::Cell cell) { return (*hazards)[cell]; }};
 }
@@ -79,7 +79,7 @@ std::vector<std::string> wall(char of) {
   return rows;
 }
 
-TEST(LiftedGround, EachCauseIsTold) {
+TEST(LiftedGround, EachCauseIsReported) {
   EXPECT_EQ(causeOf(site(wall('k'))), Constraint::Hazard);
   EXPECT_EQ(causeOf(site(wall('r'))), Constraint::Hazard);
   EXPECT_EQ(causeOf(site(wall('e'))), Constraint::Hazard);
@@ -90,7 +90,7 @@ TEST(LiftedGround, EachCauseIsTold) {
 
 // The kind of hazard that closes the way alone, also where another stands beside the way; none where each wall is of
 // another kind.
-TEST(LiftedGround, TheHazardAloneIsTold) {
+TEST(LiftedGround, OnlyBlockingHazardIsReported) {
   EXPECT_EQ(between(site(wall('k'))).hazard, Hazard::KeepOut);
   EXPECT_EQ(between(site(wall('r'))).hazard, Hazard::Rocks);
   EXPECT_EQ(between(site(wall('e'))).hazard, Hazard::Step);
@@ -108,25 +108,25 @@ TEST(LiftedGround, TheHazardAloneIsTold) {
 }
 
 // A strip so narrow that all of it in the middle is kept clear of the rim.
-TEST(LiftedGround, TheRimIsTold) {
+TEST(LiftedGround, RimClearanceIsReported) {
   EXPECT_EQ(causeOf(site({"..nnnnn..", "..nnnnn.."}), {{0.5, 0.5}, {8.5, 0.5}}), Constraint::Rim);
 }
 
 // Both the limit and the soil refuse a slope: neither alone opens a way.
-TEST(LiftedGround, ASlopeOfBothIsTold) {
+TEST(LiftedGround, SlopeRefusedByLimitAndSoilIsReported) {
   const std::vector<std::string> plain(5, ".........");
   const Site steep = site(plain, 0.5, 0.1, 0.102);
   costmap::CostGrid::Content content = steep.map->content();
   const auto weak = [&](double margin) {
-    costmap::DriveState state;
+    costmap::TravelState state;
     state.energy_J_per_m = 10.0F;
     state.pull_margin = static_cast<float>(margin);
-    auto table = std::make_shared<costmap::DriveTable>();
+    auto table = std::make_shared<costmap::TravelTable>();
     table->fill(state);
     auto made = content;
-    made.cost = std::make_shared<costmap::DriveCost>(
-        costmap::DriveCost::Limits{.max_along = 0.1, .max_across = 0.05},
-        std::vector<costmap::DriveGround>{
+    made.cost = std::make_shared<costmap::TravelCost>(
+        costmap::TravelCost::Limits{.max_along = 0.1, .max_across = 0.05},
+        std::vector<costmap::GroundCost>{
             {.curve = testing::crossed(upTo(0.102, 10.0), 0.02, 2), .states = table}});
     return Site{std::make_shared<costmap::CostGrid>(std::move(made)), steep.hazards};
   };
@@ -135,7 +135,7 @@ TEST(LiftedGround, ASlopeOfBothIsTold) {
 }
 
 // The rim's clearance around a field of weak soil is no way: without it "hazards" would be told.
-TEST(LiftedGround, TheRimIsNoWay) {
+TEST(LiftedGround, RimClearanceIsNoPassage) {
   std::vector<std::string> rows = wall('w');
   EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);
   for (std::string& row : rows) row[4] = 'w';
@@ -143,7 +143,7 @@ TEST(LiftedGround, TheRimIsNoWay) {
 }
 
 // A slope as steep as the limit refuses, of soil that ends where the table ends; and one whose soil ends before.
-TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
+TEST(LiftedGround, PitchLimitIsReportedIfSoilCapacityReachesIt) {
   const std::vector<std::string> plain(5, ".........");
   EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.102)), Constraint::Pitch);
   EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.25)), Constraint::Pitch);
@@ -154,23 +154,23 @@ TEST(LiftedGround, ALimitIsToldWhereSoilHoldsUpToIt) {
 
 // Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for
 // the soil's sake.
-TEST(LiftedGround, TippingIsNotOfTheSoil) {
+TEST(LiftedGround, TippingIsNotAttributedToTheSoil) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = 2.0;
   rover.track_m = 0.6;
   rover.centre_of_mass_height_m = 1.2;
-  const costmap::DriveCost::Limits limits{
+  const costmap::TravelCost::Limits limits{
       .max_along = 0.15, .max_across = 0.9, .stance = std::make_shared<const terramech::RoverStance>(rover)};
   Site ground = site(std::vector<std::string>(9, "........."), 0.3, 0.15, 0.6);
   costmap::CostGrid::Content content = ground.map->content();
-  costmap::DriveCurve curve = upTo(0.155, 10.0);
-  const costmap::DriveCurve level = curve;
+  costmap::TravelCurve curve = upTo(0.155, 10.0);
+  const costmap::TravelCurve level = curve;
   auto rows = std::make_shared<std::vector<float>>();
   for (int row = 0; row < 60; ++row)  // refused across from 0.25 on, where the rover tips
     for (const float cost : level.cost_J_per_m)
       rows->push_back(row < 16 ? cost : std::numeric_limits<float>::infinity());
   curve.crossing = rows;
-  content.cost = std::make_shared<costmap::DriveCost>(limits, std::vector{curve});
+  content.cost = std::make_shared<costmap::TravelCost>(limits, std::vector{curve});
   ground.map = std::make_shared<costmap::CostGrid>(std::move(content));
   EXPECT_EQ(causeOf(ground, {{1.5, 4.5}, {7.5, 4.5}}), Constraint::Pitch);
 }

@@ -17,7 +17,7 @@ Obstruction between(const std::shared_ptr<const costmap::CostGrid>& map, const S
   return obstructionBetween(*map, headings, reach, places, 0.0);
 }
 
-TEST(ObstructionSearch, NamesBothSetsAndTheConstraintBetween) {
+TEST(ObstructionSearch, ReportsBothCellSetsAndTheConstraintBetween) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   const Segment places{{0.5, 0.5}, {3.5, 1.5}};
   const Obstruction found = between(map, places);
@@ -31,7 +31,7 @@ TEST(ObstructionSearch, NamesBothSetsAndTheConstraintBetween) {
                                ::testing::HasSubstr("keep-out")));
 }
 
-TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
+TEST(ObstructionSearch, EachConstraintIsIdentifiedSeparately) {
   EXPECT_EQ(between(drawn({"..?..", "..?.."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting, Constraint::Unknown);
   // Two walls of different kinds: neither alone opens a way.
   EXPECT_FALSE(between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting);
@@ -40,8 +40,8 @@ TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
     maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                           costmap::CellCode({.dz_dx = steep, .dz_dy = 0.0, .curve = 0}));
     return std::make_shared<costmap::CostGrid>(
-        costmap::flattened(cells, std::make_shared<costmap::DriveCost>(
-                                      costmap::DriveCost::Limits{.max_along = pitch, .max_across = 0.05},
+        costmap::flattened(cells, std::make_shared<costmap::TravelCost>(
+                                      costmap::TravelCost::Limits{.max_along = pitch, .max_across = 0.05},
                                       std::vector{testing::curve({})})));
   };
   EXPECT_EQ(between(ramp(0.2, 0.1), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Pitch);
@@ -49,7 +49,7 @@ TEST(ObstructionSearch, EachConstraintIsFoundAlone) {
 }
 
 // A stop ends the flood between the sets and the search for a constraint; the places stand for what was not found.
-TEST(ObstructionSearch, AStopEndsIt) {
+TEST(ObstructionSearch, StopEndsTheSearch) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   const Segment places{{0.5, 0.5}, {3.5, 1.5}};
   HeadingSets headings(map->cost());

@@ -23,7 +23,7 @@ bool reaches(const costmap::CostGrid& map, maps::Point from, maps::Point to) {
   return reach.reaches(to, 0.0);
 }
 
-TEST(Reach, AWallIsAProof) {
+TEST(Reach, WallSeparatesStartFromGoal) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   EXPECT_FALSE(reaches(*map, {0.5, 0.5}, {4.5, 1.5}));
   EXPECT_TRUE(reaches(*map, {0.5, 0.5}, {1.5, 2.5}));
@@ -32,14 +32,14 @@ TEST(Reach, AWallIsAProof) {
 }
 
 // A slope that may be descended only, not along its contour either: bin 0 holds climbs of up to 0.002.
-TEST(Reach, IsAlongTheDrive) {
-  costmap::DriveCurve down_only = testing::curve({});
-  for (int bin = costmap::DriveCurve::kBins / 2; bin < costmap::DriveCurve::kBins; ++bin)
+TEST(Reach, ReachIsDirectional) {
+  costmap::TravelCurve down_only = testing::curve({});
+  for (int bin = costmap::TravelCurve::kBins / 2; bin < costmap::TravelCurve::kBins; ++bin)
     down_only.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
   maps::Raster<costmap::CellCode> ramp({.width = 4, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                        costmap::CellCode({.dz_dx = 0.2, .dz_dy = 0.0, .curve = 0}));
   const costmap::CostGrid map = costmap::flattened(
-      ramp, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{down_only}));
+      ramp, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{down_only}));
   EXPECT_FALSE(reaches(map, {1.5, 1.5}, {3.5, 1.5}));
   EXPECT_TRUE(reaches(map, {3.5, 1.5}, {1.5, 1.5}));
   HeadingSets headings(map.cost());
@@ -49,19 +49,19 @@ TEST(Reach, IsAlongTheDrive) {
 }
 
 // Closed form: headings on both sides of the fall line that descend add up to everything below the start.
-TEST(Reach, DescendingAlongAContourReachesWhatLiesBelow) {
+TEST(Reach, DescendingHeadingsReachEverythingBelow) {
   const double steep = 0.3;
   // Down only, and no steeper than 0.1 along: both ways along the contour and a little below it.
-  costmap::DriveCurve curve = testing::curve({});
-  for (int bin = 0; bin < costmap::DriveCurve::kBins; ++bin) {
-    const double along = costmap::DriveCurve::gradient(bin);
+  costmap::TravelCurve curve = testing::curve({});
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
+    const double along = costmap::TravelCurve::gradient(bin);
     if (along > -0.002 || along < -0.1)
       curve.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
   }
   maps::Raster<costmap::CellCode> plane({.width = 12, .height = 12, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = steep, .curve = 0}));
   const costmap::CostGrid map = costmap::flattened(
-      plane, std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve}));
+      plane, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve}));
   EXPECT_FALSE(reaches(map, {6.0, 5.5}, {6.0, 7.5}));
   EXPECT_TRUE(reaches(map, {6.0, 5.5}, {6.0, 3.5}));
   EXPECT_FALSE(reaches(map, {1.0, 5.5}, {11.0, 5.5}));
@@ -112,7 +112,7 @@ void compare(const std::shared_ptr<const costmap::CostGrid>& map, Tally& tally) 
 }
 
 // TALUS_RANDOM_MAPS="FIRST COUNT" in place of the 90 and 120 of each run; a campaign is made of such parts.
-TEST(Reach, NoRandomMapIsProvenWrongly) {
+TEST(Reach, NoFalseProofOnRandomMaps) {
   const CampaignPart part = campaignPart("TALUS_RANDOM_MAPS", 90);
   Tally tally;
   for (unsigned seed = part.first; seed < part.end(); ++seed)
@@ -124,7 +124,7 @@ TEST(Reach, NoRandomMapIsProvenWrongly) {
 
 // The same where every cell has a cone: driven down only, on ground that falls southwards on the whole. Here sides are
 // entered in several parts, from both sides of what is blocked.
-TEST(Reach, NoDescentIsProvenWrongly) {
+TEST(Reach, NoFalseProofOnRandomDescents) {
   const CampaignPart part = campaignPart("TALUS_RANDOM_MAPS", 120);
   Tally tally;
   for (unsigned seed = part.first; seed < part.end(); ++seed) compare(testing::randomDescent(seed), tally);

@@ -6,7 +6,7 @@ namespace talus::planner {
 namespace side_cover_test {
 
 // Closed form: what is left of a range behind two parts.
-TEST(SideCover, GivesEachPartOnce) {
+TEST(SideCover, EachPartIsReturnedOnce) {
   SideCover cover;
   EXPECT_EQ(cover.added({0.2, 0.4}, 0.0).size(), 1U);
   EXPECT_EQ(cover.added({0.6, 0.7}, 0.0).size(), 1U);
@@ -22,7 +22,7 @@ TEST(SideCover, GivesEachPartOnce) {
 }
 
 // Growth in steps too small to be followed is followed once it adds up.
-TEST(SideCover, HearsSmallGrowthWhenItAddsUp) {
+TEST(SideCover, SmallIncrementsAreReturnedOnceTheyAddUp) {
   SideCover cover;
   EXPECT_EQ(cover.added({0.2, 0.4}, 0.05).size(), 1U);
   EXPECT_TRUE(cover.added({0.2, 0.43}, 0.05).empty());

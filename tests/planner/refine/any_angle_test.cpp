@@ -10,7 +10,7 @@ namespace any_angle_test {
 using testing::drawn;
 using testing::randomMap;
 
-TEST(AnyAngle, StraightensOnFlatGround) {
+TEST(AnyAngle, RouteIsStraightOnFlatGround) {
   const MotionCost cost(drawn(std::vector<std::string>(40, std::string(60, '.'))));
   const std::vector<maps::Point> grid{{0.5, 0.5}, {30.5, 30.5}, {55.5, 30.5}};
   const auto route = refined(cost, grid);
@@ -19,7 +19,7 @@ TEST(AnyAngle, StraightensOnFlatGround) {
   EXPECT_EQ(route.size(), 2U);
 }
 
-TEST(AnyAngle, RefractsAtABorderLikeLight) {
+TEST(AnyAngle, RouteRefractsByTheLawOfSnell) {
   // Two half planes, 10 and 30 J/m: sin of the angles to the normal stand as 3 to 1 (Snell).
   std::vector<std::string> rows(60, std::string(120, '.'));
   for (auto& row : rows) row.replace(60, 60, std::string(60, '2'));
@@ -33,7 +33,7 @@ TEST(AnyAngle, RefractsAtABorderLikeLight) {
 }
 
 // Property: never dearer, ends kept, allowed.
-TEST(AnyAngle, NeverWorse) {
+TEST(AnyAngle, CostNeverIncreases) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const MotionCost cost(
         randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.0, .roughness = 0.1}));

@@ -7,7 +7,7 @@
 namespace talus::planner {
 namespace close_vertices_test {
 
-TEST(CloseVertices, OfAPairNearerThanAHundredthOfACellOneIsLeft) {
+TEST(CloseVertices, VerticesCloserThanAHundredthOfACellAreMerged) {
   const auto map = testing::drawn({".....", ".....", "....."});
   const MotionCost cost(map);
   const Polyline kept =
@@ -18,7 +18,7 @@ TEST(CloseVertices, OfAPairNearerThanAHundredthOfACellOneIsLeft) {
 }
 
 // The corner of a wall: a vertex on its edge may not move into it.
-TEST(CloseVertices, WhatStaysIsAllowed) {
+TEST(CloseVertices, MergedRouteIsValid) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto map =
         testing::randomMap({.width = 6, .height = 6, .seed = seed, .blocked = 0.2, .roughness = 0.3});

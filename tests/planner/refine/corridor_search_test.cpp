@@ -83,7 +83,7 @@ double priced(const MotionCost& cost, const EdgePath& path) {
   return sum;
 }
 
-TEST(CorridorSearch, FindsTheCheapestWayOverEdgePoints) {
+TEST(CorridorSearch, FindsTheCheapestPathOverEdgePoints) {
   int same = 0, bouncing = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const MotionCost cost(
@@ -112,7 +112,7 @@ TEST(CorridorSearch, FindsTheCheapestWayOverEdgePoints) {
 }
 
 // Property: vectors and scalars find the same way.
-TEST(CorridorSearch, VectorsAndScalarsAgree) {
+TEST(CorridorSearch, VectorAndScalarKernelsAreIdentical) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const MotionCost cost(randomMap({.width = 30, .height = 30, .seed = seed, .roughness = 0.3}));
     for (const int points : {2, 3, 5}) {
@@ -128,7 +128,7 @@ TEST(CorridorSearch, VectorsAndScalarsAgree) {
 
 // Ends on edges and corners, at the map's border, with no reach at all: the search looks at the cells they
 // touch.
-TEST(CorridorSearch, BeginsOnEdgesOfTheMap) {
+TEST(CorridorSearch, EndsMayLieOnMapEdges) {
   const MotionCost cost(drawn(std::vector<std::string>(6, std::string(7, '.'))));
   for (const Point from : {Point{0.0, 2.0}, Point{3.0, 0.0}, Point{0.0, 0.0}, Point{7.0, 6.0}})
     for (const Point to : {Point{5.0, 4.0}, Point{7.0, 3.0}, Point{2.0, 6.0}, Point{4.5, 6.0}}) {
@@ -138,7 +138,7 @@ TEST(CorridorSearch, BeginsOnEdgesOfTheMap) {
     }
 }
 
-TEST(CorridorSearch, StaysBesideTheWay) {
+TEST(CorridorSearch, PathStaysWithinReachOfTheRoute) {
   std::vector<std::string> rows(20, std::string(20, '4'));
   rows.front() = rows.back() = std::string(20, '.');  // cheap, but out of reach
   const MotionCost cost(drawn(rows));

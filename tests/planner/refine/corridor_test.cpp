@@ -13,7 +13,7 @@ using testing::randomMap;
 
 // Property: a cell is copied from the map where a cell passed by the way lies within reach in column and row,
 // and unknown elsewhere. The way is sampled densely; its ends lie off edges and corners.
-TEST(Corridor, HoldsTheCellsWithinReachOfTheWay) {
+TEST(Corridor, CorridorContainsCellsWithinReachOfTheRoute) {
   const auto map = randomMap({.width = 40, .height = 30, .seed = 2, .blocked = 0.0, .roughness = 0.35});
   const EdgeCrossings crossings(map->cost(), 3);
   const std::vector<maps::Point> way{{2.3, 3.4}, {20.7, 3.9}, {36.2, 27.3}};
@@ -55,7 +55,7 @@ TEST(Corridor, HoldsTheCellsWithinReachOfTheWay) {
 // Property: numbers of cells and their coordinates are each other's inverse, and beyond a side lies the
 // neighbour there; every cell of the corridor and its neighbours in the east and north have a holder of
 // their own.
-TEST(Corridor, NumbersItsCellsAndTheHoldersOfTheirEdges) {
+TEST(Corridor, CellAndEdgeNumbersAreConsistent) {
   const auto map = randomMap({.width = 20, .height = 20, .seed = 3, .blocked = 0.0});
   const EdgeCrossings crossings(map->cost(), 2);
   const Corridor corridor(*map, crossings, {{3.5, 4.5}, {15.5, 12.5}}, 2);

@@ -22,16 +22,16 @@ std::vector<CellCode> randomCells() {
 }
 
 // Closed form: the points of a side stand in the middles of equal parts, from south or west on.
-TEST(EdgeCrossings, PointsStandInTheMiddlesOfEqualParts) {
+TEST(EdgeCrossings, EdgePointsAreCentredInEqualParts) {
   EXPECT_EQ(edgeSpot(kWestSide, 0, 2).y, 0.25);
   EXPECT_EQ(edgeSpot(kEastSide, 1, 2).x, 1.0);
   EXPECT_EQ(edgeSpot(kSouthSide, 2, 3).x, 2.5 / 3);
   EXPECT_EQ(edgeSpot(kNorthSide, 0, 1).y, 1.0);
 }
 
-// Property: the price of each motion is DriveCost in its heading times its length, to the rounding of floats;
+// Property: the price of each motion is TravelCost in its heading times its length, to the rounding of floats;
 // each of the other sides' points is met once.
-TEST(EdgeCrossings, PricesAreDriveCostTimesLength) {
+TEST(EdgeCrossings, CostIsDriveCostTimesLength) {
   const auto cost = testing::driveCost({.max_along = 0.3, .max_across = 0.25});
   for (const int points : {1, 2, 3, 5}) {
     const EdgeCrossings crossings(*cost, points), scalar(*cost, points, Kernels::Scalar);

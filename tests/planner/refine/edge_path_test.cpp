@@ -20,7 +20,7 @@ double priced(const MotionCost& cost, const EdgePath& path) {
 }
 
 // Property: turns slid along their edges stay such that both cells beside them allow both headings.
-TEST(EdgePath, SlidTurnsAreAllowed) {
+TEST(EdgePath, ShiftedTurnsAreValid) {
   int slid = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const MotionCost cost(
@@ -36,7 +36,7 @@ TEST(EdgePath, SlidTurnsAreAllowed) {
 }
 
 // Property: sliding makes no way dearer, keeps its ends and its cells, and bends it as light is bent.
-TEST(EdgePath, SlidesToWhereItIsCheaper) {
+TEST(EdgePath, ShiftingReducesCostAndKeepsEndsAndCells) {
   std::vector<std::string> rows(40, std::string(40, '.'));
   for (auto& row : rows) row.replace(20, 20, std::string(20, '2'));
   const MotionCost cost(drawn(rows));

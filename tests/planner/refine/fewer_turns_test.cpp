@@ -13,14 +13,14 @@ namespace fewer_turns_test {
 
 using testing::drawn;
 
-TEST(FewerTurns, DropsIdleTurns) {
+TEST(FewerTurns, CollinearVerticesAreRemoved) {
   const MotionCost cost(drawn({".....", ".#...", "....."}));
   const auto route = withFewerTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
   EXPECT_EQ(route.size(), 3U);
 }
 
 // Every other point of a way around a dear field: what the least of all choices of points costs, by brute force.
-TEST(FewerTurns, AsCheapAsTheBestChoiceOfPoints) {
+TEST(FewerTurns, CostMatchesTheBestSubsetOfVertices) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> place(0.6, 19.4);
   int fewer = 0;
@@ -44,7 +44,7 @@ TEST(FewerTurns, AsCheapAsTheBestChoiceOfPoints) {
 }
 
 // A detour that saves less than its turns cost is left out, one that saves more is kept.
-TEST(FewerTurns, ADetourHasToPayForItsTurns) {
+TEST(FewerTurns, DetourIsKeptOnlyIfItSavesMoreThanItsTurnsCost) {
   std::vector<std::string> rows(5, std::string(20, '.'));
   rows[4].replace(8, 4, "2222");
   const Polyline around{{0.5, 0.5}, {8.0, 1.5}, {12.0, 1.5}, {19.5, 0.5}};

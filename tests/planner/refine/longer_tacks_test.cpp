@@ -21,7 +21,7 @@ Polyline zigzag(int tacks) {
 }
 
 // Closed form: on even ground two legs that add up to the zigzag's own remain, and one turn; length is unchanged.
-TEST(LongerTacks, OneTurnRemainsOfAZigzagOnEvenGround) {
+TEST(LongerTacks, ZigzagOnUniformGroundIsReducedToOneTurn) {
   const MotionCost cost(withTurns(drawn(std::vector<std::string>(20, std::string(30, '.'))), 5.0));
   const Polyline route = zigzag(24), made = withLongerTacks(cost, route);
   ASSERT_EQ(made.size(), 3U);
@@ -34,7 +34,7 @@ TEST(LongerTacks, OneTurnRemainsOfAZigzagOnEvenGround) {
 }
 
 // Property: never dearer, ends kept, and allowed, among blocked cells and over cells of many costs.
-TEST(LongerTacks, NeverDearer) {
+TEST(LongerTacks, CostNeverIncreases) {
   std::mt19937 random(5);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
   int shorter = 0, allowed = 0;

@@ -7,7 +7,7 @@ namespace refinement_cache_test {
 
 const Polyline kWindow{{0.0, 0.0}, {10.0, 4.0}}, kResult{{0.0, 0.0}, {5.0, 1.0}, {10.0, 4.0}};
 
-TEST(RefinementCache, KnowsTheSameWindowToTheBitAndNoOther) {
+TEST(RefinementCache, WindowIsFoundOnlyForIdenticalPoints) {
   RefinementCache cache;
   EXPECT_FALSE(cache.find(kWindow));
   cache.keep(kWindow, kResult, 1.0);
@@ -22,7 +22,7 @@ TEST(RefinementCache, KnowsTheSameWindowToTheBitAndNoOther) {
 }
 
 // Closed form: the window's box, 0 to 10 by 0 to 4 m, grown by a reach of 2 m; corners in any order.
-TEST(RefinementCache, ForgetsWhatDependsOnChangedGround) {
+TEST(RefinementCache, WindowsNearChangedGroundAreDropped) {
   struct Case {
     Segment corners;
     bool forgotten;
@@ -40,7 +40,7 @@ TEST(RefinementCache, ForgetsWhatDependsOnChangedGround) {
   }
 }
 
-TEST(RefinementCache, WhatIsNotUsedForARoundIsDropped) {
+TEST(RefinementCache, UnusedEntriesAreDropped) {
   RefinementCache cache;
   cache.keep(kWindow, kResult, 1.0);
   for (int round = 0; round < 3; ++round) {

@@ -24,7 +24,7 @@ Polyline lifted(const Polyline& window) {
 
 constexpr WindowCut kCut{.length_m = 20.0, .overlap_m = 5.0, .reach_m = 2.0};
 
-TEST(RouteWindows, SameBytesWithOneOrTwoThreadsAndAMemo) {
+TEST(RouteWindows, ResultIsIndependentOfThreadsAndCache) {
   RefinementCache one, two, again;
   const Polyline route = wave(0.0, 200.0);
   const Polyline made = byWindows(route, kCut, lifted, one, 1);
@@ -36,7 +36,7 @@ TEST(RouteWindows, SameBytesWithOneOrTwoThreadsAndAMemo) {
   EXPECT_EQ(made, byWindows(route, kCut, lifted, again, 1));
 }
 
-TEST(RouteWindows, KnownGroundIsNotWorkedOnTwice) {
+TEST(RouteWindows, UnchangedWindowsAreNotRecomputed) {
   RefinementCache memo;
   std::atomic<int> worked{0};
   const auto work = [&worked](const Polyline& window) {
@@ -63,7 +63,7 @@ TEST(RouteWindows, KnownGroundIsNotWorkedOnTwice) {
   EXPECT_EQ(worked.exchange(0), whole);
 }
 
-TEST(RouteWindows, StoppedLeavesTheRoute) {
+TEST(RouteWindows, StopLeavesTheRouteUnchanged) {
   RefinementCache memo;
   std::stop_source source;
   source.request_stop();

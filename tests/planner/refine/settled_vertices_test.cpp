@@ -14,7 +14,7 @@ using testing::drawn;
 using testing::withTurns;
 
 // Closed form: over even ground the straight line is the cheapest.
-TEST(SettledVertices, StraightenOnEvenGround) {
+TEST(SettledVertices, RouteIsStraightOnUniformGround) {
   const MotionCost cost(drawn(std::vector<std::string>(8, std::string(20, '.'))));
   const Polyline made =
       withSettledVertices(cost, {{1.0, 4.0}, {4.0, 4.3}, {8.0, 3.8}, {12.0, 4.2}, {16.0, 4.0}});
@@ -24,7 +24,7 @@ TEST(SettledVertices, StraightenOnEvenGround) {
 }
 
 // Property: never dearer, allowed, ends kept, where turns are paid and cells refuse headings.
-TEST(SettledVertices, NeverDearer) {
+TEST(SettledVertices, CostNeverIncreases) {
   std::mt19937 random(7);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
   int cheaper = 0;
@@ -45,7 +45,7 @@ TEST(SettledVertices, NeverDearer) {
 }
 
 // Closed form: on even ground the nearest place of a circle is on the line to its middle.
-TEST(SettledVertices, TheEndIsTheNearestPlaceOfTheTolerance) {
+TEST(SettledVertices, EndMovesToTheNearestPointWithinTolerance) {
   const MotionCost cost(drawn(std::vector<std::string>(12, std::string(20, '.'))));
   const maps::Point goal{15.0, 6.0};
   const double turned = 1.2;
@@ -59,7 +59,7 @@ TEST(SettledVertices, TheEndIsTheNearestPlaceOfTheTolerance) {
 
 // A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side,
 // where both cells must allow both headings; just off the side only one must be allowed by both.
-TEST(SettledVertices, TurnsAreMovedOffSides) {
+TEST(SettledVertices, TurnsAreMovedOffCellSides) {
   maps::Raster<costmap::CellCode> cells({.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));
   for (int row = 0; row < 2; ++row)

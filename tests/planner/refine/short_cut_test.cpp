@@ -13,7 +13,7 @@ using testing::drawn;
 using testing::randomMap;
 
 // Closed form: on even ground the straight line is best, and a motion over all pieces is among those tried.
-TEST(ShortCut, AZigzagOnEvenGroundBecomesStraight) {
+TEST(ShortCut, ZigzagOnUniformGroundBecomesStraight) {
   const MotionCost cost(drawn(std::vector<std::string>(20, std::string(70, '.'))));
   Polyline zigzag;
   for (int k = 0; k <= 16; ++k) zigzag.push_back({2.5 + 4.0 * k, k % 2 == 0 ? 5.5 : 12.5});
@@ -23,7 +23,7 @@ TEST(ShortCut, AZigzagOnEvenGroundBecomesStraight) {
 }
 
 // Property: never dearer, ends kept, and cheaper on some ground; a cheap detour is not cut.
-TEST(ShortCut, NeverDearer) {
+TEST(ShortCut, CostNeverIncreases) {
   double saved = 0.0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const MotionCost cost(
@@ -45,7 +45,7 @@ TEST(ShortCut, NeverDearer) {
   EXPECT_NEAR(dear_inside.along(shortCut(dear_inside, detour, 3.0)), 370.0, 1e-3);
 }
 
-TEST(ShortCut, StoppedLeavesTheRoute) {
+TEST(ShortCut, StopLeavesTheRouteUnchanged) {
   const MotionCost cost(drawn({".....", "....."}));
   std::stop_source source;
   source.request_stop();
@@ -53,7 +53,7 @@ TEST(ShortCut, StoppedLeavesTheRoute) {
   EXPECT_EQ(shortCut(cost, route, 1.0, ProgressMonitor{.progress = {}, .stop = source.get_token()}), route);
 }
 
-TEST(ShortCut, DropsIdleTurns) {
+TEST(ShortCut, CollinearVerticesAreRemoved) {
   const MotionCost cost(drawn({".....", ".#...", "....."}));
   const auto route = withoutIdleTurns(cost, {{0.5, 0.5}, {1.5, 0.5}, {2.5, 0.5}, {2.5, 2.5}});
   EXPECT_EQ(route.size(), 3U);

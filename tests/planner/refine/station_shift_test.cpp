@@ -13,7 +13,7 @@ using testing::drawn;
 using testing::randomMap;
 
 // Property: never dearer, allowed, ends kept; and cheaper on some ground.
-TEST(StationShift, NeverDearer) {
+TEST(StationShift, CostNeverIncreases) {
   double saved = 0.0;
   int shifted_routes = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -35,7 +35,7 @@ TEST(StationShift, NeverDearer) {
 
 // Property: a road of 10 J/m beside ground of 50 J/m is taken, no more than candidates * 0.98 * piece /
 // candidates to the side.
-TEST(StationShift, MovesOntoTheCheapRoadBesideIt) {
+TEST(StationShift, RouteMovesOntoAdjacentCheapGround) {
   std::vector<std::string> rows(21, std::string(60, '4'));
   rows[6] = rows[7] = std::string(60, '.');  // 3 to 5 m north of the route
   const MotionCost cost(drawn(rows));
@@ -47,7 +47,7 @@ TEST(StationShift, MovesOntoTheCheapRoadBesideIt) {
   EXPECT_NEAR(cost.along(shifted(cost, route, 8.0, {.candidates = 8, .swing = 0})), cost.along(route), 1e-6);
 }
 
-TEST(StationShift, AStraightLineOnEvenGroundStaysAndSoDoesAStoppedOne) {
+TEST(StationShift, StraightLineAndStoppedRouteAreUnchanged) {
   const MotionCost cost(drawn(std::vector<std::string>(20, std::string(50, '.'))));
   const Polyline route{{1.5, 10.5}, {48.5, 10.5}};
   EXPECT_NEAR(length_m(shifted(cost, route, 8.0)), 47.0, 1e-9);

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace arc_test {
 
-TEST(Arc, AQuarterCircleEndsWhereItShould) {
+TEST(Arc, QuarterCircleEndMatchesClosedForm) {
   const Pose left = after({{0.0, 0.0}, 0.0}, Arc{std::numbers::pi, 0.5});
   // Closed form: radius 2 about (0, 2).
   EXPECT_NEAR(left.place.x_m, 2.0, 1e-12);
@@ -19,7 +19,7 @@ TEST(Arc, AQuarterCircleEndsWhereItShould) {
 
 // Property: the end is where short straight steps along the turning heading lead (midpoint rule: the error of
 // n steps is below (length curvature)^2 length / (24 n^2)); reverse undoes the arc.
-TEST(Arc, IsTheIntegralOfItsHeading) {
+TEST(Arc, EndIsTheIntegralOfTheHeading) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (int k = 0; k < 100; ++k) {

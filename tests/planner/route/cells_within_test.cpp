@@ -11,7 +11,7 @@ namespace cells_within_test {
 constexpr maps::Grid kGrid{.width = 7, .height = 5, .resolution_m = 0.5, .south_west = {10.0, 20.0}};
 
 // Brute force: a cell counts where its nearest place is no further than the radius.
-TEST(CellsWithin, AgreesWithEveryCellAskedAlone) {
+TEST(CellsWithin, MatchesBruteForceOverCells) {
   for (double x = 9.113; x < 14.5; x += 0.37)
     for (double y = 19.2; y < 23.4; y += 0.41)
       for (const double radius_m : {0.1, 0.7, 1.9}) {
@@ -26,7 +26,7 @@ TEST(CellsWithin, AgreesWithEveryCellAskedAlone) {
       }
 }
 
-TEST(CellsWithin, NowhereIsNoCellAndFarAwayIsNone) {
+TEST(CellsWithin, NonFiniteAndDistantPlacesHaveNoCells) {
   for (const double far : {1e12, 1e300, static_cast<double>(INFINITY), static_cast<double>(NAN)})
     for (const double radius_m : {0.0, 0.5, 1e3}) {
       EXPECT_TRUE(cellsWithin(kGrid, {far, 21.0}, radius_m).empty()) << far;

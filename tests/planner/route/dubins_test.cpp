@@ -32,7 +32,7 @@ Between drawn(std::mt19937_64& random, double reach_m) {
           {{place(random), place(random)}, heading(random)}};
 }
 
-TEST(Dubins, ArrivesNearAndFarWithoutReversing) {
+TEST(Dubins, CurvesReachTheTargetWithoutReversing) {
   // Property: over random poses from a third of a radius to thousands apart the arcs end where they should.
   std::mt19937_64 random(1);
   for (const double reach_m : {0.5, 3.0, 50.0, 5000.0})
@@ -50,7 +50,7 @@ TEST(Dubins, ArrivesNearAndFarWithoutReversing) {
     }
 }
 
-TEST(Dubins, IsAsShortAsAnotherImplementation) {
+TEST(Dubins, LengthMatchesOmpl) {
   // Independent: OMPL's, on ways short enough for its own bounds.
   const auto space = std::make_shared<ompl::base::DubinsStateSpace>(1.5);
   ompl::base::ScopedState<ompl::base::DubinsStateSpace> a(space), b(space);
@@ -65,7 +65,7 @@ TEST(Dubins, IsAsShortAsAnotherImplementation) {
   }
 }
 
-TEST(Dubins, StraightAheadIsOneArc) {
+TEST(Dubins, StraightTargetYieldsOneArc) {
   // Closed form: a hundred kilometres dead ahead; the heading's rounding must not add a circle.
   const double heading = 0.3;
   const Pose to{{1e5 * std::cos(heading), 1e5 * std::sin(heading)}, heading};

@@ -9,8 +9,8 @@
 namespace talus::planner {
 namespace heading_cost_test {
 
-// Property: same bits as DriveCost for random cells and headings, ties between bins among them.
-TEST(HeadingCost, SameBitsAsDriveCost) {
+// Property: same bits as TravelCost for random cells and headings, ties between bins among them.
+TEST(HeadingCost, CostIsBitIdenticalToDriveCost) {
   const auto cost = testing::driveCost({.max_along = 0.25, .max_across = 0.3});
   std::mt19937 random(3);
   for (int k = 0; k < 200'000; ++k) {

@@ -14,7 +14,7 @@ bool holds(const HeadingSet& set, double heading) {
          std::abs(std::remainder(set.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) < 1e-12;
 }
 
-TEST(HeadingSet, ArcsThatTouchAreOne) {
+TEST(HeadingSet, TouchingArcsAreMerged) {
   const HeadingSet set({{6.0, 0.5}, {0.1, 0.4}, {2.0, 0.1}});  // the first reaches 0.2168 beyond 2 pi
   ASSERT_EQ(set.arcs().size(), 2U);
   EXPECT_TRUE(holds(set, 0.4));
@@ -24,7 +24,7 @@ TEST(HeadingSet, ArcsThatTouchAreOne) {
 }
 
 // Independent derivation: each heading by itself, on the drive cost of random cells, half of them gentle ones.
-TEST(HeadingSet, HoldsEveryHeadingThatTheCostAllows) {
+TEST(HeadingSet, ContainsExactlyTheAllowedHeadings) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> gradient(-0.6, 0.6), angle(0.0, HeadingSet::kTurn);
   const auto cost = testing::driveCost({.max_along = 0.28, .max_across = 0.17});
@@ -48,7 +48,7 @@ TEST(HeadingSet, HoldsEveryHeadingThatTheCostAllows) {
   EXPECT_GT(refused, 4000);
 }
 
-TEST(HeadingSet, SharedHeadingsAreThoseOfBoth) {
+TEST(HeadingSet, IntersectionContainsHeadingsOfBothSets) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(0.0, HeadingSet::kTurn), width(0.0, 2.5);
   for (int k = 0; k < 200; ++k) {

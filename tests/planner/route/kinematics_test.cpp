@@ -16,7 +16,7 @@ Pose end(Pose pose, const std::vector<Arc>& arcs) {
   return pose;
 }
 
-TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
+TEST(Kinematics, ShortestCurvesReachTheTargetAndKeepTheRadius) {
   // Property: over random poses both families end at the target, and reversing never makes the way longer.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-5.0, 5.0), heading(-4.0, 4.0);
@@ -43,7 +43,7 @@ TEST(Kinematics, ShortestCurvesArriveAndKeepTheRadius) {
 }
 
 // Below a millimetre OMPL's Reeds-Shepp curves no longer close, and its assertion ended the process.
-TEST(Kinematics, ARadiusHasALeast) {
+TEST(Kinematics, TurningRadiusHasALowerBound) {
   const Pose from{{0.0, 0.0}, 0.3}, to{{80.0, 17.0}, -2.0};
   for (const double bad : {0.0, 1e-15, 1e-9, 1e-4, 2000.0, std::nan("")})
     EXPECT_THROW(shortestArcs(from, to, {.turning_radius_m = bad}), std::invalid_argument) << bad;
@@ -57,19 +57,19 @@ TEST(Kinematics, ARadiusHasALeast) {
   }
 }
 
-TEST(Kinematics, TurnsCostWhatTheMapsCostSays) {
+TEST(Kinematics, TurnCostsComeFromTheMapCost) {
   const auto model = costmap::testGround();
-  const costmap::DriveCost cost(model->limits(),
-                                std::vector<costmap::DriveGround>{model->ground(0, model->prior(0))});
+  const costmap::TravelCost cost(model->limits(),
+                                 std::vector<costmap::GroundCost>{model->ground(0, model->prior(0))});
   const Kinematics made = kinematicsOn(*model, cost);
   ASSERT_EQ(made.turns_by_curve.size(), 1U);
   EXPECT_GT(made.turnsOn(0).in_place.energy_J, 0.0);
   EXPECT_EQ(made.turnsOn(0).at_vertex.cost_J, cost.turn(costmap::CellCode({0.0, 0.0, 0})).cost_J);
 }
 
-TEST(Kinematics, AnAckermannRoverNeedsARadius) {
+TEST(Kinematics, AckermannSteeringRequiresATurningRadius) {
   costmap::GroundModel::Parts parts = costmap::testGround()->parts();
-  const costmap::DriveCost cost({}, std::vector<costmap::DriveCurve>{});
+  const costmap::TravelCost cost({}, std::vector<costmap::TravelCurve>{});
   parts.rover.steering = terramech::Steering::Ackermann;
   parts.rover.turning_radius_m = 0.0;
   EXPECT_REFUSED(kinematicsOn(costmap::GroundModel(parts), cost), std::invalid_argument,

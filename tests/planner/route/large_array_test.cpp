@@ -10,7 +10,7 @@ namespace large_array_test {
 
 // Property: every element can be written, arrays of a cache line and more begin on one, and from two huge
 // pages on they begin on a huge page of 2 MiB.
-TEST(LargeArray, IsAlignedAndHoldsWhatItWasAskedFor) {
+TEST(LargeArray, ArrayIsAlignedAndFullyWritable) {
   for (const std::size_t count : {1UL, 15UL, 16UL, 17UL, (1UL << 20) - 1, 1UL << 20, (1UL << 20) + 1}) {
     const auto array = makeLargeArray<std::uint32_t>(count);
     const auto address = reinterpret_cast<std::uintptr_t>(array.get());
@@ -24,7 +24,7 @@ TEST(LargeArray, IsAlignedAndHoldsWhatItWasAskedFor) {
   }
 }
 
-TEST(LargeArray, WhatCannotBeHadIsBadAlloc) {
+TEST(LargeArray, ExcessiveSizeThrowsBadAlloc) {
   EXPECT_THROW(makeLargeArray<std::uint64_t>(std::size_t{1} << 58), std::bad_alloc);
 }
 

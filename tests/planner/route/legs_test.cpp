@@ -16,7 +16,7 @@ Problem threeLegs() {
   return problem;
 }
 
-TEST(Legs, EachBeginsWhereTheOneBeforeItEnded) {
+TEST(Legs, EachLegStartsAtTheEndOfThePreviousLeg) {
   std::vector<Problem> asked;
   std::vector<double> progress;
   Problem problem = threeLegs();
@@ -41,7 +41,7 @@ TEST(Legs, EachBeginsWhereTheOneBeforeItEnded) {
   EXPECT_EQ(progress.back(), 1.0);
 }
 
-TEST(Legs, TheFirstThatIsNotFoundIsTheAnswer) {
+TEST(Legs, FirstFailedLegIsTheResult) {
   int calls = 0;
   const Plan whole = planByLegs(threeLegs(), [&](const Problem& leg) {
     if (++calls == 2) {
@@ -58,7 +58,7 @@ TEST(Legs, TheFirstThatIsNotFoundIsTheAnswer) {
 }
 
 // Where a leg fails for one of its ends, a via point is called by its number: the user knows no other start or goal.
-TEST(Legs, AViaPointIsNamedAsOne) {
+TEST(Legs, FailingViaPointIsNamedByItsNumber) {
   const auto reason = [](int failing, const char* why) {
     int calls = 0;
     return planByLegs(threeLegs(),

@@ -18,13 +18,13 @@ using costmap::testRover;
 using testing::drawn;
 using testing::randomMap;
 
-TEST(MotionCost, AddsCellByCell) {
+TEST(MotionCost, CostIsTheSumOverCells) {
   const MotionCost cost(drawn({".12"}));
   // Closed form: 0.5 m at 10 J/m, 1 m at 20, 0.25 m at 30.
   EXPECT_NEAR(cost({{0.5, 0.5}, {2.25, 0.5}}), 5.0 + 20.0 + 7.5, 1e-6);
 }
 
-TEST(MotionCost, ClimbingDescendingAndCrossingDiffer) {
+TEST(MotionCost, ClimbingDescendingAndCrossingCostsDiffer) {
   const MotionCost cost(drawn({">>>", ">>>", ">>>"}));
   const double up = cost({{0.5, 1.5}, {2.5, 1.5}}), down = cost({{2.5, 1.5}, {0.5, 1.5}});
   // Closed form: the gradient 0.2 is 205/1024; between nodes of the curve a parabola of 400 is off by 400 / 4 / 256^2.
@@ -34,32 +34,32 @@ TEST(MotionCost, ClimbingDescendingAndCrossingDiffer) {
   EXPECT_NEAR(cost({{1.5, 0.5}, {1.5, 2.5}}), 20.0, 1e-4);
 }
 
-TEST(MotionCost, NothingSlipsBetweenDiagonalBlocks) {
+TEST(MotionCost, MotionBetweenDiagonalBlocksIsInfeasible) {
   const MotionCost cost(drawn({"#.", ".#"}));
   EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, {1.5, 1.5}})));
   EXPECT_TRUE(std::isinf(cost({{1.25, 1.25}, {0.75, 0.75}})));
 }
 
-TEST(MotionCost, ACornerNeedsBothNeighbours) {
+TEST(MotionCost, MotionThroughACornerRequiresBothNeighbours) {
   const MotionCost cost(drawn({"..", ".#"}));
   EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, {1.5, 1.5}})));
   EXPECT_TRUE(std::isfinite(cost({{0.5, 0.6}, {1.4, 1.5}})));
 }
 
-TEST(MotionCost, ATurnOnACornerNeedsAllItTouches) {
+TEST(MotionCost, TurnOnACornerRequiresAllTouchedCells) {
   const MotionCost cost(drawn({"#.", ".#"}));
   EXPECT_TRUE(std::isinf(cost.along({{0.5, 0.5}, {1.0, 1.0}, {1.5, 1.5}})));
   EXPECT_TRUE(std::isinf(cost.along({{0.5, 0.5}, {1.0, 1.0}, {1.5, 1.2}})));
 }
 
-TEST(MotionCost, AlongAnEdgeTheDearerSideCounts) {
+TEST(MotionCost, MotionAlongAnEdgeUsesTheCostlierSide) {
   const MotionCost cost(drawn({"222", "...", "###"}));
   EXPECT_NEAR(cost({{0.5, 2.0}, {2.5, 2.0}}), 60.0, 1e-6);
   EXPECT_TRUE(std::isinf(cost({{0.5, 1.0}, {2.5, 1.0}})));
   EXPECT_NEAR(cost({{0.5, 3.0}, {2.5, 3.0}}), 60.0, 1e-6);
 }
 
-TEST(MotionCost, ATurnCostsByItsAngle) {
+TEST(MotionCost, TurnCostIsProportionalToAngle) {
   const MotionCost cost(testing::plane(8, {0.0, 0.0}, 7.0));
   const std::vector<maps::Point> bent{{1.5, 1.5}, {4.5, 1.5}, {4.5, 5.5}, {2.5, 5.5}};
   // Closed form: nine metres at 10 J and two quarter turns at 7 J a radian.
@@ -70,7 +70,7 @@ TEST(MotionCost, ATurnCostsByItsAngle) {
 }
 
 // A square rover that holds a plane of 0.6 diagonally tips in the headings between: its limit is half / height = 0.5 by an axis.
-TEST(MotionCost, NoTurnThroughHeadingsThatTip) {
+TEST(MotionCost, TurnThroughTippingHeadingsIsInfeasible) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = rover.track_m = 1.0;
   rover.centre_of_mass_height_m = 1.0;
@@ -84,7 +84,7 @@ TEST(MotionCost, NoTurnThroughHeadingsThatTip) {
   EXPECT_EQ(cost.along({{2.5, 2.5}, {6.5, 6.5}, {10.5, 2.5}}), kInfinity) << "past across";
 }
 
-TEST(MotionCost, EndsOnTheMap) {
+TEST(MotionCost, MotionsMustStayWithinTheMap) {
   const MotionCost cost(drawn({"...", "..."}));
   EXPECT_NEAR(cost({{0.0, 0.5}, {3.0, 0.5}}), 30.0, 1e-6);
   EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, {3.5, 0.5}})));
@@ -93,7 +93,7 @@ TEST(MotionCost, EndsOnTheMap) {
   EXPECT_EQ(cost({{1.5, 0.5}, {1.5, 0.5}}), 0.0);
 }
 
-TEST(MotionCost, UnknownIsNotSafe) {
+TEST(MotionCost, UnknownCellsAreInfeasible) {
   const MotionCost cost(drawn({".?."}));
   EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, {2.5, 0.5}})));
   EXPECT_FALSE(cost.allowed({1.5, 0.5}));
@@ -102,7 +102,7 @@ TEST(MotionCost, UnknownIsNotSafe) {
 
 // Property: the integral is what fine sampling tends to; with cells at least 1e-2 m long on the segment and
 // 1e5 samples over at most 30 m the sum is off by less than 40 crossings of 3e-4 m at 300 J/m.
-TEST(MotionCost, AgreesWithFineSampling) {
+TEST(MotionCost, MatchesFineSampling) {
   const auto map = randomMap({.blocked = 0.0, .roughness = 0.13});
   const MotionCost cost(map);
   std::mt19937 random(7);
@@ -128,7 +128,7 @@ TEST(MotionCost, AgreesWithFineSampling) {
 }
 
 // Property: cutting a motion in two does not change its cost.
-TEST(MotionCost, AddsUpOverParts) {
+TEST(MotionCost, CostIsAdditiveOverParts) {
   const MotionCost cost(randomMap({.blocked = 0.0, .roughness = 0.1}));
   const double whole = cost({{0.3, 0.7}, {18.1, 13.9}});
   const maps::Point middle{0.3 + 0.4 * 17.8, 0.7 + 0.4 * 13.2};

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace plan_end_test {
 
-TEST(PlanEnd, AFailedPlanHasItsReasonAndNoRoute) {
+TEST(PlanEnd, FailedPlanHasItsReasonAndNoRoute) {
   const Plan plan = failedPlan(RouteStatus::NoRoute, "walled in");
   EXPECT_EQ(plan.status, RouteStatus::NoRoute);
   EXPECT_EQ(plan.reason, "walled in");
@@ -18,7 +18,7 @@ TEST(PlanEnd, AFailedPlanHasItsReasonAndNoRoute) {
 }
 
 // Property: a request to stop counts more than a time limit that has passed as well.
-TEST(PlanEnd, StoppedWorkSaysByWhat) {
+TEST(PlanEnd, StoppedPlanNamesItsCause) {
   std::stop_source source;
   const StopCheck late(ProgressMonitor{.progress = {}, .stop = source.get_token()}, 0.0);
   const Plan timed_out = cancelledPlan(late);

@@ -9,7 +9,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(PlannerNames, SpellingIsForgiven) {
+TEST(PlannerNames, SpellingVariantsAreAccepted) {
   EXPECT_EQ(plannerName(""), "field");
   EXPECT_EQ(plannerName("RRT*"), "RRTstar");
   EXPECT_EQ(plannerName("informed-rrt*"), "InformedRRTstar");
@@ -18,7 +18,7 @@ TEST(PlannerNames, SpellingIsForgiven) {
   for (const std::string& name : plannerNames()) EXPECT_EQ(plannerName(name), name);
 }
 
-TEST(PlannerNames, ARefusedPlannerSaysWhy) {
+TEST(PlannerNames, UnsupportedPlannerIsRejectedWithItsReason) {
   EXPECT_THAT([] { plannerName("PRM*"); }, ThrowsMessage<std::invalid_argument>(
                                                AllOf(HasSubstr("PRMstar"), HasSubstr("both directions"))));
   for (const char* name : {"PRM*", "LazyPRM*", "SPARS", "BFMT", "LBTRRT", "AIT*", "RRTConnect"})
@@ -26,7 +26,7 @@ TEST(PlannerNames, ARefusedPlannerSaysWhy) {
         << name;
 }
 
-TEST(PlannerNames, AnUnknownOneNamesTheNearest) {
+TEST(PlannerNames, UnknownPlannerSuggestsTheNearestName) {
   EXPECT_THAT([] { plannerName("feild"); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("nearest is 'field'")));
   EXPECT_THAT([] { plannerName("BITsta"); },

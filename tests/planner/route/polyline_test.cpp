@@ -21,7 +21,7 @@ Polyline wandering(unsigned seed, int points) {
 }
 
 // Property: pieces join up, keep the length, and end where the way left is a multiple of the piece.
-TEST(Polyline, IsCutFromItsEnd) {
+TEST(Polyline, PiecesAreMeasuredFromTheEnd) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Polyline line = wandering(seed, 30);
     const auto pieces = cutFromEnd(line, 7.0, 3.0);
@@ -40,7 +40,7 @@ TEST(Polyline, IsCutFromItsEnd) {
 }
 
 // Property: what lies before a cut does not move it, to the bit.
-TEST(Polyline, CutsBehindAChangeStay) {
+TEST(Polyline, CutsBehindAChangeAreUnaffected) {
   Polyline line = wandering(5, 40);
   const auto before = cutFromEnd(line, 9.0, 9.0);
   line[1].y_m += 3.0;
@@ -50,7 +50,7 @@ TEST(Polyline, CutsBehindAChangeStay) {
     EXPECT_EQ(before[before.size() - k], after[after.size() - k]) << k;
 }
 
-TEST(Polyline, IsSplitWhereSoMuchIsLeft) {
+TEST(Polyline, SplitLeavesTheGivenLength) {
   const Polyline line{{0.0, 0.0}, {10.0, 0.0}, {10.0, 5.0}};
   for (const double left_m : {0.5, 5.0, 7.0, 14.5}) {
     const auto [before, behind] = splitAt(line, left_m);
@@ -62,7 +62,7 @@ TEST(Polyline, IsSplitWhereSoMuchIsLeft) {
   }
 }
 
-TEST(Polyline, IsCutWhereItEntersACircle) {
+TEST(Polyline, LineIsCutWhereItEntersACircle) {
   const Polyline line{{0, 0}, {10, 0}, {10, 10}};
   const auto near = [](const Polyline& got, const Polyline& want) {
     ASSERT_EQ(got.size(), want.size());
@@ -78,7 +78,7 @@ TEST(Polyline, IsCutWhereItEntersACircle) {
 
 // Property: the pieces are the line, lie far enough apart, and a line that differs in one place is cut at the
 // same points elsewhere.
-TEST(Polyline, MarksAreWhereTheNeighbourhoodSaysSo) {
+TEST(Polyline, CutPointsDependOnTheNeighbourhoodOnly) {
   constexpr double kApart = 40.0;
   std::size_t common = 0, all = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {

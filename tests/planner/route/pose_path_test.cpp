@@ -11,20 +11,20 @@ namespace pose_path_test {
 
 using testing::drawn;
 
-TEST(PosePath, AStraightLegCostsWhatTheMotionCosts) {
+TEST(PosePath, StraightLegCostEqualsMotionCost) {
   const MotionCost motion(drawn({"0123", "0123"}));
   const PoseCost cost(motion, {.turning_radius_m = 1.0});
   EXPECT_DOUBLE_EQ(cost({{0.5, 0.5}, 0.0}, {{3.0, 0.0}, 0.0}), motion({{0.5, 0.5}, {3.5, 0.5}}));
 }
 
-TEST(PosePath, ReverseCostsWhatDrivingThatWayCosts) {
+TEST(PosePath, ReverseCostEqualsDrivingInThatDirection) {
   const MotionCost motion(drawn({">>>>"}));
   const PoseCost cost(motion, {.turning_radius_m = 1.0});
   // Looking east, backing west goes downhill.
   EXPECT_DOUBLE_EQ(cost({{3.5, 0.5}, 0.0}, {{-3.0, 0.0}, 0.0}), motion({{3.5, 0.5}, {0.5, 0.5}}));
 }
 
-TEST(PosePath, AnArcOnEvenGroundCostsItsLengthAndItsTurn) {
+TEST(PosePath, ArcCostOnUniformGroundIsLengthPlusTurn) {
   const MotionCost motion(drawn({"....", "....", "....", "...."}));
   const PoseCost cost(motion,
                       {.turning_radius_m = 2.0, .turns = {.on_arc = {.cost_J = 7.0}, .in_place = {}}});
@@ -33,7 +33,7 @@ TEST(PosePath, AnArcOnEvenGroundCostsItsLengthAndItsTurn) {
               10.0 * std::numbers::pi + 7.0 * std::numbers::pi / 2, 10.0 * std::numbers::pi * 5e-4);
 }
 
-TEST(PosePath, TurningInPlaceNeedsEveryHeadingOnTheWay) {
+TEST(PosePath, TurnInPlaceRequiresEveryHeading) {
   // The steep cell may be crossed east and west at 0.2, but a limit of 0.1 across forbids looking north.
   const auto steep = testing::drawn({">"});
   const costmap::CostGrid grid({.grid = steep->grid(),
@@ -54,7 +54,7 @@ TEST(PosePath, CuspsAreCountedAndPriced) {
   EXPECT_NEAR(cost(path), 35.0, 1e-6);
 }
 
-TEST(PosePath, SamplesEndWhereTheDriveEnds) {
+TEST(PosePath, SamplesEndAtTheDriveEnd) {
   const PosePath path{.start = {{0.0, 0.0}, 0.0},
                       .legs = {{{std::numbers::pi, 0.5}, 0.0}, {{}, 1.0}, {{1.0, 0.0}, 0.0}}};
   const auto poses = sampled(path, 0.1);

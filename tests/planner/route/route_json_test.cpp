@@ -29,7 +29,7 @@ constexpr const char* kArrays[] = {"x_m",
                                    "immobilisation_risk"};
 
 // Property: every promised field is there, one value a vertex, and a vertex's numbers come back to the bit.
-TEST(RouteJson, HasThePromisedFieldsAndAValueAVertex) {
+TEST(RouteJson, DocumentedFieldsArePresentWithOneValuePerVertex) {
   const Route route = exampleRoute();
   const auto document = nlohmann::json::parse(routeGeoJson(route, exampleMap(), {.seed = 7}).dump());
   const auto& feature = document["features"][0];
@@ -49,7 +49,7 @@ TEST(RouteJson, HasThePromisedFieldsAndAValueAVertex) {
 
 // Closed form: RFC 7946 wants two positions of a line, so a standstill is there twice; what is not known is
 // null, and an elevation that is not known is left out of the position.
-TEST(RouteJson, AStandstillIsALineAndTheUnknownIsNull) {
+TEST(RouteJson, ZeroLengthRouteIsALineAndUnknownValuesAreNull) {
   Route route = exampleRoute();
   route.vertices.resize(1);
   route.vertices[0].elevation_m = route.vertices[0].slip = kNotKnown;
@@ -61,7 +61,7 @@ TEST(RouteJson, AStandstillIsALineAndTheUnknownIsNull) {
   EXPECT_TRUE(document["features"][0]["properties"]["slip"][0].is_null());
 }
 
-TEST(RouteJson, TheInputsAreNamedWithTheirDigest) {
+TEST(RouteJson, InputsAreListedWithTheirDigest) {
   const auto document =
       routeGeoJson(exampleRoute(), exampleMap(), {.files = {{.file = "dem.tif", .sha256 = "ba7816bf"}}});
   const auto& file = document["features"][0]["properties"]["inputs"]["files"][0];
@@ -70,11 +70,11 @@ TEST(RouteJson, TheInputsAreNamedWithTheirDigest) {
 }
 
 // Property: what a controller would notice is there for drives alone.
-TEST(RouteJson, DrivesHaveTheirShape) {
+TEST(RouteJson, DriveFieldsArePresentForDrivesOnly) {
   Route route = exampleRoute();
   EXPECT_FALSE(summaryJson(route).contains("drive"));
   EXPECT_FALSE(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"].contains("reverse"));
-  route.summary.drive = DriveShape{.cusps = 2, .turns_in_place = 1};
+  route.summary.drive = RouteShape{.cusps = 2, .turns_in_place = 1};
   EXPECT_EQ(summaryJson(route)["drive"]["cusps"], 2);
   EXPECT_EQ(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"]["reverse"].size(),
             route.vertices.size());

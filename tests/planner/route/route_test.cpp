@@ -10,7 +10,7 @@ namespace talus::planner {
 namespace route_test {
 
 // The spellings are a promise to programs that read the output.
-TEST(Route, EveryStatusHasTheNameThatFilesPromise) {
+TEST(Route, StatusNamesMatchTheFileFormat) {
   const std::pair<RouteStatus, const char*> promised[] = {{RouteStatus::Found, "found"},
                                                           {RouteStatus::NoRoute, "no_route"},
                                                           {RouteStatus::NoneFound, "none_found"},
@@ -23,7 +23,7 @@ TEST(Route, EveryStatusHasTheNameThatFilesPromise) {
 
 // Property: what a layer does not know is told by NaN, which no comparison takes for a value; a route that
 // was not planned is none.
-TEST(Route, WhatIsNotKnownIsNoNumber) {
+TEST(Route, UnknownValuesAreNan) {
   const RouteVertex vertex;
   for (const double value :
        {vertex.elevation_m, vertex.slip, vertex.sinkage_m, vertex.torque_Nm, vertex.drawbar_pull_margin})

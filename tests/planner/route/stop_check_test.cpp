@@ -11,13 +11,13 @@ namespace stop_check_test {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-TEST(StopCheck, NothingStopsWorkThatNobodyWatches) {
+TEST(StopCheck, WithoutLimitNothingStops) {
   EXPECT_FALSE(StopCheck()());
   EXPECT_FALSE(StopCheck(ProgressMonitor{}, kNever)());
   EXPECT_FALSE(StopCheck(ProgressMonitor{}, 1e300)());  // longer than a clock counts: no overflow
 }
 
-TEST(StopCheck, ARequestStopsEveryCopy) {
+TEST(StopCheck, StopRequestAffectsEveryCopy) {
   std::stop_source source;
   const StopCheck check(ProgressMonitor{.progress = {}, .stop = source.get_token()}, kNever), copy = check;
   EXPECT_FALSE(check() || copy());
@@ -27,7 +27,7 @@ TEST(StopCheck, ARequestStopsEveryCopy) {
 }
 
 // Closed form: a limit of no time has passed at once.
-TEST(StopCheck, ALimitThatHasPassedIsNoCancel) {
+TEST(StopCheck, ElapsedTimeLimitIsNotACancellation) {
   const StopCheck check(ProgressMonitor{}, 0.0);
   EXPECT_TRUE(check() && check.timedOut());
   EXPECT_FALSE(check.cancelled());

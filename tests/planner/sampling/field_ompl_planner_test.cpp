@@ -3,10 +3,10 @@
 #include <ompl/geometric/PathGeometric.h>
 
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/sampling/drive_objective.hpp>
 #include <talus/planner/sampling/field_ompl_planner.hpp>
 #include <talus/planner/sampling/map_space.hpp>
 #include <talus/planner/sampling/map_validity.hpp>
+#include <talus/planner/sampling/travel_objective.hpp>
 
 #include "drawn_map.hpp"
 
@@ -38,7 +38,7 @@ struct Asked {
   ob::SpaceInformationPtr info;
 };
 
-TEST(FieldOmplPlanner, AddsTheFieldsRoute) {
+TEST(FieldOmplPlanner, SolutionIsTheRouteOfTheField) {
   const auto map = testing::drawn({".......", "..###..", "....#..", "....#..", "......."});
   const Asked asked(map);
   const auto definition = asked.from({3.5, 1.5}, {5.5, 2.5});
@@ -54,7 +54,7 @@ TEST(FieldOmplPlanner, AddsTheFieldsRoute) {
   EXPECT_EQ(points, FieldPlanner().plan(problem).points);
 }
 
-TEST(FieldOmplPlanner, SaysWhenItCannot) {
+TEST(FieldOmplPlanner, UnsolvableAndInvalidProblemsAreReported) {
   const auto map = testing::drawn({"..#..", "..#.."});
   const Asked asked(map);
   FieldOmplPlanner planner(asked.info, map);
@@ -65,7 +65,7 @@ TEST(FieldOmplPlanner, SaysWhenItCannot) {
   EXPECT_EQ(planner.solve(ob::plannerNonTerminatingCondition()), ob::PlannerStatus::INVALID_START);
 }
 
-TEST(FieldOmplPlanner, EndsWhenTold) {
+TEST(FieldOmplPlanner, TerminationConditionEndsTheSearch) {
   const auto map = testing::randomMap({.width = 300, .height = 300, .blocked = 0.0});
   const Asked asked(map);
   FieldOmplPlanner planner(asked.info, map);

@@ -13,7 +13,7 @@ const maps::Grid kGrid{.width = 40, .height = 30, .resolution_m = 2.5, .south_we
 
 // Property: every place within the bounds lies in a cell of the map, their corners too; what is outside is
 // moved onto the nearest of them.
-TEST(MapSpace, EveryPlaceWithinItsBoundsLiesOnTheMap) {
+TEST(MapSpace, PlacesWithinBoundsLieOnTheMap) {
   const auto space = std::make_shared<MapSpace>(kGrid);
   space->setup();
   ompl::base::ScopedState<MapSpace> state(space);
@@ -29,7 +29,7 @@ TEST(MapSpace, EveryPlaceWithinItsBoundsLiesOnTheMap) {
 }
 
 // Closed form: metres of the map plane, and projection cells of 16 x 2.5 m.
-TEST(MapSpace, DistancesAreMetresAndProjectionsSixteenCells) {
+TEST(MapSpace, DistanceIsInMetresAndProjectionCellsAreSixteenCells) {
   const auto space = std::make_shared<MapSpace>(kGrid);
   space->setup();
   ompl::base::ScopedState<MapSpace> a(space), b(space);

@@ -15,7 +15,7 @@ const Segment kEnds{{0.5, 0.5}, {1.5, 0.5}};
 
 // Property: OMPL is told what the one cost function allows, place by place and motion by motion, and counts
 // what it asked.
-TEST(MapValidity, IsWhatTheCostFunctionAllows) {
+TEST(MapValidity, ValidityEqualsFiniteMotionCost) {
   const testing::OmplGround ground(testing::randomMap({.seed = 11, .blocked = 0.2, .roughness = 0.3}), kEnds);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> side(0.0, 20.0), short_way(0.0, 0.9);
@@ -35,7 +35,7 @@ TEST(MapValidity, IsWhatTheCostFunctionAllows) {
 }
 
 // Closed form: from 0.5 m east a wall at 6 m shuts the way after 5.5 of 10 m; bisection finds it to 1/256.
-TEST(MapValidity, TheLastValidStateIsFoundByBisection) {
+TEST(MapValidity, LastValidStateIsFoundByBisection) {
   const testing::OmplGround ground(testing::drawn({"......#....", "......#...."}), kEnds);
   const auto from = ground.at({0.5, 0.5}), to = ground.at({10.5, 0.5});
   auto last = ground.at({0.0, 0.0});

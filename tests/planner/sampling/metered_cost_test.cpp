@@ -13,7 +13,7 @@ using testing::randomMap;
 
 // Property: MotionCost's value wherever a route may turn at both ends, else infinite: joined at any place that
 // a route turns on, finite motions make an allowed route.
-TEST(MeteredCost, IsMotionCostWhereARouteMayTurn) {
+TEST(MeteredCost, CostEqualsMotionCostAtValidTurns) {
   const auto map = randomMap({.seed = 4, .blocked = 0.1, .roughness = 0.3});
   const MotionCost exact(map);
   const MeteredCost cost(map, {{0.5, 0.5}, {19.5, 19.5}});
@@ -40,7 +40,7 @@ TEST(MeteredCost, IsMotionCostWhereARouteMayTurn) {
 
 // Closed form: one and a cell's length each, so 1 + 3 for 3.5 m; asked again at once nothing; an iteration
 // counts a hundred.
-TEST(MeteredCost, CountsCellLengths) {
+TEST(MeteredCost, WorkCountsCellLengths) {
   const MeteredCost cost(drawn({".....", "....."}), {{0.5, 0.5}, {4.5, 0.5}});
   EXPECT_EQ(cost.work(), 0U);
   EXPECT_NEAR(cost({{0.5, 0.5}, {4.0, 0.5}}), 35.0, 1e-6);
@@ -53,7 +53,7 @@ TEST(MeteredCost, CountsCellLengths) {
 }
 
 // The ends of the problem turn nothing: they may lie on an edge beside blocked ground.
-TEST(MeteredCost, StartAndGoalNeedNotBeTurns) {
+TEST(MeteredCost, StartAndGoalAreNotTreatedAsTurns) {
   const auto map = drawn({"##", ".."});
   const Segment up{{0.5, 1.0}, {1.5, 0.5}};
   EXPECT_TRUE(std::isinf(MeteredCost(map, {{0.1, 0.1}, {1.9, 0.1}})(up)));

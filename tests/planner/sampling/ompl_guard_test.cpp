@@ -17,7 +17,7 @@ class Counter : public ompl::msg::OutputHandler {
 };
 
 // Property: silent from the first guard to the last, however they are nested; then the host's handler is back.
-TEST(OmplGuard, TheHostsHandlerIsBackAfterTheLastGuard) {
+TEST(OmplGuard, HostOutputHandlerIsRestored) {
   Counter counter;
   ompl::msg::OutputHandler* const host = ompl::msg::getOutputHandler();
   ompl::msg::useOutputHandler(&counter);
@@ -46,7 +46,7 @@ std::vector<double> drawnWith(std::uint64_t seed) {
 
 // Property: the same numbers whatever was drawn before, others for another seed; seeds of more than 32 bits
 // and zero, which OMPL ignores, are seeds as well.
-TEST(OmplGuard, WhatIsMadeHasTheSameNumbersWhateverRanBefore) {
+TEST(OmplGuard, RandomNumbersDependOnTheSeedOnly) {
   const auto first = drawnWith(1);
   EXPECT_NE(first, drawnWith(2));
   EXPECT_EQ(first, drawnWith(1));

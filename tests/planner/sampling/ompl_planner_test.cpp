@@ -12,7 +12,7 @@ const Segment kEnds{{2.5, 10.5}, {27.5, 10.5}};
 
 // Property: of the names on offer exactly OMPL's own planners come from here, with the question and the
 // range that were given.
-TEST(OmplPlanner, MakesThosePlannersThatAreOmpls) {
+TEST(OmplPlanner, CreatesExactlyTheOmplPlanners) {
   const QuietOmpl quiet;
   const testing::OmplGround ground(testing::drawn(std::vector<std::string>(20, std::string(30, '.'))), kEnds);
   int made = 0;
@@ -31,7 +31,7 @@ TEST(OmplPlanner, MakesThosePlannersThatAreOmpls) {
 }
 
 // FMT* is begun anew until it is stopped: its first samples do not show the gap of one cell in a wall of 80.
-TEST(OmplPlanner, FmtGoesOnUntilItFindsTheGap) {
+TEST(OmplPlanner, FmtRestartsUntilItFindsANarrowGap) {
   const QuietOmpl quiet;
   std::vector<std::string> rows(80, std::string(120, '.'));
   for (std::size_t r = 0; r < 79; ++r) rows[r][60] = '#';

@@ -27,7 +27,7 @@ Plan straight(const Problem& leg) {
 
 // Closed form: on even ground the straight line, 23 m at 10 J/m, is the best there is; the known bound is kept
 // where it is higher than the straight one.
-TEST(OmplRun, KeepsTheBestRouteAndTheBetterBound) {
+TEST(OmplRun, BestRouteAndHigherBoundAreReturned) {
   const Problem leg = across();
   const Plan plan = runOmpl(leg, {.planner = "RRTstar", .work = 100'000}, straight(leg));
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
@@ -40,7 +40,7 @@ TEST(OmplRun, KeepsTheBestRouteAndTheBetterBound) {
   EXPECT_NEAR(runOmpl(near, {.planner = "RRTstar", .work = 100'000}, bound).lower_bound_J, 229.0, 1e-9);
 }
 
-TEST(OmplRun, WithoutARouteItsReasonSaysWhatEndedTheWork) {
+TEST(OmplRun, FailureNamesWhatEndedTheSearch) {
   Problem leg = across();
   std::vector<std::string> rows(20, std::string(30, '.'));
   for (auto& row : rows) row[15] = '#';

@@ -23,7 +23,7 @@ std::shared_ptr<const ImprovableRegion> regionOf(bool hand_out) {
 }
 
 // Property: the known route's points first, in order, where asked for; then samples of the region.
-TEST(RegionSampler, HandsOutTheKnownRouteFirst) {
+TEST(RegionSampler, KnownRouteIsSampledFirst) {
   const auto region = regionOf(true);
   RegionSource source(region, 1), plain(regionOf(false), 1);
   maps::Point place;
@@ -39,7 +39,7 @@ TEST(RegionSampler, HandsOutTheKnownRouteFirst) {
 
 // Property: the same seed gives the same states, another seed others; all lie within the bounds, and those
 // near another state within the distance of it in x and y.
-TEST(RegionSampler, DrawsWithinBoundsFromItsOwnSeed) {
+TEST(RegionSampler, SamplesAreReproducibleAndWithinBounds) {
   const auto space = std::make_shared<MapSpace>(regionOf(false)->parts().map->grid());
   space->setup();
   RegionSampler one(space.get(), regionOf(false), 5), same(space.get(), regionOf(false), 5),
@@ -71,7 +71,7 @@ TEST(RegionSampler, DrawsWithinBoundsFromItsOwnSeed) {
 }
 
 // Closed form: at 10 J/m the heuristic of a state is ten times its way over both foci.
-TEST(RegionSampler, InformedSamplesLieBetweenTheCostsAskedFor) {
+TEST(RegionSampler, InformedSamplesLieBetweenTheRequestedCosts) {
   const auto region = regionOf(false);
   const testing::OmplGround ground(region->parts().map, {{10.5, 15.5}, {30.5, 15.5}});
   RegionInformedSampler sampler(

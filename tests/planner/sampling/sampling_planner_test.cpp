@@ -42,12 +42,12 @@ Plan detour(const Problem& leg) {
 
 // The same map under a cost that forbids climbing.
 std::shared_ptr<const costmap::CostGrid> drivenDownOnly(const std::shared_ptr<const costmap::CostGrid>& map) {
-  costmap::DriveCurve curve;
-  for (std::size_t bin = 0; bin < costmap::DriveCurve::kBins; ++bin)
+  costmap::TravelCurve curve;
+  for (std::size_t bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
     curve.cost_J_per_m[bin] =
-        bin > costmap::DriveCurve::kBins / 2 ? std::numeric_limits<float>::infinity() : 10.0F;
+        bin > costmap::TravelCurve::kBins / 2 ? std::numeric_limits<float>::infinity() : 10.0F;
   auto content = map->content();
-  content.cost = std::make_shared<costmap::DriveCost>(costmap::DriveCost::Limits{}, std::vector{curve});
+  content.cost = std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
   return std::make_shared<costmap::CostGrid>(content);
 }
 
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Ompl, EveryPlanner,
 
 const std::string kLevel(20, '.');
 
-TEST_P(EveryPlanner, RoundsTheWallExactly) {
+TEST_P(EveryPlanner, PlanCostEqualsMotionCostAroundAWall) {
   const Problem problem = across(wall());
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000});
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
@@ -76,7 +76,7 @@ TEST_P(EveryPlanner, RoundsTheWallExactly) {
 }
 
 // Property: on hills whose crossing costs, no planner and no random polyline is cheaper than what is proven.
-TEST(SamplingPlanner, NothingIsCheaperThanTheBound) {
+TEST(SamplingPlanner, NoRouteIsCheaperThanTheLowerBound) {
   int routes = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     std::mt19937 random(seed);
@@ -113,7 +113,7 @@ TEST(SamplingPlanner, NothingIsCheaperThanTheBound) {
   EXPECT_GE(routes, 8);
 }
 
-TEST_P(EveryPlanner, ImprovesOnTheRouteItIsGiven) {
+TEST_P(EveryPlanner, KnownRouteIsImproved) {
   const Problem problem = across(wall());
   const double known_J = detour(problem).cost_J;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000}, detour);
@@ -121,7 +121,7 @@ TEST_P(EveryPlanner, ImprovesOnTheRouteItIsGiven) {
   EXPECT_LT(plan.cost_J, known_J);
 }
 
-TEST_P(EveryPlanner, SameSeedSameBytes) {
+TEST_P(EveryPlanner, SameSeedReproducesTheRoute) {
   Problem problem = across(wall());
   const SamplingSettings settings{.planner = GetParam(), .work = 1'000'000};
   const Plan first = planBySampling(problem, settings, detour);
@@ -132,7 +132,7 @@ TEST_P(EveryPlanner, SameSeedSameBytes) {
 }
 
 // Property: a time limit is used up, beyond the work that would end it else.
-TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
+TEST_P(EveryPlanner, TimeLimitOverridesTheWorkLimit) {
   Problem problem = across(wall());
   problem.time_limit_s = 0.3;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1}, detour);
@@ -140,7 +140,7 @@ TEST_P(EveryPlanner, TakesTheTimeItIsGiven) {
   EXPECT_LT(plan.cost_J, detour(problem).cost_J);  // work of 1 leaves the known route as it was
 }
 
-TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
+TEST_P(EveryPlanner, ForbiddenClimbsAreNeverUsed) {
   // Ground that rises eastwards and may be driven down but not up: west to east there is no route.
   const auto map = drivenDownOnly(drawn(std::vector<std::string>(20, kLevel + ">>>>" + kLevel)));
   Problem up{.map = map, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
@@ -150,14 +150,14 @@ TEST_P(EveryPlanner, NeverClimbsWhereClimbingIsForbidden) {
   EXPECT_EQ(planBySampling(down, settings).status, RouteStatus::Found);
 }
 
-TEST_P(EveryPlanner, EndsWhereTheFieldHasProvenThatThereIsNoRoute) {
+TEST_P(EveryPlanner, FieldProofOfNoRouteEndsTheSearch) {
   const auto walled = drawn(std::vector<std::string>(20, kLevel + "#" + kLevel));
   const Problem across{.map = walled, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
   const auto proof = [](const Problem& leg) { return FieldPlanner().plan(leg); };
   EXPECT_EQ(planBySampling(across, {.planner = GetParam()}, proof).status, RouteStatus::NoRoute);
 }
 
-TEST_P(EveryPlanner, StopsWhenAsked) {
+TEST_P(EveryPlanner, StopYieldsCancelled) {
   std::stop_source stop;
   stop.request_stop();
   Problem problem = across(wall());
@@ -166,7 +166,7 @@ TEST_P(EveryPlanner, StopsWhenAsked) {
 }
 
 // A route that is known when the work is stopped is not lost.
-TEST_P(EveryPlanner, StoppedItGivesTheBestRouteSoFar) {
+TEST_P(EveryPlanner, StopReturnsTheBestRouteSoFar) {
   std::stop_source stop;
   Problem problem = across(wall());
   problem.watch.stop = stop.get_token();
@@ -178,7 +178,7 @@ TEST_P(EveryPlanner, StoppedItGivesTheBestRouteSoFar) {
             MotionCost(problem.map).along(detour(problem).points));
 }
 
-TEST_P(EveryPlanner, EndsOnBlockedGroundAreNamed) {
+TEST_P(EveryPlanner, BlockedStartAndGoalAreReported) {
   Problem problem = across(wall());
   problem.start = {30.5, 30.5};
   EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::StartInvalid);
@@ -187,7 +187,7 @@ TEST_P(EveryPlanner, EndsOnBlockedGroundAreNamed) {
   EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::GoalInvalid);
 }
 
-TEST_P(EveryPlanner, AStartAtTheGoalIsARouteOfNoCost) {
+TEST_P(EveryPlanner, StartEqualToGoalCostsZero) {
   Problem problem = across(wall());
   problem.goal = problem.start;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 10'000});
@@ -195,7 +195,7 @@ TEST_P(EveryPlanner, AStartAtTheGoalIsARouteOfNoCost) {
   EXPECT_EQ(plan.cost_J, 0.0);
 }
 
-TEST_P(EveryPlanner, PassesViaPointsInOrder) {
+TEST_P(EveryPlanner, ViaPointsArePassedInOrder) {
   Problem problem = across(wall());
   problem.via = {{10.5, 35.5}, {50.5, 35.5}};
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1'000'000});
@@ -208,7 +208,7 @@ TEST_P(EveryPlanner, PassesViaPointsInOrder) {
 
 // Property: what a planner says that it found is what it hands out, also where the route that it was given
 // turns on edges between cells and headings are forbidden cell by cell.
-TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
+TEST(SamplingPlanner, ReturnedCostIsAtMostTheReportedCost) {
   for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"})
     for (const std::uint64_t seed : {std::uint64_t{1001}, std::uint64_t{1002}}) {
       Problem problem{.map = slipWorld({.seed = seed}).map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}};
@@ -223,7 +223,7 @@ TEST(SamplingPlanner, HandsOutTheCostThatItReports) {
     }
 }
 
-TEST(SamplingPlanner, RefusesSettingsOutOfRange) {
+TEST(SamplingPlanner, SettingsOutOfRangeAreRejected) {
   EXPECT_REFUSED(planBySampling(across(wall()), {.work = 0}), std::invalid_argument, "work = 0, must be > 0");
   EXPECT_REFUSED(planBySampling(across(wall()), {.range_cells = -1}), std::invalid_argument,
                  "range_cells = -1.000000, must be > 0");

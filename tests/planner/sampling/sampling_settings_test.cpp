@@ -14,7 +14,7 @@ namespace sampling_settings_test {
 
 using ::testing::HasSubstr;
 
-TEST(SamplingSettings, WordsRoundTrip) {
+TEST(SamplingSettings, TextRoundTrips) {
   const SamplingSettings settings = samplingSettings("rrt*:range=20:cold:goal_bias=0.1");
   EXPECT_EQ(settings.planner, "RRTstar");
   EXPECT_TRUE(settings.cold);
@@ -26,7 +26,7 @@ TEST(SamplingSettings, WordsRoundTrip) {
   for (const std::string& words : warmAndCold()) EXPECT_EQ(wordsOf(samplingSettings(words)), words);
 }
 
-TEST(SamplingSettings, WhatAPlannerDoesNotTakeIsNamed) {
+TEST(SamplingSettings, UnsupportedParametersAreRejectedByName) {
   const auto said = [](const std::string& words) -> std::string {
     try {
       samplingSettings(words);
@@ -43,7 +43,7 @@ TEST(SamplingSettings, WhatAPlannerDoesNotTakeIsNamed) {
 }
 
 // Property: what a planner finds first is the field's route, unless it begins cold; a parameter reaches the planner.
-TEST(SamplingSettings, ColdBeginsWithNothing) {
+TEST(SamplingSettings, ColdStartOmitsTheFieldRoute) {
   Problem problem{
       .map = testing::randomMap({.width = 40, .height = 40, .seed = 3, .blocked = 0.05, .roughness = 0.2}),
       .start = {3.5, 3.5},

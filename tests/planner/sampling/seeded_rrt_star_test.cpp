@@ -35,7 +35,7 @@ double costAfter(int rounds, const SeededRRTstar::Seed& seed) {
 }
 
 // Closed form: the seed's three legs at 10 J/m, from the first moment; then never dearer, and in time better.
-TEST(SeededRRTstar, HasTheSeedFromTheFirstMomentAndImprovesIt) {
+TEST(SeededRRTstar, SeedRouteIsAvailableImmediatelyAndImproved) {
   const std::vector<maps::Point> known{kEnds.from, {10.5, 18.5}, {20.5, 3.5}, kEnds.to};
   double seed_J = 0.0;
   for (std::size_t i = 1; i < known.size(); ++i)
@@ -51,7 +51,7 @@ TEST(SeededRRTstar, HasTheSeedFromTheFirstMomentAndImprovesIt) {
 }
 
 // Property: a seed that does not reach the goal is grown from, and is no answer.
-TEST(SeededRRTstar, ASeedThatEndsEarlyIsNoAnswer) {
+TEST(SeededRRTstar, SeedThatMissesTheGoalIsNoSolution) {
   EXPECT_TRUE(std::isinf(costAfter(1, {.route = {kEnds.from, {20.5, 10.5}}, .spacing_m = 2.0})));
 }
 

@@ -18,7 +18,7 @@ TEST(ContactGeometry, EntryAngleIsArccosOfOneMinusSinkageOverRadius) {
   EXPECT_EQ(entryAngle_rad(kWheel, 0.0), 0.0);
 }
 
-TEST(ContactGeometry, KeepsItsDigitsAtSmallSinkage) {
+TEST(ContactGeometry, EntryAngleIsAccurateAtSmallSinkage) {
   // Closed form: theta_1 = sqrt(2 z/r) (1 + z/(12 r) + ...); arccos(1 - z/r) has lost half its digits here.
   const double ratio = 1e-10;
   EXPECT_NEAR(entryAngle_rad(kWheel, ratio * 0.1) / std::sqrt(2.0 * ratio), 1.0 + ratio / 12.0, 1e-15);
@@ -31,12 +31,12 @@ TEST(ContactGeometry, SinkageInvertsEntryAngle) {
   }
 }
 
-TEST(ContactGeometry, ChordSpansTheContactForeAndAft) {
+TEST(ContactGeometry, ChordIsTwiceRadiusTimesSineOfEntryAngle) {
   // Closed form: 2 r sin(theta_1).
   EXPECT_NEAR(contactChord_m(kWheel, 0.02), 0.2 * std::sin(entryAngle_rad(kWheel, 0.02)), 1e-16);
 }
 
-TEST(ContactGeometry, RefusesASinkageNoWheelCanHave) {
+TEST(ContactGeometry, InvalidSinkageIsRejected) {
   EXPECT_REFUSED(entryAngle_rad(kWheel, -1e-6), std::invalid_argument,
                  "sinkage_m = -1e-06, must be in [0, 0.2]");
   EXPECT_REFUSED(entryAngle_rad(kWheel, 0.2), std::invalid_argument, "sinkage_m = 0.2, must be in [0, 0.2]");

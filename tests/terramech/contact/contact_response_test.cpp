@@ -25,7 +25,7 @@ Soil exactSoil(const ContactSoil& s) {
           .shear_modulus_m = s.shear_modulus_m};
 }
 
-TEST(ContactResponse, AgreesWithTheExactContact) {
+TEST(ContactResponse, MatchesTheExactContactIntegrals) {
   // Closed form: the same integrals (C.8 to C.10) by the 24-point rule; stated accuracy 1e-4 of load.
   for (const ContactSoil& s : soils()) {
     for (const double load : {20.0, 80.0}) {
@@ -40,7 +40,7 @@ TEST(ContactResponse, AgreesWithTheExactContact) {
   }
 }
 
-TEST(ContactResponse, DerivativeIsThatOfTheForces) {
+TEST(ContactResponse, DerivativeMatchesCentralDifferences) {
   // Property: central differences with a relative step of 1e-5 err by about 1e-9 of the scale.
   for (const ContactSoil& s : soils()) {
     const ContactState at{.sinkage_m = 0.02, .slip = 0.4};

@@ -16,7 +16,7 @@ double integral(F&& f, double a, double b) {
   return sum * step / 3.0;
 }
 
-TEST(LinearStressMoments, AreTheIntegralsTheyClaimToBe) {
+TEST(LinearStressMoments, MomentsEqualTheirIntegrals) {
   // Closed form against quadrature; the last one is Eq. 2.3's offset term, corrected.
   for (const double theta_1 : {0.01, 0.3, 0.9, 1.5}) {
     const LinearStressMoments m(theta_1);
@@ -35,14 +35,14 @@ TEST(LinearStressMoments, AreTheIntegralsTheyClaimToBe) {
   }
 }
 
-TEST(LinearStressMoments, PrintedOffsetTermOfEquation23IsNotTheIntegral) {
+TEST(LinearStressMoments, PrintedOffsetTermOfEquation23DiffersFromTheIntegral) {
   // Printed in: thesis Eq. 2.3, cos(theta_m) - sin(theta_m)/theta_m + theta_m. Found wrong.
   const LinearStressMoments m(0.8);
   const double printed = std::cos(0.4) - std::sin(0.4) / 0.4 + 0.4;
   EXPECT_GT(std::abs(printed - m.offset_sin), 0.2);
 }
 
-TEST(Mobilisation, IsJanosiHanamotoAtTheMiddleAndTheBottom) {
+TEST(Mobilisation, IsJanosiHanamotoAtMidContactAndBottom) {
   // Closed form: Eqs. C.6, C.7 at theta_1/2 and 0.
   const Wheel wheel{.radius_m = 0.1, .width_m = 0.1};
   const WheelSample sample{.load_N = 80, .torque_Nm = 3, .sinkage_m = 0.02, .slip = 0.4};

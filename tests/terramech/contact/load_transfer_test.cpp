@@ -16,12 +16,12 @@ Rover rover() {
   return r;
 }
 
-TEST(WheelLoads, LevelGroundLoadsAllAlike) {
+TEST(WheelLoads, LoadsAreEqualOnLevelGround) {
   for (const double load_N : wheelLoads_N(rover(), 0.0, {0.5, 0.5, -0.5, -0.5}))
     EXPECT_DOUBLE_EQ(load_N, 250.0);
 }
 
-TEST(WheelLoads, TwoAxlesAreTheTextbook) {
+TEST(WheelLoads, TwoAxleLoadTransferMatchesClosedForm) {
   const double slope = 0.2;
   const auto loads_N = wheelLoads_N(rover(), std::tan(slope), {0.5, 0.5, -0.5, -0.5});
   // Closed form: an axle loses m g sin(alpha) h / L, half of it at each wheel
@@ -29,7 +29,7 @@ TEST(WheelLoads, TwoAxlesAreTheTextbook) {
   EXPECT_NEAR(loads_N[3], 250.0 * std::cos(slope) + 0.5 * 1000.0 * std::sin(slope) * 0.5 / 1.0, 1e-9);
 }
 
-TEST(WheelLoads, SixWheelsBalanceForceAndMoment) {
+TEST(WheelLoads, SixWheelLoadsBalanceForceAndMoment) {
   const double gradient = -0.15, normal_N = 1000.0 / std::hypot(1.0, gradient);
   const std::vector<double> along{0.5, 0.5, 0.1, 0.1, -0.6, -0.6};
   const auto loads_N = wheelLoads_N(rover(), gradient, along);
@@ -39,7 +39,7 @@ TEST(WheelLoads, SixWheelsBalanceForceAndMoment) {
   EXPECT_NEAR(moment, -normal_N * gradient * 0.5, 1e-9);
 }
 
-TEST(WheelLoads, NoAxleLiftsOff) {
+TEST(WheelLoads, LoadsStayPositiveOnSteepSlopes) {
   for (const double load_N : wheelLoads_N(rover(), 2.0, {0.5, 0.5, -0.5, -0.5})) EXPECT_GT(load_N, 0.0);
   EXPECT_TRUE(wheelLoads_N(rover(), 0.1, {}).empty());
   EXPECT_EQ(wheelLoads_N(rover(), 0.1, {0.0}).size(), 1U);

@@ -48,7 +48,7 @@ Errors errorsAt(double angle_deg, const Soil& soil, const std::string& path) {
 
 // The authors' soil (cohesion by hand, friction measured, k and n of their plates) with three numbers fitted to the runs at 0 degrees
 // alone: K, c1 and the slip sinkage. docs/slopes.md has what they give at 45 degrees, where the goals are missed.
-TEST(MeasuredWheel, ThreeNumbersFromStraightRunsHoldTo15Degrees) {
+TEST(MeasuredWheel, ThreeParametersFittedStraightPredictRunsAt15Degrees) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";
   const std::string runs = std::filesystem::path(folder) / "cmu_testbed" / "runs.csv";

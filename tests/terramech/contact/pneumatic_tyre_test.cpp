@@ -22,7 +22,7 @@ Tyre tyre(double inflation_Pa) {
   return {.wheel = {.radius_m = 0.4, .width_m = 0.25}, .inflation_Pa = inflation_Pa, .carcass_Pa = 1e4};
 }
 
-TEST(PneumaticTyre, OnRigidGroundTheFlatCarriesTheLoadAtItsPressure) {
+TEST(PneumaticTyre, OnRigidGroundFlatAreaTimesPressureEqualsLoad) {
   const TyreForces forces = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = 0.1});
   EXPECT_DOUBLE_EQ(forces.flat_length_m, 3000.0 / (6e4 * 0.25));  // Closed form.
   const double half = 0.5 * forces.flat_length_m;
@@ -30,7 +30,7 @@ TEST(PneumaticTyre, OnRigidGroundTheFlatCarriesTheLoadAtItsPressure) {
               1e-14);  // Closed form: chord of a circle.
 }
 
-TEST(PneumaticTyre, OnRigidGroundThrustRisesWithSlipToFriction) {
+TEST(PneumaticTyre, OnRigidGroundPullRisesWithSlipToTheFrictionLimit) {
   double last = -1.0;
   for (const double slip : {0.0, 0.001, 0.01, 0.1, 1.0}) {
     const double pull = tyreOnRigidGround(tyre(5e4), {.load_N = 3000.0, .slip = slip}).drawbar_pull_N;
@@ -41,7 +41,7 @@ TEST(PneumaticTyre, OnRigidGroundThrustRisesWithSlipToFriction) {
   EXPECT_NEAR(last, 0.7 * 3000.0, 0.01 * 2100.0);
 }
 
-TEST(PneumaticTyre, AHardTyreIsARigidWheelAndASoftOneFlattens) {
+TEST(PneumaticTyre, HighInflationIsRigidModeAndLowInflationIsFlattenedMode) {
   const TyreOperation operation{.load_N = 1500.0, .slip = 0.2};
   const double critical = criticalPressure_Pa(loam(), tyre(0.0).wheel, 1500.0);
   const TyreForces hard = tyreOnSoftGround(tyre(critical), loam(), operation);
@@ -56,7 +56,7 @@ TEST(PneumaticTyre, AHardTyreIsARigidWheelAndASoftOneFlattens) {
             hard.drawbar_pull_N);  // Measured by others: why tyres are let down on sand (wong_2001).
 }
 
-TEST(PneumaticTyre, ForcesAreTheStressesSummedUp) {
+TEST(PneumaticTyre, ForcesEqualTheIntegratedStresses) {
   // Property: load, torque and pull by the midpoint rule over the round part and the flat, from the laws as
   // the header states them.
   const double r = 0.4, b = 0.25;
@@ -93,7 +93,7 @@ TEST(PneumaticTyre, ForcesAreTheStressesSummedUp) {
   }
 }
 
-TEST(PneumaticTyre, LessPressureSinksLessAndFlattensMore) {
+TEST(PneumaticTyre, SinkageRisesAndDeflectionFallsWithInflationPressure) {
   TyreForces last = tyreOnSoftGround(tyre(2.2e4), loam(), {.load_N = 1500.0, .slip = 0.2});
   for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: monotone.
     const TyreForces forces = tyreOnSoftGround(tyre(p), loam(), {.load_N = 1500.0, .slip = 0.2});
@@ -112,7 +112,7 @@ TEST(PneumaticTyre, CriticalPressureIsThatUnderARigidWheelByBekker) {
   EXPECT_NEAR(criticalPressure_Pa(soil, wheel, load) / (2e6 * z), 1.0, 1e-12);
 }
 
-TEST(PneumaticTyre, RefusesWhatHasNoAnswer) {
+TEST(PneumaticTyre, InputsOutsideTheModelRangeAreRejected) {
   EXPECT_REFUSED(tyreOnRigidGround(tyre(1e3), {.load_N = 1e5, .slip = 0.1}), std::domain_error,
                  "the tyre flattens over its whole diameter");
   EXPECT_REFUSED(tyreOnSoftGround(tyre(-1.0), loam(), {.load_N = 100.0}), std::invalid_argument,

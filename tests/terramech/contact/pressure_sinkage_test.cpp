@@ -18,13 +18,13 @@ Soil drySand() {
           .frictional_modulus = 1528430.0};
 }
 
-TEST(PressureSinkage, BekkerIsAPowerOfTheDepth) {
+TEST(PressureSinkage, BekkerPressureIsAPowerOfDepth) {
   const double k = 990.0 / 0.05 + 1528430.0;
   EXPECT_DOUBLE_EQ(bekkerPressure_Pa(drySand(), 0.05, 0.02), k * std::pow(0.02, 1.1));  // Closed form: A.1.
   EXPECT_EQ(bekkerPressure_Pa(drySand(), 0.05, 0.0), 0.0);
 }
 
-TEST(PressureSinkage, DepthUndoesPressure) {
+TEST(PressureSinkage, DepthInvertsPressure) {
   const ReeceSoil reece{.cohesion_Pa = 500.0,
                         .weight_N_m3 = 15000.0,
                         .cohesive_factor = 20.0,
@@ -53,7 +53,7 @@ TEST(PressureSinkage, ReeceWeightTermGrowsWithTheWidth) {
     EXPECT_NEAR(reecePressure_Pa(soil, b, b), 500.0 * 20.0 + 15000.0 * b * 300.0, 1e-6);
 }
 
-TEST(PressureSinkage, AReeceSoilEntersTheWheelAsItsBekkerTwin) {
+TEST(PressureSinkage, ReeceSoilConvertsToAnEquivalentBekkerSoil) {
   const ReeceSoil reece{.cohesion_Pa = 500.0,
                         .weight_N_m3 = 15000.0,
                         .cohesive_factor = 20.0,
@@ -68,7 +68,7 @@ TEST(PressureSinkage, AReeceSoilEntersTheWheelAsItsBekkerTwin) {
             0.0);
 }
 
-TEST(PressureSinkage, RefusesASoilThatCarriesNothing) {
+TEST(PressureSinkage, SoilWithoutBearingCapacityIsRejected) {
   Soil soil = drySand();
   soil.cohesive_modulus = -1e6;
   EXPECT_REFUSED(bekkerDepth_m(soil, 0.1, 100.0), std::domain_error, "a soil with modulus -8471570");

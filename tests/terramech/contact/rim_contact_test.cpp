@@ -22,7 +22,7 @@ struct EvenShear : EvenPressure {
 
 const Wheel kWheel{.radius_m = 0.2, .width_m = 0.1};
 
-TEST(RimContact, IntegratesEvenStresses) {
+TEST(RimContact, UniformStressesIntegrateToClosedForm) {
   const ShearDisplacement displacement{{0.2, 0.3, 0.7}};
   const RimForces pressed = rimForces(EvenPressure{}, kWheel, displacement);
   const double rb = 0.02;
@@ -33,14 +33,14 @@ TEST(RimContact, IntegratesEvenStresses) {
   EXPECT_NEAR(sheared.drawbar_pull_N, rb * 2e3 * 2.0 * std::sin(0.7), 1e-9);
 }
 
-TEST(RimContact, FindsTheEntryAngleOfALoad) {
+TEST(RimContact, EntryAngleBalancesTheLoad) {
   const double load = 0.02 * 5e3 * 2.0 * std::sin(0.9);
   const RimEquilibrium rim =
       rimEquilibrium(EvenPressure{}, kWheel, {.load_N = load, .slip = 0.0, .first_guess = 0.01});
   EXPECT_NEAR(rim.entry_angle_rad, 0.9, 1e-12);  // Closed form.
 }
 
-TEST(RimContact, RefusesALoadBeyondTheAxle) {
+TEST(RimContact, LoadBeyondTheAxleIsRejected) {
   const double most = 0.02 * 5e3 * 2.0;
   EXPECT_NO_THROW(rimEquilibrium(EvenPressure{}, kWheel, {.load_N = 0.999 * most}));
   EXPECT_THROW(rimEquilibrium(EvenPressure{}, kWheel, {.load_N = 1.001 * most}), std::domain_error);

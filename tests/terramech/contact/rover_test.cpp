@@ -20,7 +20,7 @@ Rover rover() {
           .max_torque_Nm = 30.0};
 }
 
-TEST(Rover, WheelsShareTheWeight) {
+TEST(Rover, WheelLoadIsWeightOverWheelCount) {
   EXPECT_DOUBLE_EQ(wheelLoad_N(rover()), 120.0 * 3.71 / 6.0);  // Closed form: m g / count.
 }
 
@@ -65,7 +65,7 @@ TEST(Rover, EveryLengthMassAndLimitIsChecked) {
     }
 }
 
-TEST(Rover, RefusalNamesRoverAndField) {
+TEST(Rover, ErrorNamesRoverAndField) {
   Rover one_wheel = rover();
   one_wheel.wheel_count = 1;
   EXPECT_THAT([&] { validate(one_wheel); },

@@ -16,7 +16,7 @@ TEST(ShearDisplacement, IsEquationC6ForDrivenWheels) {
   EXPECT_DOUBLE_EQ(at(1.0).at_m(theta), 0.2 * (entry - theta));  // spun in place: the rolled arc
 }
 
-TEST(ShearDisplacement, IntegratesTheSlidingOfARimPoint) {
+TEST(ShearDisplacement, IntegratesTheSlidingVelocityOfARimPoint) {
   // Closed form: dj = (r omega - v cos theta) dt, theta falling at omega; v/(r omega) = 1/(1 + slip) when
   // braked.
   for (const double slip : {-0.6, -0.2, 0.0, 0.4}) {
@@ -31,12 +31,12 @@ TEST(ShearDisplacement, IntegratesTheSlidingOfARimPoint) {
   }
 }
 
-TEST(ShearDisplacement, ALockedWheelDragsWithoutBound) {
+TEST(ShearDisplacement, LockedWheelHasInfiniteShearDisplacement) {
   EXPECT_EQ(at(-1.0).at_m(0.3), -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(at(-1.0).signChange_rad(0.0)));
 }
 
-TEST(ShearDisplacement, ChangesItsSignOnlyWhereATowedRimOvertakesTheSoil) {
+TEST(ShearDisplacement, SignChangesOnlyForTowedWheelsAtSmallNegativeSlip) {
   EXPECT_TRUE(std::isnan(at(0.0).signChange_rad(0.0)));
   EXPECT_TRUE(std::isnan(at(-0.5).signChange_rad(0.0)));  // lags behind the soil from the entry on
   const double zero = at(-0.1).signChange_rad(0.0);

@@ -20,7 +20,7 @@ TEST(ShearStress, StrengthIsMohrCoulomb) {
   EXPECT_DOUBLE_EQ(shearStrength_Pa(loam(), 1e4), 3000.0 + 1e4 * std::tan(0.44));  // Closed form: A.2.
 }
 
-TEST(ShearStress, BothLawsStartAtTheSameStiffnessAndEndAtTheStrength) {
+TEST(ShearStress, BothLawsShareInitialStiffnessAndStrength) {
   const double strength = shearStrength_Pa(loam(), 1e4);
   EXPECT_NEAR(janosiHanamoto_Pa(loam(), 1e4, 1e-8) / elastoPlastic_Pa(loam(), 1e4, 1e-8), 1.0, 1e-6);
   EXPECT_DOUBLE_EQ(elastoPlastic_Pa(loam(), 1e4, 0.02), strength);
@@ -53,7 +53,7 @@ class ElastoPlasticRim {
   WongReece rest_;
 };
 
-TEST(ShearStress, AnotherLawGivesAnotherWheelThroughTheSameCode) {
+TEST(ShearStress, ElastoPlasticLawPullsMoreAndSinksLessThanJanosi) {
   const WheelOperation operation{.load_N = 80.0, .slip = 0.4};
   const ElastoPlasticRim law{loam(), Wheel{}, operation};
   const RimEquilibrium rim = rimEquilibrium(law, Wheel{}, {.load_N = 80.0, .slip = 0.4});
@@ -64,7 +64,7 @@ TEST(ShearStress, AnotherLawGivesAnotherWheelThroughTheSameCode) {
   EXPECT_LT(rim.entry_angle_rad, janosi.entry_angle_rad);
 }
 
-TEST(ShearStress, ThreeKIsWhereNinetyFivePerCentOfTheStrengthIsReached) {
+TEST(ShearStress, NinetyFivePercentOfStrengthIsReachedAtThreeK) {
   // Printed in: thesis A.2 (K is a third of the displacement at 95 % of tau_max).
   const Soil soil{.cohesion_Pa = 740.0, .friction_angle_rad = 0.55, .shear_modulus_m = 0.013};
   EXPECT_NEAR(janosiHanamoto_Pa(soil, 8000.0, 0.039) / shearStrength_Pa(soil, 8000.0), 0.95, 0.001);

@@ -6,13 +6,13 @@
 namespace talus::terramech {
 namespace side_bulldozing_test {
 
-TEST(SideBulldozing, WithoutFrictionIsTwiceTheCohesionAndTheWeight) {
+TEST(SideBulldozing, FrictionlessResistanceIsCohesionAndWeightTerm) {
   // Closed form: phi = 0 gives X = 45 deg, D1 = 2, D2 = 1, R = 2 c h + gamma h^2.
   const Hegedus soil = hegedus({.cohesion_Pa = 500.0, .tan_friction = 0.0, .weight_N_m3 = 15000.0});
   EXPECT_NEAR(soil.resistance_N_m(0.03), 2.0 * 500.0 * 0.03 + 15000.0 * 0.03 * 0.03, 1e-9);
 }
 
-TEST(SideBulldozing, OfFrictionFollowsHegedus) {
+TEST(SideBulldozing, FrictionalResistanceMatchesHegedus) {
   // Closed form: phi = 30 deg, X = 30 deg, cot X = sqrt 3, D1 = 2 sqrt 3, D2 = sqrt 3 + 3 / sqrt 3 = 2 sqrt
   // 3.
   const Hegedus soil =
@@ -21,7 +21,7 @@ TEST(SideBulldozing, OfFrictionFollowsHegedus) {
   EXPECT_NEAR(soil.per_depth_squared_N_m3, 0.5 * 12.0 * 1000.0, 1e-8);
 }
 
-TEST(SideBulldozing, OfAFaceIsTheSumOverItsChord) {
+TEST(SideBulldozing, FaceResistanceIsTheIntegralOverTheChord) {
   const Hegedus soil{.per_depth_Pa = 700.0, .per_depth_squared_N_m3 = 50000.0};
   const double r = 0.2;
   for (const double theta_1 : {0.003, 0.05, 0.0999, 0.1001, 0.3, 0.9, 0.5 * std::numbers::pi}) {

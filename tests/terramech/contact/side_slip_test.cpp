@@ -38,7 +38,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-TEST(SideSlip, FadesIntoTheStraightWheel) {
+TEST(SideSlip, ConvergesToTheStraightWheelAtZeroAngle) {
   for (const double slip : {-1.0, -0.6, -0.1, 0.0, 0.05, 0.4, 1.0}) {
     const WheelForces straight = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip});
     const WheelForces askew = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip, .slip_angle_rad = 1e-9});
@@ -51,7 +51,7 @@ TEST(SideSlip, FadesIntoTheStraightWheel) {
   }
 }
 
-TEST(SideSlip, SideForceIsOddAndTheRestEven) {
+TEST(SideSlip, SideForceIsOddAndOtherForcesEvenInSlipAngle) {
   Random random{5};
   for (int k = 0; k < 60; ++k) {
     const double slip = random.between(-1.0, 1.0), angle = random.between(1e-3, kRight);
@@ -67,7 +67,7 @@ TEST(SideSlip, SideForceIsOddAndTheRestEven) {
   }
 }
 
-TEST(SideSlip, ALockedWheelOnHardGroundIsAFrictionBlock) {
+TEST(SideSlip, LockedWheelOnHardGroundIsCoulombFriction) {
   Soil hard = shearOnly(sand());
   hard.cohesion_Pa = 0.0;
   hard.frictional_modulus = 1e22;
@@ -82,14 +82,14 @@ TEST(SideSlip, ALockedWheelOnHardGroundIsAFrictionBlock) {
   }
 }
 
-TEST(SideSlip, ASpinningWheelThatGoesNowhereHoldsNothingByShear) {
+TEST(SideSlip, WheelAtFullSlipHasNoLateralShearForce) {
   const WheelForces f =
       equilibrium(shearOnly(sand()), {}, {.load_N = 60.0, .slip = 1.0, .slip_angle_rad = 0.5});
   // Closed form: v = 0, the soil is sheared along the wheel plane only.
   EXPECT_EQ(f.side_force_N, 0.0);
 }
 
-TEST(SideSlip, ShearIsNeverAboveTheStrengthOfTheSoil) {
+TEST(SideSlip, ShearForceNeverExceedsSoilStrength) {
   Random random{11};
   int answered = 0;
   for (int k = 0; k < 200; ++k) {
@@ -127,7 +127,7 @@ TEST(SideSlip, ShearIsNeverAboveTheStrengthOfTheSoil) {
   EXPECT_GT(answered, 150);
 }
 
-TEST(SideSlip, ResultantSlipHasItsLimits) {
+TEST(SideSlip, ResultantSlipMatchesLimitCases) {
   // Closed form: straight on |i|, locked 1 at any angle, rolling at 90 deg |(r omega, v)| / v with r omega =
   // v.
   EXPECT_EQ(resultantSlip(0.3, 0.0), 0.3);
@@ -140,7 +140,7 @@ TEST(SideSlip, ResultantSlipHasItsLimits) {
               1e-12);
 }
 
-TEST(SideSlip, DiggingSinksTheWheelAndPullsLess) {
+TEST(SideSlip, DiggingIncreasesSinkageAndReducesPull) {
   Soil soil = sand();
   soil.digging_exponent = 0.0;
   const WheelOperation how{.load_N = 60.0, .slip = 0.2, .slip_angle_rad = 0.6};
@@ -160,7 +160,7 @@ TEST(SideSlip, ForcesAtEntryAreThoseOfTheEquilibrium) {
   EXPECT_NEAR(at.forces.side_force_N, f.side_force_N, 1e-9);
 }
 
-TEST(SideSlip, RefusesAnglesBeyondARightOne) {
+TEST(SideSlip, SlipAnglesBeyondNinetyDegreesAreRejected) {
   try {
     static_cast<void>(equilibrium(sand(), {}, {.load_N = 60.0, .slip = 0.1, .slip_angle_rad = 1.6}));
     FAIL();

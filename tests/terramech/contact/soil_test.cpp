@@ -24,7 +24,7 @@ TEST(Soil, SinkageModulusIsKcOverWidthPlusKphi) {
   EXPECT_DOUBLE_EQ(sinkageModulus(sand(), 0.1), 950.0 / 0.1 + 1.5e6);
 }
 
-TEST(Soil, RefusalNamesSoilFieldValueAndBound) {
+TEST(Soil, ErrorNamesSoilFieldValueAndBound) {
   Soil soil = sand();
   soil.cohesion_Pa = -1.0;
   EXPECT_THAT([&] { validate(soil); },
@@ -33,7 +33,7 @@ TEST(Soil, RefusalNamesSoilFieldValueAndBound) {
 }
 
 // Property: magnitudes that no ground has are refused, be they in range of a formula or not.
-TEST(Soil, ImpossibleMagnitudesAreRefused) {
+TEST(Soil, ImplausibleMagnitudesAreRejected) {
   for (const auto& [field, value, text] :
        {std::tuple{&Soil::cohesion_Pa, 1e15, "cohesion_Pa = 1e+15, must be in [0, 1e+09]"},
         {&Soil::shear_modulus_m, 1e-15, "shear_modulus_m = 1e-15, must be in [1e-09, 1000]"},
@@ -47,7 +47,7 @@ TEST(Soil, ImpossibleMagnitudesAreRefused) {
   }
 }
 
-TEST(Soil, NotANumberIsRefusedInEveryField) {
+TEST(Soil, NanIsRejectedInEveryField) {
   for (const auto& [name, field] : {std::pair{"cohesion_Pa", &Soil::cohesion_Pa},
                                     {"friction_angle_rad", &Soil::friction_angle_rad},
                                     {"sinkage_exponent", &Soil::sinkage_exponent},

@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace wheel_test {
 
-TEST(Wheel, SizesAreAboveZeroAndLugsMayBeNone) {
+TEST(Wheel, SizesMustBePositiveAndGrousersAreOptional) {
   EXPECT_NO_THROW(validate(Wheel{}));
   EXPECT_NO_THROW(validate({.radius_m = 0.2, .width_m = 0.1, .grouser_height_m = 0.01, .grouser_count = 24}));
   for (const double bad : {0.0, -0.1, 1e-12, 1e14, std::nan(""), HUGE_VAL}) {

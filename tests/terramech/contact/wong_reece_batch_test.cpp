@@ -51,7 +51,7 @@ std::vector<WheelForces> solved(const std::vector<WheelCase>& cases, BatchKernel
   return forces;
 }
 
-TEST(WongReeceBatch, AgreesWithTheGeneralSolver) {
+TEST(WongReeceBatch, MatchesTheGeneralSolver) {
   const auto cases = wideCases(4001);
   const auto forces = solved(cases);
   int answered = 0;
@@ -87,7 +87,7 @@ std::vector<WheelCase> slidingCases(std::size_t count) {
   return cases;
 }
 
-TEST(WongReeceBatch, AgreesWithTheGeneralSolverAtSlipAngles) {
+TEST(WongReeceBatch, MatchesTheGeneralSolverAtSlipAngles) {
   const auto cases = slidingCases(3001);
   std::vector<WheelForces> forces(cases.size());
   equilibria(cases, forces, BatchKernel::Best, Leftover::Nan);
@@ -107,7 +107,7 @@ TEST(WongReeceBatch, AgreesWithTheGeneralSolverAtSlipAngles) {
   EXPECT_GT(fast, 1500);
 }
 
-TEST(WongReeceBatch, AStraightWheelDoesNotSeeItsSlidingNeighbours) {
+TEST(WongReeceBatch, StraightWheelResultIsIndependentOfSlidingCases) {
   auto mixed = wideCases(400);
   const auto straight = solved(mixed);
   const auto sliding = slidingCases(400);
@@ -119,7 +119,7 @@ TEST(WongReeceBatch, AStraightWheelDoesNotSeeItsSlidingNeighbours) {
   }
 }
 
-TEST(WongReeceBatch, AgreesWithTheReferenceCases) {
+TEST(WongReeceBatch, MatchesTheReferenceCases) {
   const auto rows = test::referenceTable("equilibria");
   std::vector<WheelCase> cases;
   for (const auto& row : rows)
@@ -136,7 +136,7 @@ TEST(WongReeceBatch, AgreesWithTheReferenceCases) {
 }
 
 #if defined(__x86_64__)
-TEST(WongReeceBatch, KernelsGiveTheSameBits) {
+TEST(WongReeceBatch, KernelsAreBitIdentical) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "no AVX2 here";
   const auto cases = wideCases(4003);
   const auto scalar = solved(cases, BatchKernel::Scalar), avx2 = solved(cases, BatchKernel::Avx2);
@@ -147,7 +147,7 @@ TEST(WongReeceBatch, KernelsGiveTheSameBits) {
 }
 #endif
 
-TEST(WongReeceBatch, ACaseDoesNotSeeItsNeighbours) {
+TEST(WongReeceBatch, ResultIsIndependentOfOtherCasesInTheBatch) {
   const auto cases = wideCases(400);
   const auto together = solved(cases);
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -156,7 +156,7 @@ TEST(WongReeceBatch, ACaseDoesNotSeeItsNeighbours) {
   }
 }
 
-TEST(WongReeceBatch, WhatHasNoAnswerIsNan) {
+TEST(WongReeceBatch, UnsolvableCasesReturnNan) {
   std::vector<WheelCase> cases(
       5, wheelCase({.name = "s", .cohesion_Pa = 500.0, .friction_angle_rad = 0.5, .frictional_modulus = 1e6},
                    Wheel{}, {.load_N = 60.0, .slip = 0.3}));

@@ -7,7 +7,7 @@ namespace talus::terramech::lanes {
 namespace wong_reece_kernel_test {
 
 // Closed form: int_0^1 s^k ds = 1/(k + 1). A rule of N points in t is exact while s^k ds is of degree 2 N - 1.
-TEST(WongReeceKernel, RulesAreExactForPolynomials) {
+TEST(WongReeceKernel, QuadratureRulesAreExactForPolynomials) {
   const auto integral = [](const auto& rule, double exponent) {
     double sum = 0.0;
     for (std::size_t i = 0; i < rule.s.size(); ++i) sum += rule.ds[i] * std::pow(rule.s[i], exponent);
@@ -43,7 +43,7 @@ Sums<double> bruteForce(const Rim& rim) {
   return sums;
 }
 
-TEST(WongReeceKernel, SumsAreTheIntegralsOfTheStresses) {
+TEST(WongReeceKernel, SumsEqualTheStressIntegrals) {
   std::mt19937_64 random(2);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -70,7 +70,7 @@ TEST(WongReeceKernel, SumsAreTheIntegralsOfTheStresses) {
 }
 
 // Property: the load of a known entry leads back to it, from a start half as deep.
-TEST(WongReeceKernel, SolveFindsTheEntryThatCarriesTheLoad) {
+TEST(WongReeceKernel, SolveRecoversTheEntryAngleOfALoad) {
   for (const double entry : {0.2, 0.45, 0.9}) {
     Constants<double> c{1.0, std::log(5e4), 500.0, 0.4, 6.0, 0.7, 0.5, 0.0};
     c.log_load = std::log(sumsAt<false>(c, entry, kFine).load);

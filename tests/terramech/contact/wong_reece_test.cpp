@@ -34,7 +34,7 @@ Soil sand() {
 }
 
 // Property: lugs of a straight wheel are a soil with c and tan phi so much greater, by Bekker's formula for the sides of what they hold.
-TEST(WongReece, LugsShearAlongTheirSidesToo) {
+TEST(WongReece, GrouserSideShearScalesCohesionAndFriction) {
   const Wheel smooth{.radius_m = 0.13, .width_m = 0.2};
   Wheel lugged = smooth;
   lugged.grouser_height_m = 0.025;
@@ -57,7 +57,7 @@ TEST(WongReece, LugsShearAlongTheirSidesToo) {
 }
 
 // Property: at each slip the wheel stands on a soil whose exponent has grown by so much, straight on and at an angle.
-TEST(WongReece, SinksWithSlip) {
+TEST(WongReece, SlipSinkageEqualsAnIncreasedSinkageExponent) {
   const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
   Soil digging = sand();
   digging.slip_sinkage_exponent = 0.4;
@@ -74,7 +74,7 @@ TEST(WongReece, SinksWithSlip) {
 }
 
 // Property (kobayashi_2010, wong_kobayashi_2012): the same mass sinks as deep, and pulls as large a part of its weight, under any gravity.
-TEST(WongReece, TheSameMassSinksAsDeepUnderLessGravity) {
+TEST(WongReece, SinkageAndPullRatioOfAMassAreIndependentOfGravity) {
   const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
   Soil tested = sand();
   tested.test_gravity_m_s2 = 9.81;
@@ -125,7 +125,7 @@ ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperati
            rb * integral([&](double t) { return tau(t) * cos(t) - sigma(t) * sin(t); })}};
 }
 
-TEST(WongReece, AgreesWithTheReferenceCases) {
+TEST(WongReece, MatchesTheReferenceCases) {
   const auto rows = test::referenceTable("equilibria");
   EXPECT_EQ(rows.size(), 53u);
   for (const auto& row : rows) {
@@ -139,7 +139,7 @@ TEST(WongReece, AgreesWithTheReferenceCases) {
   }
 }
 
-TEST(WongReece, IntegralsAgreeWithAdaptiveQuadratureOverTheWholeRange) {
+TEST(WongReece, IntegralsMatchAdaptiveQuadrature) {
   std::mt19937_64 random{1};
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(random);
@@ -166,7 +166,7 @@ TEST(WongReece, IntegralsAgreeWithAdaptiveQuadratureOverTheWholeRange) {
   EXPECT_LT(worst, 1e-8);
 }
 
-TEST(WongReece, CarriesTheLoadItWasGiven) {
+TEST(WongReece, EquilibriumCarriesTheGivenLoad) {
   std::mt19937_64 random{2};
   std::uniform_real_distribution<double> slip{-1.0, 1.0}, load{0.5, 300.0};
   for (int k = 0; k < 200; ++k) {
@@ -178,14 +178,14 @@ TEST(WongReece, CarriesTheLoadItWasGiven) {
   }
 }
 
-TEST(WongReece, BrakedAndDrivenMeetAtNoSlip) {
+TEST(WongReece, BrakedAndDrivenBranchesAreContinuousAtZeroSlip) {
   const auto at = [](double slip) { return equilibrium(sand(), Wheel{}, {.load_N = 80.0, .slip = slip}); };
   // Property: both slip definitions agree to first order at 0.
   EXPECT_NEAR(at(-1e-9).drawbar_pull_N, at(1e-9).drawbar_pull_N, 1e-5);
   EXPECT_NEAR(at(-1e-9).torque_Nm, at(0.0).torque_Nm, 1e-6);
 }
 
-TEST(WongReece, ALockedWheelFeelsTheWholeShearStrength) {
+TEST(WongReece, LockedWheelMobilisesTheFullShearStrength) {
   const Soil soil = sand();
   const WheelOperation locked{.load_N = 40.0, .slip = -1.0};
   const auto stresses = stressDistribution(soil, Wheel{}, locked, 11);
@@ -197,7 +197,7 @@ TEST(WongReece, ALockedWheelFeelsTheWholeShearStrength) {
   EXPECT_LT(forces.drawbar_pull_N, equilibrium(soil, Wheel{}, {.load_N = 40.0, .slip = -0.5}).drawbar_pull_N);
 }
 
-TEST(WongReece, StressesVanishAtBothEndsAndPeakWhereC2Says) {
+TEST(WongReece, StressIsZeroAtContactEndsAndPeaksAtTheC1C2Angle) {
   const auto stresses =
       stressDistribution(sand(), Wheel{}, {.load_N = 80.0, .slip = 0.5, .rebound = 0.1}, 1001);
   EXPECT_NEAR(stresses.front().normal_Pa, 0.0, 1.0);
@@ -233,7 +233,7 @@ Extreme extreme(std::mt19937_64& random) {
       .operation = {.load_N = log(1e-3, 1e8), .slip = slip, .rebound = pick == 7 ? 0.9 * even(random) : 0.0}};
 }
 
-TEST(WongReece, AlwaysAnswersOrRefuses) {
+TEST(WongReece, RandomInputsYieldFiniteEquilibriumOrDomainError) {
   // Property: numbers that carry the load, or std::domain_error; never NaN, never a search without end.
   std::mt19937_64 random{7};
   int answered = 0;
@@ -253,7 +253,7 @@ TEST(WongReece, AlwaysAnswersOrRefuses) {
   EXPECT_GT(answered, 1500);  // about half of these soils carry their load
 }
 
-TEST(WongReece, ScalesAsItsUnitsDo) {
+TEST(WongReece, ForcesScaleWithUnits) {
   // Property: lengths times a, stresses times s (k_phi of N/m^(n+2) times s/a^n): forces times s a^2, torque
   // s a^3, the same angle.
   std::mt19937_64 random{8};
@@ -276,7 +276,7 @@ TEST(WongReece, ScalesAsItsUnitsDo) {
   }
 }
 
-TEST(WongReece, WorkGoesIntoShearAndCompaction) {
+TEST(WongReece, WheelPowerEqualsShearAndCompactionWork) {
   // Property: T omega - DP v = r b int tau (r omega - v cos) + sigma v sin, the rates at which rim and soil
   // rub and the soil is pressed down; stresses taken apart from the integrals, by the trapezoid.
   for (const double slip : {-0.4, 0.0, 0.2, 0.7}) {
@@ -298,7 +298,7 @@ TEST(WongReece, WorkGoesIntoShearAndCompaction) {
   }
 }
 
-TEST(WongReece, MoreSlipPullsMoreWhereThePeakStays) {
+TEST(WongReece, PullIncreasesWithSlipForAFixedPeakAngle) {
   // Property: with c2 = 0 the normal stress at a sinkage does not depend on slip, j grows with slip
   // everywhere, and so do torque and pull.
   std::mt19937_64 random{9};
@@ -316,7 +316,7 @@ TEST(WongReece, MoreSlipPullsMoreWhereThePeakStays) {
   }
 }
 
-TEST(WongReece, RefusesWhatHasNoAnswer) {
+TEST(WongReece, LoadAndSlipOutOfRangeAreRejected) {
   const Wheel wheel{};
   EXPECT_REFUSED(equilibrium(sand(), wheel, {.load_N = 1e6, .slip = 0.2}), std::domain_error,
                  "sinks to its axle before the soil carries 1000000.000000 N");

@@ -10,7 +10,7 @@ namespace channel_reading_test {
 constexpr std::array kAll{Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
 
 // Closed form: DP/W, z/r, T/(r W), F/W.
-TEST(ChannelReading, RatiosAreOfLoadAndRadius) {
+TEST(ChannelReading, ChannelsAreScaledByLoadAndRadius) {
   const Reading reading{.load_N = 50.0,
                         .radius_m = 0.2,
                         .sinkage_m = 0.03,
@@ -24,7 +24,7 @@ TEST(ChannelReading, RatiosAreOfLoadAndRadius) {
 }
 
 // Property: what is added to one ratio is found there and nowhere else.
-TEST(ChannelReading, AddsToOneChannel) {
+TEST(ChannelReading, AddScaledChangesOneChannelOnly) {
   for (const Channel channel : kAll) {
     const Reading before{.load_N = 50.0,
                          .radius_m = 0.2,
@@ -39,7 +39,7 @@ TEST(ChannelReading, AddsToOneChannel) {
   }
 }
 
-TEST(ChannelReading, EachHasANameOfItsOwn) {
+TEST(ChannelReading, ChannelNamesAreUnique) {
   std::set<std::string> names;
   for (const Channel channel : kAll) names.insert(name(channel));
   EXPECT_EQ(names.size(), kAll.size());

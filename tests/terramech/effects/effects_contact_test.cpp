@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace effects_contact_test {
 
-TEST(EffectsContact, LyaskoSinkageFollowsItsLaw) {
+TEST(EffectsContact, LyaskoSinkageMatchesClosedForm) {
   // Closed form: (1 + i)/(1 - 0.5 i) = 2 at i = 0.5.
   RefinedModel model = base();
   const double z0 = predict(model, state()).sinkage_m;
@@ -14,7 +14,7 @@ TEST(EffectsContact, LyaskoSinkageFollowsItsLaw) {
   EXPECT_NEAR(predict(model, state()).sinkage_m, 2.0 * z0, 1e-9);
 }
 
-TEST(EffectsContact, SideForceIsSteadyThroughNinetyDegrees) {
+TEST(EffectsContact, SideForceIsContinuousAtNinetyDegrees) {
   RefinedModel model = base();
   model.slip_along_travel = true;
   model.effects = {with("side_slip_lateral_shear", {1.0})};
@@ -30,7 +30,7 @@ TEST(EffectsContact, SideForceIsSteadyThroughNinetyDegrees) {
   }
 }
 
-TEST(EffectsContact, RatesArePowersAndLogarithmsOfSpeed) {
+TEST(EffectsContact, RateEffectsAreAPowerOrLogarithmOfSpeed) {
   // Closed form: k (v/v0)^m with v = 4 v0, m = 1/2; tau (1 + a ln(v/v0)) with v = e v0.
   EXPECT_NEAR(acted("rate_pressure_grahn", {0.5, 0.05}, 0.2).sinkage_modulus, 2e6, 1e-6);
   const WheelContact shear = acted("rate_shear", {0.1, 0.05}, 0.05 * std::exp(1.0));
@@ -47,7 +47,7 @@ TEST(EffectsContact, RatesArePowersAndLogarithmsOfSpeed) {
   EXPECT_GT(acted("rate_shear", {0.5, 10.0}, 0.0).cohesion_Pa, 0.0);
 }
 
-TEST(EffectsContact, PassesSaturate) {
+TEST(EffectsContact, MultipassEffectsSaturate) {
   // Closed form: 1 - e^{-(p - first)/p0} = 1/2 at p = first + p0 ln 2; nothing at the first pass.
   const double half = 1.0 + 3.0 * std::log(2.0);
   EXPECT_NEAR(acted("multipass_stiffness", {0.4, 3.0, 1.0}, half).sinkage_modulus, 1.2e6, 1e-6);
@@ -65,7 +65,7 @@ TEST(EffectsContact, PassesSaturate) {
   EXPECT_NEAR(reload.shear_modulus_m, 0.01, 1e-12);
 }
 
-TEST(EffectsContact, LugsAndSizeOfTheWheel) {
+TEST(EffectsContact, GrouserAndWheelSizeEffectsMatchClosedForm) {
   EXPECT_NEAR(acted("grouser_shear_radius", {0.7}, 0.01).shear_radius_m, 0.207, 1e-12);
   // Closed form: at h = b the factor is 1 + 0.64 atan(1).
   const WheelState square{.wheel = {.width_m = 0.1, .grouser_height_m = 0.1}};
@@ -79,7 +79,7 @@ TEST(EffectsContact, LugsAndSizeOfTheWheel) {
   EXPECT_NEAR(acted("wheel_diameter", {0.5, 0.1}, 0.2).sinkage_modulus, 2e6, 1e-6);
 }
 
-TEST(EffectsContact, SlopeMovesLoadAndSideSlipDeepens) {
+TEST(EffectsContact, SlopeReducesLoadAndSideSlipIncreasesSinkage) {
   // Closed form: N = W (cos a - (h/L) sin a), at 30 deg with h/L = 1; never below a twentieth of W.
   EXPECT_NEAR(acted("slope_load_transfer", {1.0}, std::numbers::pi / 6).load_N, 50.0 * (std::sqrt(3.0) - 1.0),
               1e-9);
@@ -90,7 +90,7 @@ TEST(EffectsContact, SlopeMovesLoadAndSideSlipDeepens) {
   EXPECT_NEAR(both.shear_modulus_m, 0.04, 1e-12);
 }
 
-TEST(EffectsContact, DingsExponentGrowsWithSlipEitherWay) {
+TEST(EffectsContact, DingExponentGrowsWithAbsoluteSlip) {
   for (const double slip : {-0.5, 0.5}) {
     const WheelState s{.slip = slip};
     EXPECT_NEAR(acted("slip_sinkage_ding", {0.4}, slip, s).sinkage_exponent, 1.2, 1e-12);
@@ -101,7 +101,7 @@ TEST(EffectsContact, DingsExponentGrowsWithSlipEitherWay) {
 }
 
 // Property: the base's slip sinkage and Ding's effect are one law, and both together have the sum of their sizes.
-TEST(EffectsContact, TheBaseSinksWithSlipAsDingsEffectDoes) {
+TEST(EffectsContact, BaseSlipSinkageEqualsTheDingEffect) {
   for (const double slip : {-0.4, 0.2, 0.7}) {
     RefinedModel effect = base(), soil = base(), both = base();
     effect.effects = {with("slip_sinkage_ding", {0.5})};
@@ -117,7 +117,7 @@ TEST(EffectsContact, TheBaseSinksWithSlipAsDingsEffectDoes) {
   }
 }
 
-TEST(EffectsContact, GroundThatReboundsOrIsLayered) {
+TEST(EffectsContact, ReboundAndHardpanSetTheirContactParameters) {
   EXPECT_EQ(acted("elastic_rebound", {0.3}, 0.01).rebound, 0.3);
   const WheelContact layered = acted("layered_hardpan", {0.01, 1e7}, 0.01);
   EXPECT_EQ(layered.hard_depth_m, 0.01);

@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace effects_digging_test {
 
-TEST(EffectsDigging, ADraggedWheelSinksByTheSquareOfWhatItDoesNotRoll) {
+TEST(EffectsDigging, BrakedWheelSinkageIsQuadraticInSkid) {
   // Closed form: 0.3 r (1 - r omega/v)^2 with r omega/v = 1 + slip; none where the wheel drives.
   RefinedModel model = base();
   model.effects = {typical(*findEffect("skid_sinkage"))};
@@ -18,7 +18,7 @@ TEST(EffectsDigging, ADraggedWheelSinksByTheSquareOfWhatItDoesNotRoll) {
   }
 }
 
-TEST(EffectsDigging, SideForceAgainstTheTravelAndNoPloughingStraightOn) {
+TEST(EffectsDigging, PloughingIsOddInSlipAngleAndZeroStraightAhead) {
   RefinedModel model = base();
   model.effects = {typical(*findEffect("side_ploughing"))};
   WheelState s = state(0.2);
@@ -40,7 +40,7 @@ TEST(EffectsDigging, SideForceAgainstTheTravelAndNoPloughingStraightOn) {
   }
 }
 
-TEST(EffectsDigging, ADrivenWheelDigsByItsSlipAndALuggedOneByReecesLaw) {
+TEST(EffectsDigging, SlipSinkageMatchesLinearAndReeceLaws) {
   for (const double slip : {-0.6, 0.0, 0.4, 0.8}) {
     const double z0 = predict(base(), straightOn(slip)).sinkage_m, i = std::max(0.0, slip);
     RefinedModel model = base();
@@ -55,7 +55,7 @@ TEST(EffectsDigging, ADrivenWheelDigsByItsSlipAndALuggedOneByReecesLaw) {
   }
 }
 
-TEST(EffectsDigging, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDug) {
+TEST(EffectsDigging, RearFillIncreasesPullAndDugDepthIsExcludedFromBulldozing) {
   RefinedModel model = base();
   model.effects = {with("slip_sinkage_linear", {1.0})};
   const Reading digs = predict(model, straightOn(0.6));
@@ -73,7 +73,7 @@ TEST(EffectsDigging, SoilBehindADiggingWheelPushesItAndItDoesNotBulldozeWhatItDu
               2.0 * state().wheel.width_m * 0.5 * 1600.0 * 9.80665 * pushed * pushed * kp, 1e-6);
 }
 
-TEST(EffectsDigging, PloughingGrowsWithThePathAcross) {
+TEST(EffectsDigging, PloughingGrowsWithTheLateralPathShare) {
   // Closed form: J = sin b / (sin b + m cos b) at 45 deg is 1/2 for m = 1 and 1/4 for m = 3; a r J^2 with
   // a r = 0.1 m, and contact behind 1 - (1 - J). A locked wheel only drags.
   const WheelContact one = acted("side_ploughing", {0.5, 1.0}, std::numbers::pi / 4),

@@ -9,7 +9,7 @@ namespace effects_drift_test {
 // A drift from time 100 s on, over a span of 50 s.
 constexpr double kStart = 100.0, kSpan = 50.0;
 
-TEST(EffectsDrift, ALineRisesByItsSizeOverItsSpan) {
+TEST(EffectsDrift, LinearDriftReachesItsSizeOverItsSpan) {
   // Closed form: 1 + a u with u = 1/2; k e^{a u}.
   const double middle = kStart + 0.5 * kSpan;
   EXPECT_NEAR(acted("drift_cohesion", {0.4, kStart, kSpan}, middle).cohesion_Pa, 1200.0, 1e-9);
@@ -18,12 +18,12 @@ TEST(EffectsDrift, ALineRisesByItsSizeOverItsSpan) {
   EXPECT_EQ(acted("drift_cohesion", {0.4, kStart, kSpan}, kStart), plainContact());
 }
 
-TEST(EffectsDrift, ARelaxationReachesHalfItsSizeAfterLnTwoOfItsDecay) {
+TEST(EffectsDrift, RelaxingDriftReachesHalfItsSizeAfterLnTwoTimeConstants) {
   const double x = kStart + kSpan * 0.4 * std::log(2.0);
   EXPECT_NEAR(acted("drift_cohesion_relaxing", {0.4, kStart, kSpan, 0.4}, x).cohesion_Pa, 1200.0, 1e-9);
 }
 
-TEST(EffectsDrift, AWaveComesBackAfterItsPeriod) {
+TEST(EffectsDrift, DiurnalDriftIsPeriodic) {
   const std::vector<double> wave{0.2, kStart, kSpan, 0.5, 0.0};  // period of half a span
   const auto cohesion = [&](double periods) {
     return acted("drift_cohesion_diurnal", wave, kStart + 0.5 * kSpan * periods).cohesion_Pa;
@@ -34,7 +34,7 @@ TEST(EffectsDrift, AWaveComesBackAfterItsPeriod) {
   EXPECT_NEAR(cohesion(1.0), 1000.0, 1e-9);
 }
 
-TEST(EffectsDrift, AZeroMovesItsChannelAlone) {
+TEST(EffectsDrift, SensorZeroDriftChangesItsChannelOnly) {
   const Reading before{
       .load_N = 100.0, .radius_m = 0.2, .sinkage_m = 0.01, .torque_Nm = 5.0, .drawbar_pull_N = 20.0};
   const auto moved = [&](const char* name) {
@@ -51,14 +51,14 @@ TEST(EffectsDrift, AZeroMovesItsChannelAlone) {
 }
 
 // Property: however far a line is followed, the soil keeps physical numbers.
-TEST(EffectsDrift, SoilStaysPhysical) {
+TEST(EffectsDrift, ExtrapolatedDriftKeepsSoilPhysical) {
   const double far = kStart + 1000 * kSpan;
   EXPECT_EQ(acted("drift_cohesion", {-0.5, kStart, kSpan}, far).cohesion_Pa, 0.0);
   EXPECT_GT(acted("drift_friction", {-0.5, kStart, kSpan}, far).tan_friction, 0.0);
   EXPECT_LT(acted("drift_stiffness", {3.0, kStart, kSpan}, far).sinkage_modulus, 2e8);
 }
 
-TEST(EffectsDrift, OnlyZerosAreFaultsOfASensor) {
+TEST(EffectsDrift, OnlyZeroDriftsAreSensorFaults) {
   int forms = 0;
   for (const EffectForm& form : effectLibrary()) {
     if (std::string(form.family) != "drift") continue;

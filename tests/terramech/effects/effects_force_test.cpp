@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace effects_force_test {
 
-TEST(EffectsForce, SoilMovedInFrontWeighsWhatItDoesWhereTheRoverDrives) {
+TEST(EffectsForce, BulldozingScalesWithGravityWithoutCohesion) {
   RefinedModel model = base();
   model.soil.cohesion_Pa = 0.0;
   const auto resistance = [&](const char* effect, std::vector<double> parameters, double gravity_m_s2) {
@@ -25,7 +25,7 @@ TEST(EffectsForce, SoilMovedInFrontWeighsWhatItDoesWhereTheRoverDrives) {
   EXPECT_NEAR(moon / earth, 1.62 / 9.80665, 1e-9);
 }
 
-TEST(EffectsForce, ARoughFaceBrakesALockedWheelPushesASpinningOneAndBearsLessBesideIt) {
+TEST(EffectsForce, RoughFaceFrictionOpposesSlidingAndReducesSideForce) {
   RefinedModel model = base();
   model.slip_along_travel = true;
   model.effects = {with("side_ploughing", {0.5, 1.0}), with("side_bulldozing_rough", {1.0, 0.0})};
@@ -56,7 +56,7 @@ WheelContact soilOf(double friction_angle_rad) {
   return c;
 }
 
-TEST(EffectsForce, BulldozingIsThePassiveWedge) {
+TEST(EffectsForce, BulldozingMatchesThePassiveWedge) {
   // Closed form: Kp = 3 at 30 deg; b (gamma z^2 Kp / 2 + 2 c z sqrt(Kp)), b = 0.1 m, z = 0.02 m.
   const double friction = 0.1 * 15000.0 * 0.0004 * 3.0 / 2.0,
                cohesion = 0.1 * 2.0 * 1000.0 * 0.02 * std::sqrt(3.0);
@@ -71,14 +71,14 @@ TEST(EffectsForce, BulldozingIsThePassiveWedge) {
 }
 
 // Property: a wheel that moves across its plane pushes nothing ahead of itself.
-TEST(EffectsForce, NothingIsPushedAheadAtNinetyDegrees) {
+TEST(EffectsForce, BulldozingAheadIsZeroAtNinetyDegrees) {
   const WheelState across{.slip_angle_rad = std::numbers::pi / 2};
   for (const char* name : {"bulldozing", "bulldozing_hegedus", "bulldozing_ahead"})
     EXPECT_NEAR(readWith(name, {1.0}, 0.02, across, soilOf(0.5), sunk(0.02)).drawbar_pull_N, 0.0, 1e-9)
         << name;
 }
 
-TEST(EffectsForce, ASmoothFaceHasRankinesPressureUnderCoulombsLaw) {
+TEST(EffectsForce, SmoothFaceCoulombPressureEqualsRankine) {
   // Closed form: Coulomb's passive coefficient without wall friction is tan^2(45 deg + phi/2).
   for (const double angle : {-1.0, 0.3, 1.4}) {
     const WheelContact c = soilOf(0.6);
@@ -90,7 +90,7 @@ TEST(EffectsForce, ASmoothFaceHasRankinesPressureUnderCoulombsLaw) {
   }
 }
 
-TEST(EffectsForce, PilesAndTheSlopesShareOfTheWeight) {
+TEST(EffectsForce, RearPileAndSlopeWeightComponentMatchClosedForm) {
   const WheelContact c = soilOf(std::numbers::pi / 6);
   // Closed form: a W (i - i0)^2 = 0.5 x 100 x 0.04; gamma b h^2 Kp / 2 with h = 0.5 x 0.2; nothing below i0.
   EXPECT_NEAR(readWith("rear_pile", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N, 2.0, 1e-12);
@@ -102,7 +102,7 @@ TEST(EffectsForce, PilesAndTheSlopesShareOfTheWeight) {
       -25.0, 1e-12);
 }
 
-TEST(EffectsForce, ARoughFaceHasCoulombsPressure) {
+TEST(EffectsForce, RoughFaceMatchesCoulombPressure) {
   // Closed form: phi = delta = 30 deg gives Kp = cos 30 deg / (1 - sqrt(1/2))^2 = 10.095. A locked wheel at
   // 90 deg slides along its face upwards alone, so that all friction counts and none pulls or brakes.
   WheelContact c = soilOf(std::numbers::pi / 6);
@@ -116,7 +116,7 @@ TEST(EffectsForce, ARoughFaceHasCoulombsPressure) {
   EXPECT_NEAR(r.drawbar_pull_N, 0.0, 1e-9);
 }
 
-TEST(EffectsForce, OfTheSideStandInPlaceOfTheBases) {
+TEST(EffectsForce, SideEffectsReplaceTheSideTermsOfTheBase) {
   RefinedModel model = base();
   const Reading plain = predict(model, state());
   RefinedModel bare = model;
@@ -131,7 +131,7 @@ TEST(EffectsForce, OfTheSideStandInPlaceOfTheBases) {
   EXPECT_GT(std::abs(plain.side_force_N), std::abs(predict(model, state()).side_force_N));
 }
 
-TEST(EffectsForce, TheBaseAtASlipAngleIsTheWheelOfTheLiterature) {
+TEST(EffectsForce, BaseAtSlipAngleMatchesTheEquilibrium) {
   for (const double slip : {-1.0, -0.4, 0.0, 0.3, 0.9}) {
     const WheelState s = state(slip);
     const Reading r = predict(base(), s);

@@ -13,14 +13,14 @@ Reading read(const char* name, std::vector<double> parameters, double x = 1.0, d
   return readWith(name, std::move(parameters), x, {.slip = slip}, plainContact(), kRead);
 }
 
-TEST(EffectsSensor, TorqueIsOffsetScaledOrRubbed) {
+TEST(EffectsSensor, TorqueEffectsAddOffsetViscousFrictionAndEfficiency) {
   EXPECT_DOUBLE_EQ(read("torque_offset", {0.5}).torque_Nm, 6.5);
   EXPECT_DOUBLE_EQ(read("torque_offset", {0.5}, 1.0, -1.0).torque_Nm, 6.0);  // a locked wheel does not turn
   EXPECT_DOUBLE_EQ(read("torque_offset_viscous", {0.5, 10.0}, 0.1).torque_Nm, 7.5);
   EXPECT_DOUBLE_EQ(read("torque_efficiency", {0.75}).torque_Nm, 8.0);
 }
 
-TEST(EffectsSensor, ZerosOfTheOtherSensors) {
+TEST(EffectsSensor, DrawbarZeroSinkageDatumAndCellTiltMatchClosedForm) {
   EXPECT_DOUBLE_EQ(read("drawbar_zero", {-3.0}).drawbar_pull_N, 17.0);
   EXPECT_DOUBLE_EQ(read("sinkage_datum", {0.002}).sinkage_m, 0.012);
   // Closed form: DP cos e + W sin e at 30 deg.
@@ -29,7 +29,7 @@ TEST(EffectsSensor, ZerosOfTheOtherSensors) {
 }
 
 // Closed form: 1 - i = (1 - i_m)/(1 + e); a radius read 25 % too small turns 0.2 into 0.36 of slip.
-TEST(EffectsSensor, SlipBiasIsAnErrorOfTheRadius) {
+TEST(EffectsSensor, SlipBiasEqualsARadiusError) {
   const auto slip = [](double measured, double e) {
     WheelContact c = plainContact();
     c.slip = measured;
@@ -42,7 +42,7 @@ TEST(EffectsSensor, SlipBiasIsAnErrorOfTheRadius) {
   EXPECT_EQ(slip(-0.3, 0.25), -0.3);  // of a braked wheel nothing is known
 }
 
-TEST(EffectsSensor, AllAreFaultsOfASensor) {
+TEST(EffectsSensor, OnlySensorEffectsAreMarkedAsSensorFaults) {
   for (const EffectForm& form : detail::sensorEffects()) EXPECT_TRUE(form.of_sensor) << form.name;
   for (const EffectForm& form : detail::forceEffects()) EXPECT_FALSE(form.of_sensor) << form.name;
   for (const EffectForm& form : detail::contactEffects()) EXPECT_FALSE(form.of_sensor) << form.name;

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace effects_test {
 
-TEST(Effects, NamesAreUniqueAndEveryFormSaysWhatItIs) {
+TEST(Effects, NamesAreUniqueAndEveryFormIsDocumented) {
   std::set<std::string> seen;
   for (const EffectForm& form : effectLibrary()) {
     EXPECT_TRUE(seen.insert(form.name).second) << form.name;
@@ -21,7 +21,7 @@ TEST(Effects, NamesAreUniqueAndEveryFormSaysWhatItIs) {
   }
 }
 
-TEST(Effects, EveryFormActsAtItsTypicalSize) {
+TEST(Effects, EveryFormHasAFiniteEffectAtItsTypicalSize) {
   // Property: none is dead; the change stays finite and below ten loads.
   for (const EffectForm& form : effectLibrary()) {
     RefinedModel model = base();

@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace refined_model_test {
 
-TEST(RefinedModel, AnUnknownCovariateLeavesTheModelNeutral) {
+TEST(RefinedModel, UnknownCovariateLeavesPredictionsUnchanged) {
   for (const EffectForm& form : effectLibrary()) {
     RefinedModel model = base();
     model.effects = {typical(form)};
@@ -14,7 +14,7 @@ TEST(RefinedModel, AnUnknownCovariateLeavesTheModelNeutral) {
   }
 }
 
-TEST(RefinedModel, TheLinearFormulaStartsFromWhatWasMeasured) {
+TEST(RefinedModel, LinearFormulaUsesMeasuredTorqueAndSinkage) {
   RefinedModel model = base();
   model.base = BaseModel::LinearFormula;
   WheelState s = state();
@@ -34,7 +34,7 @@ TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
   EXPECT_NEAR(slipInWheelPlane(-0.5, std::acos(0.5)), 0.0, 1e-12);
 }
 
-TEST(RefinedModel, AMirroredWheelReadsMirrored) {
+TEST(RefinedModel, SideForceIsOddAndOtherChannelsEvenInSlipAngle) {
   // Property: no force of the ground and no curve knows left from right, so that the side force is odd in the slip angle
   // and the rest even.
   std::vector<Effect> effects;
@@ -62,7 +62,7 @@ TEST(RefinedModel, AMirroredWheelReadsMirrored) {
   }
 }
 
-TEST(RefinedModel, ALockedWheelsSlipIsReadWithoutError) {
+TEST(RefinedModel, SlipStdIsLimitedNearALockedWheel) {
   // Closed form: |i| e, no more than what is left to i = -1, where r omega = 0.
   const SensorNoise noise{.slip_absolute = 0.03, .slip_relative = 0.04};
   EXPECT_DOUBLE_EQ(noise.slipStd(-1.0), 0.03);
@@ -80,7 +80,7 @@ TEST(RefinedModel, ALockedWheelsSlipIsReadWithoutError) {
   EXPECT_EQ(predictWithStd(model, locked).scaled_std[0], sure);
 }
 
-TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
+TEST(RefinedModel, StdIncludesSensorNoiseAndSlipError) {
   RefinedModel model = base();
   model.noise.absolute[0] = 0.02 * 80.0;
   EXPECT_NEAR(predictWithStd(model, state()).scaled_std[0], 0.02, 1e-12);
@@ -88,7 +88,7 @@ TEST(RefinedModel, StdHoldsTheSensorsAndTheSlip) {
   EXPECT_GT(predictWithStd(model, state(0.05)).scaled_std[0], 0.02);
 }
 
-TEST(RefinedModel, AnEffectOfOneGroupLeavesTheOthersAlone) {
+TEST(RefinedModel, EffectOfOneGroupLeavesOtherGroupsUnchanged) {
   RefinedModel model = base();
   model.effects = {typical(*findEffect("load_cell_tilt"))};
   model.effects[0].only_column = "source";
@@ -102,7 +102,7 @@ TEST(RefinedModel, AnEffectOfOneGroupLeavesTheOthersAlone) {
   EXPECT_NEAR(predict(model, b).drawbar_pull_N, dp * std::cos(0.02) + 80.0 * std::sin(0.02), 1e-12);
 }
 
-TEST(RefinedModel, ManyStatesAtOnceReadAsOneByOne) {
+TEST(RefinedModel, BatchPredictionMatchesSinglePredictions) {
   // Property: to the kernel's accuracy, 1e-6 of the load, with effects and without.
   RefinedModel refined = base();
   refined.effects = {typical(*findEffect("slip_sinkage_linear")), typical(*findEffect("bulldozing")),
@@ -117,7 +117,7 @@ TEST(RefinedModel, ManyStatesAtOnceReadAsOneByOne) {
   }
 }
 
-TEST(RefinedModel, WithoutSensorsOnlyTheGroundActs) {
+TEST(RefinedModel, WithoutSensorsKeepsOnlyGroundEffects) {
   RefinedModel model = base();
   model.effects = {typical(*findEffect("torque_offset")), typical(*findEffect("bulldozing")),
                    typical(*findEffect("slip_bias"))};
@@ -126,7 +126,7 @@ TEST(RefinedModel, WithoutSensorsOnlyTheGroundActs) {
   EXPECT_EQ(ground.effects[0].name, "bulldozing");
 }
 
-TEST(RefinedModel, CurvesMultiplyTheSoilOrAddToAChannel) {
+TEST(RefinedModel, CurvesScaleSoilParametersOrAddToAChannel) {
   // Closed form: one knot is a constant curve; e^{ln 2} k, and 0.1 W.
   RefinedModel model = base(), stiff = base();
   stiff.soil.cohesive_modulus *= 2.0;
@@ -139,7 +139,7 @@ TEST(RefinedModel, CurvesMultiplyTheSoilOrAddToAChannel) {
   EXPECT_NEAR(predict(model, state()).drawbar_pull_N - predict(base(), state()).drawbar_pull_N, 8.0, 1e-9);
 }
 
-TEST(RefinedModel, FittedNumbersAreReadAndSet) {
+TEST(RefinedModel, FittedParametersRoundTripThroughSetValue) {
   RefinedModel model = base();
   model.effects = {with("bulldozing_two_term", {1.0, 2.0})};
   EXPECT_EQ(value(model, {.effect = 0, .index = 1}), 2.0);
@@ -154,7 +154,7 @@ TEST(RefinedModel, FittedNumbersAreReadAndSet) {
   }
 }
 
-TEST(RefinedModel, StdHoldsTheFittedParameters) {
+TEST(RefinedModel, StdIncludesFittedParameters) {
   // Closed form: DP_m = DP + F0, so the std of DP/W is that of F0 over W; nothing else is moved.
   RefinedModel model = base();
   model.effects = {with("drawbar_zero", {1.0})};
@@ -166,7 +166,7 @@ TEST(RefinedModel, StdHoldsTheFittedParameters) {
   EXPECT_NEAR(p.scaled_std[2], 0.0, 1e-9);
 }
 
-TEST(RefinedModel, StdHoldsWhatParametersShare) {
+TEST(RefinedModel, StdIncludesParameterCovariance) {
   // Closed form: of a sum of two offsets the variance is 4 + 9 + 2 (-2) = 9.
   RefinedModel model = base();
   model.effects = {with("drawbar_zero", {1.0}), with("drawbar_zero", {-2.0})};

@@ -15,7 +15,7 @@ WheelContact loaded(double load_N, double slip) {
   return contact;
 }
 
-TEST(WheelContact, IsTheWongReeceWheelWhenNothingIsChanged) {
+TEST(WheelContact, WithoutEffectsMatchesWongReece) {
   // Property: two integrators of one model, 8 points here and 24 there, differ by their quadrature alone.
   for (const double load : {15.0, 80.0, 250.0})
     for (const double slip : {-0.9, -0.3, 0.0, 0.1, 0.4, 0.9}) {
@@ -28,7 +28,7 @@ TEST(WheelContact, IsTheWongReeceWheelWhenNothingIsChanged) {
     }
 }
 
-TEST(WheelContact, ManyAtOnceAreTheSameWheels) {
+TEST(WheelContact, BatchSolutionMatchesSingleSolutions) {
   // Property: the kernel's wheels, the quick rule's and mixtures of both agree with one at a time.
   std::vector<WheelContact> contacts;
   for (const double slip : {-0.5, 0.0, 0.05, 0.3, 0.6, 0.95}) {
@@ -48,7 +48,7 @@ TEST(WheelContact, ManyAtOnceAreTheSameWheels) {
   }
 }
 
-TEST(WheelContact, ContactsThatStandSolvedAreNotSolvedAgain) {
+TEST(WheelContact, UnchangedContactsAreNotSolvedAgain) {
   // Property: forces kept under a contact come back untouched, another contact in its place is solved anew.
   SolvedContacts solved;
   solveContacts({loaded(60.0, 0.3), loaded(80.0, 0.3)}, solved);
@@ -60,7 +60,7 @@ TEST(WheelContact, ContactsThatStandSolvedAreNotSolvedAgain) {
   EXPECT_GT(solved.forces[0].torque_Nm, 0.0);
 }
 
-TEST(WheelContact, ImposedSinkageIsReachedAndStillCarriesTheLoad) {
+TEST(WheelContact, ImposedSinkageIsReachedAtTheGivenLoad) {
   // Closed form: z = gain z0 + extra.
   WheelContact contact = loaded(80.0, 0.4);
   const double z0 = solveContact(contact).sinkage_m;
@@ -83,7 +83,7 @@ TEST(WheelContact, SideForceIsOddAndPullEvenInTheSlipAngle) {
   EXPECT_LT(a.drawbar_pull_N, solveContact(loaded(80.0, 0.3)).drawbar_pull_N);
 }
 
-TEST(WheelContact, HardLayerStopsTheSinkage) {
+TEST(WheelContact, HardLayerLimitsSinkage) {
   WheelContact contact = loaded(200.0, 0.2);
   const double soft = solveContact(contact).sinkage_m;
   contact.hard_depth_m = 0.5 * soft;
@@ -93,12 +93,12 @@ TEST(WheelContact, HardLayerStopsTheSinkage) {
   EXPECT_LT(solveContact(contact).sinkage_m, 0.75 * soft);
 }
 
-TEST(WheelContact, SoilThatCannotCarryGivesAWheelSunkToItsAxle) {
+TEST(WheelContact, ExcessiveLoadSinksTheWheelToItsAxle) {
   WheelContact contact = loaded(1e7, 0.2);
   EXPECT_NEAR(solveContact(contact).sinkage_m, contact.radius_m, 1e-9);
 }
 
-TEST(WheelContact, WhatIsDugAlongAndPloughedAcrossAddAsPaths) {
+TEST(WheelContact, LongitudinalAndLateralDiggingCombineByPath) {
   WheelContact c = contactOf(madeSand(), Wheel{.radius_m = 0.12, .grouser_height_m = 0.01});
   c.load_N = 80.0;
   c.slip = 0.4;

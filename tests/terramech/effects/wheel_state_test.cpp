@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace wheel_state_test {
 
-TEST(WheelState, ColumnsByTheirNameInTelemetryFiles) {
+TEST(WheelState, CovariatesAreFoundByTheirTelemetryColumnName) {
   const WheelState s{.wheel = {.radius_m = 0.1, .width_m = 0.2, .grouser_height_m = 0.3, .grouser_count = 4},
                      .load_N = 5.0,
                      .slip = 0.6,
@@ -27,7 +27,7 @@ TEST(WheelState, ColumnsByTheirNameInTelemetryFiles) {
   }
 }
 
-TEST(WheelState, FurtherColumnsGroupsAndWhatIsNotThere) {
+TEST(WheelState, ExtraColumnsAndGroupsAreCovariatesAndUnknownOnesNan) {
   WheelState s;
   s.extra = {{"moisture", 3.5}};
   s.group = {{"source", "a"}};
@@ -40,7 +40,7 @@ TEST(WheelState, FurtherColumnsGroupsAndWhatIsNotThere) {
   EXPECT_TRUE(std::isnan(s.covariate("speed_mps")));  // not known unless it is set
 }
 
-TEST(WheelState, AProductOfTwoColumnsIsACovariate) {
+TEST(WheelState, ProductOfTwoColumnsIsACovariate) {
   WheelState s{.load_N = 40.0};
   s.extra = {{"moisture", 3.5}, {"a*b", 7.0}};
   EXPECT_EQ(s.covariate("moisture*load_N"), 140.0);
@@ -48,7 +48,7 @@ TEST(WheelState, AProductOfTwoColumnsIsACovariate) {
   EXPECT_TRUE(std::isnan(s.covariate("moisture*no_such_column")));
 }
 
-TEST(WheelState, ASetColumnReadsBack) {
+TEST(WheelState, SetCovariateRoundTrips) {
   // Property: every column, and no other.
   WheelState s;
   s.extra = {{"moisture", 3.5}};

@@ -13,7 +13,7 @@ namespace drawbar_pull_test {
 
 const WheelSample kSample{.load_N = 80, .torque_Nm = 3.2, .sinkage_m = 0.02, .slip = 0.5};
 
-TEST(DrawbarPull, SingleForceIsThatOfItsComponents) {
+TEST(DrawbarPull, SingleForceEqualsItsComponents) {
   // Closed form: Eqs. 3.2, 3.3 (corrected: X sin theta): W = X sin + Y cos, T = r X, DP = X cos - Y sin.
   const double theta = 0.3;
   const double x = kSample.torque_Nm / kThesisWheel.radius_m;
@@ -22,7 +22,7 @@ TEST(DrawbarPull, SingleForceIsThatOfItsComponents) {
   EXPECT_NEAR(pullOfSingleForce(kThesisWheel, kSample, theta), pull / kSample.load_N, 1e-14);
 }
 
-TEST(DrawbarPull, TriangularStressAsPrintedCollapsesToTheStableForm) {
+TEST(DrawbarPull, TriangularStressAsPrintedEqualsTheStableForm) {
   // Printed in: thesis Eq. 3.12, evaluated as it stands.
   const double t1 = entryAngle_rad(kThesisWheel, kSample.sinkage_m);
   const double p = 2.0 * std::cos(t1 / 2.0) - std::cos(t1) - 1.0;
@@ -32,7 +32,7 @@ TEST(DrawbarPull, TriangularStressAsPrintedCollapsesToTheStableForm) {
   EXPECT_NEAR(pullOfTriangularStress(kThesisWheel, kSample), pull / kSample.load_N, 1e-12);
 }
 
-TEST(DrawbarPull, TriangularStressIsExactWhereStressesAreTriangular) {
+TEST(DrawbarPull, TriangularStressIsExactForTriangularStresses) {
   // Property: against the pull integrated over a world of triangular stresses (midpoint rule, 1e-6).
   const LinearWorld world{.cohesion_Pa = 800.0, .offset = false};
   const WheelSample s = sampleOf(kThesisWheel, world, {.sinkage_m = 0.02, .slip = 0.4});
@@ -49,7 +49,7 @@ TEST(DrawbarPull, TriangularStressIsExactWhereStressesAreTriangular) {
   EXPECT_NEAR(pullOfTriangularStress(kThesisWheel, s), pull / s.load_N, 1e-6);
 }
 
-TEST(DrawbarPull, FormsAgreeAsTheContactShrinks) {
+TEST(DrawbarPull, FormulasAgreeAtVanishingSinkage) {
   // Property: 3.6 is 3.12 to first order in theta_1.
   WheelSample s = kSample;
   s.sinkage_m = 1e-8;
@@ -58,7 +58,7 @@ TEST(DrawbarPull, FormsAgreeAsTheContactShrinks) {
   EXPECT_DOUBLE_EQ(pullOfTriangularStress(kThesisWheel, s), 0.4);
 }
 
-TEST(DrawbarPull, PlaneFitGivesBackAPlane) {
+TEST(DrawbarPull, PlaneFitRecoversAPlane) {
   PullPlaneFitter fitter;
   for (int k = 0; k < 20; ++k) {
     const WheelSample s{
@@ -72,7 +72,7 @@ TEST(DrawbarPull, PlaneFitGivesBackAPlane) {
   EXPECT_LT(fit.residual_std, 1e-7);
 }
 
-TEST(DrawbarPull, PlaneFitStatesItsScatter) {
+TEST(DrawbarPull, PlaneFitStdIsTheResidualScatter) {
   // Closed form: residual variance with n - 3 degrees of freedom, from the residuals themselves.
   PullPlaneFitter fitter;
   std::vector<std::pair<WheelSample, double>> data;
@@ -90,7 +90,7 @@ TEST(DrawbarPull, PlaneFitStatesItsScatter) {
   EXPECT_GT(fit.covariance(0, 0), 0.0);
 }
 
-TEST(DrawbarPull, PlaneFitRefusesSamplesOnALine) {
+TEST(DrawbarPull, PlaneFitRejectsCollinearSamples) {
   PullPlaneFitter fitter;
   for (int k = 0; k < 9; ++k) fitter.add(kThesisWheel, kSample, 0.1);
   EXPECT_REFUSED(fitter.estimate(), std::domain_error, "the samples lie on a line; vary load and slip");
@@ -110,14 +110,14 @@ double rms(const Wheel& wheel) {
   return std::sqrt(squares / count);
 }
 
-TEST(DrawbarPull, OursMeetsItsStatedAccuracy) {
+TEST(DrawbarPull, RmsErrorIsWithinItsStatedAccuracy) {
   // Property: the stated rms, 0.002 on the thesis' wheel, and below 0.006 on wheels of other sizes.
   EXPECT_LT(rms(kThesisWheel), 0.003);
   EXPECT_LT(rms({.radius_m = 0.16, .width_m = 0.16}), 0.006);
   EXPECT_LT(rms({.radius_m = 0.065, .width_m = 0.08}), 0.006);
 }
 
-TEST(DrawbarPull, StandardDeviationIsTheScatterOfNoisyReadings) {
+TEST(DrawbarPull, StdEqualsScatterOfNoisyReadings) {
   // Property: over 400 repeats of 5 % noise, to 15 % (sampling and curvature).
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -135,7 +135,7 @@ TEST(DrawbarPull, StandardDeviationIsTheScatterOfNoisyReadings) {
   EXPECT_NEAR(stated / std::sqrt(squares), 1.0, 0.15);
 }
 
-TEST(DrawbarPull, EachReadingsErrorIsCarriedThrough) {
+TEST(DrawbarPull, StdPropagatesEachReadingError) {
   // Property: one error alone gives half the difference at plus and minus it, and the model's own in
   // quadrature.
   const auto check = [](double WheelSample::*field, ReadingError ReadingErrors::*which) {
@@ -155,14 +155,14 @@ TEST(DrawbarPull, EachReadingsErrorIsCarriedThrough) {
   check(&WheelSample::slip, &ReadingErrors::slip);
 }
 
-TEST(DrawbarPull, ClimbableSlopeIsItsArctan) {
+TEST(DrawbarPull, ClimbableSlopeIsArctanOfPullOverLoad) {
   // Closed form.
   const Estimate slope = climbableSlope_rad({.value = std::tan(0.3), .std = 0.01});
   EXPECT_NEAR(slope.value, 0.3, 1e-15);
   EXPECT_NEAR(slope.std, 0.01 * std::pow(std::cos(0.3), 2), 1e-15);
 }
 
-TEST(DrawbarPull, RefusesAnUnloadedWheel) {
+TEST(DrawbarPull, UnloadedWheelIsRejected) {
   WheelSample s = kSample;
   s.load_N = 0.0;
   EXPECT_REFUSED(pullOverLoad(kThesisWheel, s), std::invalid_argument, "load_N = 0, must be > 0");

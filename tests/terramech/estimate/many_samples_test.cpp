@@ -15,7 +15,7 @@ std::vector<WheelReading> numbered(std::size_t count) {
   return readings;
 }
 
-TEST(ManySamples, KnowTheirError) {
+TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
   // Property: over twelve soils of known class with 600 samples each, c, phi and K err by about what the
   // posterior says, rms within a factor of two. A search that leaves out the slope of the normalisation errs
   // by more than five times of it.
@@ -39,7 +39,7 @@ TEST(ManySamples, KnowTheirError) {
   }
 }
 
-TEST(ManySamples, AgreeWhereDrawsAreStillWeighedAndWhereTheQuadraticServes) {
+TEST(ManySamples, QuadraticAndWeightedPosteriorsAgreeAtTheSwitch) {
   // Property: the 301st sample changes the way, not the answer.
   ThesisRuns runs(72);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 301});
@@ -55,7 +55,7 @@ TEST(ManySamples, AgreeWhereDrawsAreStillWeighedAndWhereTheQuadraticServes) {
   EXPECT_NEAR(quadratic.misfit, weighed.misfit, 0.05);
 }
 
-TEST(ManySamples, AreNoSurerThanTheModelThatTheyAreReadBy) {
+TEST(ManySamples, StdIsBoundedBelowByModelError) {
   // Property: from 4000 samples on the standard deviation stays; counting them all it would shrink by 1.4.
   ThesisRuns runs(74);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 8000});
@@ -66,7 +66,7 @@ TEST(ManySamples, AreNoSurerThanTheModelThatTheyAreReadBy) {
     EXPECT_NEAR(std::sqrt(whole.covariance(k, k) / half.covariance(k, k)), 1.0, 0.15);
 }
 
-TEST(ManySamples, TellHowFarTheyAreAndStop) {
+TEST(ManySamples, ReportsProgressAndStopsOnRequest) {
   // Property: what is reported grows from 0 to 1; a stop asked for on the way leaves no draws.
   ThesisRuns runs(73);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 5000});
@@ -90,7 +90,7 @@ TEST(ManySamples, TellHowFarTheyAreAndStop) {
   EXPECT_EQ(after, 0);
 }
 
-TEST(ManySamples, AreSpreadEvenlyWithoutABeat) {
+TEST(ManySamples, SubsampleIsStratifiedWithoutPeriodicAliasing) {
   // Property: in order, none twice, every stretch has one; of a pattern that repeats with the stretch all
   // parts come up.
   const auto all = numbered(4096);

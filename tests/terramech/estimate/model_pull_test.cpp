@@ -31,7 +31,7 @@ Effect effect(const char* name, std::vector<double> parameters, const char* cova
   return e;
 }
 
-TEST(ModelPull, OfAPlainSoilIsTheEquilibrium) {
+TEST(ModelPull, PullOnPlainSoilEqualsTheEquilibrium) {
   const ModelPull pull = pullOf(groundTruthOf(sandModel()), kState);
   const WheelForces f = equilibrium(sandModel().soil, kWheel, {.load_N = 80.0, .slip = 0.3});
   EXPECT_NEAR(pull.pull_over_load.value, f.drawbar_pull_N / 80.0, 1e-6);
@@ -40,7 +40,7 @@ TEST(ModelPull, OfAPlainSoilIsTheEquilibrium) {
   EXPECT_DOUBLE_EQ(pull.pull_over_load.std, 0.0);
 }
 
-TEST(ModelPull, LeavesOutWhatOnlyTheSensorsSay) {
+TEST(ModelPull, ExcludesSensorEffects) {
   // Property: an offset of the load cell moves predict() and not the pull; an effect on the soil moves both.
   const double plain = pullOf(groundTruthOf(sandModel()), kState).pull_over_load.value;
   RefinedModel tilted = sandModel();
@@ -52,7 +52,7 @@ TEST(ModelPull, LeavesOutWhatOnlyTheSensorsSay) {
   EXPECT_LT(pullOf(groundTruthOf(sinking), kState).pull_over_load.value, plain - 0.005);
 }
 
-TEST(ModelPull, KeepsTheCovarianceOfWhatStays) {
+TEST(ModelPull, KeepsTheCovarianceOfGroundEffects) {
   // Property: the standard deviation is that of the same model without the sensor's effect and its column.
   RefinedModel both = sandModel();
   both.effects = {effect("load_cell_tilt", {0.1}), effect("slip_sinkage_ding", {1.0}, "slip")};
@@ -68,7 +68,7 @@ TEST(ModelPull, KeepsTheCovarianceOfWhatStays) {
   EXPECT_DOUBLE_EQ(std, predictWithStd(one, kState).scaled_std[0]);
 }
 
-TEST(ModelPull, AStatedSpreadOfTheSoilIsCarriedThrough) {
+TEST(ModelPull, StdPropagatesSoilUncertainty) {
   // Property: one parameter's standard deviation gives the half difference of the pull at +- that deviation.
   RefinedModel model = sandModel();
   model.soil_prior_std = {{"friction_angle_rad", 0.02}};
@@ -82,7 +82,7 @@ TEST(ModelPull, AStatedSpreadOfTheSoilIsCarriedThrough) {
   EXPECT_NEAR(pullOf(groundTruthOf(model), kState).pull_over_load.std / half, 1.0, 0.02);
 }
 
-TEST(ModelPull, StatedErrorsOfSlipAndLoadAreCarriedThrough) {
+TEST(ModelPull, StdPropagatesSlipAndLoadErrors) {
   // Property: the half difference of the pull over twice the stated deviation of the reading.
   const auto pull = [](double load_N, double slip) {
     const WheelState state{.wheel = kWheel, .load_N = load_N, .slip = slip};
@@ -99,7 +99,7 @@ TEST(ModelPull, StatedErrorsOfSlipAndLoadAreCarriedThrough) {
               1.0, 0.02);
 }
 
-TEST(ModelPull, ForecastsTheReferenceSlipAndTheGreatestPull) {
+TEST(ModelPull, ForecastsReferenceSlipAndMaximumPull) {
   RefinedModel model = sandModel();
   model.noise.slip_absolute = 0.1;  // the forecast's slip is chosen, not read
   const RefinedModel truth = groundTruthOf(model);

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace pull_forecast_test {
 
-TEST(PullForecast, PullAtTheSamplesIsNearTheTruth) {
+TEST(PullForecast, PullAtTheSamplesMatchesTheTruth) {
   // Property: with 2 % errors the rms over 12 soils stays below 0.012 (goal over 500 soils 0.008).
   ThesisRuns runs(31);
   const ReadingErrors noise = ReadingErrors::relative(0.02);
@@ -24,7 +24,7 @@ TEST(PullForecast, PullAtTheSamplesIsNearTheTruth) {
   EXPECT_LT(std::sqrt(squares / count), 0.012);
 }
 
-TEST(PullForecast, TakesTheStateThatSoilAndReadingsMakeLikely) {
+TEST(PullForecast, PullUsesTheMostLikelyStateInsteadOfTheRawReading) {
   // Property: on the soil itself, a sinkage read 10 % high moves the pull by less than half of what it would
   // move were it taken as read: load and torque speak against it.
   ThesisRuns runs(33);
@@ -40,7 +40,7 @@ TEST(PullForecast, TakesTheStateThatSoilAndReadingsMakeLikely) {
   }
 }
 
-TEST(PullForecast, ReachesSlipsThatWereNotDriven) {
+TEST(PullForecast, ExtrapolatesToSlipsNotDriven) {
   // Property: from slips below 0.4, exact readings give DP/W at 0.5 and its maximum within 0.02 of the soil's
   // own.
   ThesisRuns runs(6);

@@ -4,7 +4,7 @@
 namespace talus::terramech {
 namespace pull_forecasts_test {
 
-TEST(PullForecasts, AreThoseOfEachLoadAndWheel) {
+TEST(PullForecasts, ForecastsMatchTheExactForecastPerLoadAndWheel) {
   // Property: a line between loads 1 % apart leaves less than 1e-4; another wheel has forecasts of its own.
   ThesisRuns runs(31);
   const SoilPosterior soil = fitSoil(kThesisWheel, runs.next({.noise = 0.05}).samples, thesisSoils());

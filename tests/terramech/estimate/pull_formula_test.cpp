@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace pull_formula_test {
 
-TEST(PullFormula, EachNameIsItsFormula) {
+TEST(PullFormula, EachNameSelectsItsFormula) {
   const Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
   const WheelSample s{.load_N = 80.0, .torque_Nm = 5.0, .sinkage_m = 0.02, .slip = 0.3};
   const ReadingErrors errors = ReadingErrors::relative(0.05);

@@ -11,7 +11,7 @@ TEST(ReadingErrors, PartsAddInQuadrature) {
   EXPECT_DOUBLE_EQ(error.std(0.0), 4.0);
 }
 
-TEST(ReadingErrors, OneShareForAllFour) {
+TEST(ReadingErrors, RelativeErrorAppliesToAllFourReadings) {
   const ReadingErrors errors = ReadingErrors::relative(0.1);
   for (const ReadingError* e : {&errors.load, &errors.torque, &errors.sinkage, &errors.slip})
     EXPECT_DOUBLE_EQ(e->std(2.0), 0.2);

@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace soil_filter_test {
 
-TEST(SoilFilter, EqualsTheBatchWhileTheWindowHoldsAll) {
+TEST(SoilFilter, EqualsTheBatchEstimateWithinTheWindow) {
   // Property: same modes to the tolerance of the search, hence almost the same draws.
   ThesisRuns runs(8);
   const ThesisRun run = runs.next({.noise = 0.05});
@@ -19,7 +19,7 @@ TEST(SoilFilter, EqualsTheBatchWhileTheWindowHoldsAll) {
               0.15 * std::sqrt(batch.covariance(1, 1)));
 }
 
-TEST(SoilFilter, StaysCloseToTheBatchWhenSamplesHaveLeftTheWindow) {
+TEST(SoilFilter, MatchesTheBatchEstimateBeyondTheWindow) {
   // Property: 40 samples, 12 kept: within half a standard deviation of the fit of all 40.
   ThesisRuns runs(12);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 40});
@@ -33,7 +33,7 @@ TEST(SoilFilter, StaysCloseToTheBatchWhenSamplesHaveLeftTheWindow) {
   EXPECT_EQ(filter.samples(), 40u);
 }
 
-TEST(SoilFilter, ARefusedSampleLeavesItAsItWas) {
+TEST(SoilFilter, RejectedSampleLeavesTheStateUnchanged) {
   ThesisRuns runs(3);
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
   for (const WheelSample& s : runs.next({.noise = 0.05}).samples) filter.add(s);
@@ -44,7 +44,7 @@ TEST(SoilFilter, ARefusedSampleLeavesItAsItWas) {
   EXPECT_EQ(filter.samples(), 10u);
 }
 
-TEST(SoilFilter, DoesNotDriftFromTheBatchOverManySamples) {
+TEST(SoilFilter, SinkageExponentHasNoBiasOverManySamples) {
   // Property: over eight runs of sixty samples n departs from the batch's without a sign: on average by less
   // than 0.3 standard deviations. Without the slope of the normalisation it lies 0.7 low.
   ThesisRuns runs(44);
@@ -61,7 +61,7 @@ TEST(SoilFilter, DoesNotDriftFromTheBatchOverManySamples) {
   EXPECT_NEAR(departure, 0.0, 0.3);
 }
 
-TEST(SoilFilter, RemembersWhatLeftItsWindow) {
+TEST(SoilFilter, RetainsInformationOfSamplesOutsideTheWindow) {
   // Property: sixty samples on a known class narrow phi and K more than the last twelve alone.
   ThesisRuns runs(44);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 60});

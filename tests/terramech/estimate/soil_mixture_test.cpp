@@ -22,7 +22,7 @@ TEST(SoilMixture, ThesisSoilsSpanTable21) {
   EXPECT_NEAR(firm.shear_modulus_m, 0.03, 1e-12);
 }
 
-TEST(SoilMixture, ProbabilitiesAddUpToOne) {
+TEST(SoilMixture, ProbabilitiesSumToOne) {
   double sum = 0.0;
   for (const SoilClass& soil : thesisSoilsOrOther(0.1)) sum += soil.probability;
   EXPECT_NEAR(sum, 1.0, 1e-12);
@@ -38,14 +38,14 @@ TEST(Marginal, SlopeIsTheDerivative) {
   }
 }
 
-TEST(Marginal, FixedDoesNotMoveAndNormalKeepsToItsLeast) {
+TEST(Marginal, FixedIsConstantAndNormalIsBoundedBelow) {
   EXPECT_EQ(Marginal::fixed(3.0).at(0.9), 3.0);
   EXPECT_EQ(Marginal::fixed(3.0).slope(0.9), 0.0);
   EXPECT_EQ(Marginal::normal(1.0, 1.0, 0.0).at(-5.0), 0.0);
   EXPECT_EQ(Marginal::normal(1.0, 1.0, 0.0).slope(-5.0), 0.0);
 }
 
-TEST(Marginal, RefusesBoundsOutOfOrder) {
+TEST(Marginal, InvalidBoundsAreRejected) {
   EXPECT_REFUSED(Marginal::uniform(2.0, 2.0), std::invalid_argument, "upper bound = 2, must be > 2");
   EXPECT_REFUSED(Marginal::logUniform(0.0, 2.0), std::invalid_argument, "lower bound = 0, must be > 0");
   EXPECT_REFUSED(Marginal::normal(0.0, 0.0, -1.0), std::invalid_argument, "std = 0, must be > 0");

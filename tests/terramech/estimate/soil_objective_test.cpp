@@ -17,7 +17,7 @@ SoilClass known(const ContactSoil& soil) {
   return exact;
 }
 
-TEST(SoilObjective, ResidualsVanishAtTheTruth) {
+TEST(SoilObjective, ResidualsVanishForTheTrueSoil) {
   // Property: exact readings, the 10-point quadrature within 1e-4 of the load against errors of 5 %.
   ThesisRuns runs(3);
   const ThesisRun run = runs.next({.noise = 0.0});
@@ -30,7 +30,7 @@ TEST(SoilObjective, ResidualsVanishAtTheTruth) {
   }
 }
 
-TEST(SoilObjective, CostIsTheLikelihoodWithTheErrorsOfSinkageAndSlipIntegratedOut) {
+TEST(SoilObjective, CostIsTheMarginalLikelihoodOverSinkageAndSlipErrors) {
   // Property: with errors of 2 % the linearised likelihood is the exact one, soil by soil and reading by
   // reading, to the second order that it leaves out: 0.04 at the median, more in the tails. z turns d/dz into
   // d/d ln z.
@@ -52,7 +52,7 @@ TEST(SoilObjective, CostIsTheLikelihoodWithTheErrorsOfSinkageAndSlipIntegratedOu
   EXPECT_LT(std::sqrt(squares / kAll), 0.12);
 }
 
-TEST(SoilObjective, LikelyStateMovesAReadingTowardsTheTruth) {
+TEST(SoilObjective, LikelyStateCorrectsAReadingTowardsTheTruth) {
   // Property: a sinkage read 10 % high is brought back by the load that it does not fit.
   ThesisRuns runs(4);
   const ThesisRun run = runs.next({.noise = 0.0});
@@ -65,7 +65,7 @@ TEST(SoilObjective, LikelyStateMovesAReadingTowardsTheTruth) {
   EXPECT_GT(moved, run.truth[3].sinkage_m * 0.98);
 }
 
-TEST(SoilObjective, QuadraticMovesWithoutChangingItsValues) {
+TEST(SoilObjective, QuadraticIsInvariantUnderShiftOfItsOrigin) {
   // Closed form.
   SoilQuadratic q;
   q.cost = 2.0;
@@ -76,7 +76,7 @@ TEST(SoilObjective, QuadraticMovesWithoutChangingItsValues) {
   EXPECT_NEAR(q.movedTo(somewhere).costAt(elsewhere), q.costAt(elsewhere), 1e-12);
 }
 
-TEST(SoilObjective, OutliersWeighLess) {
+TEST(SoilObjective, OutliersHaveReducedWeight) {
   // Property: an exact reading weighs nearly 1, a torque read at four times its value a hundredth.
   ThesisRuns runs(5);
   const ThesisRun run = runs.next({.noise = 0.0});

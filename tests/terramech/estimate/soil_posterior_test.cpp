@@ -15,7 +15,7 @@
 namespace talus::terramech {
 namespace soil_posterior_test {
 
-TEST(SoilPosterior, EqualsBruteForce) {
+TEST(SoilPosterior, MatchesImportanceSamplingFromThePrior) {
   // Property: means, standard deviations and class probabilities are those of soils drawn from the prior and
   // weighed by the likelihood itself, to what so many draws can tell. Three readings, so that enough draws
   // count.
@@ -50,7 +50,7 @@ TEST(SoilPosterior, EqualsBruteForce) {
   }
 }
 
-TEST(SoilPosterior, TheEllipseHolds95PercentAlsoWhereAClassCutsItOff) {
+TEST(SoilPosterior, EllipseCoverageIs95PercentIncludingTruncatedClasses) {
   // Property: within one class the posterior fills a box, whose covariance ellipse at chi-squared's 5.99
   // would hold all of it; at the stated level the truth lies in 90 to 99 of 100.
   ThesisRuns runs(41);
@@ -67,7 +67,7 @@ TEST(SoilPosterior, TheEllipseHolds95PercentAlsoWhereAClassCutsItOff) {
   EXPECT_GE(held_by_chi_squared, 97);
 }
 
-TEST(SoilPosterior, WhatThePriorFixesIsNoDistance) {
+TEST(SoilPosterior, FixedParametersDoNotContributeToDistance) {
   ThesisRuns runs(42);
   const ThesisRun run = runs.next({.noise = 0.05});
   SoilMixture prior = thesisSoils();
@@ -79,7 +79,7 @@ TEST(SoilPosterior, WhatThePriorFixesIsNoDistance) {
   EXPECT_NEAR(strengthDistance(p, other), 1.0, 1e-6);  // Closed form: one standard deviation of tan(phi)
 }
 
-TEST(SoilPosterior, FindsTheSoilOfExactReadings) {
+TEST(SoilPosterior, ExactReadingsRecoverTheSoil) {
   // Property: with 0.1 % errors assumed and none made, c within 0.1 kPa and phi within 0.5 deg (worst of
   // eight soils).
   ThesisRuns runs(5);
@@ -95,7 +95,7 @@ TEST(SoilPosterior, FindsTheSoilOfExactReadings) {
   }
 }
 
-TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
+TEST(SoilPosterior, BeatsThePriorMeanAndIsCalibrated) {
   // Property: over 60 soils with 5 % errors the rms error is below that of always answering the prior mean
   // (2.3 kPa, 4.9 deg), agrees with the posterior's own standard deviation to a third, and 95 % intervals
   // hold the truth 85 to 100 %.
@@ -119,7 +119,7 @@ TEST(SoilPosterior, BeatsThePriorMeanAndKnowsItsError) {
   EXPECT_GE(inside, 51);
 }
 
-TEST(SoilPosterior, IntervalsLeaveOutAFortiethOnEitherSide) {
+TEST(SoilPosterior, IntervalsExcludeTwoPointFivePercentPerSide) {
   // Property: of the draws' weight, to that of the heaviest draw.
   ThesisRuns runs(43);
   const ThesisRun run = runs.next({.noise = 0.05});
@@ -135,7 +135,7 @@ TEST(SoilPosterior, IntervalsLeaveOutAFortiethOnEitherSide) {
   EXPECT_NEAR(above, 0.025, heaviest);
 }
 
-TEST(SoilPosterior, ShrugsOffAnOutlier) {
+TEST(SoilPosterior, OneOutlierMovesTheMeanByLessThanOneStd) {
   // Property: one torque read at twice its value moves the answer by less than its own standard deviation.
   ThesisRuns runs(21);
   ThesisRun run = runs.next({.noise = 0.02});
@@ -149,7 +149,7 @@ TEST(SoilPosterior, ShrugsOffAnOutlier) {
             std::sqrt(clean.covariance(1, 1)) + 0.5 * kDegree);
 }
 
-TEST(SoilPosterior, FindsASoilFarFromTheMiddleOfAWidePrior) {
+TEST(SoilPosterior, FindsASoilFarFromThePriorCentre) {
   // Property: at 1 % errors every sample is an outlier at the prior's middle; the soil must be found all the
   // same.
   ThesisRuns runs(14);
@@ -162,7 +162,7 @@ TEST(SoilPosterior, FindsASoilFarFromTheMiddleOfAWidePrior) {
   EXPECT_NEAR(p.mean.sinkage_exponent, run.soil.sinkage_exponent, 4.0 * std::sqrt(p.covariance(2, 2)) + 0.02);
 }
 
-TEST(SoilPosterior, SaysWhatAlikeSamplesDoNotShow) {
+TEST(SoilPosterior, ReportsParametersUnidentifiableFromRepeatedSamples) {
   // Property: twelve samples at one slip of 0.8, where the shear is nearly developed, say little of K.
   ThesisRuns runs(2);
   ThesisRun run = runs.next({.noise = 0.05});
@@ -171,7 +171,7 @@ TEST(SoilPosterior, SaysWhatAlikeSamplesDoNotShow) {
   EXPECT_THAT(p.unseen, testing::Contains(testing::StartsWith("shear_modulus_m: ")));
 }
 
-TEST(SoilPosterior, IsTheSameEveryTime) {
+TEST(SoilPosterior, IsDeterministic) {
   ThesisRuns runs(4);
   const ThesisRun run = runs.next({.noise = 0.05});
   const auto once = fitSoil(kThesisWheel, run.samples, thesisSoils());
@@ -180,7 +180,7 @@ TEST(SoilPosterior, IsTheSameEveryTime) {
   EXPECT_EQ(once.strength_covariance, again.strength_covariance);
 }
 
-TEST(SoilPosterior, RefusesWhatIsNoDrivenWheel) {
+TEST(SoilPosterior, BrakedAndBuriedWheelsAreRejected) {
   const WheelSample good{.load_N = 80, .torque_Nm = 3, .sinkage_m = 0.02, .slip = 0.4};
   WheelSample braked = good;
   braked.slip = -0.1;

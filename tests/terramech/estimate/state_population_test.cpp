@@ -8,7 +8,7 @@ namespace state_population_test {
 
 const ReadingErrors kErrors = ReadingErrors::relative(0.05);
 
-TEST(StatePopulation, ThatKnowsNothingLeavesReadingsAsTheyAre) {
+TEST(StatePopulation, FewSamplesLeaveReadingsUnchanged) {
   StatePopulation population;
   const WheelSample s{.load_N = 80.0, .torque_Nm = 3.0, .sinkage_m = 0.01, .slip = 0.4};
   for (int count = 0; count <= 3; ++count) {
@@ -20,7 +20,7 @@ TEST(StatePopulation, ThatKnowsNothingLeavesReadingsAsTheyAre) {
   }
 }
 
-TEST(StatePopulation, CombinesAReadingWithItsPopulation) {
+TEST(StatePopulation, ShrinksReadingsTowardsThePopulation) {
   // Closed form: true ln W and slip Gaussian with known spread, errors as stated: what remains of an error is
   // sqrt(V / (V + s^2)) of it, and its standard deviation says so. 4000 readings tell the spread to 2 %.
   constexpr int kCount = 4000;

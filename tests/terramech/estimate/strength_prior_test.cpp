@@ -31,7 +31,7 @@ double normal(double away, double variance) {
   return std::exp(-0.5 * away * away / variance) / std::sqrt(variance);
 }
 
-TEST(StrengthPrior, EqualsBruteForceOverAGrid) {
+TEST(StrengthPrior, MatchesIntegrationOverAGrid) {
   // Property: mean and covariance of prior times likelihood, summed over a fine grid of (c, tan phi).
   const ShearStrength fit = fitOf(2200.0, 0.52, {900.0, 0.09}, -0.8);
   const std::vector<StrengthPrior> priors{priorOf(1000.0, 0.6, {400.0, 0.05}, 0.7),
@@ -64,7 +64,7 @@ TEST(StrengthPrior, EqualsBruteForceOverAGrid) {
   EXPECT_EQ(result.unseen, fit.unseen);
 }
 
-TEST(StrengthPrior, KnownValuesStayAndAVaguePriorChangesNothing) {
+TEST(StrengthPrior, FixedValuesAreKeptAndVaguePriorHasNoEffect) {
   const ShearStrength fit = fitOf(2200.0, 0.52, {900.0, 0.09}, -0.8);
   const std::vector<StrengthPrior> known{priorOf(1000.0, 0.6, {0.0, 0.0})};
   EXPECT_DOUBLE_EQ(withPrior(fit, known).cohesion_Pa, 1000.0);
@@ -74,13 +74,13 @@ TEST(StrengthPrior, KnownValuesStayAndAVaguePriorChangesNothing) {
   EXPECT_NEAR(withPrior(fit, vague).tan_friction, 0.52, 1e-5);
 }
 
-TEST(StrengthPrior, ExactReadingsOutweighAnyPriorWithAWidth) {
+TEST(StrengthPrior, ExactReadingsOverridePriorWithNonZeroStd) {
   const ShearStrength fit = fitOf(2200.0, 0.52, {0.0, 0.0}, 0.0);
   const std::vector<StrengthPrior> prior{priorOf(1000.0, 0.6, {400.0, 0.05})};
   EXPECT_NEAR(withPrior(fit, prior).cohesion_Pa, 2200.0, 0.1);
 }
 
-TEST(StrengthPrior, CarriesTheAngleOverToItsTangent) {
+TEST(StrengthPrior, ConvertsAngleStdToTangentStd) {
   // Closed form: d tan(phi) = d phi / cos(phi)^2, at 45 deg twice as wide.
   SoilPrior soil{.mean = {.name = "x", .cohesion_Pa = 500.0, .friction_angle_rad = std::atan(1.0)},
                  .deviation = {.cohesion_Pa = 100.0, .friction_angle_rad = 0.03}};
@@ -90,7 +90,7 @@ TEST(StrengthPrior, CarriesTheAngleOverToItsTangent) {
   EXPECT_NEAR(prior.covariance(0, 0), 1e4, 1e-9);
 }
 
-TEST(StrengthPrior, RefusesAFitWithoutScatterAndNoPrior) {
+TEST(StrengthPrior, FitWithoutCovarianceAndEmptyPriorAreRejected) {
   ShearStrength two = fitOf(1.0, 0.5, {1.0, 1.0}, 0.0);
   two.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
   const std::vector<StrengthPrior> prior{priorOf(1000.0, 0.6, {400.0, 0.05})};

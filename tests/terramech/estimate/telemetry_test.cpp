@@ -22,12 +22,12 @@ TEST(Telemetry, FindsColumnsByName) {
   EXPECT_EQ(t.findWords("slip"), nullptr);
 }
 
-TEST(Telemetry, SaysWhichColumnItLacks) {
+TEST(Telemetry, MissingColumnIsNamedInTheError) {
   EXPECT_THAT([] { small().at("load_N"); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("drive.csv: no column load_N")));
 }
 
-TEST(Telemetry, KnowsItsColumnsByUnit) {
+TEST(Telemetry, ListsKnownColumns) {
   EXPECT_THAT(knownTelemetryColumns(), testing::Contains("sinkage_m"));
   EXPECT_THAT(knownTelemetryColumns(), testing::Not(testing::Contains("run")));
 }

@@ -18,7 +18,7 @@ TEST(ThesisRuns, FollowTheThesisPattern) {
   EXPECT_EQ(run.samples.front().torque_Nm, run.truth.front().torque_Nm);
 }
 
-TEST(ThesisRuns, NoiseHasTheStatedSize) {
+TEST(ThesisRuns, NoiseHasTheStatedStd) {
   // Property: 2000 relative errors have the standard deviation asked for, to 5 % (three of its own).
   ThesisRuns runs(2);
   double squares = 0.0;
@@ -34,7 +34,7 @@ TEST(ThesisRuns, NoiseHasTheStatedSize) {
   EXPECT_NEAR(std::sqrt(squares / 2000.0), 0.05, 0.0025);
 }
 
-TEST(ThesisRuns, SameSeedSameNumbers) {
+TEST(ThesisRuns, SameSeedReproducesTheRuns) {
   ThesisRuns one(3);
   ThesisRuns other(3);
   EXPECT_EQ(one.next().samples[7].torque_Nm, other.next().samples[7].torque_Nm);

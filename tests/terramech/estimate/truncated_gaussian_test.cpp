@@ -16,7 +16,7 @@ SoilMatrix correlated() {
   return a * a.transpose() + 0.001 * SoilMatrix::Identity();
 }
 
-TEST(TruncatedGaussian, EveryDrawLiesInTheBox) {
+TEST(TruncatedGaussian, EveryDrawLiesWithinBounds) {
   // Property: also when the mean lies far outside.
   for (const double mean : {0.5, -40.0, 900.0}) {
     const TruncatedGaussian g(SoilVector::Constant(mean), correlated(), kUnit);
@@ -30,7 +30,7 @@ TEST(TruncatedGaussian, EveryDrawLiesInTheBox) {
   }
 }
 
-TEST(TruncatedGaussian, WeightedDrawsIntegrateToTheBox) {
+TEST(TruncatedGaussian, InverseDensityIntegratesToTheBoxVolume) {
   // Property: the mean of 1/density over draws is the volume of the box, 1 (4000 even points: 5 %).
   const TruncatedGaussian g(SoilVector::Constant(0.4), 0.3 * SoilMatrix::Identity(), kUnit);
   const auto points = evenPoints(kSoilParameters, 4000);
@@ -39,7 +39,7 @@ TEST(TruncatedGaussian, WeightedDrawsIntegrateToTheBox) {
   EXPECT_NEAR(volume, 1.0, 0.05);
 }
 
-TEST(TruncatedGaussian, WithoutSidesItIsTheGaussian) {
+TEST(TruncatedGaussian, WithoutBoundsItIsTheGaussian) {
   // Closed form: density at the draw.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TruncatedGaussian g(SoilVector::Zero(), SoilMatrix::Identity(),

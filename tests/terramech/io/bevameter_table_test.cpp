@@ -18,7 +18,7 @@ BevameterTable read(const std::string& content, double plate_width_m = 0.0) {
   return readBevameterTable(file.path(), plate_width_m, {});
 }
 
-TEST(BevameterTable, ShearAndPlateRowsOfOneFile) {
+TEST(BevameterTable, ReadsShearAndPlateRowsFromOneFile) {
   const BevameterTable table = read(
       "normal_stress_Pa,shear_stress_Pa,shear_displacement_m,plate_d_m,p_Pa,z_m\n"
       "1000,600,0.01,,,\n,,,0.1,5000,0.02\n2000,900,0.02,0.05,7000,0.01\n");
@@ -33,14 +33,14 @@ TEST(BevameterTable, ShearAndPlateRowsOfOneFile) {
   EXPECT_TRUE(table.rejected.empty());
 }
 
-TEST(BevameterTable, AStatedWidthHoldsForAllRows) {
+TEST(BevameterTable, StatedPlateWidthOverridesTheColumn) {
   const BevameterTable table =
       read("plate_width_m,pressure_Pa,sinkage_m\n0.1,5000,0.02\n0.2,6000,0.02\n", 0.07);
   for (const PlateReading& r : table.plates.at(0).readings) EXPECT_EQ(r.plate_width_m, 0.07);
 }
 
 // Closed form: F / p is the area of the plate, pi d^2 / 4; test by test.
-TEST(BevameterTable, ARoundPlateIsKnownByForceOverPressure) {
+TEST(BevameterTable, RoundPlateSizeFollowsFromForceOverPressure) {
   std::string content = "test,F_N,p_Pa,z_m\n";
   for (int k = 1; k < 6; ++k)
     for (const double d : {0.05, 0.1})
@@ -55,7 +55,7 @@ TEST(BevameterTable, ARoundPlateIsKnownByForceOverPressure) {
   EXPECT_NEAR(table.plates[1].readings[0].plate_width_m, 0.1, 1e-12);
 }
 
-TEST(BevameterTable, TrialsAndSoilsAreKeptApart) {
+TEST(BevameterTable, TrialsAndSoilsFormSeparateTests) {
   const BevameterTable table = read(
       "soil,trial,note,plate_width_m,pressure_Pa,sinkage_m\n"
       "sand,1,a,0.1,5000,0.01\nsand,1,b,0.1,7000,0.02\nsand,2,c,0.1,5000,0.01\nclay,1,d,0.1,9000,0.02\n");
@@ -65,12 +65,12 @@ TEST(BevameterTable, TrialsAndSoilsAreKeptApart) {
   EXPECT_EQ(table.plates[2].soil, "clay");
 }
 
-TEST(BevameterTable, ATestWhoseAreaChangesIsNoPlate) {
+TEST(BevameterTable, VaryingForceOverPressureIsRejected) {
   EXPECT_THAT([] { read("F_N,p_Pa,z_m\n1,1000,0.01\n2,1500,0.02\n3,1700,0.03\n"); },
               ThrowsMessage<InputError>(HasSubstr("no usable row")));
 }
 
-TEST(BevameterTable, UnloadedRowsAreLeftOutByLine) {
+TEST(BevameterTable, UnloadedRowsAreRejectedWithTheirLine) {
   const BevameterTable table =
       read("plate_width_m,pressure_Pa,sinkage_m\n0.1,0,0.02\n0.1,5000,0.02\n0.1,5000,0\n");
   ASSERT_EQ(table.plates.size(), 1U);
@@ -80,7 +80,7 @@ TEST(BevameterTable, UnloadedRowsAreLeftOutByLine) {
   EXPECT_EQ(table.rejected[1].line, 4U);
 }
 
-TEST(BevameterTable, ATableOfNeitherTestIsRefused) {
+TEST(BevameterTable, TableWithoutTestColumnsIsRejected) {
   EXPECT_THAT([] { read("load_N,slip\n80,0.3\n"); },
               ThrowsMessage<InputError>(HasSubstr("lacks the columns of a plate test or a shear test")));
 }

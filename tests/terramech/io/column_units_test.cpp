@@ -27,7 +27,7 @@ std::string errorOf(const std::vector<std::string>& header) {
 }
 
 // Property: nor for a letter; another word is the user's own.
-TEST(ColumnUnits, AKnownColumnMisspeltByALetterIsRefused) {
+TEST(ColumnUnits, MisspelledKnownColumnIsRejectedWithASuggestion) {
   EXPECT_THAT(errorOf({"drawbar_pul_N"}), HasSubstr("write column drawbar_pull_N"));
   EXPECT_THAT(errorOf({"torqe_Nm"}), HasSubstr("write column torque_Nm"));
   EXPECT_EQ(errorOf({"drawbar_pul_N", "drawbar_pull_N"}), "");
@@ -35,7 +35,7 @@ TEST(ColumnUnits, AKnownColumnMisspeltByALetterIsRefused) {
 }
 
 // Property: what a file measured is never dropped for its unit.
-TEST(ColumnUnits, AKnownColumnInAnotherUnitIsRefused) {
+TEST(ColumnUnits, KnownColumnInAnotherUnitIsRejected) {
   for (const auto& [name, write] : std::initializer_list<std::pair<const char*, const char*>>{
            {"sinkage_mm", "sinkage_m, in m (sinkage_mm times 0.001)"},
            {"sinkage_cm", "sinkage_m, in m (sinkage_cm times 0.01)"},
@@ -79,12 +79,12 @@ TEST(ColumnUnits, AKnownColumnInAnotherUnitIsRefused) {
   }
 }
 
-TEST(ColumnUnits, BesideTheKnownColumnAnotherIsOnesOwn) {
+TEST(ColumnUnits, AlternativeSpellingIsAcceptedBesideTheKnownColumn) {
   for (const char* name : {"sinkage_mm", "sinkage", "Sinkage_m"})
     EXPECT_EQ(errorOf({"sinkage_m", name}), "") << name;
 }
 
-TEST(ColumnUnits, AKnownNameWithoutItsUnitIsRefused) {
+TEST(ColumnUnits, KnownColumnWithoutUnitIsRejected) {
   for (const std::string& column : knownTelemetryColumns()) {
     const std::size_t end = column.rfind('_');
     if (column == "slip" || column == "pass_index" || column == "grouser_count") continue;
@@ -94,7 +94,7 @@ TEST(ColumnUnits, AKnownNameWithoutItsUnitIsRefused) {
   }
 }
 
-TEST(ColumnUnits, AKnownNameInOtherLettersIsRefused) {
+TEST(ColumnUnits, KnownColumnWithOtherCaseOrPunctuationIsRejected) {
   for (const char* name : {"Load_N", "load_n", "LOAD_N", "load [N]", "Load (N)", "load-N"})
     EXPECT_THAT(errorOf({name}), HasSubstr("is not spelled as it is read; write column load_N, in N"))
         << name;
@@ -106,7 +106,7 @@ TEST(ColumnUnits, AKnownNameInOtherLettersIsRefused) {
 }
 
 // Property: every known name passes, and so do names of one's own that only resemble one.
-TEST(ColumnUnits, OwnColumnsPass) {
+TEST(ColumnUnits, UserColumnsAreAccepted) {
   EXPECT_EQ(errorOf(knownTelemetryColumns()), "");
   for (const char* name : {"",
                            "run",
@@ -169,13 +169,13 @@ TEST(ColumnUnits, OwnColumnsPass) {
   EXPECT_EQ(errorOf({"slip", "slip_mps"}), "") << "beside the slip, a slip speed is another quantity";
 }
 
-TEST(ColumnUnits, TheReaderOfTelemetryRefuses) {
+TEST(ColumnUnits, TelemetryReaderRejectsWrongUnits) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.1,12\n"};
   EXPECT_REFUSED(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError,
                  "column sinkage_mm is in another unit than it is read in; write column sinkage_m, in m");
 }
 
-TEST(ColumnUnits, MeasuredFilesPass) {
+TEST(ColumnUnits, MeasuredDataFilesAreAccepted) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   TALUS_REQUIRE(folder != nullptr, "TALUS_MEASURED_DATA is not set");
   int files = 0;

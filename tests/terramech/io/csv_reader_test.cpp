@@ -19,7 +19,7 @@ std::vector<CsvRow> rowsOf(const std::string& content) {
   return rows;
 }
 
-TEST(CsvReader, TakesEveryLineEndingQuotesAndTheByteOrderMark) {
+TEST(CsvReader, ReadsEveryLineEndingQuotesAndByteOrderMark) {
   for (const char* end : {"\n", "\r\n", "\r"}) {
     const std::string e = end;
     const test::TemporaryFile file{"\xEF\xBB\xBF\"a\", b ,c" + e + "1,\"x, \"\"y\"\"\",3" + e + e + "4,,6" +
@@ -38,7 +38,7 @@ TEST(CsvReader, TakesEveryLineEndingQuotesAndTheByteOrderMark) {
 }
 
 // A second mark, of a tool that adds one to a file that has one, was part of the first column's name, which then was missing.
-TEST(CsvReader, AnyNumberOfByteOrderMarksIsSkipped) {
+TEST(CsvReader, RepeatedByteOrderMarksAreSkipped) {
   const test::TemporaryFile file{"\xEF\xBB\xBF\xEF\xBB\xBFslip,load_N\n0.1,20\n"};
   EXPECT_THAT(CsvReader{file.path()}.header(), ElementsAre("slip", "load_N"));
 }
@@ -50,7 +50,7 @@ TEST(CsvReader, CountsLinesInsideQuotes) {
   EXPECT_EQ(rows[1].line, 4U);
 }
 
-TEST(CsvReader, TellsTheFaultOfARecord) {
+TEST(CsvReader, ReportsFieldCountAndRepeatedHeaderFaults) {
   const auto rows = rowsOf("a,b\n1\n1,2,3\n1,2,\na,b\n1,2\n7");
   ASSERT_EQ(rows.size(), 6U);
   EXPECT_EQ(rows[0].fault, "has 1 fields, the header 2");
@@ -74,7 +74,7 @@ std::string errorOf(const std::string& path) {
 }
 
 // Property: rows behind a stray quote are not lost without a word, be it closed by another one or by none.
-TEST(CsvReader, RefusesAQuoteThatHoldsOtherRows) {
+TEST(CsvReader, UnbalancedQuoteSpanningRowsIsRejected) {
   std::string many = "a,b\n1,2\n3,\"4\n";
   for (int k = 0; k < 20000; ++k) many += "5,6\n";
   for (const std::string& text :
@@ -86,7 +86,7 @@ TEST(CsvReader, RefusesAQuoteThatHoldsOtherRows) {
   }
 }
 
-TEST(CsvReader, RefusesWhatIsNoTable) {
+TEST(CsvReader, MissingEmptyAndAmbiguousFilesAreRejected) {
   EXPECT_THAT(errorOf("/nowhere/at_all.csv"), HasSubstr("/nowhere/at_all.csv: No such file"));
   EXPECT_THAT(errorOf("/tmp"), HasSubstr("is a directory"));
   const test::TemporaryFile nothing{""}, empty{"\n\n"}, twice{"a,b,a\n"};
@@ -102,7 +102,7 @@ TEST(CsvReader, RefusesWhatIsNoTable) {
 }
 
 // As spreadsheets of many countries write them.
-TEST(CsvReader, SemicolonsTabsAndDecimalCommas) {
+TEST(CsvReader, ReadsSemicolonsTabsAndDecimalCommas) {
   for (const std::string part : {";", "\t"}) {
     const auto rows = rowsOf("a" + part + "b" + part + "c\n1,5" + part + "-2,25e1" + part + "some, words\n" +
                              "3" + part + "4.5" + part + "1,2,3\n");
@@ -114,7 +114,7 @@ TEST(CsvReader, SemicolonsTabsAndDecimalCommas) {
   EXPECT_THAT(rowsOf("a,b;c\n1,5\n").front().fields, ElementsAre("1", "5"));
 }
 
-TEST(CsvReader, StreamsAcrossItsBuffer) {
+TEST(CsvReader, ReadsFilesLargerThanItsBuffer) {
   std::string content = "k,word\n";
   for (int k = 0; k < 20000; ++k) content += std::to_string(k) + ",\"some words\"\n";
   const auto rows = rowsOf(content);
@@ -123,7 +123,7 @@ TEST(CsvReader, StreamsAcrossItsBuffer) {
   EXPECT_EQ(rows.back().line, 20001U);
 }
 
-TEST(ParseNumber, TakesWholeFieldsOnly) {
+TEST(ParseNumber, ParsesCompleteFieldsOnly) {
   double value = 0.0;
   EXPECT_TRUE(parseNumber("-2.5e3", value));
   EXPECT_EQ(value, -2500.0);

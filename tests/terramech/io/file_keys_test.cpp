@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace file_keys_test {
 
-TEST(FileKeys, EachHasANameOfItsOwnAndAMeaning) {
+TEST(FileKeys, KeyNamesAreUniqueAndDocumented) {
   for (const auto keys : {soilKeys(), roverKeys(), wheelKeys(), telemetryKeys()}) {
     std::set<std::string> names;
     for (const FileKey& key : keys) {
@@ -20,7 +20,7 @@ TEST(FileKeys, EachHasANameOfItsOwnAndAMeaning) {
 }
 
 // Property: a rover and a soil with every key are read.
-TEST(FileKeys, AllOfARoverAndOfASoilAreRead) {
+TEST(FileKeys, EveryRoverAndSoilKeyIsAccepted) {
   const std::string wheels =
       "{count: 6, radius_m: 0.1, width_m: 0.1, grouser_height_m: 0, grouser_count: 0, lug_thrust: 0}";
   std::string rover, soil;

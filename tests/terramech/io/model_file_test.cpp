@@ -45,7 +45,7 @@ RefinedModel refined() {
 }
 
 // Property: a fit that leaves a parameter or a variance at next to nothing is read back, as nothing.
-TEST(ModelFile, NumbersLessThanAFileMayHoldAreWrittenAsZero) {
+TEST(ModelFile, NumbersBelowTheFileMinimumAreWrittenAsZero) {
   RefinedModel model = refined();
   model.effects[0].parameters = {1.6e-115};
   model.fitted = {{0, 0}, {1, 0}};
@@ -55,7 +55,7 @@ TEST(ModelFile, NumbersLessThanAFileMayHoldAreWrittenAsZero) {
   EXPECT_EQ(back.covariance, (std::vector<double>{0.0, 0.0, 0.0, 0.04}));
 }
 
-TEST(ModelFile, ReadsBackToTheSameBits) {
+TEST(ModelFile, RoundTripIsExact) {
   const auto path = written("model.yaml", modelText(refined()));
   const RefinedModel back = loadModel(path).model;
   EXPECT_EQ(modelText(back), modelText(refined()));
@@ -64,7 +64,7 @@ TEST(ModelFile, ReadsBackToTheSameBits) {
   std::filesystem::remove(path);
 }
 
-TEST(ModelFile, TrainedRangesAreReadBack) {
+TEST(ModelFile, TrainedRangesRoundTrip) {
   const TrainedRange slip{
       .column = "slip", .low = -0.5, .high = 1.0 / 3.0, .below = {0.1, 0, 0, 0}, .above = {0, 0.2, 0, 0}};
   const auto path = written("trained.yaml", modelText(refined(), {.trained = {slip}}));
@@ -78,7 +78,7 @@ TEST(ModelFile, TrainedRangesAreReadBack) {
   std::filesystem::remove(path);
 }
 
-TEST(ModelFile, RefusesWhatItCannotMean) {
+TEST(ModelFile, InvalidModelsAreRejected) {
   const std::pair<const char*, const char*> bad[] = {
       {"model: wong-rece\nsoil: sand\n", "no model 'wong-rece'"},
       {"soil: sand\neffects:\n  - {name: slip_sinkage_dang, covariate: slip, channel: sinkage_over_radius, "
@@ -121,7 +121,7 @@ std::string faultOf(const std::string& yaml) {
 }
 
 // Property: what is no covariance would be read as certainty (a std of 0), and is refused by its line.
-TEST(ModelFile, RefusesWhatIsNoCovariance) {
+TEST(ModelFile, InvalidCovarianceIsRejected) {
   const auto fault = [](const std::string& covariance) {
     return faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}]\ncovariance: [" +
                    covariance + "]\n");
@@ -140,7 +140,7 @@ TEST(ModelFile, RefusesWhatIsNoCovariance) {
       HasSubstr("not positive semidefinite"));
 }
 
-TEST(ModelFile, RefusesWhatIsGivenTwiceOrBeyondItsBounds) {
+TEST(ModelFile, DuplicatesAndOutOfRangeValuesAreRejected) {
   EXPECT_THAT(faultOf("soil: sand\nnoise: {slip: -0.1}\n"),
               HasSubstr(":2: slip must be a standard deviation >= 0"));
   EXPECT_THAT(faultOf("soil: sand\nnoise: {torque_relative: -0.1}\n"),

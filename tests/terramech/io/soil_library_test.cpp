@@ -50,7 +50,7 @@ TEST(SoilLibrary, ReadsUnitsPriorsAndDefaults) {
   EXPECT_DOUBLE_EQ(soil.mean.c1, 0.43);
 }
 
-TEST(SoilLibrary, TakesTheWrapperAndTheList) {
+TEST(SoilLibrary, AcceptsWrapperAndListOfSoils) {
   std::string indented;
   std::stringstream lines(kSoil);
   for (std::string line; std::getline(lines, line);) indented += "    " + line + "\n";
@@ -63,7 +63,7 @@ TEST(SoilLibrary, TakesTheWrapperAndTheList) {
   EXPECT_THROW(loadSoil(list.path() + "#c"), InputError);
 }
 
-TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
+TEST(SoilLibrary, SoilErrorsNameTheirLine) {
   struct Case {
     std::string yaml;
     const char* error;
@@ -93,7 +93,7 @@ TEST(SoilLibrary, SoilMistakesAreToldWithTheirLine) {
   }
 }
 
-TEST(SoilLibrary, RoverMistakesAreToldWithTheirLine) {
+TEST(SoilLibrary, RoverErrorsNameTheirLine) {
   EXPECT_EQ(errorOf(kRover, true), "no error");
   const auto with = [](const std::string& from, const std::string& to) {
     std::string yaml = kRover;
@@ -125,7 +125,7 @@ TEST(SoilLibrary, ReadsARover) {
   EXPECT_EQ(rover.wheel.lug_thrust, 0.0) << "a smooth wheel";
 }
 
-TEST(SoilLibrary, LugsPullUnlessTheFileSwitchesThemOff) {
+TEST(SoilLibrary, GrousersHaveDefaultThrustUnlessStated) {
   const auto thrustOf = [](const std::string& lugs) {
     std::string yaml = kRover;
     yaml.replace(yaml.find("count: 4"), 8, lugs + "count: 4");
@@ -138,7 +138,7 @@ TEST(SoilLibrary, LugsPullUnlessTheFileSwitchesThemOff) {
   EXPECT_EQ(thrustOf("grouser_height_m: 0.01, "), 0.0) << "no lug is stated";
 }
 
-TEST(SoilLibrary, NamesTheNearestEntry) {
+TEST(SoilLibrary, UnknownNameSuggestsTheNearestEntry) {
   try {
     loadSoil("lunar_nomnal");
     FAIL();
@@ -148,7 +148,7 @@ TEST(SoilLibrary, NamesTheNearestEntry) {
   EXPECT_THROW(loadRover("curiosity"), InputError);
 }
 
-TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverDrivesOnMostSoils) {
+TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverIsMobileOnMostSoils) {
   for (const auto& rover_name : libraryRovers()) {
     const Rover rover = loadRover(rover_name);
     EXPECT_EQ(rover.name, rover_name);
@@ -162,7 +162,7 @@ TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverDrivesOnMostSoils) {
   }
 }
 
-TEST(SoilLibrary, HoldsTheNumbersOfItsSources) {
+TEST(SoilLibrary, ValuesMatchTheirSources) {
   const SoilPrior loam = loadSoilPrior("loam");
   // Printed in: thesis Table 2.1, c 2 to 4 kPa, phi 20 to 30 deg, k 1500 to 2000 kN/m^(n+2), n 0.5 to 1.2, K
   // 10 to 30 mm.
@@ -177,7 +177,7 @@ TEST(SoilLibrary, HoldsTheNumbersOfItsSources) {
   EXPECT_EQ(moon.frictional_modulus, 820000.0);
 }
 
-TEST(SoilLibrary, EveryNumberHasASource) {
+TEST(SoilLibrary, EveryEntryCitesASource) {
   for (const char* kind : {"soils", "rovers"})
     for (const auto& name : kind == std::string("soils") ? librarySoils() : libraryRovers()) {
       std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/terramech/library/" + kind + "/" + name + ".yaml");
@@ -189,7 +189,7 @@ TEST(SoilLibrary, EveryNumberHasASource) {
     }
 }
 
-TEST(TerrainClasses, TakesLibraryNamesInlineSoilsAndItsOwnList) {
+TEST(TerrainClasses, AcceptsLibraryNamesInlineSoilsAndOwnList) {
   const std::string own =
       "soils:\n  - {name: mud, " + std::string(
                                        "cohesion_kPa: 1, friction_angle_deg: 10, sinkage_exponent: 1, "
@@ -210,7 +210,7 @@ TEST(TerrainClasses, TakesLibraryNamesInlineSoilsAndItsOwnList) {
 }
 
 // Property: numbers and count are checked before any soil is read; the first of these names none.
-TEST(TerrainClasses, AreCountedBeforeTheirSoilsAreRead) {
+TEST(TerrainClasses, ClassCountIsCheckedBeforeSoilsAreRead) {
   std::string all = "classes:\n  0: no_such_soil\n";
   for (int i = 1; i <= 254; ++i) all += "  " + std::to_string(i) + ": sand\n";
   const auto load = [](const std::string& text) {
@@ -224,7 +224,7 @@ TEST(TerrainClasses, AreCountedBeforeTheirSoilsAreRead) {
 }
 
 // Property: a message tells of a file that is none of soils that it is none, and nothing that stands in it.
-TEST(TerrainClasses, AForeignFileIsNotShown) {
+TEST(TerrainClasses, ErrorsDoNotDiscloseContentOfForeignFiles) {
   for (const char* foreign : {"root:x:0:0:secret:/root:/bin/sh\nsync:x:4:secret\n", "secret\n", "- secret\n",
                               "secret: word\n", "secret: {word: secret}\n", "a: [secret\n"}) {
     const test::TemporaryFile other{foreign, ".yaml"};
@@ -236,7 +236,7 @@ TEST(TerrainClasses, AForeignFileIsNotShown) {
   }
 }
 
-TEST(SoilLibrary, ASoilOfAListHasItsNameAlone) {
+TEST(SoilLibrary, DuplicateSoilNameIsRejected) {
   const std::string soil =
       "  - {name: mud, cohesion_Pa: 1, friction_angle_deg: 10, sinkage_exponent: 1, "
       "frictional_modulus_kN: 500, shear_modulus_mm: 30}\n";
@@ -245,7 +245,7 @@ TEST(SoilLibrary, ASoilOfAListHasItsNameAlone) {
               testing::ThrowsMessage<InputError>(HasSubstr(":1: holds soil 'mud' twice")));
 }
 
-TEST(TerrainClasses, MistakesAreToldWithTheirLine) {
+TEST(TerrainClasses, ErrorsNameTheirLine) {
   const auto error = [](const std::string& yaml) -> std::string {
     const test::TemporaryFile file{yaml, ".yaml"};
     try {

@@ -16,7 +16,7 @@ const char* const kTwoSoils = R"(soils:
      frictional_modulus: 1.0e6, shear_modulus_m: 0.03}
 )";
 
-TEST(SoilPriors, ANameAFileOrNothing) {
+TEST(SoilPriors, PriorsComeFromANameAFileOrAreEmpty) {
   EXPECT_TRUE(soilPriors("").empty());
   const std::string name = librarySoils().front();
   ASSERT_EQ(soilPriors(name).size(), 1U);
@@ -28,7 +28,7 @@ TEST(SoilPriors, ANameAFileOrNothing) {
   EXPECT_THROW(soilPriors("no_such_soil"), InputError);
 }
 
-TEST(SoilPriors, AMixtureKnowsTheModulusUnderItsWheel) {
+TEST(SoilPriors, MixtureModulusAccountsForWheelWidth) {
   const test::TemporaryFile file{kTwoSoils, ".yaml"};
   const SoilMixture mixture = mixtureOf(soilPriors(file.path()), 0.1);
   ASSERT_EQ(mixture.size(), 2U);
@@ -43,7 +43,7 @@ TEST(SoilPriors, AMixtureKnowsTheModulusUnderItsWheel) {
   EXPECT_EQ(mixture[0].parameters[0].at(-20.0), 0.0);
 }
 
-TEST(SoilPriors, StrengthsAndTheMeanShearModulus) {
+TEST(SoilPriors, StrengthPriorsAndMeanShearModulusMatchTheSoils) {
   const test::TemporaryFile file{kTwoSoils, ".yaml"};
   const auto soils = soilPriors(file.path());
   const auto strengths = strengthPriors(soils);

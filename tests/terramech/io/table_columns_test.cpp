@@ -29,7 +29,7 @@ std::string refusal(const std::string& content, const std::vector<MappedColumn>&
 }
 
 // Closed form: percent and millimetres.
-TEST(TableColumns, ATableAsItIs) {
+TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
   const test::TemporaryFile file{kStudent};
   TableFile table(file.path());
   table.columns = {{.known = "load_N", .name = "Fz"},
@@ -54,12 +54,12 @@ TEST(TableColumns, ATableAsItIs) {
 }
 
 // Nobody would be told: what is converted in silence may be wrong in silence.
-TEST(TableColumns, WithoutNotesAnotherUnitIsRefused) {
+TEST(TableColumns, OtherUnitWithoutMappingIsRejected) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.2,12\n"};
   EXPECT_THROW(readTelemetry(file.path()), InputError);
 }
 
-TEST(TableColumns, TheUnitOfANameCountsUnlessOneIsGiven) {
+TEST(TableColumns, StatedUnitOverridesTheUnitInTheName) {
   const auto load = [](const std::string& name, const std::string& unit) {
     const test::TemporaryFile file{name + "\n2\n"};
     TableFile table(file.path());
@@ -72,7 +72,7 @@ TEST(TableColumns, TheUnitOfANameCountsUnlessOneIsGiven) {
   EXPECT_EQ(load("W_t", ""), 2.0);
 }
 
-TEST(TableColumns, RefusesWhatCannotBeMapped) {
+TEST(TableColumns, InvalidMappingsAreRejected) {
   EXPECT_THAT(refusal(kStudent, {{.known = "load_N", .name = "Fn"}}),
               HasSubstr(":1: no column Fn (--column load_N=Fn)"));
   EXPECT_THAT(refusal(kStudent, {{.known = "load_N", .name = "Fz", .unit = "mm"}}),
@@ -87,7 +87,7 @@ TEST(TableColumns, RefusesWhatCannotBeMapped) {
               HasSubstr("or it is mapped twice"));
 }
 
-TEST(TableColumns, ARowThatIsCutShortKeepsItsFault) {
+TEST(TableColumns, TruncatedRowKeepsItsFault) {
   const test::TemporaryFile file{"a,b\n1\n1,2,,\n"};
   TableFile table(file.path());
   table.constants = {{"c", 3.0}};

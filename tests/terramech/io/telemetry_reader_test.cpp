@@ -26,7 +26,7 @@ std::string errorOf(const std::string& content, const TelemetryOptions& options 
   return "no error";
 }
 
-TEST(TelemetryReader, KeepsEveryColumnInWhateverOrder) {
+TEST(TelemetryReader, KeepsEveryColumnInAnyOrder) {
   const Telemetry t = read("note,slip,moisture,load_N,run,wheel\nwet,0.2,3.5,80,1,2\ndry,-1,,81,2,FL\n");
   EXPECT_THAT(t.at("slip"), ElementsAre(0.2, -1.0));
   EXPECT_THAT(*t.findWords("note"), ElementsAre("wet", "dry"));
@@ -38,7 +38,7 @@ TEST(TelemetryReader, KeepsEveryColumnInWhateverOrder) {
 }
 
 // Property: what no rover on no ground reads is no reading.
-TEST(TelemetryReader, RejectsWhatIsImpossible) {
+TEST(TelemetryReader, RejectsPhysicallyImpossibleValues) {
   for (const char* column :
        {"slope_rad=1.5708", "slope_rad=-10", "roll_rad=2", "pass_index=-1", "pass_index=0.5",
         "pass_index=1e15", "x_m=1e15", "y_m=-1e10", "z_m=1e12", "wheel_width_m=1e15", "wheel_width_m=1e-12",
@@ -51,7 +51,7 @@ TEST(TelemetryReader, RejectsWhatIsImpossible) {
   }
 }
 
-TEST(TelemetryReader, RejectsRowsByLineAndReason) {
+TEST(TelemetryReader, RejectedRowsHaveLineAndReason) {
   struct Case {
     const char* row;
     const char* reason;
@@ -79,7 +79,7 @@ TEST(TelemetryReader, RejectsRowsByLineAndReason) {
 }
 
 // Measured by others: a wheel pulled across its travel reads up to 1.576 rad.
-TEST(TelemetryReader, ASlipAngleIsAtMostARightOne) {
+TEST(TelemetryReader, SlipAngleIsLimitedToARightAngle) {
   const Telemetry t = read("load_N,slip_angle_rad\n80,1.576\n80,-1.576\n80,1.61\n80,-3.14159\n");
   EXPECT_EQ(t.size(), 2U);
   ASSERT_EQ(t.rejected.size(), 2U);
@@ -101,7 +101,7 @@ TEST(TelemetryReader, KeepsTheNumbersOfRejectedRows) {
   EXPECT_EQ(t.rejected_numbers[2].values[1], -1.0);
 }
 
-TEST(TelemetryReader, NumbersBeyondDoubleStayLargeInRejectedRows) {
+TEST(TelemetryReader, NumbersBeyondDoubleRangeSaturateInRejectedRows) {
   const auto t = read("load_N,slip,sinkage_m\n1,0.1,1e999\n1,-1e400,0\n1,1e300,0\n-1,1e-999,0x\n1,0.5,0\n");
   constexpr double kMost = std::numeric_limits<double>::max();
   ASSERT_EQ(t.rejected.size(), 4U);
@@ -112,13 +112,13 @@ TEST(TelemetryReader, NumbersBeyondDoubleStayLargeInRejectedRows) {
   EXPECT_TRUE(std::isnan(t.rejected_numbers[2].values[3])) << "a word";
 }
 
-TEST(TelemetryReader, TakesTheEdgesOfEachRange) {
+TEST(TelemetryReader, RangeLimitsAreInclusive) {
   const Telemetry t = read("slip,sinkage_m\n1,0\n-1,0.1\n");
   EXPECT_EQ(t.size(), 2U);
   EXPECT_EQ(t.rejected.size(), 0U);
 }
 
-TEST(TelemetryReader, TheDustOfRoundingIsZero) {
+TEST(TelemetryReader, RoundingNoiseIsReadAsZero) {
   const Telemetry t = read("pitch_rad,load_N\n4.3e-18,10\n-1e-300,10\n0.1,1e-300\n");
   ASSERT_EQ(t.size(), 2U);
   EXPECT_EQ(t.at("pitch_rad")[0], 0.0);
@@ -127,13 +127,13 @@ TEST(TelemetryReader, TheDustOfRoundingIsZero) {
   EXPECT_EQ(t.rejected[0].reason, "load_N = 1e-300, must be > 0 and at most 1e7");
 }
 
-TEST(TelemetryReader, RejectsALastRowThatIsCutShort) {
+TEST(TelemetryReader, RejectsTruncatedLastRow) {
   const Telemetry t = read("load_N,slip,torque_Nm\n80,0.2,1\n80,0.");
   EXPECT_EQ(t.size(), 1U);
   EXPECT_EQ(t.rejected[0].line, 3U);
 }
 
-TEST(TelemetryReader, NeedsItsRequiredColumnsInEveryRow) {
+TEST(TelemetryReader, RequiredColumnsMustBePresentInEveryRow) {
   EXPECT_THAT(errorOf("slip\n0.1\n", {.required = {"slip", "load_N", "torque_Nm"}}),
               HasSubstr(":1: no column load_N, torque_Nm"));
   const Telemetry t = read("slip,load_N\n0.1,\n0.2,80\n", {.required = {"slip", "load_N"}});
@@ -141,19 +141,19 @@ TEST(TelemetryReader, NeedsItsRequiredColumnsInEveryRow) {
   EXPECT_EQ(t.size(), 1U);
 }
 
-TEST(TelemetryReader, UsesTheGivenRadiusWhereTheFileHasNone) {
+TEST(TelemetryReader, GivenRadiusIsUsedIfTheFileHasNone) {
   EXPECT_THAT(errorOf("sinkage_m\n0.3\n", {.required = {}, .wheel_radius_m = 0.1}),
               HasSubstr("must be < the wheel's"));
   EXPECT_EQ(read("sinkage_m\n0.3\n").size(), 1U);
 }
 
-TEST(TelemetryReader, AFileWithoutAUsableRowIsAnError) {
+TEST(TelemetryReader, FileWithoutUsableRowIsRejected) {
   EXPECT_THAT(errorOf("load_N\n"), HasSubstr("no rows after the header"));
   EXPECT_THAT(errorOf("load_N\n-1\n-2\n"),
               HasSubstr(":2: no usable row; 2 refused, this one because load_N = -1"));
 }
 
-TEST(TelemetryReader, StopsAndReportsWhenWatched) {
+TEST(TelemetryReader, ReportsProgressAndStopsOnRequest) {
   std::string content = "slip\n";
   for (int k = 0; k < 200000; ++k) content += "0.5\n";
   const test::TemporaryFile file{content};
@@ -170,7 +170,7 @@ TEST(TelemetryReader, StopsAndReportsWhenWatched) {
 }
 
 // A log copied together from overlapping parts taught its rows twice.
-TEST(TelemetryReader, ARowThatIsAnEarlierOneAgainCountsOnceWhereThatIsAsked) {
+TEST(TelemetryReader, RepeatedRowsAreCountedOnceOnRequest) {
   const std::string part = "1,80,0.1\n2,81,0.2\n2,81,0.2\n3,-82,0.3\n", header = "time_s,load_N,slip\n";
   const Telemetry once = read(header + part + part + "1,80,0.4\n", {.once = true});
   // Of one moment two rows may be two wheels'.
@@ -185,7 +185,7 @@ TEST(TelemetryReader, ARowThatIsAnEarlierOneAgainCountsOnceWhereThatIsAsked) {
   EXPECT_THAT(read(named, {.once = true}).lines, ElementsAre(2, 3));
 }
 
-TEST(TelemetryReader, MeasuredFilesAreRead) {
+TEST(TelemetryReader, MeasuredDataFilesAreRead) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   TALUS_REQUIRE(folder != nullptr, "TALUS_MEASURED_DATA is not set");
   const Telemetry ding = readTelemetry(std::string(folder) + "/single_wheel_digitised/points.csv");

@@ -20,7 +20,7 @@ WheelRows read(const std::string& content, const WheelRowOptions& options = {}) 
   return readWheelRows(file.path(), options, {});
 }
 
-TEST(WheelRows, SamplesWithTheirWheelsLinesAndWords) {
+TEST(WheelRows, ReadsSamplesWithWheelLineAndText) {
   const WheelRows rows =
       read(kHead + "80,2,0.01,0.3,0.1,0.2,a\n81,2,0,0.3,0.1,0.2,b\n82,3,0.02,0.4,0.15,0.2,c\n");
   ASSERT_EQ(rows.samples.size(), 2U);
@@ -36,7 +36,7 @@ TEST(WheelRows, SamplesWithTheirWheelsLinesAndWords) {
   EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("sinkage_m = 0"));
 }
 
-TEST(WheelRows, ABrakedWheelCountsOnlyWhereNoSlipIsNeeded) {
+TEST(WheelRows, BrakedWheelIsUsedOnlyIfSlipIsNotRequired) {
   const std::string content = kHead + "80,2,0.01,-0.3,0.1,0.2,a\n80,2,0.01,0.3,0.1,0.2,a\n";
   EXPECT_EQ(read(content).samples.size(), 1U);
   EXPECT_EQ(read(content, {.needs_slip = false}).samples.size(), 2U);
@@ -47,7 +47,7 @@ TEST(WheelRows, ABrakedWheelCountsOnlyWhereNoSlipIsNeeded) {
             0.0);
 }
 
-TEST(WheelRows, AWheelThatSankTooDeepIsLeftOutWithItsLine) {
+TEST(WheelRows, SinkageAtOrAboveTheLimitIsRejectedWithItsLine) {
   const std::string content =
       kHead + "80,2,0.01,0.3,0.1,0.2,a\n80,2,0.13,0.3,0.1,0.2,a\n80,2,0.1,0.3,0.1,0.2,a\n";
   EXPECT_EQ(read(content).samples.size(), 3U);
@@ -59,7 +59,7 @@ TEST(WheelRows, AWheelThatSankTooDeepIsLeftOutWithItsLine) {
   EXPECT_EQ(rows.rejected[1].line, 4U);
 }
 
-TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
+TEST(WheelRows, WheelAtASlipAngleIsRejected) {
   const WheelRows rows =
       read("slip_angle_rad," + kHead +
            "0.09,80,2,0.01,0.3,0.1,0.2,a\n-0.11,80,2,0.01,0.3,0.1,0.2,a\n,80,2,0.01,0.3,0.1,0.2,a\n");
@@ -68,7 +68,7 @@ TEST(WheelRows, AWheelAtASlipAngleIsNoStraightOne) {
   EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
 }
 
-TEST(WheelRows, ASideForceWithoutItsSlipAngleIsOfNoStraightWheel) {
+TEST(WheelRows, SideForceWithoutSlipAngleIsRejected) {
   const std::string row = "80,2,0.01,0.3,0.1,0.2,a\n";
   const WheelRows rows =
       read("side_force_N,slip_angle_rad," + kHead + "12,," + row + "0,," + row + ",," + row + "12,0," + row);
@@ -81,14 +81,14 @@ TEST(WheelRows, ASideForceWithoutItsSlipAngleIsOfNoStraightWheel) {
               ThrowsMessage<InputError>(HasSubstr(":2: no usable row: side_force_N = 12 without")));
 }
 
-TEST(WheelRows, TheRoversWheelGoesBeforeTheFiles) {
+TEST(WheelRows, RoverWheelOverridesTheFile) {
   const std::string rover = libraryRovers().front();
   const WheelRows rows = read(kHead + "80,2,0.01,0.3,0.9,0.9,a\n", {.rover = rover});
   EXPECT_EQ(rows.wheel.radius_m, loadRover(rover).wheel.radius_m);
   EXPECT_EQ(rows.wheels[0].width_m, loadRover(rover).wheel.width_m);
 }
 
-TEST(WheelRows, WhatIsMissingIsNamed) {
+TEST(WheelRows, MissingColumnsAreNamed) {
   EXPECT_THAT([] { read("load_N,torque_Nm,sinkage_m,slip\n80,2,0.01,0.3\n"); },
               ThrowsMessage<InputError>(HasSubstr("lacks column wheel_radius_m; add it, or pass --rover")));
   EXPECT_THAT([] { read("load_N,torque_Nm,slip,wheel_radius_m,wheel_width_m\n80,2,0.3,0.1,0.1\n"); },

@@ -17,7 +17,7 @@ YamlFields of(const std::string& yaml) {
   return YamlFields::text(yaml, "f.yaml");
 }
 
-TEST(YamlFields, ReadsEachKind) {
+TEST(YamlFields, ReadsEachValueKind) {
   const YamlFields f =
       of("a_m: 2\nb: word\nc: yes\nd: [1, 2]\ne: {mean: 3, std: 1}\ng: {h: 4}\ni:\n - {h: 5}\n - {h: 6}\n");
   EXPECT_EQ(f.number("a_m"), 2.0);
@@ -33,7 +33,7 @@ TEST(YamlFields, ReadsEachKind) {
   EXPECT_THAT(f.names(), ElementsAre("a_m", "b", "c", "d", "e", "g", "i"));
 }
 
-TEST(YamlFields, ConvertsUnitsOfOneKind) {
+TEST(YamlFields, ConvertsUnitsOfOneDimension) {
   EXPECT_DOUBLE_EQ(of("a_mm: 250").number("a_m"), 0.25);
   EXPECT_DOUBLE_EQ(of("p_kPa: [1, 2]").numbers("p_Pa")[1], 2000.0);
   EXPECT_DOUBLE_EQ(of("t_Ncm: 5").number("t_Nm"), 0.05);
@@ -42,7 +42,7 @@ TEST(YamlFields, ConvertsUnitsOfOneKind) {
   EXPECT_FALSE(of("a_kg: 1").has("a_m"));
 }
 
-TEST(YamlFields, RefusesUnknownNamesWithTheNearest) {
+TEST(YamlFields, UnknownKeyIsRejectedWithTheNearestName) {
   EXPECT_THAT(
       [] {
         of("mass_kg: 1\nraduis_m: 2").only({"mass_kg", "radius_m"});
@@ -53,7 +53,7 @@ TEST(YamlFields, RefusesUnknownNamesWithTheNearest) {
   EXPECT_NO_THROW(of("mass_g: 1\nradius_cm: 2").only({"mass_kg", "radius_m"}));
 }
 
-TEST(YamlFields, AKeyWithoutItsUnitOrInAnotherKindNamesTheKeyThatIsMeant) {
+TEST(YamlFields, KeyWithoutUnitOrInAnotherDimensionSuggestsTheKnownKey) {
   const std::vector<std::string> known{"name", "cohesion_Pa", "shear_modulus_m", "mass_kg", "c1"};
   for (const auto& [key, meant] : {std::pair{"cohesion", "cohesion_Pa"},
                                    {"cohesion_N", "cohesion_Pa"},
@@ -69,7 +69,7 @@ TEST(YamlFields, AKeyWithoutItsUnitOrInAnotherKindNamesTheKeyThatIsMeant) {
   EXPECT_EQ(meantKey("permeability", known), "");
 }
 
-TEST(YamlFields, ErrorsHaveFileAndLine) {
+TEST(YamlFields, ErrorsNameFileAndLine) {
   EXPECT_THAT([] { of("a: 1\nb: {c: x}").fields("b").number("c"); },
               ThrowsMessage<InputError>(HasSubstr("f.yaml:2: c = 'x', must be a number")));
   EXPECT_THAT([] { of("a: 1\nb: 2").fields("b"); },
@@ -85,7 +85,7 @@ TEST(YamlFields, ErrorsHaveFileAndLine) {
 }
 
 // Property: 017 is 15 to YAML 1.1 and 17 to YAML 1.2; it stands for neither here.
-TEST(YamlFields, NumbersAreDecimal) {
+TEST(YamlFields, OctalAndHexadecimalNumbersAreRejected) {
   for (const char* octal : {"017", "-017", "+00", "0x10", "0o17"})
     EXPECT_THAT([&] { of(std::string("mass_kg: ") + octal).number("mass_kg"); },
                 ThrowsMessage<InputError>(HasSubstr("f.yaml:1: mass_kg = ")))
@@ -97,7 +97,7 @@ TEST(YamlFields, NumbersAreDecimal) {
 }
 
 // Property: a word is text of one letter or more; NUL and bytes that are no UTF-8 would break what is written of it.
-TEST(YamlFields, WordsAreText) {
+TEST(YamlFields, TextMustBeNonEmptyValidUtf8) {
   for (const char* empty : {"a: ''", "a: ' '", "a: \"\\t\""})
     EXPECT_THAT([&] { of(empty).word("a"); },
                 ThrowsMessage<InputError>("f.yaml:1: a is empty; leave it out or give a value"))
@@ -119,7 +119,7 @@ TEST(YamlFields, WordsAreText) {
 }
 
 // Property: one document is read with its markers, of several none is passed over.
-TEST(YamlFields, HoldsOneDocument) {
+TEST(YamlFields, AcceptsExactlyOneDocument) {
   for (const char* one : {"---\na: 1\n", "# soil\n%YAML 1.2\n--- # begins\na: 1\n...\n# end\n",
                           "--- {a: 1}\n...\n", "a: 1 # ---\nb: '\n  ---'\n", "a: 1\nc---: 2\n"})
     EXPECT_NO_THROW(of(one)) << one;
@@ -128,13 +128,13 @@ TEST(YamlFields, HoldsOneDocument) {
     EXPECT_THROW(of(more), InputError) << more;
 }
 
-TEST(YamlFields, NearestNameCountsEdits) {
+TEST(YamlFields, NearestNameUsesEditDistance) {
   EXPECT_EQ(nearestName("cohesion", {"cohesive", "friction"}), "cohesive");
   EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
 }
 
 // Its tree takes up to 360 bytes for each byte of text.
-TEST(YamlFields, AFileOfMoreThan256KilobytesIsRefused) {
+TEST(YamlFields, FileLargerThan256KilobytesIsRejected) {
   const std::string path = testing::TempDir() + "talus_large.yaml";
   std::ofstream(path) << "a: 1\n#" << std::string(262'144, ' ') << "\n";
   EXPECT_THAT([&] { YamlFields::file(path); }, ThrowsMessage<InputError>(HasSubstr("larger than 256 kB")));
@@ -142,7 +142,7 @@ TEST(YamlFields, AFileOfMoreThan256KilobytesIsRefused) {
 }
 
 // Property: of a field that is given twice, by whatever spelling, none counts.
-TEST(YamlFields, AFieldIsGivenOnce) {
+TEST(YamlFields, DuplicateFieldIsRejected) {
   const auto read = [](const std::string& yaml) {
     return [yaml] {
       const YamlFields f = of(yaml);

@@ -22,7 +22,7 @@ TEST(CategoryProbability, QuadrantsFollowSheppardsFormula) {
   }
 }
 
-TEST(CategoryProbability, ACertainBeliefIsTheCategoryItself) {
+TEST(CategoryProbability, ZeroUncertaintyYieldsTheCategoryWithProbabilityOne) {
   for (const double dp : {0.1, 0.17, 0.3, 0.36, 0.5})
     for (const double z : {0.2, 0.5, 0.6, 0.75, 0.8}) {
       const WheelCondition condition{.drawbar_pull_over_load = dp, .sinkage_over_radius = z};
@@ -31,11 +31,11 @@ TEST(CategoryProbability, ACertainBeliefIsTheCategoryItself) {
     }
 }
 
-TEST(CategoryProbability, AgreesWithCounting) {
-  const ConditionBelief belief{.mean = {.drawbar_pull_over_load = 0.32, .sinkage_over_radius = 0.45},
-                               .drawbar_pull_over_load_std = 0.08,
-                               .sinkage_over_radius_std = 0.12,
-                               .correlation = -0.6};
+TEST(CategoryProbability, MatchesMonteCarlo) {
+  const ConditionEstimate belief{.mean = {.drawbar_pull_over_load = 0.32, .sinkage_over_radius = 0.45},
+                                 .drawbar_pull_over_load_std = 0.08,
+                                 .sinkage_over_radius_std = 0.12,
+                                 .correlation = -0.6};
   const auto p = categoryProbability(belief, kLimits);
   std::mt19937_64 random{5};
   std::normal_distribution<double> normal;
@@ -52,16 +52,16 @@ TEST(CategoryProbability, AgreesWithCounting) {
   EXPECT_NEAR(p[0] + p[1] + p[2], 1.0, 1e-15);
 }
 
-TEST(CategoryProbability, OneCertainNumberLeavesTheOthersSpread) {
-  const ConditionBelief belief{.mean = {.drawbar_pull_over_load = 0.36, .sinkage_over_radius = 0.2},
-                               .drawbar_pull_over_load_std = 0.05};
+TEST(CategoryProbability, OneExactValueKeepsTheUncertaintyOfTheOther) {
+  const ConditionEstimate belief{.mean = {.drawbar_pull_over_load = 0.36, .sinkage_over_radius = 0.2},
+                                 .drawbar_pull_over_load_std = 0.05};
   EXPECT_NEAR(categoryProbability(belief, kLimits)[0], 0.5, 1e-9);  // Closed form: on the edge.
 }
 
-TEST(CategoryProbability, TorqueAndSteeringLimitsCount) {
+TEST(CategoryProbability, TorqueAndSteeringLimitsAreIncluded) {
   CategoryThresholds limits = kLimits;
   limits.steering_slip = 0.6;
-  const ConditionBelief belief{
+  const ConditionEstimate belief{
       .mean = {.drawbar_pull_over_load = 0.5, .sinkage_over_radius = 0.2, .slip = 0.7},
       .drawbar_pull_over_load_std = 0.05,
       .sinkage_over_radius_std = 0.05};
@@ -69,8 +69,8 @@ TEST(CategoryProbability, TorqueAndSteeringLimitsCount) {
   EXPECT_GT(categoryProbability(belief, kLimits)[0], 0.99);
 }
 
-TEST(CategoryProbability, RefusesBadBeliefs) {
-  ConditionBelief belief;
+TEST(CategoryProbability, InvalidInputsAreRejected) {
+  ConditionEstimate belief;
   belief.drawbar_pull_over_load_std = -0.1;
   EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
                  "drawbar_pull_over_load_std = -0.1, must be >= 0");

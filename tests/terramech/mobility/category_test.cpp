@@ -28,14 +28,14 @@ double below(double x) {
 }
 
 // Printed in: thesis 3.5, whose inequalities are strict.
-TEST(Category, DrawbarPullOnItsEdgesIsMarginal) {
+TEST(Category, DrawbarPullAtItsThresholdsIsMarginal) {
   EXPECT_EQ(of(below(0.125), 0.0), Category::Dangerous);
   EXPECT_EQ(of(0.125, 0.0), Category::Marginal);
   EXPECT_EQ(of(0.375, 0.0), Category::Marginal);
   EXPECT_EQ(of(above(0.375), 0.0), Category::Safe);
 }
 
-TEST(Category, SinkageCostsARankFromTheThresholdToTheCriticalValue) {
+TEST(Category, SinkageBetweenThresholdAndCriticalLowersTheCategoryByOne) {
   EXPECT_EQ(of(0.5, below(0.5)), Category::Safe);
   EXPECT_EQ(of(0.5, 0.5), Category::Marginal);
   EXPECT_EQ(of(0.5, 0.75), Category::Marginal);
@@ -43,7 +43,7 @@ TEST(Category, SinkageCostsARankFromTheThresholdToTheCriticalValue) {
   EXPECT_EQ(of(0.25, 0.5), Category::Dangerous);
 }
 
-TEST(Category, TorqueCostsARankTooAndRanksAddUp) {
+TEST(Category, TorqueLowersTheCategoryAndReductionsAddUp) {
   EXPECT_EQ(of(0.5, 0.0, below(1.0)), Category::Safe);
   EXPECT_EQ(of(0.5, 0.0, 1.0), Category::Marginal);
   EXPECT_EQ(of(0.5, 0.0, 1.5), Category::Marginal);
@@ -51,7 +51,7 @@ TEST(Category, TorqueCostsARankTooAndRanksAddUp) {
   EXPECT_EQ(of(0.5, 0.6, 1.2), Category::Dangerous);
 }
 
-TEST(Category, ASlipBeyondTheSteeringLimitIsDangerous) {
+TEST(Category, SlipAboveTheSteeringLimitIsDangerous) {
   CategoryThresholds limits = kLimits;
   limits.steering_slip = 0.6;
   WheelCondition condition{.drawbar_pull_over_load = 0.5, .slip = 0.6};
@@ -61,14 +61,14 @@ TEST(Category, ASlipBeyondTheSteeringLimitIsDangerous) {
   EXPECT_EQ(categorise(condition, kLimits), Category::Safe);
 }
 
-TEST(Category, NotANumberIsUnknown) {
+TEST(Category, NanIsUnknown) {
   const double nan = std::nan("");
   EXPECT_EQ(of(nan, 0.0), Category::Unknown);
   EXPECT_EQ(of(0.5, nan), Category::Unknown);
   EXPECT_EQ(of(0.5, 0.0, nan), Category::Unknown);
 }
 
-TEST(Category, NeverImprovesAsPullFallsOrSinkageOrTorqueRises) {
+TEST(Category, IsMonotoneInPullSinkageAndTorque) {
   // Property: monotone in each number.
   for (double dp = -0.5; dp < 1.0; dp += 0.0625)
     for (double z = 0.0; z < 1.0; z += 0.0625)
@@ -79,7 +79,7 @@ TEST(Category, NeverImprovesAsPullFallsOrSinkageOrTorqueRises) {
       }
 }
 
-TEST(Category, ThresholdsComeFromTheMissionSlope) {
+TEST(Category, ThresholdsFollowFromMissionSlopeAndMargin) {
   const CategoryThresholds t = thresholds({.slope_rad = 15.0 * kDegree, .margin_rad = 5.0 * kDegree});
   // Printed in: thesis 3.5, tan 10 deg and tan 20 deg.
   EXPECT_NEAR(t.dp_low, std::tan(10.0 * kDegree), 1e-15);
@@ -87,7 +87,7 @@ TEST(Category, ThresholdsComeFromTheMissionSlope) {
   EXPECT_THROW(thresholds({.slope_rad = 1.5, .margin_rad = 0.2}), std::invalid_argument);
 }
 
-TEST(Category, DisorderedThresholdsAreRefused) {
+TEST(Category, InvalidThresholdsAreRejected) {
   CategoryThresholds t = kLimits;
   t.dp_low = 0.4;
   EXPECT_THROW(validate(t), std::invalid_argument);

@@ -45,7 +45,7 @@ Soil lunar() {
 }
 
 // Nothing is fitted to what it is held against: slip within 0.101 up to 15.3 degrees; steeper, Talus errs towards danger.
-TEST(MeasuredSlope, LugsClimbAsMeasured) {
+TEST(MeasuredSlope, GrouserWheelSlipOnSlopesMatchesMeasurements) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";
   std::ifstream points(std::filesystem::path(folder) / "slope_slip" / "points.csv");

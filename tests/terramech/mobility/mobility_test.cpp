@@ -34,7 +34,7 @@ Rover rover() {
           .hotel_power_W = 8.0};
 }
 
-TEST(Mobility, SlipBalancesThePullOfTheSlopeUpAndDown) {
+TEST(Mobility, SlipBalancesThePullRequiredByTheSlope) {
   const MobilityCurve curve{loam(), rover()};
   for (double slope = -0.4; slope < curve.maxSlope_rad() - 0.01; slope += 0.0317) {
     if (slope < curve.minSlope_rad()) continue;
@@ -43,7 +43,7 @@ TEST(Mobility, SlipBalancesThePullOfTheSlopeUpAndDown) {
   }
 }
 
-TEST(Mobility, IsExactOnRandomSoilsAndRovers) {
+TEST(Mobility, MatchesTheExactSolutionForRandomSoilsAndRovers) {
   std::mt19937_64 random{11};
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(random);
@@ -79,7 +79,7 @@ TEST(Mobility, StateSatisfiesTheForceBalance) {
   }
 }
 
-TEST(Mobility, NothingEasesAsTheSlopeSteepens) {
+TEST(Mobility, SlipAndEnergyIncreaseWithSlope) {
   const MobilityCurve curve{loam(), rover()};
   MobilityState last = curve.at(curve.minSlope_rad());
   for (double slope = curve.minSlope_rad(); slope < curve.maxSlope_rad(); slope += 1e-3) {
@@ -91,7 +91,7 @@ TEST(Mobility, NothingEasesAsTheSlopeSteepens) {
   }
 }
 
-TEST(Mobility, EnergyOnTheFlatIsTorqueTimesTurnsAndHotelTime) {
+TEST(Mobility, EnergyOnFlatGroundIsTorqueWorkPlusHotelEnergy) {
   const MobilityState flat = MobilityCurve{loam(), rover()}.at(0.0);
   const double rolled_per_m = 1.0 / (1.0 - flat.slip);
   EXPECT_NEAR(flat.energy_J_per_m,
@@ -100,21 +100,21 @@ TEST(Mobility, EnergyOnTheFlatIsTorqueTimesTurnsAndHotelTime) {
   EXPECT_GT(flat.slip, 0.0);  // Property: rolling resistance must be pulled.
 }
 
-TEST(Mobility, BrakingGivesNoEnergyBack) {
+TEST(Mobility, BrakingRecoversNoEnergy) {
   const MobilityCurve curve{loam(), rover()};
   const MobilityState down = curve.at(-0.25);
   EXPECT_LT(down.torque_Nm, 0.0);
   EXPECT_DOUBLE_EQ(down.energy_J_per_m, 8.0 / 0.06);
 }
 
-TEST(Mobility, LessGravityLeavesTheSlopeButSinksLess) {
+TEST(Mobility, SinkageIncreasesWithGravity) {
   Rover heavy = rover();
   heavy.gravity_m_s2 = 9.80665;
   EXPECT_LT((MobilityCurve{loam(), rover()}.reference().sinkage_over_radius),
             (MobilityCurve{loam(), heavy}.reference().sinkage_over_radius));
 }
 
-TEST(Mobility, LimitsOfSlipTorqueAndSlopeHold) {
+TEST(Mobility, SlipTorqueAndSlopeLimitsMakeStatesInfeasible) {
   const MobilityCurve curve{loam(), rover()};
   EXPECT_FALSE(curve.at(curve.maxSlope_rad() + 1e-6).feasible);
   EXPECT_FALSE(curve.at(curve.minSlope_rad() - 1e-6).feasible);
@@ -126,7 +126,7 @@ TEST(Mobility, LimitsOfSlipTorqueAndSlopeHold) {
   EXPECT_FALSE(careful.at(0.1).feasible);
 }
 
-TEST(Mobility, ReferenceIsTheWheelAtHalfSlipUnderItsOwnLoad) {
+TEST(Mobility, ReferenceIsTheWheelAtReferenceSlipUnderItsLoad) {
   const MobilityCurve curve{loam(), rover()};
   const double load_N = wheelLoad_N(rover());
   const WheelForces wheel = equilibrium(loam(), rover().wheel, {.load_N = load_N, .slip = 0.5});
@@ -136,7 +136,7 @@ TEST(Mobility, ReferenceIsTheWheelAtHalfSlipUnderItsOwnLoad) {
 }
 
 // Property: to the bit, on soils that carry the wheel and on one that does not, with effects and without.
-TEST(Mobility, TheReferenceAloneIsThatOfTheCurve) {
+TEST(Mobility, ReferenceFunctionEqualsThatOfTheCurve) {
   Soil bottomless = loam();
   bottomless.frictional_modulus = 1e3;
   const auto same = [](const MobilityReference& a, const MobilityReference& b) {
@@ -159,7 +159,7 @@ TEST(Mobility, TheReferenceAloneIsThatOfTheCurve) {
   EXPECT_THROW(mobilityReference(loam(), bad), std::invalid_argument);
 }
 
-TEST(Mobility, OnABottomlessSoilNothingIsFeasible) {
+TEST(Mobility, SoilWithoutBearingCapacityIsInfeasible) {
   Soil bog = loam();
   bog.frictional_modulus = 100.0;
   bog.cohesion_Pa = 0.0;
@@ -168,7 +168,7 @@ TEST(Mobility, OnABottomlessSoilNothingIsFeasible) {
   EXPECT_DOUBLE_EQ(curve.reference().sinkage_over_radius, 1.0);
 }
 
-TEST(Mobility, RefusesABadRover) {
+TEST(Mobility, InvalidRoverAndOptionsAreRejected) {
   Rover bad = rover();
   bad.mass_kg = -1.0;
   EXPECT_REFUSED((MobilityCurve{loam(), bad}), std::invalid_argument, "mass_kg = -1, must be > 0");
@@ -187,7 +187,7 @@ RefinedModel withEffect(const char* name, std::vector<double> parameters) {
   return model;
 }
 
-TEST(Mobility, AModelWithoutEffectsIsItsSoil) {
+TEST(Mobility, ModelWithoutEffectsEqualsItsSoil) {
   const MobilityCurve of_soil{loam(), rover()};
   RefinedModel model;
   model.soil = loam();
@@ -200,7 +200,7 @@ TEST(Mobility, AModelWithoutEffectsIsItsSoil) {
   EXPECT_NEAR(of_model.maxSlope_rad(), of_soil.maxSlope_rad(), 1e-6);
 }
 
-TEST(Mobility, AnEffectHoldsOnEverySlope) {
+TEST(Mobility, EffectsApplyOnEverySlope) {
   const RefinedModel model = withEffect("slip_sinkage_ding", {0.4});
   const MobilityCurve curve{model, rover()};
   for (const double slope : {0.05, 0.12}) {
@@ -218,7 +218,7 @@ TEST(Mobility, AnEffectHoldsOnEverySlope) {
   }
 }
 
-TEST(Mobility, ResistanceCostsSlipEnergyAndTheSteepestSlopes) {
+TEST(Mobility, BulldozingIncreasesSlipAndEnergyAndReducesMaximumSlope) {
   const MobilityCurve curve{withEffect("bulldozing", {0.3}), rover()}, plain{loam(), rover()};
   for (const double slope : {-0.05, 0.05, 0.1}) {
     EXPECT_GT(curve.at(slope).slip, plain.at(slope).slip) << slope;
@@ -228,7 +228,7 @@ TEST(Mobility, ResistanceCostsSlipEnergyAndTheSteepestSlopes) {
   EXPECT_LT(curve.reference().drawbar_pull_over_load, plain.reference().drawbar_pull_over_load);
 }
 
-TEST(Mobility, AxlesThatFollowOneAnotherPullTogether) {
+TEST(Mobility, AxlesInOneRutShareThePull) {
   const RefinedModel model = withEffect("multipass_reload", {3.0, 1.0});
   const MobilityCurve curve{model, rover(), {.axles = 3}}, first{model, rover()},
       rut{model, rover(), {.first_pass = 2}};
@@ -256,7 +256,7 @@ TEST(Mobility, AxlesThatFollowOneAnotherPullTogether) {
   EXPECT_THROW((MobilityCurve{model, rover(), {.axles = 0}}), std::invalid_argument);
 }
 
-TEST(Mobility, WhatSensorsErrDoesNotMoveTheGround) {
+TEST(Mobility, SensorEffectsDoNotChangeMobility) {
   for (const char* name : {"load_cell_tilt", "torque_offset", "sinkage_datum", "slip_bias"}) {
     const MobilityCurve curve{withEffect(name, {0.05}), rover()};
     RefinedModel plain;
@@ -265,7 +265,7 @@ TEST(Mobility, WhatSensorsErrDoesNotMoveTheGround) {
   }
 }
 
-TEST(Mobility, ALinearFormulaCannotSayWhatASlopeAsks) {
+TEST(Mobility, LinearFormulaIsRejected) {
   RefinedModel model;
   model.soil = loam();
   model.base = BaseModel::LinearFormula;

@@ -20,7 +20,7 @@ Rover rover(int wheels = 4) {
           .max_torque_Nm = 20.0};
 }
 
-TEST(RoverStance, LoadMovesInPitchAndInRoll) {
+TEST(RoverStance, PitchAndRollTransferLoad) {
   const RoverStance stance{rover()};
   const auto n = stance.shares({0.2, 0.1});
   // Closed form: the textbook's h/L tan and h/T tan, by halves.
@@ -55,7 +55,7 @@ TEST(RoverStance, ForcesAndMomentsBalance) {
   }
 }
 
-TEST(RoverStance, TipsWhereTheWeightLeavesTheWheels) {
+TEST(RoverStance, StabilityMarginIsZeroAtTheTippingSlope) {
   const RoverStance stance{rover()};
   // Closed form: half the base over the height, half the track over the height.
   EXPECT_NEAR(stance.stabilityMargin_rad({0.4 / 0.3, 0.0}), 0.0, 1e-12);
@@ -64,7 +64,7 @@ TEST(RoverStance, TipsWhereTheWeightLeavesTheWheels) {
   EXPECT_LT(stance.stabilityMargin_rad({0.0, 1.1}), 0.0);
 }
 
-TEST(RoverStance, WithoutAHeightNoLoadMovesAndNoMarginIsKnown) {
+TEST(RoverStance, WithoutCentreOfMassHeightLoadsAreEqualAndMarginIsNan) {
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;
   const RoverStance stance{r};
@@ -81,7 +81,7 @@ std::string refusal(const Rover& r) {
   return {};
 }
 
-TEST(RoverStance, RefusesWhatCannotStand) {
+TEST(RoverStance, InvalidGeometryIsRejected) {
   Rover r = rover();
   r.centre_of_mass_ahead_m = 0.5;
   EXPECT_NE(refusal(r).find("rover 'box': centre_of_mass_ahead_m = 0.5"), std::string::npos) << refusal(r);

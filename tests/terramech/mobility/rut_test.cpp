@@ -4,7 +4,7 @@
 namespace talus::terramech {
 namespace rut_test {
 
-TEST(Rut, TheSecondWheelSinksLessAndPullsMore) {
+TEST(Rut, SecondPassSinksLessAndPullsMore) {
   const Soil sand{.name = "sand",
                   .cohesion_Pa = 800.0,
                   .friction_angle_rad = 0.63,

@@ -88,7 +88,7 @@ Net netOf(const Soil& soil, const Rover& r, const Gradient& g, const SlopeState&
           dot(moment, up),   dot(moment, body_left), dot(moment, body)};
 }
 
-TEST(SlopeEquilibrium, WheelsSolvedAnewBalanceTheWeight) {
+TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
   for (const Steering steering : kSteerings) {
     Rover r = rover(steering);
     r.centre_of_mass_ahead_m = 0.06;
@@ -115,7 +115,7 @@ TEST(SlopeEquilibrium, WheelsSolvedAnewBalanceTheWeight) {
   }
 }
 
-TEST(SlopeEquilibrium, AlongASlopeIsTheMobilityCurve) {
+TEST(SlopeEquilibrium, StraightUpSlopeMatchesTheMobilityCurve) {
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;  // the curve moves no load
   const SlopeEquilibrium equilibrium{sand(), r};
@@ -132,7 +132,7 @@ TEST(SlopeEquilibrium, AlongASlopeIsTheMobilityCurve) {
   }
 }
 
-TEST(SlopeEquilibrium, MirrorsLeftAndRight) {
+TEST(SlopeEquilibrium, IsSymmetricLeftAndRight) {
   for (const Steering steering : kSteerings) {
     const SlopeEquilibrium equilibrium{sand(), rover(steering)};
     for (const double a : {-0.2, 0.0, 0.15})
@@ -148,7 +148,7 @@ TEST(SlopeEquilibrium, MirrorsLeftAndRight) {
   }
 }
 
-TEST(SlopeEquilibrium, TheSteeperAcrossTheMoreSlipAngle) {
+TEST(SlopeEquilibrium, SlipAngleAndEnergyIncreaseWithCrossSlope) {
   for (const Steering steering : kSteerings) {
     const SlopeEquilibrium equilibrium{sand(), rover(steering)};
     double last = -1.0, energy = 0.0;
@@ -165,7 +165,7 @@ TEST(SlopeEquilibrium, TheSteeperAcrossTheMoreSlipAngle) {
   }
 }
 
-TEST(SlopeEquilibrium, TheBodyTurnsUphillUnlessAllWheelsSteer) {
+TEST(SlopeEquilibrium, BodyYawsUphillUnlessAllWheelsSteer) {
   const Gradient across{0.0, 0.2};  // rises to the left
   EXPECT_EQ(SlopeEquilibrium(sand(), rover(Steering::AllWheel)).at(across).body_turn_rad, 0.0);
   EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Skid)).at(across).body_turn_rad, 0.02);
@@ -201,7 +201,7 @@ bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
   return false;
 }
 
-TEST(SlopeEquilibrium, FindsOneWhereverOneIs) {
+TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;
   const SlopeEquilibrium equilibrium{sand(), r};
@@ -225,7 +225,7 @@ TEST(SlopeEquilibrium, FindsOneWhereverOneIs) {
   EXPECT_GT(none, 8);
 }
 
-TEST(SlopeEquilibrium, SaysWhyNothingHolds) {
+TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
   const SlopeEquilibrium equilibrium{sand(), rover()};
   EXPECT_EQ(equilibrium.at({0.7, 0.0}).failure, SlopeFailure::CannotPull);
   EXPECT_EQ(equilibrium.at({0.0, 0.9}).failure, SlopeFailure::Slides);
@@ -249,7 +249,7 @@ TEST(SlopeEquilibrium, SaysWhyNothingHolds) {
   EXPECT_EQ(SlopeEquilibrium(bog, rover()).at({0.0, 0.0}).failure, SlopeFailure::Sinks);
 }
 
-TEST(SlopeEquilibrium, ALockedRoverHoldsDownhillUntilItSlides) {
+TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
   const SlopeEquilibrium equilibrium{sand(), rover()};
   const double even = wheelLoad_N(rover());
   const WheelForces locked = terramech::equilibrium(sand(), rover().wheel, {.load_N = even, .slip = -1.0});
@@ -261,7 +261,7 @@ TEST(SlopeEquilibrium, ALockedRoverHoldsDownhillUntilItSlides) {
 
 // Independent: the point where the weight meets the plane, in the body's own axes and in three dimensions, against the rectangle of the
 // wheels. A rover that is short, wide and tall, and turns uphill where the slope pushes it aside.
-TEST(SlopeEquilibrium, HoldsOnlyWithTheCentreOfMassBetweenTheWheelsOfTheBody) {
+TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
   int tipped = 0, turned = 0;  // the turn of the body alone tips these
   for (const auto& [steering, cohesion_Pa] : {std::pair{Steering::Skid, 4000.0},
                                               {Steering::Ackermann, 4000.0},
@@ -304,7 +304,7 @@ TEST(SlopeEquilibrium, HoldsOnlyWithTheCentreOfMassBetweenTheWheelsOfTheBody) {
   EXPECT_GT(turned, 5);
 }
 
-TEST(SlopeEquilibrium, SaysWhatItAssumes) {
+TEST(SlopeEquilibrium, ListsItsAssumptions) {
   EXPECT_TRUE(slopeAssumptions(rover()).empty());
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;

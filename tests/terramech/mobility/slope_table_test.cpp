@@ -33,7 +33,7 @@ Rover rover() {
           .steering = Steering::Ackermann};
 }
 
-TEST(SlopeTable, AllowsNothingThatTheEquilibriumRefuses) {
+TEST(SlopeTable, IsNeverLessRestrictiveThanTheEquilibrium) {
   for (const double left_m : {0.0, 0.08}) {
     Rover r = rover();
     r.centre_of_mass_left_m = left_m;
@@ -73,14 +73,14 @@ TEST(SlopeTable, AllowsNothingThatTheEquilibriumRefuses) {
   }
 }
 
-TEST(SlopeTable, SaysNothingHoldsBeyondItself) {
+TEST(SlopeTable, SlopesOutsideTheTableAreInfeasible) {
   const SlopeTable table{SlopeEquilibrium{sand(), rover()}};
   EXPECT_FALSE(table.at({5.0, 0.0}).holds());
   EXPECT_FALSE(table.at({0.0, -5.0}).holds());
   EXPECT_FALSE(table.at({std::nan(""), 0.0}).holds());
 }
 
-TEST(SlopeTable, RefusesAStepOfNothing) {
+TEST(SlopeTable, ZeroStepIsRejected) {
   const SlopeEquilibrium equilibrium{sand(), rover()};
   EXPECT_REFUSED(SlopeTable(equilibrium, {.slope = {}, .step = 0.0}), std::invalid_argument,
                  "step = 0, must be in [0.001, 0.5]");

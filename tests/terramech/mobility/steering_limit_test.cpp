@@ -17,7 +17,7 @@ Soil sand() {
           .shear_modulus_m = 0.02};
 }
 
-TEST(SteeringLimit, IsWhereTheSideForceMeetsTheDemand) {
+TEST(SteeringLimit, SideForceEqualsTheDemandAtTheLimit) {
   const SteeringDemand demand{.load_N = 80.0};
   const double limit = steeringSlipLimit(sand(), Wheel{}, demand);
   ASSERT_GT(limit, 0.0);
@@ -29,7 +29,7 @@ TEST(SteeringLimit, IsWhereTheSideForceMeetsTheDemand) {
   EXPECT_NEAR(std::abs(solveContact(contact).side_force_N) / 80.0, 0.1, 1e-6);  // Closed form: the root.
 }
 
-TEST(SteeringLimit, FallsWithTheDemandAndRisesWithTheAngle) {
+TEST(SteeringLimit, DecreasesWithDemandAndIncreasesWithSlipAngle) {
   const auto limit = [](double demand, double angle) {
     return steeringSlipLimit(sand(), Wheel{},
                              {.load_N = 80.0, .slip_angle_rad = angle, .side_force_over_load = demand});
@@ -39,7 +39,7 @@ TEST(SteeringLimit, FallsWithTheDemandAndRisesWithTheAngle) {
   EXPECT_EQ(limit(5.0, 0.26), 0.0);
 }
 
-TEST(SteeringLimit, RefusesBadDemands) {
+TEST(SteeringLimit, InvalidDemandIsRejected) {
   EXPECT_REFUSED(steeringSlipLimit(sand(), Wheel{}, {.load_N = -1.0}), std::invalid_argument,
                  "load_N = -1, must be > 0");
 }

@@ -17,7 +17,7 @@ const CategoryThresholds kFig312{.dp_low = std::tan(0.17453292519943295),
                                  .z_threshold = 0.5,
                                  .z_critical = 0.5};
 
-TEST(TraversabilityPlane, LooksAsFigure312) {
+TEST(TraversabilityPlane, CategoriesMatchThesisFigure312) {
   const TraversabilityPlane plane = traversabilityPlane(eq321, kFig312, {.columns = 40, .rows = 20});
   for (int row = 0; row < plane.rows; ++row)
     for (int column = 0; column < plane.columns; ++column) {
@@ -28,7 +28,7 @@ TEST(TraversabilityPlane, LooksAsFigure312) {
     }
 }
 
-TEST(TraversabilityPlane, TheThesisOwnSoilsAreBothDangerousByItsOwnEquation) {
+TEST(TraversabilityPlane, ThesisExampleSoilsAreDangerousByEquation321) {
   // Printed in: thesis 3.5, pairs (0.1, 0.2) "dangerous" and (0.3, 0.4) "safe"; 3.21 gives -0.2 for both, so
   // the second does not reproduce.
   for (const auto& [torque, sinkage] : {std::pair{0.1, 0.2}, {0.3, 0.4}})
@@ -37,12 +37,12 @@ TEST(TraversabilityPlane, TheThesisOwnSoilsAreBothDangerousByItsOwnEquation) {
               Category::Dangerous);
 }
 
-TEST(TraversabilityPlane, FindsTheLineBetweenCategories) {
+TEST(TraversabilityPlane, FindsTheBoundaryBetweenCategories) {
   EXPECT_NEAR(torqueForPull(eq321, 0.2, 0.3, 1.0), 0.6, 1e-12);  // Closed form.
   EXPECT_TRUE(std::isnan(torqueForPull(eq321, 0.9, 0.3, 1.0)));
 }
 
-TEST(TraversabilityPlane, RefusesAnEmptyPicture) {
+TEST(TraversabilityPlane, EmptyPlaneIsRejected) {
   EXPECT_REFUSED(traversabilityPlane(eq321, kFig312, {.columns = 0}), std::invalid_argument,
                  "columns = 0, must be in [1, 10000]");
 }

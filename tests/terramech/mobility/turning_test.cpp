@@ -24,7 +24,7 @@ Rover fourWheels(Steering steering) {
   return rover;
 }
 
-TEST(Turning, ASkidRoverDragsEachAxleSideways) {
+TEST(Turning, SkidSteeringEnergyIsLateralFrictionWork) {
   const TurnEfforts efforts =
       turnEfforts(fourWheels(Steering::Skid), {.lateral_resistance = 0.5, .rolling_J_per_m = 40.0});
   // Closed form: 4 wheels of 50 N, each 0.6 m from the middle, at 0.5 lateral force over load.
@@ -33,7 +33,7 @@ TEST(Turning, ASkidRoverDragsEachAxleSideways) {
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 60.0 + 40.0 * 0.45);
 }
 
-TEST(Turning, ASteeredRoverRollsAroundItsMiddle) {
+TEST(Turning, AllWheelSteeringRollsAboutTheCentre) {
   const TurnEfforts efforts = turnEfforts(fourWheels(Steering::AllWheel), {.rolling_J_per_m = 40.0});
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J,
                    30.0);  // Closed form: half the diagonal of 1.2 by 0.9 m is 0.75 m.
@@ -45,7 +45,7 @@ TEST(Turning, ASteeredRoverRollsAroundItsMiddle) {
                    40.0 * (2.0 * 0.75 + 0.45) / 3.0);
 }
 
-TEST(Turning, NoWheelIsFasterThanItMay) {
+TEST(Turning, TurnTimeIsLimitedByTheFastestWheel) {
   auto rover = fourWheels(Steering::AllWheel);
   rover.hotel_power_W = 10.0;
   const TurnEfforts efforts = turnEfforts(rover, {});
@@ -55,7 +55,7 @@ TEST(Turning, NoWheelIsFasterThanItMay) {
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 15.0);
 }
 
-TEST(Turning, SunkWheelsPushTheSoilBesideThem) {
+TEST(Turning, BulldozingForceMatchesPassiveEarthPressure) {
   const auto rover = fourWheels(Steering::Skid);
   Soil sand;
   sand.friction_angle_rad = std::numbers::pi / 6;  // K_p = tan^2(60 deg) = 3

@@ -62,7 +62,7 @@ TEST(WheelForcesTable, IsTheWheel) {
   }
 }
 
-TEST(WheelForcesTable, SlopesAreItsOwn) {
+TEST(WheelForcesTable, DerivativesMatchFiniteDifferences) {
   const WheelForcesTable table{soil(0), rover()};
   const double h = 1e-6;
   for (const double slip : {-0.72, -0.01, 0.33, 0.81})
@@ -77,7 +77,7 @@ TEST(WheelForcesTable, SlopesAreItsOwn) {
     }
 }
 
-TEST(WheelForcesTable, OfAModelWithoutEffectsIsThatOfItsSoil) {
+TEST(WheelForcesTable, ModelWithoutEffectsEqualsItsSoil) {
   RefinedModel model;
   model.soil = soil(0);
   const WheelForcesTable a{soil(0), rover()}, b{model, rover()};

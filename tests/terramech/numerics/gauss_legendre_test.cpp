@@ -21,7 +21,7 @@ TEST(GaussLegendre, IsExactForPolynomialsOfItsDegree) {
   EXPECT_NEAR(integralOfPower<24>(40), 1.0 / 41.0, 1e-15);
 }
 
-TEST(GaussLegendre, NodesAscendInsideTheInterval) {
+TEST(GaussLegendre, NodesAreSortedWithinTheIntervalAndWeightsSumToOne) {
   constexpr auto rule = gaussLegendre<24>();
   EXPECT_GT(rule.node.front(), 0.0);
   EXPECT_LT(rule.node.back(), 1.0);

@@ -16,7 +16,7 @@ class Random {
   std::mt19937_64 engine_{3};
 };
 
-TEST(LaneMath, AgreesWithTheStandardLibrary) {
+TEST(LaneMath, MatchesTheStandardLibrary) {
   Random random;
   for (int k = 0; k < 20000; ++k) {
     const double x = random.between(-690.0, 300.0), angle = random.between(1e-6, 1.5707);
@@ -28,7 +28,7 @@ TEST(LaneMath, AgreesWithTheStandardLibrary) {
   }
 }
 
-TEST(LaneMath, FourLanesGiveTheBitsOfOne) {
+TEST(LaneMath, FourLanesAreBitIdenticalToOne) {
   Random random;
   for (int k = 0; k < 2000; ++k) {
     const lanes::Four x{random.between(-30.0, 1.5), random.between(0.01, 1.5), 1.0,

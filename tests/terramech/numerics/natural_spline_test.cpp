@@ -15,7 +15,7 @@ TEST(NaturalSpline, IsNaturalAndConstantOutside) {
 }
 
 // Closed form: a straight line is its own natural spline; one knot is a constant, none is 0.
-TEST(NaturalSpline, KeepsLinesAndTakesFewKnots) {
+TEST(NaturalSpline, ReproducesLinesAndAcceptsFewKnots) {
   const NaturalSpline line{{-2.0, 0.5, 1.0, 4.0}, {-3.0, 2.0, 3.0, 9.0}};
   for (const double x : {-2.0, -1.1, 0.7, 3.3}) EXPECT_NEAR(line(x), 2.0 * x + 1.0, 1e-12) << x;
   EXPECT_EQ(NaturalSpline({1.0}, {5.0})(7.0), 5.0);

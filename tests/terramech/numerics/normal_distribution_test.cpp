@@ -16,13 +16,13 @@ TEST(NormalDistribution, QuantileInvertsTheDistribution) {
   }
 }
 
-TEST(NormalDistribution, QuantileOfNinetySevenAndAHalfPerCent) {
+TEST(NormalDistribution, QuantileAt975PerMilleMatchesReferenceAndZeroIsRejected) {
   // Closed form: 1.959963984540054.
   EXPECT_NEAR(normalQuantile(0.975), 1.959963984540054, 1e-12);
   EXPECT_THROW((void)normalQuantile(0.0), std::invalid_argument);
 }
 
-TEST(EvenPoints, FillTheCubeEvenly) {
+TEST(EvenPoints, FillTheUnitCubeUniformly) {
   // Property: the mean of each coordinate of a Halton sequence is 1/2 to about log(n)/n.
   const auto points = evenPoints(5, 1024);
   for (int row = 0; row < 5; ++row) EXPECT_NEAR(points.row(row).mean(), 0.5, 0.01);

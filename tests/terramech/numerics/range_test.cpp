@@ -17,7 +17,7 @@ std::string refusal(const std::function<void(const RangeCheck&)>& check) {
   return "accepted";
 }
 
-TEST(Range, RefusalNamesOwnerFieldValueAndBound) {
+TEST(Range, ErrorNamesOwnerFieldValueAndBound) {
   EXPECT_EQ(refusal([](auto& c) { c.atLeast("mass_kg", -0.5, 0.0); }),
             "rover 'A': mass_kg = -0.5, must be >= 0");
   EXPECT_EQ(refusal([](auto& c) { c.above("mass_kg", 0.0, 0.0); }), "rover 'A': mass_kg = 0, must be > 0");
@@ -27,7 +27,7 @@ TEST(Range, RefusalNamesOwnerFieldValueAndBound) {
             "rover 'A': slip = 1.5, must be in [-1, 1]");
 }
 
-TEST(Range, BoundsThemselvesAreInsideExceptAbove) {
+TEST(Range, BoundsAreInclusiveExceptAbove) {
   EXPECT_EQ(refusal([](auto& c) { c.atLeast("x", 2.0, 2.0); }), "accepted");
   EXPECT_EQ(refusal([](auto& c) { c.within("x", -1.0, {-1.0, 1.0}); }), "accepted");
   EXPECT_EQ(refusal([](auto& c) { c.within("x", 1.0, {-1.0, 1.0}); }), "accepted");
@@ -35,7 +35,7 @@ TEST(Range, BoundsThemselvesAreInsideExceptAbove) {
   EXPECT_NE(refusal([](auto& c) { c.within("x", -1.1, {-1.0, 1.0}); }), "accepted");
 }
 
-TEST(Range, WhatIsNotFiniteIsRefusedByEveryCheck) {
+TEST(Range, NonFiniteValuesAreRejectedByEveryCheck) {
   for (const double value :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
         -std::numeric_limits<double>::infinity()}) {

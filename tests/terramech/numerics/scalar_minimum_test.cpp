@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace scalar_minimum_test {
 
-TEST(ScalarMinimum, FindsTheDeepestOfSeveral) {
+TEST(ScalarMinimum, FindsTheGlobalMinimum) {
   // Closed form: with u = ln x the slope is 0 where 6 sin(6 u) = (u - 1)/5.
   const auto f = [](double x) {
     const double u = std::log(x);
@@ -18,7 +18,7 @@ TEST(ScalarMinimum, FindsTheDeepestOfSeveral) {
   for (double v = -4.6; v < 4.6; v += 1e-3) EXPECT_GE(f(std::exp(v)), least.value - 1e-12);
 }
 
-TEST(ScalarMinimum, KeepsAnEndThatIsLowest) {
+TEST(ScalarMinimum, FindsAMinimumAtAnIntervalEnd) {
   const Minimum least = globalMinimum([](double x) { return x; }, 2.0, 8.0);
   EXPECT_EQ(least.at, 2.0);
 }

@@ -9,7 +9,7 @@ std::optional<double> numberOrNone(const test::ReferenceRow& row, const std::str
   return row.has(column) ? std::optional{row[column]} : std::nullopt;
 }
 
-TEST(CategoryReference, AgreesOnEveryEdge) {
+TEST(CategoryReference, MatchesTheReferenceOnEveryThreshold) {
   const auto rows = test::referenceTable("category_edges");
   EXPECT_EQ(rows.size(), 34u);
   for (std::size_t k = 0; k < rows.size(); ++k) {

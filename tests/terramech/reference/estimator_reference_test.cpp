@@ -20,7 +20,7 @@ void expectClose(double got, double expected, double relative) {
   EXPECT_NEAR(got, expected, relative * (1.0 + std::abs(expected)));
 }
 
-TEST(EstimatorReference, Iagnemma) {
+TEST(EstimatorReference, IagnemmaMatchesTheReference) {
   for (const auto& c : estimatorCases()) {
     MohrCoulombLine line;
     for (const auto& row : c.rows) {
@@ -37,7 +37,7 @@ TEST(EstimatorReference, Iagnemma) {
   }
 }
 
-TEST(EstimatorReference, LinearOffset) {
+TEST(EstimatorReference, LinearOffsetMatchesTheReference) {
   for (const auto& c : estimatorCases()) {
     MohrCoulombLine simplified;
     LinearOffsetFit whole;
@@ -56,7 +56,7 @@ TEST(EstimatorReference, LinearOffset) {
   }
 }
 
-TEST(EstimatorReference, LinearOffsetStresses) {
+TEST(EstimatorReference, LinearOffsetStressesMatchTheReference) {
   for (const auto& c : estimatorCases()) {
     const ShearSoil soil{.cohesion_Pa = c.results["offset_cohesion_Pa"],
                          .shear_modulus_m = c.shearModulus_m()};
@@ -70,7 +70,7 @@ TEST(EstimatorReference, LinearOffsetStresses) {
   }
 }
 
-TEST(EstimatorReference, Sojourner) {
+TEST(EstimatorReference, SojournerMatchesTheReference) {
   for (const auto& c : estimatorCases()) {
     MohrCoulombLine line;
     for (const auto& row : c.rows) {
@@ -84,7 +84,7 @@ TEST(EstimatorReference, Sojourner) {
   }
 }
 
-TEST(EstimatorReference, ShearModulusByErrorMinimisation) {
+TEST(EstimatorReference, ErrorMinimisationModulusMatchesTheReference) {
   for (const auto& c : estimatorCases()) {
     for (const auto& row : c.modulus_errors)
       expectClose(modulusError_Pa(c.wheel(), samplesOf(c), row["shear_modulus_m"]), row["error_Pa"], 1e-7);
@@ -95,7 +95,7 @@ TEST(EstimatorReference, ShearModulusByErrorMinimisation) {
   }
 }
 
-TEST(EstimatorReference, EightSoilsOfTenReadings) {
+TEST(EstimatorReference, ReferenceHasEightSoilsOfTenReadings) {
   const auto cases = estimatorCases();
   EXPECT_EQ(cases.size(), 8u);
   for (const auto& c : cases) EXPECT_EQ(c.rows.size() + c.modulus_errors.size(), 19u);

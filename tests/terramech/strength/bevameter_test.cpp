@@ -22,7 +22,7 @@ PressureSinkageFit pressed(std::initializer_list<double> widths, double noise = 
   return fit;
 }
 
-TEST(PressureSinkageFit, GivesBackTheSoilThatMadeTheReadings) {
+TEST(PressureSinkageFit, RecoversTheSoilOfExactReadings) {
   // Printed in: thesis Table A.1, clayey soil: n = 0.5, k_c = 13.19, k_phi = 692.15 (kN).
   const PressureSinkage fit = pressed({0.05, 0.1, 0.2}).estimate();
   EXPECT_NEAR(fit.sinkage_exponent, 0.5, 1e-12);
@@ -32,7 +32,7 @@ TEST(PressureSinkageFit, GivesBackTheSoilThatMadeTheReadings) {
   EXPECT_LT(fit.residual_std, 1e-7);
 }
 
-TEST(PressureSinkageFit, RefusesToSeparateModuliWithOneOrAlikePlates) {
+TEST(PressureSinkageFit, ModuliAreNotSeparatedForOneOrSimilarPlateWidths) {
   for (const auto& fit : {pressed({0.05}).estimate(), pressed({0.05, 0.055}).estimate()}) {
     EXPECT_FALSE(fit.cohesive_modulus);
     EXPECT_FALSE(fit.frictional_modulus);
@@ -41,7 +41,7 @@ TEST(PressureSinkageFit, RefusesToSeparateModuliWithOneOrAlikePlates) {
   }
 }
 
-TEST(PressureSinkageFit, ScatterIsWhatWasPutIn) {
+TEST(PressureSinkageFit, ResidualStdEqualsTheAddedNoise) {
   // Property: 5 % of noise on each pressure shows as a scatter of 0.05 (1200 readings: +- 4 %, two standard
   // deviations).
   const PressureSinkage fit = pressed({0.05, 0.1, 0.2}, 0.05).estimate();
@@ -49,7 +49,7 @@ TEST(PressureSinkageFit, ScatterIsWhatWasPutIn) {
   EXPECT_NEAR(fit.sinkage_exponent, 0.5, 0.01);
 }
 
-TEST(PressureSinkageFit, IsTheLeastOfWongsCriterion) {
+TEST(PressureSinkageFit, MinimisesWongsCriterion) {
   // Property: any step from the answer makes the sum of sigma^2 (ln sigma - ln k - n ln z)^2 larger
   // (wong_1980).
   std::mt19937_64 random(13);
@@ -77,7 +77,7 @@ TEST(PressureSinkageFit, IsTheLeastOfWongsCriterion) {
   }
 }
 
-TEST(PressureSinkageFit, RefusesWhatIsNoReading) {
+TEST(PressureSinkageFit, InvalidReadingsAreRejected) {
   PressureSinkageFit fit;
   EXPECT_REFUSED(fit.add({0.05, 0.0, 1000.0}), std::invalid_argument, "sinkage_m = 0, must be > 0");
   EXPECT_REFUSED(fit.add({0.05, 0.01, std::nan("")}), std::invalid_argument,
@@ -97,7 +97,7 @@ std::vector<ShearReading> sheared(double modulus, double furthest_m) {
   return readings;
 }
 
-TEST(FitShear, GivesBackAllThreeParameters) {
+TEST(FitShear, RecoversCohesionFrictionAndModulusOfExactReadings) {
   // Closed form: Eq. A.4.
   const ShearFit fit = fitShear(sheared(0.013, 0.05));
   EXPECT_NEAR(fit.shear_modulus_m, 0.013, 1e-8);
@@ -106,7 +106,7 @@ TEST(FitShear, GivesBackAllThreeParameters) {
   EXPECT_FALSE(fit.modulus_at_bound);
 }
 
-TEST(FitShear, IsTheLeastOfTheSquaredStresses) {
+TEST(FitShear, MinimisesTheSquaredStressResiduals) {
   // Property: any step from the answer makes the sum of squares of tau - (c + sigma t)(1 - e^(-j/K)) larger.
   std::mt19937_64 random(12);
   std::normal_distribution<double> normal;
@@ -127,7 +127,7 @@ TEST(FitShear, IsTheLeastOfTheSquaredStresses) {
   }
 }
 
-TEST(FitShear, RefusesOneNormalStress) {
+TEST(FitShear, SingleNormalStressIsRejected) {
   EXPECT_REFUSED(fitShear(std::vector<ShearReading>(5, {1e4, 6e3, 0.05})), std::domain_error,
                  "all samples have the same normal stress");
 }

@@ -18,19 +18,19 @@ ShearStrength estimated(const LinearWorld& world) {
   return line.estimate();
 }
 
-TEST(Iagnemma, ExactWhereTheShearVanishesAtTheBottom) {
+TEST(Iagnemma, IsExactIfShearVanishesAtTheBottom) {
   // Property: the method's own assumption, Eq. B.2.
   const ShearStrength fit = estimated({.cohesion_Pa = 1000.0, .tan_friction = 0.6, .offset = false});
   EXPECT_NEAR(fit.cohesion_Pa, 1000.0, 1.0);
   EXPECT_NEAR(fit.tan_friction, 0.6, 1e-4);
 }
 
-TEST(Iagnemma, OverEstimatesCohesionWhereItActsAtTheBottomToo) {
+TEST(Iagnemma, OverestimatesCohesionIfShearActsAtTheBottom) {
   // Property: the weakness that the linear-offset method was made for (thesis Fig. 2.3).
   EXPECT_GT(estimated({.cohesion_Pa = 6000.0, .tan_friction = 0.4}).cohesion_Pa, 7500.0);
 }
 
-TEST(Iagnemma, RefusesABrakedWheel) {
+TEST(Iagnemma, BrakedWheelIsRejected) {
   EXPECT_REFUSED(iagnemmaPair(kWheel, {.load_N = 80, .torque_Nm = -1, .sinkage_m = 0.01, .slip = -0.4}, 0.02),
                  std::domain_error, "no shear mobilised at theta_m; it needs a driven, slipping wheel");
 }

@@ -12,7 +12,7 @@ namespace linear_offset_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.08};
 
-TEST(LinearOffset, WholeEquationIsExactWhereStressesAreLinear) {
+TEST(LinearOffset, WholeEquationIsExactForLinearStresses) {
   // Property: Eq. 2.9 follows from Eqs. 2.1 to 2.8 without further approximation (only with 2.3 corrected).
   const LinearWorld world{.cohesion_Pa = 5000.0, .tan_friction = 0.45};
   LinearOffsetFit fit;
@@ -26,7 +26,7 @@ TEST(LinearOffset, WholeEquationIsExactWhereStressesAreLinear) {
   EXPECT_NEAR(fit.estimate().tan_friction, 0.45, 1e-4);
 }
 
-TEST(LinearOffset, StressesComeBackFromLoadAndTorque) {
+TEST(LinearOffset, StressesAreRecoveredFromLoadAndTorque) {
   // Property: the inverse of the world.
   const LinearWorld world;
   const WheelSample s = sampleOf(kWheel, world, {.sinkage_m = 0.02, .slip = 0.5});
@@ -37,7 +37,7 @@ TEST(LinearOffset, StressesComeBackFromLoadAndTorque) {
   EXPECT_NEAR(stress.tau_m_Pa, (world.cohesion_Pa + world.sigma_m_Pa * world.tan_friction) * a, 0.5);
 }
 
-TEST(LinearOffset, FirstCoefficientFollowsItsSmallAngleForm) {
+TEST(LinearOffset, M1MatchesItsSmallAngleLimit) {
   // Closed form: M1 ~ (theta_1/6) B / (1 + B/2A) > 0 at small contact.
   const WheelSample s{.load_N = 10.0, .torque_Nm = 0.2, .sinkage_m = 1e-6, .slip = 0.5};
   const auto [a, b] = mobilisation(kWheel, s, 1e-4);
@@ -56,7 +56,7 @@ TEST(LinearOffset, RecursiveFitEqualsTheFitOfAllSamplesInAnyOrder) {
   EXPECT_GT(forward.estimate().residual_std_Pa, 0.0);
 }
 
-TEST(LinearOffset, RefusesAWheelThatMobilisesNothing) {
+TEST(LinearOffset, WheelWithoutMobilisedShearIsRejected) {
   EXPECT_REFUSED(linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.01, .slip = -0.5}, 0.02),
                  std::domain_error, "no shear mobilised at theta_m; it needs a driven, slipping wheel");
   EXPECT_REFUSED(linearOffset(kWheel, {.load_N = 80, .torque_Nm = 1, .sinkage_m = 0.0, .slip = 0.5}, 0.02),

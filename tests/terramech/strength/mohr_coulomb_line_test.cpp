@@ -47,7 +47,7 @@ TEST(MohrCoulombLine, RecursionEqualsTheBatchNormalEquations) {
   EXPECT_TRUE(fit.unseen.empty());
 }
 
-TEST(MohrCoulombLine, CovarianceCoversTheTruthAsOftenAsItSays) {
+TEST(MohrCoulombLine, CovarianceIsCalibrated) {
   // Property: over repeated noise the error, scaled by its standard deviation, has unit variance (400
   // repeats: +- 10 %).
   double square_c = 0.0;
@@ -70,7 +70,7 @@ TEST(MohrCoulombLine, CovarianceCoversTheTruthAsOftenAsItSays) {
   EXPECT_NEAR(square_t / kRepeats, 28.0 / 26.0, 0.2);
 }
 
-TEST(MohrCoulombLine, WeightTwoIsTheSampleTwice) {
+TEST(MohrCoulombLine, WeightTwoEqualsARepeatedSample) {
   // Property.
   MohrCoulombLine weighted;
   MohrCoulombLine repeated;
@@ -96,14 +96,14 @@ TEST(MohrCoulombLine, ConditionIsThatOfTheScaledMatrix) {
   EXPECT_NEAR(fitOf(pairs).condition, std::sqrt((1.0 + q) / (1.0 - q)), 1e-6);
 }
 
-TEST(MohrCoulombLine, SaysThatAlikeSamplesCannotTellFrictionFromCohesion) {
+TEST(MohrCoulombLine, SimilarSamplesLeaveFrictionAndCohesionUnidentifiable) {
   const ShearStrength fit = fitOf(noisyLine(10, 0.001));
   ASSERT_EQ(fit.unseen.size(), 2u);
   EXPECT_THAT(fit.unseen[0], testing::StartsWith("friction_angle_rad: "));
   EXPECT_THAT(fit.unseen[1], testing::StartsWith("cohesion_Pa: "));
 }
 
-TEST(MohrCoulombLine, RefusesOneSampleAndEqualStresses) {
+TEST(MohrCoulombLine, SingleSampleAndEqualStressesAreRejected) {
   MohrCoulombLine line;
   line.add({.normal_Pa = 1e4, .shear_Pa = 6e3});
   EXPECT_REFUSED(line.estimate(), std::domain_error, "at least two samples are required, got 1");

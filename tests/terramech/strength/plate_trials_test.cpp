@@ -21,7 +21,7 @@ PlateTrial trial(const std::string& soil, double k, double n, double z_low, doub
   return t;
 }
 
-TEST(PlateTrials, TrialsOfDifferentFirmnessKeepTheirExponent) {
+TEST(PlateTrials, ExponentIsFittedWithinTrialsOfDifferentModulus) {
   // Closed form: every trial has n = 1.2; the firm ones are shallow, so that pooled readings show a smaller n.
   std::vector<PlateTrial> trials;
   PressureSinkageFit pooled;
@@ -40,7 +40,7 @@ TEST(PlateTrials, TrialsOfDifferentFirmnessKeepTheirExponent) {
   EXPECT_NEAR(soils[0].fit.plates.at(0).sinkage_modulus, 2e6, 1.0);
 }
 
-TEST(PlateTrials, EachSoilIsFittedForItself) {
+TEST(PlateTrials, EachSoilIsFittedSeparately) {
   const std::vector<PlateTrial> trials{trial("b", 1e6, 1.4, 0.002, 0.03), trial("a", 5e5, 0.7, 0.002, 0.03),
                                        trial("b", 1e6, 1.4, 0.002, 0.02)};
   const auto soils = trialSoils(trials);
@@ -51,7 +51,7 @@ TEST(PlateTrials, EachSoilIsFittedForItself) {
   EXPECT_NEAR(soils[1].fit.sinkage_exponent, 0.7, 1e-9);
 }
 
-TEST(PlateTrials, OneTrialIsThePlainFit) {
+TEST(PlateTrials, OneTrialEqualsThePlainFit) {
   const PlateTrial one = trial("", 1e6, 0.9, 0.002, 0.03);
   PressureSinkageFit fit;
   for (const PlateReading& r : one.readings) fit.add(r);
@@ -61,14 +61,14 @@ TEST(PlateTrials, OneTrialIsThePlainFit) {
   EXPECT_EQ(soil.exponent.spread, 0.0);
 }
 
-TEST(PlateTrials, ATrialOfOneDepthIsNone) {
+TEST(PlateTrials, TrialWithASingleDepthIsExcluded) {
   PlateTrial one;
   one.readings = {{0.04, 0.01, 1e4}, {0.04, 0.01, 1.1e4}};
   EXPECT_THROW(trialSoils(std::vector{one}), std::domain_error);
   EXPECT_EQ(trialSoils(std::vector{one, trial("", 1e6, 0.9, 0.002, 0.03)}).at(0).trials, 1U);
 }
 
-TEST(RandomEffect, FindsMeanAndSpread) {
+TEST(RandomEffect, RecoversMeanAndSpread) {
   // Property: 400 trials of spread 0.3 with errors of 0.1; the spread to 5 %, the mean to three standard errors.
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;

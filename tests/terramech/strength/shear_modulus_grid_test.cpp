@@ -29,7 +29,7 @@ std::vector<WheelSample> steadyRun(double modulus) {
   return samples;
 }
 
-TEST(ShearModulusGrid, JointEqualsTheBatchFitToARung) {
+TEST(ShearModulusGrid, JointFitMatchesTheBatchFitWithinGridSpacing) {
   // Property: the ladder refines between rungs 28 % apart by a parabola.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 1000.0});
   EXPECT_NEAR(
@@ -37,7 +37,7 @@ TEST(ShearModulusGrid, JointEqualsTheBatchFitToARung) {
       1.0, 0.05);
 }
 
-TEST(ShearModulusGrid, ErrorMinimisationEqualsTheBatchFitToARung) {
+TEST(ShearModulusGrid, ErrorMinimisationMatchesTheBatchFitWithinGridSpacing) {
   // Property: both have their minimum where the points lie on a line.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 500.0});
   const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::ErrorMinimisation});
@@ -54,7 +54,7 @@ TEST(ShearModulusGrid, TorqueRatioIsExactUnderItsAssumptions) {
   }
 }
 
-TEST(ShearModulusGrid, EffectiveTorqueAsPrintedSolvesItsEquation) {
+TEST(ShearModulusGrid, EffectiveTorqueIsAccurateOnlyAtFullMobilisation) {
   // Property: where A(i_max) is 1, that is K far below j, both forms of D.8 agree; elsewhere the printed one
   // lies low.
   const auto at = [](double truth, ModulusCriterion c) {
@@ -64,7 +64,7 @@ TEST(ShearModulusGrid, EffectiveTorqueAsPrintedSolvesItsEquation) {
   EXPECT_LT(at(0.02, ModulusCriterion::EffectiveTorque), 0.75 * 0.02);
 }
 
-TEST(ShearModulusGrid, TheHighestSlipIsNoReadingOfItsOwn) {
+TEST(ShearModulusGrid, MaximumSlipSampleIsExcludedFromItsOwnEquation) {
   // Property: one slower sample beside the fastest, at three times: K solves its equation A(i) = T/T_max
   // alone, K = -j / ln(1 - T/T_max), as the batch form has it (thesis D.8 as printed).
   const auto run = steadyRun(0.02);
@@ -74,7 +74,7 @@ TEST(ShearModulusGrid, TheHighestSlipIsNoReadingOfItsOwn) {
               1.0, 0.05);
 }
 
-TEST(ShearModulusGrid, TheOrderOfTheSamplesDoesNotMatter) {
+TEST(ShearModulusGrid, ResultIsIndependentOfSampleOrder) {
   // Property: the highest slip may come first, last or between.
   const auto samples = steadyRun(0.02);
   const std::vector<WheelSample> back(samples.rbegin(), samples.rend());
@@ -84,7 +84,7 @@ TEST(ShearModulusGrid, TheOrderOfTheSamplesDoesNotMatter) {
   }
 }
 
-TEST(ShearModulusGrid, StrengthIsThatOfTheMethodAskedFor) {
+TEST(ShearModulusGrid, StrengthIsThatOfTheRequestedMethod) {
   // Property: in a world without shear at the bottom Iagnemma's line is the truth, at the true K.
   const LinearWorld world{.cohesion_Pa = 1500.0, .offset = false};
   const auto samples = linearSamples(kWheel, world);
@@ -101,7 +101,7 @@ TEST(ShearModulusGrid, StrengthIsThatOfTheMethodAskedFor) {
   EXPECT_NEAR(ladder.strength().tan_friction, at_k.estimate().tan_friction, 0.001);
 }
 
-TEST(ShearModulusGrid, LeavesOutWhatHasNoEquationAndAsksForFourSamples) {
+TEST(ShearModulusGrid, UnusableSamplesAreSkippedAndFourAreRequired) {
   ShearModulusGrid ladder(kWheel);
   EXPECT_FALSE(ladder.add({.load_N = 80.0, .torque_Nm = -1.0, .sinkage_m = 0.01, .slip = 0.3}));
   EXPECT_FALSE(ladder.add({.load_N = 80.0, .torque_Nm = 2.0, .sinkage_m = 0.01, .slip = -0.3}));

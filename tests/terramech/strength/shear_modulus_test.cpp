@@ -28,26 +28,26 @@ TEST(ShearModulus, TorqueRatioIsExactUnderItsAssumptions) {
   EXPECT_NEAR(modulusByTorqueRatio(kWheel, steadyRun(0.02)).shear_modulus_m, 0.02, 1e-5);
 }
 
-TEST(ShearModulus, EffectiveTorqueAsPrintedLiesLow) {
+TEST(ShearModulus, EffectiveTorqueAsPrintedUnderestimatesTheModulus) {
   // Property: it takes A(i_max), here 0.6, for 1 (thesis D.8).
   const double k = modulusByEffectiveTorque(kWheel, steadyRun(0.02)).shear_modulus_m;
   EXPECT_LT(k, 0.75 * 0.02);
   EXPECT_GT(k, 0.3 * 0.02);
 }
 
-TEST(ShearModulus, ErrorMinimisationFindsTheTruthWhereStressesAreLinear) {
+TEST(ShearModulus, ErrorMinimisationIsAccurateForLinearStresses) {
   // Property: at the true K the points lie on a line but for M1 (6 %).
   const auto estimate = modulusByErrorMinimisation(kWheel, linearSamples(kWheel, {.cohesion_Pa = 500.0}));
   EXPECT_NEAR(estimate.shear_modulus_m, 0.02, 0.002);
   EXPECT_FALSE(estimate.at_bound);
 }
 
-TEST(ShearModulus, JointFitFindsTheTruthWhereStressesAreLinear) {
+TEST(ShearModulus, JointFitIsAccurateForLinearStresses) {
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 500.0});
   EXPECT_NEAR(modulusJointly(kWheel, samples).shear_modulus_m, 0.02, 0.002);
 }
 
-TEST(ShearModulus, SaysSoWhenTheSlipDoesNotVary) {
+TEST(ShearModulus, ConstantSlipIsRejected) {
   const auto run = steadyRun(0.02);
   const std::vector<WheelSample> same(5, run.front());
   EXPECT_REFUSED(modulusByTorqueRatio(kWheel, same), std::domain_error,

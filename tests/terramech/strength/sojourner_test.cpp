@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace sojourner_test {
 
-TEST(Sojourner, UniformStressesOverTheChordGiveTheSoilBack) {
+TEST(Sojourner, UniformStressesOverTheChordRecoverTheSoil) {
   // Closed form: W = sigma A, T = r A (c + sigma tan phi) with A = 2 b r sin(theta_1).
   const Wheel wheel{.radius_m = 0.065, .width_m = 0.08};
   MohrCoulombLine line;

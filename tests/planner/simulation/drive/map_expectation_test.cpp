@@ -27,7 +27,7 @@ costmap::CellCode slope(double dz_dx, double dz_dy) {
 }
 
 // Independent: the equilibrium on the plane that the rover stands on, not on that of the map there.
-TEST(MapExpectation, IsOfTheSlopeUnderTheRover) {
+TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
   const costmap::TraversabilityMap map = levelMap();
   const terramech::SlopeEquilibrium plane(testSand(), testRover());
   for (const double across : {0.0, 0.1, 0.2}) {
@@ -41,7 +41,7 @@ TEST(MapExpectation, IsOfTheSlopeUnderTheRover) {
 }
 
 // Property: ground that was just refused, or lies off the map, is spoken of all the same.
-TEST(MapExpectation, RefusedGroundIsThatOfItsClass) {
+TEST(MapExpectation, RefusedGroundHasTheExpectationOfItsClass) {
   costmap::TraversabilityMap map = levelMap();
   const MapExpectation before(map, slope(0.05, 0.0));
   const auto sound = before.at({20.5, 20.5}, {1.0, 0.0});

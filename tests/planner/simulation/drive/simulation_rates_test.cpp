@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace simulation_rates_test {
 
-TEST(Share, IsWilsons) {
+TEST(Share, IntervalIsWilsons) {
   // Closed form: Wilson (1927) for 0 and 10 of 10, 5 of 10, worked out by hand
   EXPECT_NEAR(share(0, 10).interval_95[1], 0.27753, 1e-5);
   EXPECT_NEAR(share(10, 10).interval_95[0], 0.72247, 1e-5);
@@ -18,7 +18,7 @@ TEST(Share, IsWilsons) {
 }
 
 // Closed form: of 1, 2, 3, 6 the mean is 3, the standard deviation sqrt(14 / 3), its error half of that.
-TEST(Mean, HasTheIntervalOfItsStandardError) {
+TEST(Mean, IntervalFollowsFromTheStandardError) {
   const Sampled of = mean({1.0, 2.0, 3.0, 6.0});
   EXPECT_DOUBLE_EQ(of.value, 3.0);
   EXPECT_NEAR(of.interval_95[1] - 3.0, 1.959964 * std::sqrt(14.0 / 3.0) / 2.0, 1e-5);
@@ -26,7 +26,7 @@ TEST(Mean, HasTheIntervalOfItsStandardError) {
   EXPECT_TRUE(std::isnan(mean({}).value));
 }
 
-TEST(Compared, CountsWhereTheClairvoyantGotThrough) {
+TEST(Compared, RatesCountWorldsSolvedWithPerfectKnowledge) {
   const auto drive = [](Outcome outcome, double energy_J) {
     WorldResult r;
     r.drive.outcome = outcome;

@@ -37,11 +37,11 @@ Truth random(int patches) {
   return truth;
 }
 
-TEST(SimulationSite, AWorldDependsOnItsNumberAlone) {
+TEST(SimulationSite, WorldDependsOnItsNumberOnly) {
   const auto map = costmap::mapOf(plain());
   const SimulationSite site(map, across(random(3)));
-  const auto all = site.worlds({.belief = Belief::OnLine, .first = 0, .count = 4});
-  const auto late = site.worlds({.belief = Belief::OnLine, .first = 2, .count = 2});
+  const auto all = site.worlds({.belief = SoilKnowledge::OnLine, .first = 0, .count = 4});
+  const auto late = site.worlds({.belief = SoilKnowledge::OnLine, .first = 2, .count = 2});
   ASSERT_EQ(all.size(), 4U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(all[2 + i].drive.energy_J, late[i].drive.energy_J);
@@ -51,35 +51,35 @@ TEST(SimulationSite, AWorldDependsOnItsNumberAlone) {
   EXPECT_NE(all[0].drive.energy_J, all[1].drive.energy_J);
 }
 
-TEST(SimulationSite, ClairvoyanceKnowsEveryPatchBySoil) {
+TEST(SimulationSite, PerfectKnowledgeUsesTheTrueSoilOfEveryPatch) {
   const auto map = costmap::mapOf(plain());
   Truth truth;
   terramech::Soil firm = rock();
   truth.patches = {{{112.5, 215.5}, 2.0, testDust()}, {{125.5, 215.5}, 2.0, firm}};
   const SimulationSite site(map, across(truth));
   const TrueWorld world = site.trueWorld(0);
-  const auto believed = site.believed(Belief::PerfectKnowledge, world);
+  const auto believed = site.believed(SoilKnowledge::PerfectKnowledge, world);
   const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.value; };
   const auto model = costmap::testGround();
   // Closed form: the soil's own pull, each patch its own
   EXPECT_NEAR(pull({112.5, 215.5}), model->prior(1).pull.value, 1e-9);
   EXPECT_NEAR(pull({105.5, 215.5}), model->prior(0).pull.value, 1e-9);
   EXPECT_GT(pull({125.5, 215.5}), model->prior(0).pull.value + 0.05);
-  EXPECT_EQ(site.world(Belief::PerfectKnowledge, 0).drive.outcome, Outcome::Reached);
-  EXPECT_EQ(site.world(Belief::Prior, 0).drive.outcome, Outcome::Immobilised);
+  EXPECT_EQ(site.world(SoilKnowledge::PerfectKnowledge, 0).drive.outcome, Outcome::Reached);
+  EXPECT_EQ(site.world(SoilKnowledge::Prior, 0).drive.outcome, Outcome::Immobilised);
 }
 
-TEST(SimulationSite, GeometryTakesAllGroundForFirm) {
+TEST(SimulationSite, GeometricBeliefAssumesFirmGround) {
   const auto map = costmap::mapOf(std::vector<std::string>(30, std::string(40, '2')));
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
-  const auto believed = site.believed(Belief::Geometry, world);
+  const auto believed = site.believed(SoilKnowledge::Geometry, world);
   EXPECT_GT(believed.ground({5, 5})->pull.value,
-            site.believed(Belief::Prior, world).ground({5, 5})->pull.value + 0.2);
+            site.believed(SoilKnowledge::Prior, world).ground({5, 5})->pull.value + 0.2);
 }
 
 // A plane too steep to be held across: who knows slopes along the heading only follows a contour and slides.
-TEST(SimulationSite, AlongOnlyDrivesWhereTheRoverSlides) {
+TEST(SimulationSite, LongitudinalOnlyPlanningSlidesOnCrossSlopes) {
   costmap::GroundModel::Parts parts = costmap::testGround()->parts();
   parts.classes.front().soil.cohesion_Pa = 200.0;
   parts.classes.front().soil.friction_angle_rad = 0.52;
@@ -87,17 +87,17 @@ TEST(SimulationSite, AlongOnlyDrivesWhereTheRoverSlides) {
                                        std::make_shared<costmap::GroundModel>(parts), {});
   const SimulationSite site(map,
                             {.truth = {}, .start = {120.5, 206.5}, .goal = {120.5, 222.5}, .firm = rock()});
-  EXPECT_EQ(site.world(Belief::AlongOnly, 0).drive.outcome, Outcome::Slid);
-  EXPECT_EQ(site.world(Belief::Prior, 0).drive.outcome, Outcome::GaveUp);
+  EXPECT_EQ(site.world(SoilKnowledge::AlongOnly, 0).drive.outcome, Outcome::Slid);
+  EXPECT_EQ(site.world(SoilKnowledge::Prior, 0).drive.outcome, Outcome::GaveUp);
 }
 
-TEST(SimulationSite, KeepOutStaysUnderEveryBelief) {
+TEST(SimulationSite, KeepOutAreasApplyUnderEveryBelief) {
   auto rows = plain();
   rows[10][20] = '#';
   const auto map = costmap::mapOf(rows);
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
-  for (const Belief belief : kBeliefs)
+  for (const SoilKnowledge belief : kBeliefs)
     EXPECT_TRUE(has(site.believed(belief, world).surface().hazards({20, 19}), costmap::Hazard::KeepOut))
         << name(belief);
 }

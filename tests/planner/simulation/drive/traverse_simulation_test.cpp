@@ -56,18 +56,18 @@ Site trapped(double rise = 0.0) {
   return {{.classes = {testSand()}, .patches = {{{30.0, 20.5}, 4.0, testDust()}}}, rise};
 }
 
-TEST(TraverseSimulation, GroundThatIsAsBelievedIsDrivenAtOnce) {
+TEST(TraverseSimulation, CorrectlyMappedGroundIsTraversedWithoutAlarm) {
   const TraverseSimulation drive = over({{.classes = {testSand()}, .patches = {}}}, true);
   EXPECT_EQ(drive.outcome, Outcome::Reached);
   EXPECT_EQ(drive.alarms, 0);
   EXPECT_NEAR(drive.length_m, 49.0, 0.5);  // Closed form: straight over flat ground, to the goal
 }
 
-TEST(TraverseSimulation, AnUndeclaredTrapHoldsWhoDrivesInBlindly) {
+TEST(TraverseSimulation, UndeclaredTrapImmobilisesARoverWithoutAlarm) {
   EXPECT_EQ(over(trapped(), false).outcome, Outcome::Immobilised);
 }
 
-TEST(TraverseSimulation, WhoWatchesItsWheelsBacksOutAndGoesRound) {
+TEST(TraverseSimulation, RoverWithAlarmReversesAndReplansAroundATrap) {
   for (const double rise : {0.0, 0.03, -0.06}) {
     const TraverseSimulation drive = over(trapped(rise), true);
     EXPECT_EQ(drive.outcome, Outcome::Reached) << rise;
@@ -79,7 +79,7 @@ TEST(TraverseSimulation, WhoWatchesItsWheelsBacksOutAndGoesRound) {
 }
 
 // Property: a pose that drifts costs detours about ground that was noted in the wrong place, never the rover.
-TEST(TraverseSimulation, ADriftingPoseLosesNoRover) {
+TEST(TraverseSimulation, PoseDriftCausesNoImmobilisation) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TraverseSimulation drive = over(trapped(), true, {.pose_drift = 0.01, .seed = seed});
     EXPECT_NE(drive.outcome, Outcome::Immobilised) << seed;
@@ -89,7 +89,7 @@ TEST(TraverseSimulation, ADriftingPoseLosesNoRover) {
 }
 
 // A plane that rises to the right of the way, with ground on it that pulls but does not hold it across.
-TEST(TraverseSimulation, WhoWatchesItsWayDoesNotSlideOffASlope) {
+TEST(TraverseSimulation, RoverWithAlarmDoesNotSlideOnACrossSlope) {
   terramech::Soil slippery = testSand();
   slippery.cohesion_Pa = 100.0;
   slippery.friction_angle_rad = 0.45;
@@ -103,7 +103,7 @@ TEST(TraverseSimulation, WhoWatchesItsWayDoesNotSlideOffASlope) {
   EXPECT_GE(drive.replans, 1);  // by an alarm, or since the soil shows itself weaker on the way
 }
 
-TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {
+TEST(TraverseSimulation, ImpassableTrapEndsInGivingUp) {
   const Site wall{{.classes = {testSand()}, .patches = {{{1030.0, 20.5}, 1000.0, testDust()}}}, 0.0};
   const TraverseSimulation drive = over(wall, true);
   EXPECT_EQ(drive.outcome, Outcome::GaveUp);
@@ -112,7 +112,7 @@ TEST(TraverseSimulation, NoWayRoundIsGivenUpNotTriedToDeath) {
 
 // Ground that slips more but holds, and a trap behind it: who backs out of the trap by its own length alone
 // would turn on ground that it has just felt to be weak.
-TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
+TEST(TraverseSimulation, RoverReversesUntilOnSoundGround) {
   terramech::Soil weak = testSand();
   weak.friction_angle_rad = 0.44;
   const Site site{
@@ -122,7 +122,7 @@ TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
   EXPECT_EQ(drive.outcome, Outcome::Reached);
   ASSERT_GE(drive.replans, 1);  // the weak ground shows before the trap does
   const auto out = std::find_if(drive.events.begin(), drive.events.end(),
-                                [](const DriveEvent& e) { return e.text == "reversed"; });
+                                [](const TraverseEvent& e) { return e.text == "reversed"; });
   ASSERT_NE(out, drive.events.end());
   const auto at = std::find_if(drive.track.begin(), drive.track.end(),
                                [&](const TrackPoint& t) { return t.time_s >= out->time_s; });
@@ -132,11 +132,11 @@ TEST(TraverseSimulation, BacksOutUntilItStandsOnSoundGround) {
   EXPECT_LT(at->place.x_m, 23.0);
 }
 
-TEST(TraverseSimulation, FarTooSteepTips) {
+TEST(TraverseSimulation, ExcessiveSlopeIsGivenUp) {
   EXPECT_EQ(over({{.classes = {testSand()}, .patches = {}}, 0.9}, false).outcome, Outcome::GaveUp);
 }
 
-TEST(TraverseSimulation, TheTrackTellsTheDrive) {
+TEST(TraverseSimulation, TrackIsConsistentWithTheDrive) {
   const TraverseSimulation drive = over(trapped(), true);
   ASSERT_GT(drive.track.size(), 10U);
   double length_m = 0.0;
@@ -165,7 +165,7 @@ TraverseSimulation along(const std::vector<maps::Point>& route) {
 }
 
 // Independent derivation: turning.hpp with sinkage and rolling resistance from the mobility curve; the simulation takes them from its wheel table.
-TEST(TraverseSimulation, ATurnIsPaidOnTheTrueGround) {
+TEST(TraverseSimulation, TurnCostIsThatOfTheTrueGround) {
   const TraverseSimulation straight = along({{5.5, 20.5}, {15.5, 20.5}, {25.5, 20.5}}),
                            bent = along({{5.5, 20.5}, {15.5, 20.5}, {15.5, 30.5}});
   ASSERT_EQ(straight.outcome, Outcome::Reached);
@@ -191,7 +191,7 @@ TEST(TraverseSimulation, ATurnIsPaidOnTheTrueGround) {
   EXPECT_LE(time, 1.1);
 }
 
-TEST(TraverseSimulation, SameSeedSameDrive) {
+TEST(TraverseSimulation, SameSeedReproducesTheDrive) {
   const TraverseSimulation a = over(trapped(), true), b = over(trapped(), true);
   EXPECT_EQ(a.energy_J, b.energy_J);
   EXPECT_EQ(a.length_m, b.length_m);

@@ -8,34 +8,34 @@ namespace wheel_alarm_test {
 constexpr double kRadius_m = 0.1;
 
 // Six wheels, the middle and rear ones in ruts.
-WheelLook quiet() {
-  WheelLook look;
+WheelMeasurements quiet() {
+  WheelMeasurements look;
   for (int w = 0; w < 6; ++w) look.wheels.push_back({.slip = 0.1, .sinkage_m = 0.01, .pass = w / 2 + 1});
   return look;
 }
 
 const std::vector<WheelExpectation> kExpected(6, {.slip = 0.1, .sinkage_over_radius = 0.1});
 
-TEST(WheelAlarm, QuietWheelsGiveNone) {
+TEST(WheelAlarm, ExpectedReadingsRaiseNoAlarm) {
   WheelAlarm alarm({}, kRadius_m);
   for (int k = 0; k < 200; ++k) EXPECT_FALSE(alarm.hear(quiet(), kExpected).reason);
 }
 
-TEST(WheelAlarm, OneSlipSensorNeitherStopsTheRoverNorKeepsItFromStopping) {
+TEST(WheelAlarm, SingleSlipSensorNeitherTriggersNorSuppressesTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
-  WheelLook one = quiet();
+  WheelMeasurements one = quiet();
   one.wheels[2].slip = 0.9;
   EXPECT_FALSE(alarm.hear(one, kExpected).reason);
-  WheelLook all = quiet();
+  WheelMeasurements all = quiet();
   for (auto& wheel : all.wheels) wheel.slip = 0.9;
   all.wheels[4].slip = 0.1;
   all.wheels[5].slip = std::nan("");
   EXPECT_EQ(alarm.hear(all, kExpected).reason, "slips");
 }
 
-TEST(WheelAlarm, WhoSlidesMoreThanTheMapSaysStops) {
+TEST(WheelAlarm, SlipAngleAboveExpectationTriggersTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
-  WheelLook look = quiet();
+  WheelMeasurements look = quiet();
   look.slip_angle_rad = -0.2;
   EXPECT_EQ(alarm.hear(look, kExpected).reason, "slides");
   std::vector<WheelExpectation> slope = kExpected;
@@ -46,31 +46,31 @@ TEST(WheelAlarm, WhoSlidesMoreThanTheMapSaysStops) {
 }
 
 // A sensor that stuck on the level reads more than a descent should: who stops for that must climb back.
-TEST(WheelAlarm, LittleSlipOnADescentIsTraction) {
+TEST(WheelAlarm, LowSlipDownhillIsNoAlarm) {
   const std::vector<WheelExpectation> downhill(6, {.slip = -0.2, .sinkage_over_radius = 0.1});
   WheelAlarm alarm({}, kRadius_m);
   EXPECT_FALSE(alarm.hear(quiet(), downhill).reason);
-  WheelLook slipping = quiet();
+  WheelMeasurements slipping = quiet();
   for (auto& wheel : slipping.wheels) wheel.slip = 0.21;
   EXPECT_EQ(alarm.hear(slipping, downhill).reason, "slips");
   EXPECT_FALSE(alarm.hear(slipping, kExpected).reason);
 }
 
-TEST(WheelAlarm, OneWheelThatSinksIsEnough) {
+TEST(WheelAlarm, SinkageOfOneWheelTriggersTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
-  WheelLook look = quiet();
+  WheelMeasurements look = quiet();
   look.wheels[1].sinkage_m = 0.02;
-  const WheelAlarm::Heard heard = alarm.hear(look, kExpected);
+  const WheelAlarm::AlarmCheck heard = alarm.hear(look, kExpected);
   EXPECT_EQ(heard.reason, "sinks");
   EXPECT_EQ(heard.sank, (std::vector<bool>{false, true, false, false, false, false}));
   look.wheels[1].pass = 2;  // in a rut of its own fellow nothing is known of fresh ground
   EXPECT_FALSE(alarm.hear(look, kExpected).reason);
 }
 
-TEST(WheelAlarm, ADatumThatWasOffAllTheWayIsTakenOffAndAJumpIsStillHeard) {
+TEST(WheelAlarm, ConstantSinkageOffsetIsRemovedAndAJumpTriggersTheAlarm) {
   for (const double datum_m : {0.007, -0.007}) {
     WheelAlarm alarm({}, kRadius_m);
-    WheelLook look = quiet();
+    WheelMeasurements look = quiet();
     look.wheels[0].sinkage_m += datum_m;
     for (int k = 0; k < 50; ++k) EXPECT_FALSE(alarm.hear(look, kExpected).reason) << datum_m;
     look.wheels[0].sinkage_m += 0.009;

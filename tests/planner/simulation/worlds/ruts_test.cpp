@@ -3,7 +3,7 @@
 namespace talus::planner {
 namespace ruts_test {
 
-TEST(Ruts, AWheelDoesNotFollowItself) {
+TEST(Ruts, WheelIsNotInItsOwnRut) {
   Ruts ruts(0.1);
   for (double x = 0.05; x < 1.0; x += 0.02) {
     EXPECT_EQ(ruts.passes({x, 0.0}), 0) << x;
@@ -14,7 +14,7 @@ TEST(Ruts, AWheelDoesNotFollowItself) {
   EXPECT_EQ(ruts.passes({0.05, 0.3}), 0);
 }
 
-TEST(Ruts, CountsTheWheelsThatCameBy) {
+TEST(Ruts, PassesAreCountedPerWheel) {
   Ruts ruts(0.1);
   for (int wheel = 0; wheel < 3; ++wheel) {
     EXPECT_EQ(ruts.passes({0.05, 0.05}), wheel);
@@ -24,7 +24,7 @@ TEST(Ruts, CountsTheWheelsThatCameBy) {
   }
 }
 
-TEST(Ruts, WhoTurnsBackStandsInARutAtOnce) {
+TEST(Ruts, ReversingRoverIsInItsRut) {
   Ruts ruts(0.1);
   ruts.press({0.05, 0.05});
   EXPECT_EQ(ruts.passes({0.05, 0.05}), 0);
@@ -32,7 +32,7 @@ TEST(Ruts, WhoTurnsBackStandsInARutAtOnce) {
   EXPECT_EQ(ruts.passes({0.05, 0.05}), 1);
 }
 
-TEST(Ruts, BelowZeroToo) {
+TEST(Ruts, NegativeCoordinatesAreSupported) {
   Ruts ruts(0.1);
   ruts.press({-0.05, -123.45});
   ruts.turnBack();

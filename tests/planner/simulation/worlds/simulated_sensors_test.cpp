@@ -23,7 +23,7 @@ TrueWorld::Step step() {
   return made;
 }
 
-WheelLook lookOf(SimulatedSensors& sensors, double time_s = 5.0) {
+WheelMeasurements lookOf(SimulatedSensors& sensors, double time_s = 5.0) {
   return sensors.look(step(), {.time_s = time_s, .heading = {0.0, 1.0}, .gradient = 0.1});
 }
 
@@ -31,9 +31,9 @@ SensorOptions exact(SensorFault fault = SensorFault::None) {
   return {.noise = false, .pose_drift = 0.0, .fault = fault, .seed = 3};
 }
 
-TEST(SimulatedSensors, WithoutNoiseAndFaultTheyReadTheTruth) {
+TEST(SimulatedSensors, WithoutNoiseReadingsEqualTheTruth) {
   SimulatedSensors sensors(exact(), testRover());
-  const WheelLook look = lookOf(sensors);
+  const WheelMeasurements look = lookOf(sensors);
   const double radius_m = testRover().wheel.radius_m;
   ASSERT_EQ(look.wheels.size(), 4U);
   for (std::size_t w = 0; w < 4; ++w) {
@@ -46,7 +46,7 @@ TEST(SimulatedSensors, WithoutNoiseAndFaultTheyReadTheTruth) {
   }
 }
 
-TEST(SimulatedSensors, NoiseIsWhatItSays) {
+TEST(SimulatedSensors, NoiseHasTheStatedStd) {
   SensorOptions options = exact();
   options.noise = true;
   SimulatedSensors sensors(options, testRover());
@@ -54,7 +54,7 @@ TEST(SimulatedSensors, NoiseIsWhatItSays) {
   std::size_t missing = 0;
   constexpr int kLooks = 2000;
   for (int k = 0; k < kLooks; ++k) {
-    const WheelLook look = lookOf(sensors);
+    const WheelMeasurements look = lookOf(sensors);
     squares += std::pow(look.wheels[0].slip - 0.3, 2);
     for (const auto& wheel : look.wheels) missing += std::isnan(wheel.torque_Nm) ? 1U : 0U;
   }
@@ -63,7 +63,7 @@ TEST(SimulatedSensors, NoiseIsWhatItSays) {
   EXPECT_NEAR(static_cast<double>(missing) / (4.0 * kLooks), 0.02, 0.0063);
 }
 
-TEST(SimulatedSensors, ThePoseDriftsWithTheWay) {
+TEST(SimulatedSensors, PoseErrorGrowsWithDistance) {
   SensorOptions options = exact();
   options.pose_drift = 0.02;
   SimulatedSensors sensors(options, testRover());
@@ -73,12 +73,12 @@ TEST(SimulatedSensors, ThePoseDriftsWithTheWay) {
 }
 
 // What a fault changes at the faulty wheel and at the others.
-TEST(SimulatedSensors, AFaultIsOfOneSensor) {
+TEST(SimulatedSensors, FaultAffectsOneSensorOnly) {
   const double radius_m = testRover().wheel.radius_m;
   for (const SensorFault fault : {SensorFault::SlipBiased, SensorFault::TorqueOffset,
                                   SensorFault::SinkageDatum, SensorFault::Silent, SensorFault::SlipStuck}) {
     SimulatedSensors sensors(exact(fault), testRover());
-    const WheelLook look = lookOf(sensors);
+    const WheelMeasurements look = lookOf(sensors);
     for (std::size_t w = 0; w < 4; ++w) {
       const bool faulty = w == sensors.faultyWheel();
       const auto& read = look.wheels[w];
@@ -92,7 +92,7 @@ TEST(SimulatedSensors, AFaultIsOfOneSensor) {
   }
 }
 
-TEST(SimulatedSensors, AStuckSlipStaysWhatItFirstWas) {
+TEST(SimulatedSensors, StuckSlipKeepsItsFirstValue) {
   SensorOptions options = exact(SensorFault::OdometryStuck);
   options.noise = true;
   SimulatedSensors sensors(options, testRover());
@@ -101,7 +101,7 @@ TEST(SimulatedSensors, AStuckSlipStaysWhatItFirstWas) {
     for (const auto& wheel : lookOf(sensors).wheels) EXPECT_EQ(wheel.slip, first);
 }
 
-TEST(TelemetryOf, HasARowForEachWheelThatReadSlip) {
+TEST(TelemetryOf, TelemetryHasOneRowPerWheelWithSlip) {
   SimulatedSensors sensors(exact(SensorFault::Silent), testRover());
   const terramech::Telemetry rows = telemetryOf(lookOf(sensors, 7.5));
   ASSERT_EQ(rows.size(), 3U);
@@ -112,7 +112,7 @@ TEST(TelemetryOf, HasARowForEachWheelThatReadSlip) {
 }
 
 // With a drift of 1 a rover that drives to its goal never takes itself to be there: the simulation did not end.
-TEST(SimulatedSensors, ADriftThatNoOdometryHasIsRefused) {
+TEST(SimulatedSensors, PoseDriftOutOfRangeIsRejected) {
   for (const double drift : {-0.1, 0.6, 1.0, std::nan("")})
     EXPECT_REFUSED(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument,
                    "pose_drift = " + std::to_string(drift) + ", must be 0 to 0.500000");

@@ -24,7 +24,7 @@ TrueWorld dustInTheEast() {
       {.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
 }
 
-TEST(TrueWorld, WheelsTogetherPullWhatTheSlopeAsks) {
+TEST(TrueWorld, WheelPullBalancesTheSlope) {
   const TrueWorld world = dustInTheEast();
   const std::vector<std::pair<double, double>> cases{
       {-0.1, 10.0}, {0.0, 10.0}, {0.1, 10.0}, {-0.1, 29.8}, {-0.05, 29.8}};
@@ -40,7 +40,7 @@ TEST(TrueWorld, WheelsTogetherPullWhatTheSlopeAsks) {
   }
 }
 
-TEST(TrueWorld, TheFirstAxleMeetsThePatchFirst) {
+TEST(TrueWorld, FrontAxleEntersThePatchFirst) {
   const TrueWorld world = dustInTheEast();
   const auto before = world.drive({.place = {29.0, 20.0}, .heading = {1.0, 0.0}});
   const auto half = world.drive({.place = {29.8, 20.0}, .heading = {1.0, 0.0}});
@@ -51,11 +51,11 @@ TEST(TrueWorld, TheFirstAxleMeetsThePatchFirst) {
   EXPECT_GT(half.wheels[2].forces.pull, 0.0);
 }
 
-TEST(TrueWorld, WithAllWheelsInNothingHelps) {
+TEST(TrueWorld, RoverWithAllWheelsInTheTrapIsStuck) {
   EXPECT_TRUE(dustInTheEast().drive({.place = {35.0, 20.0}, .heading = {1.0, 0.0}}).stuck);
 }
 
-TEST(TrueWorld, WhoStopsAtTheEdgeBacksOutInItsRuts) {
+TEST(TrueWorld, RoverAtThePatchEdgeCanReverseInItsRuts) {
   const TrueWorld world = dustInTheEast();
   Ruts ruts(testRover().wheel.width_m);
   for (double x = 28.0; x < 29.81; x += 0.1) {
@@ -72,7 +72,7 @@ TEST(TrueWorld, WhoStopsAtTheEdgeBacksOutInItsRuts) {
   EXPECT_GT(back.slip, world.drive({.place = {29.8, 20.0}, .heading = {-1.0, 0.0}, .ruts = &ruts}).slip);
 }
 
-TEST(TrueWorld, TheSecondWheelInARutPullsMoreThanTheFirst) {
+TEST(TrueWorld, SecondPassPullsMoreThanTheFirst) {
   const TrueWorld world = dustInTheEast();
   Ruts ruts(testRover().wheel.width_m);
   for (double x = 8.0; x < 10.0; x += 0.1) {
@@ -87,7 +87,7 @@ TEST(TrueWorld, TheSecondWheelInARutPullsMoreThanTheFirst) {
 }
 
 // Independent: SlopeEquilibrium, with its own tables, solver and balance of yaw, on one soil.
-TEST(TrueWorld, HoldsASlopeAsTheEquilibriumOnAPlane) {
+TEST(TrueWorld, CrossSlopeStateMatchesTheEquilibrium) {
   terramech::Rover crab = testRover();
   crab.steering = terramech::Steering::AllWheel;
   const TrueWorld world({.classes = {testSand()}, .patches = {}}, crab, oneClass());
@@ -112,7 +112,7 @@ TEST(TrueWorld, HoldsASlopeAsTheEquilibriumOnAPlane) {
   EXPECT_GT(held, 30);
 }
 
-TEST(TrueWorld, WhatRisesToTheRightIsTheMirrorImage) {
+TEST(TrueWorld, CrossSlopeStateIsMirrorSymmetric) {
   const TrueWorld world({.classes = {testSand()}, .patches = {}}, testRover(), oneClass());
   for (const double across : {0.05, 0.15, 0.25}) {
     const auto left =
@@ -127,7 +127,7 @@ TEST(TrueWorld, WhatRisesToTheRightIsTheMirrorImage) {
   }
 }
 
-TEST(TrueWorld, SlidesWhereNothingHolds) {
+TEST(TrueWorld, RoverSlidesIfNoEquilibriumExists) {
   terramech::Soil slippery = testSand();
   slippery.cohesion_Pa = 100.0;
   slippery.friction_angle_rad = 0.45;
@@ -139,7 +139,7 @@ TEST(TrueWorld, SlidesWhereNothingHolds) {
   EXPECT_TRUE(down.slides && down.stuck);  // steeper than locked wheels brake
 }
 
-TEST(TrueWorld, EachSoilOncePatchesEachTheirOwn) {
+TEST(TrueWorld, SoilsAreListedOnceAndPatchesSelectTheirSoil) {
   terramech::Soil mud = testDust();
   mud.cohesion_Pa = 0.0;
   const TrueWorld world({.classes = {testSand()},
@@ -155,7 +155,7 @@ TEST(TrueWorld, EachSoilOncePatchesEachTheirOwn) {
   EXPECT_EQ(world.soilAt({30.0, 13.0}, 1.5), 1U);
 }
 
-TEST(TrueWorld, EnergyIsWorkAgainstSlipAndHotel) {
+TEST(TrueWorld, EnergyIsWorkWithSlipPlusHotelEnergy) {
   const terramech::Rover rover = testRover();
   const TrueWorld world = dustInTheEast();
   const auto step = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05});

@@ -24,7 +24,7 @@ Truth random(int patches) {
   return truth;
 }
 
-TEST(DrawWorld, SparesStartAndGoal) {
+TEST(DrawWorld, PatchesKeepClearOfStartAndGoal) {
   const auto map = costmap::mapOf(plain());
   const auto& classes = map.model().parts().classes;
   std::size_t patches = 0;
@@ -44,7 +44,7 @@ TEST(DrawWorld, SparesStartAndGoal) {
   EXPECT_LT(patches, 1000U);
 }
 
-TEST(DrawWorld, SpreadIsWhatItSays) {
+TEST(DrawWorld, SpreadEqualsTheStatedStd) {
   const auto map = costmap::mapOf(plain());
   double sum = 0.0, squares = 0.0;
   constexpr int kDraws = 2000;
@@ -60,7 +60,7 @@ TEST(DrawWorld, SpreadIsWhatItSays) {
 }
 
 // Property: the same draw gives the same world, and declared patches and true classes are in every one.
-TEST(DrawWorld, IsOfItsSeedAlone) {
+TEST(DrawWorld, WorldDependsOnTheSeedOnly) {
   const auto map = costmap::mapOf(plain());
   const auto& classes = map.model().parts().classes;
   Truth truth = random(5);
@@ -82,7 +82,7 @@ TEST(DrawWorld, IsOfItsSeedAlone) {
 }
 
 // Property: a class and the random patches are drawn the same, whatever else is declared and in whatever order.
-TEST(DrawWorld, AClassIsDrawnByItsNumber) {
+TEST(DrawWorld, ClassDrawDependsOnItsNumberOnly) {
   const auto map = costmap::mapOf(plain());
   std::vector<costmap::GroundClass> classes = map.model().parts().classes;
   ASSERT_EQ(classes.size(), 2U);

@@ -43,7 +43,7 @@ std::set<std::string> names(const std::vector<Candidate>& candidates) {
   return all;
 }
 
-TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
+TEST(EffectCandidates, CandidatesRequireTheirMeasuredColumns) {
   const auto plain = names(offered(trialWith({}, nothing)));
   EXPECT_TRUE(plain.contains("slip_sinkage_ding"));
   EXPECT_TRUE(plain.contains("torque_offset"));
@@ -61,7 +61,7 @@ TEST(EffectCandidates, OnlyWhatTheColumnsAllow) {
 }
 
 // Property: a drift in proportion is open to every column of one's own, whatever it is called.
-TEST(EffectCandidates, ADriftIsOpenToEveryColumnOfOnesOwn) {
+TEST(EffectCandidates, DriftIsOfferedForEveryUserColumnRegardlessOfItsName) {
   const auto drifts = [](const std::string& column) {
     std::set<std::string> all;
     for (const Candidate& c : offered(trialWith({column}, [](int k) { return std::vector{k % 7 + 0.5}; })))
@@ -74,7 +74,7 @@ TEST(EffectCandidates, ADriftIsOpenToEveryColumnOfOnesOwn) {
 }
 
 // Property: every offer is a form of the library with all its parameters, within their bounds.
-TEST(EffectCandidates, OffersAreWholeForms) {
+TEST(EffectCandidates, CandidatesAreCompleteFormsWithinParameterBounds) {
   const auto all = offered(trialWith(
       {"time_s"}, [](int k) { return std::vector{10.0 * k}; }, -0.3));
   EXPECT_TRUE(names(all).contains("skid_sinkage"));
@@ -95,7 +95,7 @@ TEST(EffectCandidates, OffersAreWholeForms) {
   }
 }
 
-TEST(EffectCandidates, FaultsOfASensorMayBeOfOneGroup) {
+TEST(EffectCandidates, SensorFaultsAreOfferedPerGroupValue) {
   const auto all = offered(trialWith({}, nothing, 0.1, "side"));
   const auto of = [&](const std::string& name) {
     std::multiset<std::string> values;
@@ -107,7 +107,7 @@ TEST(EffectCandidates, FaultsOfASensorMayBeOfOneGroup) {
   EXPECT_EQ(of("slip_sinkage_ding"), std::multiset<std::string>{""});
 }
 
-TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
+TEST(EffectCandidates, EmpiricalCurvesStartFlatOnMeasuredChannels) {
   const Trial trial = trialWith({}, nothing);
   const auto all = empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02));
   ASSERT_FALSE(all.empty());
@@ -125,7 +125,7 @@ TEST(EffectCandidates, CurvesAreFlatAndOfMeasuredChannels) {
   }
 }
 
-TEST(EffectCandidates, ProductsAreOfAColumnOfOnesOwn) {
+TEST(EffectCandidates, ProductsContainAUserColumn) {
   const Trial trial = trialWith({"dust", "humid"}, [](int k) {
     return std::vector{0.1 * (k % 7), 1.0 + k % 5};
   });
@@ -136,7 +136,7 @@ TEST(EffectCandidates, ProductsAreOfAColumnOfOnesOwn) {
             (std::set<std::string>{"dust*humid", "dust*load_N", "dust*slip", "humid*load_N", "humid*slip"}));
 }
 
-TEST(EffectCandidates, ACurveHasThreeRunsAKnot) {
+TEST(EffectCandidates, KnotCountIsLimitedByIndependentRuns) {
   // Property: of ten runs a column that is fixed in them has three knots' worth, the slip of forty rows seven.
   Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 4)}; });
   for (int row = 0; row < trial.rows(); ++row) trial.run[static_cast<std::size_t>(row)] = row / 4;
@@ -145,6 +145,19 @@ TEST(EffectCandidates, ACurveHasThreeRunsAKnot) {
     most[c.covariate()] = std::max(most[c.covariate()], c.parts[0].knots.size());
   EXPECT_EQ(most.at("dust"), 2U);
   EXPECT_EQ(most.at("slip"), 7U);
+}
+
+TEST(EffectCandidates, StepsAreInColumnsOfOnesOwn) {
+  // Property: the sinkage of the model is no such column; its curves begin at its least value, as all curves but steps do.
+  const Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 2)}; });
+  const auto steps = [&](const std::string& column, double least) {
+    int count = 0;
+    for (const Candidate& c : empiricalCandidates(trial, Eigen::VectorXd::LinSpaced(40, 0.005, 0.02)))
+      count += c.covariate() == column && c.parts[0].knots.front() > least + 1e-9;
+    return count;
+  };
+  EXPECT_GT(steps("dust", 0.0), 0);
+  EXPECT_EQ(steps("sinkage_m", 0.005), 0);
 }
 
 }  // namespace effect_candidates_test

@@ -31,7 +31,7 @@ struct OffsetRows {
   }
 };
 
-TEST(ModelFit, AnOffsetIsTheMeanOfItsResiduals) {
+TEST(ModelFit, OffsetEqualsMeanResidual) {
   const OffsetRows rows(3.0);
   SolvedContacts solved;
   FitPlan plan{.free = {{.effect = 0, .index = 0}}, .iterations = 30};
@@ -43,7 +43,7 @@ TEST(ModelFit, AnOffsetIsTheMeanOfItsResiduals) {
   EXPECT_NEAR(parameterCovariance(fit.model, rows.trial, rows.white, plan, solved)(0, 0), 1.0 / 16.0, 1e-4);
 }
 
-TEST(ModelFit, APriorIsOneMoreReading) {
+TEST(ModelFit, PriorWeighsAsAnAdditionalReading) {
   const OffsetRows rows(3.0);
   SolvedContacts solved;
   FitPlan plan{.free = {{.effect = 0, .index = 0}}, .effect_prior = {{0, {1.0, 0.25}}}, .iterations = 30};
@@ -53,7 +53,7 @@ TEST(ModelFit, APriorIsOneMoreReading) {
   EXPECT_NEAR(fit.prior_chi2, 16.0, 0.05);
 }
 
-TEST(ModelFit, RowsThatLackSomethingCountLessAgainstThePrior) {
+TEST(ModelFit, MisfitFactorReducesWeightOfRowsAgainstPrior) {
   const OffsetRows rows(3.0);
   SolvedContacts solved;
   FitPlan plan{.free = {{.effect = 0, .index = 0}},
@@ -70,7 +70,7 @@ TEST(ModelFit, RowsThatLackSomethingCountLessAgainstThePrior) {
   EXPECT_EQ(misfitOf(0.1 * white, rows.trial), 1.0);
 }
 
-TEST(ModelFit, AnEffectThatNoRowShowsIsNone) {
+TEST(ModelFit, EffectWithoutInformativeRowsFitsToZero) {
   OffsetRows rows(0.0);
   SolvedContacts solved;
   rows.model.effects = {{.name = "slope_weight_component", .covariate = "slope_rad", .parameters = {0.7}}};
@@ -81,7 +81,7 @@ TEST(ModelFit, AnEffectThatNoRowShowsIsNone) {
               1e-3);
 }
 
-TEST(ModelFit, AParameterStopsAtItsBound) {
+TEST(ModelFit, ParameterIsClampedAtItsBound) {
   const OffsetRows rows(-800.0);
   SolvedContacts solved;
   FitPlan plan{.free = {{.effect = 0, .index = 0}}, .iterations = 60};
@@ -89,7 +89,7 @@ TEST(ModelFit, AParameterStopsAtItsBound) {
             -500.0);
 }
 
-TEST(ModelFit, DerivativesAreThoseOfTheReadingsAndNoneWhereNothingIsMeasured) {
+TEST(ModelFit, JacobianMatchesReadingsAndIsZeroForUnmeasuredChannels) {
   const OffsetRows rows(0.0);
   SolvedContacts solved;
   const Eigen::MatrixXd j = jacobian(rows.model, rows.trial, {{.effect = 0, .index = 0}}, solved,
@@ -101,7 +101,7 @@ TEST(ModelFit, DerivativesAreThoseOfTheReadingsAndNoneWhereNothingIsMeasured) {
   }
 }
 
-TEST(ModelFit, ThePlanMovesEffectsAndTheSoilThatIsInDoubt) {
+TEST(ModelFit, PlanFreesEffectsAndSoilParametersWithPriorStd) {
   RefinedModel model;
   model.soil = madeSand();
   model.soil_prior_mean = {{"cohesion_Pa", 800.0}};
@@ -117,7 +117,7 @@ TEST(ModelFit, ThePlanMovesEffectsAndTheSoilThatIsInDoubt) {
   EXPECT_GT(fitPlan(model, true).free.size(), plan.free.size());
 }
 
-TEST(ModelFit, BoundsAreThoseOfTheForm) {
+TEST(ModelFit, BoundsAreThoseOfTheEffectForm) {
   RefinedModel model;
   model.effects = {{.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}},
                    {.name = "empirical", .covariate = "slip", .parameters = {0.0}, .knots = {0.3}}};
@@ -127,7 +127,7 @@ TEST(ModelFit, BoundsAreThoseOfTheForm) {
   EXPECT_EQ(rangeOf(model, {.effect = -1, .index = 0}).low, soilParameters()[0].low);
 }
 
-TEST(ModelFit, ASoilWithoutDeviationsIsFreeAndOneWithThemAsStated) {
+TEST(ModelFit, SoilWithoutStdIsFreeAndStatedStdIsKept) {
   RefinedModel model;
   model.soil.cohesion_Pa = 700.0;
   giveDefaultDeviations(model);

@@ -49,7 +49,7 @@ const EndLevel& endOf(const std::vector<EndLevel>& ends, const std::string& colu
                        [&](const EndLevel& e) { return e.column == column && e.high == high; });
 }
 
-TEST(EndLevels, ALawHoldsAsFarAsItForetold) {
+TEST(EndLevels, LawIsExtrapolatedByTheDistanceItPredictedHeldOutLevels) {
   const auto with = [](double a) { return sand({digging("slip_sinkage_linear", a)}); };
   const RefinedModel truth = with(1.0);
   TraceResult result = resultOf(sand(), truth, {0.1, 0.2, 0.3, 0.4, 0.5});
@@ -69,7 +69,7 @@ TEST(EndLevels, ALawHoldsAsFarAsItForetold) {
   EXPECT_NEAR(predict(result.refined, beyond).sinkage_m, predict(with(0.7 / 0.9), beyond).sinkage_m, 1e-9);
 }
 
-TEST(EndLevels, EachEffectOfAColumnEarnsItsOwnReach) {
+TEST(EndLevels, EachEffectOfAColumnHasItsOwnExtrapolationRange) {
   const RefinedModel truth = sand({digging("skid_sinkage", 0.3), digging("slip_sinkage_linear", 1.0)});
   TraceResult result = resultOf(sand(), truth, {-0.8, -0.6, -0.4, -0.2, 0.1, 0.2});
   boundEffects(result.refined, result.trial, endLevels(result, {}));
@@ -78,7 +78,7 @@ TEST(EndLevels, EachEffectOfAColumnEarnsItsOwnReach) {
   EXPECT_NEAR(result.refined.effects[1].knots[1], 0.3, 1e-12);
 }
 
-TEST(EndLevels, AnEffectSeenAtOneLevelActsBeyondItAsThere) {
+TEST(EndLevels, EffectSeenAtOneLevelIsConstantBeyondIt) {
   const auto with = [](double a) { return sand({digging("slip_sinkage_reece", a)}); };
   TraceResult result = resultOf(sand(), with(0.5), {-0.4, -0.2, 0.0, 0.2});
   const auto ends = endLevels(result, {});
@@ -94,7 +94,7 @@ TEST(EndLevels, AnEffectSeenAtOneLevelActsBeyondItAsThere) {
               1e-9);
 }
 
-TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
+TEST(EndLevels, StdGrowsByHeldOutErrorAboveNoiseFloorPerDistance) {
   TraceResult result = resultOf(sand(), sand(), {0.1, 0.2, 0.3});
   EndLevel end{.column = "slip", .high = true, .distance = 0.2, .rows = 4};
   end.base_rmse = end.refined_rmse = {0.05, 0.001, NAN, NAN};
@@ -116,7 +116,7 @@ TEST(EndLevels, DeviationsGrowByWhatTheEndShowedAboveTheFloor) {
   EXPECT_EQ(slip->high, 0.3);
 }
 
-TEST(EndLevels, AModelHeldAtOneEndIsReadBack) {
+TEST(EndLevels, BoundedModelRoundTripsThroughItsFile) {
   TraceResult result = resultOf(sand(), sand({digging("slip_sinkage_linear", 1.0)}), {0.1, 0.2, 0.3});
   boundEffects(result.refined, result.trial, {{.column = "slip", .high = true, .law = true, .reach = {0.2}}});
   ASSERT_EQ(result.refined.effects[0].knots.size(), 2U);
@@ -128,7 +128,7 @@ TEST(EndLevels, AModelHeldAtOneEndIsReadBack) {
             predict(result.refined, beyond).sinkage_m);
 }
 
-TEST(EndLevels, TwoLevelsHaveNoEnds) {
+TEST(EndLevels, TwoLevelsYieldNoEndLevels) {
   const auto ends = endLevels(resultOf(sand(), sand(), {0.1, 0.3}), {});
   EXPECT_TRUE(std::none_of(ends.begin(), ends.end(), [](const EndLevel& e) { return e.column == "slip"; }));
 }

@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace held_out_test {
 
-TEST(HeldOut, WholeBandsAreHeldOut) {
+TEST(HeldOut, HeldOutErrorIsReducedOnHiddenLibraryEffect) {
   const blind::World world = blind::makeWorld({.seed = 10, .effects = 1, .library = true});
   const TraceResult result = traced(world);
   const HeldOut& held = result.held_out;
@@ -56,7 +56,7 @@ TraceResult moistRuns(unsigned seed) {
   return traceResiduals(base, makeTrial(rows.telemetry("run"), base), options);
 }
 
-TEST(HeldOut, NoEffectStaysWhereHeldOutRowsSpeakAgainstItAndWhatIsStatedIsWhatPredicts) {
+TEST(HeldOut, KeptEffectsReduceHeldOutErrorAndReportedErrorIsThatOfPredictions) {
   for (const unsigned seed : {1U, 5U}) {
     const TraceResult result = moistRuns(seed);
     ASSERT_FALSE(result.effects.empty());

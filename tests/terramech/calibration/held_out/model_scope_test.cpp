@@ -46,7 +46,7 @@ WheelState stateAt(double slip) {
   return {.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 60.0, .slip = slip};
 }
 
-TEST(ModelScope, TheLastEffectThatHeldOutRowsSpeakAgainstIsFound) {
+TEST(ModelScope, LastEffectRefutedByHeldOutRowsIsReturned) {
   TraceResult result = resultOf();  // torque errs more than with the base
   EXPECT_EQ(lastRefuted(result), std::nullopt);
   for (const Channel c : {Channel::Torque, Channel::Torque, Channel::Sinkage, Channel::SideForce}) {
@@ -60,7 +60,7 @@ TEST(ModelScope, TheLastEffectThatHeldOutRowsSpeakAgainstIsFound) {
   EXPECT_EQ(lastRefuted(result), std::nullopt);
 }
 
-TEST(ModelScope, CorrectionsHoldAsFarAsHeldOutRowsConfirmThem) {
+TEST(ModelScope, CorrectionShareFallsToZeroBetweenConfirmedAndRefutedSlip) {
   const ModelScope scope = scopeOf(resultOf());
   // Closed form: drawbar pull fails at 0.25 after 0.1: none from 0.175 beyond on, all to half of that.
   const struct {
@@ -73,7 +73,7 @@ TEST(ModelScope, CorrectionsHoldAsFarAsHeldOutRowsConfirmThem) {
   }
 }
 
-TEST(ModelScope, NoChannelOfHeldOutRowsErrsMoreThanTheBase) {
+TEST(ModelScope, HeldOutErrorPerChannelNeverExceedsThatOfTheBase) {
   TraceResult result = resultOf();
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
@@ -84,7 +84,7 @@ TEST(ModelScope, NoChannelOfHeldOutRowsErrsMoreThanTheBase) {
   }
 }
 
-TEST(ModelScope, AnErrorOfTheSensorsSizeSpeaksAgainstNothing) {
+TEST(ModelScope, HeldOutErrorWithinSensorNoiseRefutesNothing) {
   TraceResult result = resultOf();
   // Closed form: one row, and an error of 1.5 floors, of whose square 1 + 1.645 sqrt(2) = 3.3 is chance; 2 floors are not.
   result.ends = {greatestSlip(0.1, {0.001, 0.001, 0.001, kNan}, {0.015, 0.02, 0.001, kNan})};
@@ -94,7 +94,7 @@ TEST(ModelScope, AnErrorOfTheSensorsSizeSpeaksAgainstNothing) {
   EXPECT_EQ(scope.share(stateAt(0.9), 1), 0.0);
 }
 
-TEST(ModelScope, WithoutEffectsThereIsNothingToTakeBack) {
+TEST(ModelScope, ModelWithoutEffectsHasFullShareAndNoBase) {
   TraceResult result = resultOf();
   result.refined.effects.clear();
   result.scope = scopeOf(result);
@@ -102,7 +102,7 @@ TEST(ModelScope, WithoutEffectsThereIsNothingToTakeBack) {
   EXPECT_EQ(result.scope.share(stateAt(0.9), 0), 1.0);
 }
 
-TEST(ModelScope, PredictionsReturnToTheBaseAndTheFileSaysSo) {
+TEST(ModelScope, PredictionsOutsideScopeEqualTheBaseAndScopeRoundTrips) {
   TraceResult result = resultOf();
   result.scope = scopeOf(result);
   const test::TemporaryFile file{modelText(result.refined, result.scope)};

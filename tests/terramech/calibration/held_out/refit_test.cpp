@@ -18,7 +18,7 @@ TEST(SquaredErrors, AreRootMeanSquaresByChannelWithoutNaN) {
   EXPECT_DOUBLE_EQ(errors.rmse()[2], 2.0);
 }
 
-TEST(RefittedBase, KeepsWhatRunsShareBesideIt) {
+TEST(RefittedBase, KeepsRunOffsetsOutOfTheSoilFit) {
   // Property: offsets in the pull of runs that are known to have some do not bend the soil; as errors of rows they would.
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(7);

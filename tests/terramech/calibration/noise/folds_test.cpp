@@ -50,7 +50,7 @@ TEST(Folds, SlipLevelsStayTogether) {
   expectWhole(folds, slip);
 }
 
-TEST(Folds, LevelsOfAColumnAreHeldOutOneByOneWhateverTheirSign) {
+TEST(Folds, LevelsOfSignedColumnAreHeldOutOneByOne) {
   std::vector<std::string> columns = wheelColumns();
   columns.emplace_back("slip_angle_rad");
   MadeRows rows(columns);
@@ -65,7 +65,7 @@ TEST(Folds, LevelsOfAColumnAreHeldOutOneByOneWhateverTheirSign) {
   EXPECT_EQ(levelFolds(trialOf(rows), "load_N").count, 0);  // one level alone
 }
 
-TEST(Folds, HeldAndSeenRowsAreEachOthersComplement) {
+TEST(Folds, HeldOutAndTrainingRowsAreComplementary) {
   const Folds folds{"", {0, 1, 0, 2}, 3};
   EXPECT_EQ(rowsOf(folds, 0, true), (std::vector<char>{1, 0, 1, 0}));
   EXPECT_EQ(rowsOf(folds, 0, false), (std::vector<char>{0, 1, 0, 1}));

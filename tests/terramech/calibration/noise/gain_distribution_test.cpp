@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace gain_distribution_test {
 
-TEST(GainDistribution, OneTableOfTwentyWithoutAnEffectRaisesAnAlarm) {
+TEST(GainDistribution, FalseAlarmRateIsFivePercentWithRunErrors) {
   // Property: of 120 tables with errors by run, 6 exceed their own threshold of 5 %; 13 or more have
   // probability 0.006.
   int alarms = 0;
@@ -19,7 +19,7 @@ TEST(GainDistribution, OneTableOfTwentyWithoutAnEffectRaisesAnAlarm) {
   EXPECT_LE(alarms, 12);
 }
 
-TEST(GainDistribution, AnEffectFixedWithinEachRunIsFoundThoughRunsErr) {
+TEST(GainDistribution, EffectConstantWithinRunsIsFoundDespiteRunErrors) {
   // Property: the covariance of the runs' error is found again with the effect in the model.
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -32,7 +32,7 @@ TEST(GainDistribution, AnEffectFixedWithinEachRunIsFoundThoughRunsErr) {
   EXPECT_GE(found, 19);
 }
 
-TEST(GainDistribution, AnErrorOfRunsIsNoEvidenceForWhatVariesWithThem) {
+TEST(GainDistribution, RunErrorsRaiseNoAlarmForCovariatesThatVaryByRun) {
   // Property: with an error of runs five times the noise of rows, one run in twelve that stands out is no cause.
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -43,7 +43,7 @@ TEST(GainDistribution, AnErrorOfRunsIsNoEvidenceForWhatVariesWithThem) {
   EXPECT_LE(alarms, 6);  // 2 expected; 7 or more have probability 0.004
 }
 
-TEST(GainDistribution, WhatReturnsTheSoilToItsPriorIsCredited) {
+TEST(GainDistribution, GainIncludesReturnOfTheSoilToItsPrior) {
   // Closed form: a constant of 3 that a known number took, eight of its standard deviations from its prior. A
   // contender of the same shape lets it return: that alone is worth 32.
   SyntheticTable table(10, 10, 0.0, 7);
@@ -54,7 +54,7 @@ TEST(GainDistribution, WhatReturnsTheSoilToItsPriorIsCredited) {
   EXPECT_NEAR(d.gain[0], 32.0, 4.0);
 }
 
-TEST(GainDistribution, TablesWithoutAnEffectHaveASoilFromItsPrior) {
+TEST(GainDistribution, NullTablesDrawTheirSoilFromThePrior) {
   // Property: how far the rows moved the soil changes what they gain, not what a table without an effect would.
   SyntheticTable table(10, 10, 0.0, 7);
   table.null.unit.clear();
@@ -69,7 +69,7 @@ TEST(GainDistribution, TablesWithoutAnEffectHaveASoilFromItsPrior) {
   EXPECT_LT(here, 10.0);  // 32 and more were soils drawn where the rows moved them
 }
 
-TEST(GainDistribution, AFirstStepThatMayNotBeNegativeGainsNothingThere) {
+TEST(GainDistribution, NonNegativeContenderHasZeroGainForNegativeStep) {
   SyntheticTable table(10, 10, 0.0, 9);
   const auto cause = table.byRow();
   table.hide(cause, -1.0);
@@ -88,7 +88,7 @@ TEST(GainDistribution, AFirstStepThatMayNotBeNegativeGainsNothingThere) {
   EXPECT_EQ(contest(true), 0.0);
 }
 
-TEST(GainDistribution, PValuesCountTheTableItself) {
+TEST(GainDistribution, PValueCountsTheObservedTable) {
   GainDistribution d;
   d.greatest = {0.0, 1.0, 2.0, 3.0};
   EXPECT_EQ(d.pValue(9.0), 0.2);  // Closed form: (0 + 1) / (4 + 1)
@@ -97,7 +97,7 @@ TEST(GainDistribution, PValuesCountTheTableItself) {
   EXPECT_EQ(d.threshold(0.2), 3.0);
 }
 
-TEST(GainDistribution, AStoppedWatchEndsIt) {
+TEST(GainDistribution, StopsWhenTheWatchReturnsFalse) {
   SyntheticTable table(10, 10, 0.0, 9);
   int asked = 0;
   const auto column = table.byRow();

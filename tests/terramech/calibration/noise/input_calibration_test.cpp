@@ -7,14 +7,14 @@
 namespace talus::terramech {
 namespace input_calibration_test {
 
-TEST(InputCalibration, OneLevelOfSlipIsNotSeenToVary) {
+TEST(InputCalibration, SlipVariesOnlyIfScatterExceedsTwiceItsError) {
   EXPECT_FALSE(slipIsSeen(trialOf(scattered(0.3, 0.01, 200)), slipNoise(0.03)));
   // Property: scatter beyond twice the error is seen, however large an error is claimed.
   EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.025, 200)), slipNoise(0.03)));
   EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.1, 200)), slipNoise(0.9)));
 }
 
-TEST(InputCalibration, ErrorsAboutOneLevelAreTakenOut) {
+TEST(InputCalibration, ErrorsAboutOneSlipLevelAreRemoved) {
   // Closed form: scatter equal to the error keeps nothing of it; the speed over ground, had from the slip,
   // follows.
   const std::vector<double> measured = scattered(0.4, 0.012, 400);
@@ -28,7 +28,7 @@ TEST(InputCalibration, ErrorsAboutOneLevelAreTakenOut) {
   }
 }
 
-TEST(InputCalibration, OnlyASpeedThatAgreesWithTheSlipFollowsIt) {
+TEST(InputCalibration, SpeedIsUpdatedOnlyIfConsistentWithSlip) {
   WheelState own{.slip = 0.2, .speed_mps = 0.05, .rim_speed_mps = 0.1};
   setSlip(own, 0.3);
   EXPECT_EQ(own.speed_mps, 0.05);
@@ -38,7 +38,7 @@ TEST(InputCalibration, OnlyASpeedThatAgreesWithTheSlipFollowsIt) {
   EXPECT_EQ(tied.slip, 0.3);
 }
 
-TEST(InputCalibration, TheirMeanErrsLess) {
+TEST(InputCalibration, StdOfMeanSlipIsSigmaOverRootN) {
   // Closed form: sigma / sqrt(n).
   const Eigen::VectorXd shared = sharedSlipStd(trialOf(std::vector<double>(100, 0.5)), slipNoise(0.04));
   ASSERT_EQ(shared.size(), 100);
@@ -61,7 +61,7 @@ Trial atOneSpeed(double relative, double speed_scatter) {
   return trial;
 }
 
-TEST(InputCalibration, OneSpeedOfTravelTellsTheSlips) {
+TEST(InputCalibration, ConstantTravelSpeedDeterminesSlips) {
   Trial trial = atOneSpeed(0.04, 0.0);
   ASSERT_TRUE(slipIsSeen(trial, slipNoise(0.04)));
   EXPECT_FALSE(setSpeeds(trial, slipNoise(0.04)).empty());
@@ -75,7 +75,7 @@ TEST(InputCalibration, OneSpeedOfTravelTellsTheSlips) {
   EXPECT_LT(worst, 0.003);
 }
 
-TEST(InputCalibration, ASpeedSetForEachRunTellsTheSlips) {
+TEST(InputCalibration, SpeedConstantWithinEachRunDeterminesSlips) {
   Trial trial = atOneSpeed(0.04, 0.0);
   for (std::size_t k = 0; k < 120; ++k) {
     WheelState& s = trial.states[k];
@@ -96,7 +96,7 @@ TEST(InputCalibration, ASpeedSetForEachRunTellsTheSlips) {
   EXPECT_LT(std::sqrt(square), 0.007);
 }
 
-TEST(InputCalibration, SpeedsThatVaryTellNoSlips) {
+TEST(InputCalibration, VaryingSpeedsDoNotDetermineSlips) {
   EXPECT_TRUE(setSpeeds(atOneSpeed(0.04, 0.3), slipNoise(0.04)).empty());
   Trial own = atOneSpeed(0.04, 0.0);
   own.states[3].speed_mps *= 1.1;

@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace nelder_mead_test {
 
-TEST(NelderMead, FindsTheBottomOfABowl) {
+TEST(NelderMead, MinimisesAQuadratic) {
   // Closed form: (x - 1)^2 + 3 (y + 2)^2 + (x - 1)(y + 2) is least at (1, -2).
   const auto bowl = [](const std::vector<double>& p) {
     const double x = p[0] - 1.0, y = p[1] + 2.0;
@@ -16,7 +16,7 @@ TEST(NelderMead, FindsTheBottomOfABowl) {
   EXPECT_NEAR(found[1], -2.0, 1e-5);
 }
 
-TEST(NelderMead, FollowsRosenbrocksValley) {
+TEST(NelderMead, MinimisesRosenbrock) {
   // Closed form: the least value is 0 at (1, 1); start of nelder_mead_1965.
   const auto valley = [](const std::vector<double>& p) {
     return 100.0 * std::pow(p[1] - p[0] * p[0], 2) + std::pow(1.0 - p[0], 2);
@@ -26,7 +26,7 @@ TEST(NelderMead, FollowsRosenbrocksValley) {
   EXPECT_NEAR(found[1], 1.0, 1e-4);
 }
 
-TEST(NelderMead, KeepsToItsEvaluationsAndIsNeverWorseThanItsStart) {
+TEST(NelderMead, LimitsEvaluationsAndNeverIncreasesTheCost) {
   for (const int most : {4, 7, 20, 50}) {
     int calls = 0;
     const auto cost = [&](const std::vector<double>& p) {
@@ -39,7 +39,7 @@ TEST(NelderMead, KeepsToItsEvaluationsAndIsNeverWorseThanItsStart) {
   }
 }
 
-TEST(NelderMead, AFlatFunctionEndsAtOnce) {
+TEST(NelderMead, StopsAtOnceOnAConstantFunction) {
   int calls = 0;
   nelderMead([&](const std::vector<double>&) { return ++calls, 7.0; }, {0.0, 0.0}, {});
   EXPECT_EQ(calls, 3);  // the corners of the first simplex

@@ -31,7 +31,7 @@ struct Campaign {
   std::optional<NominalLoad> found() const { return nominalLoad(trial, residual, slopes); }
 };
 
-TEST(NominalLoad, AReadingThatTheContactDoesNotFollowErred) {
+TEST(NominalLoad, LoadReadingsUnrelatedToContactAreReplacedByRunMeans) {
   const auto set = Campaign(1.0).found();
   ASSERT_TRUE(set);
   EXPECT_EQ(set->error_share, 1.0);
@@ -40,7 +40,7 @@ TEST(NominalLoad, AReadingThatTheContactDoesNotFollowErred) {
   for (int row = 0; row < 200; ++row) EXPECT_NEAR(set->load_N(row, 40.0), std::exp(set->log_mean[row]), 1e-9);
 }
 
-TEST(NominalLoad, AShareOfTheDeviationIsTakenOut) {
+TEST(NominalLoad, PartialLoadErrorShareIsEstimatedAndRemoved) {
   const Campaign half(0.5);
   const auto set = half.found();
   ASSERT_TRUE(set);
@@ -50,11 +50,11 @@ TEST(NominalLoad, AShareOfTheDeviationIsTakenOut) {
               (1.0 - set->error_share) * (std::log(half.trial.load_N[7]) - set->log_mean[7]), 1e-12);
 }
 
-TEST(NominalLoad, ALoadThatIsAsReadStays) {
+TEST(NominalLoad, ExactLoadReadingsAreKept) {
   EXPECT_FALSE(Campaign(0.0).found());
 }
 
-TEST(NominalLoad, LevelsThatRunsMixAreSetToo) {
+TEST(NominalLoad, LoadLevelsMixedWithinRunsAreCalibrated) {
   Campaign mixed(1.0, 40.0, 0.0);
   for (int row = 0; row < 200; ++row) {
     mixed.trial.run[static_cast<std::size_t>(row)] = row;
@@ -67,7 +67,7 @@ TEST(NominalLoad, LevelsThatRunsMixAreSetToo) {
   EXPECT_NEAR(set->log_mean[0] - set->log_mean[1], std::log(2.0), 0.02);
 }
 
-TEST(NominalLoad, LoadsAllOverAndDrivesHaveNone) {
+TEST(NominalLoad, ContinuousLoadsAndDrivesHaveNoNominalLoad) {
   Campaign over(1.0);
   for (int row = 0; row < 200; ++row) {
     over.trial.run[static_cast<std::size_t>(row)] = row;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -61,26 +62,81 @@ struct Made {
   }
 };
 
-TEST(RunLikelihood, IsTheGaussianOfTheWholeCovariance) {
-  // Independent derivation: generalised least squares on the training rows with the covariance written out.
-  const Made made(1);
+/// Of a fold's readings given the others', of which mean and covariance of all are written out.
+double logDensity(const Eigen::VectorXd& table, const Eigen::VectorXd& mean,
+                  const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& seen,
+                  const std::vector<Eigen::Index>& unseen) {
+  const Eigen::MatrixXd gain = covariance(unseen, seen) * covariance(seen, seen).inverse();
+  const Eigen::MatrixXd own = covariance(unseen, unseen) - gain * covariance(seen, unseen);
+  const Eigen::VectorXd left = table(unseen) - mean(unseen) - gain * (table(seen) - mean(seen));
+  return -0.5 * (left.dot(own.inverse() * left) + std::log(own.determinant()));
+}
+
+TEST(RunLikelihood, EqualsTheDenseGaussian) {
+  // Independent derivation: parameters integrated out beforehand, so that all readings are one Gaussian, and each fold's are
+  // conditioned on the others'. The third parameter shows in fold 0 alone.
+  Made made(1);
+  made.model.columns.conservativeResize(Eigen::NoChange, 3);
+  made.model.columns.col(2).setZero();
+  for (const Eigen::Index value : made.values(0, true))
+    made.model.columns(value, 2) = 3.0 + 0.1 * static_cast<double>(value);
+  made.model.prior = {Eigen::Vector3d(0.5, -1.0, 0.2), Eigen::Vector3d(0.3, 2.0, 0.01)};
   RunLikelihood likelihood(made.factor, made.unit, made.folds);
   likelihood.setTables(made.table);
   const HeldOutFit fit = likelihood.heldOut(likelihood.sums(made.model), made.run, 0, 1);
+  const Eigen::MatrixXd& x = made.model.columns;
+  const Eigen::MatrixXd covariance =
+      made.covariance() + x * made.model.prior.precision.cwiseInverse().asDiagonal() * x.transpose();
+  double expected = 0.0;
+  for (int fold = 0; fold < 3; ++fold)
+    expected += logDensity(made.table, x * made.model.prior.mean, covariance, made.values(fold, false),
+                           made.values(fold, true));
+  EXPECT_NEAR(fit.log_likelihood[0], expected, 1e-6 * std::abs(expected));
+}
+
+TEST(RunLikelihood, NoPriorCountsTwice) {
+  // Independent derivation: generalised least squares with the covariance written out. The prior of a parameter that one fold
+  // alone determines is in the density of that fold; of others it is what the rows show without any one fold.
+  Made made(5);
   const Eigen::MatrixXd v = made.covariance();
   const Eigen::MatrixXd precision = made.model.prior.precision.asDiagonal();
-  double expected = 0.0;
-  for (int fold = 0; fold < 3; ++fold) {
-    const auto seen = made.values(fold, false), unseen = made.values(fold, true);
-    const Eigen::MatrixXd x = made.model.columns(seen, Eigen::all), weight = v(seen, seen).inverse();
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(2, 1e300);
+  for (int fold = -1; fold < 3; ++fold) {  // -1: all rows
+    const auto rows = made.values(fold, false);
+    const Eigen::MatrixXd x = made.model.columns(rows, Eigen::all), weight = v(rows, rows).inverse();
     const Eigen::VectorXd step =
-        (x.transpose() * weight * x + precision).inverse() *
-        (x.transpose() * weight * made.table(seen) + precision * made.model.prior.mean);
-    const Eigen::VectorXd left = made.table(unseen) - made.model.columns(unseen, Eigen::all) * step;
-    const Eigen::MatrixXd own = v(unseen, unseen);
-    expected -= 0.5 * (left.dot(own.inverse() * left) + std::log(own.determinant()));
+        (x.transpose() * weight * x + precision)
+            .ldlt()
+            .solve(x.transpose() * weight * made.table(rows) + precision * made.model.prior.mean);
+    least = least.cwiseMin(precision * (step - made.model.prior.mean).cwiseAbs2());
   }
-  EXPECT_NEAR(fit.log_likelihood[0], expected, 1e-6 * std::abs(expected));
+  RunLikelihood likelihood(made.factor, made.unit, made.folds);
+  likelihood.setTables(made.table);
+  const auto left = [&] {
+    return likelihood.heldOut(likelihood.sums(made.model), made.run, 0, 1).prior_chi2[0];
+  };
+  EXPECT_NEAR(left(), least.sum(), 1e-6 * least.sum());
+  for (const Eigen::Index value : made.values(0, false)) made.model.columns.row(value).setZero();
+  EXPECT_NEAR(left(), 0.0, 1e-6);
+}
+
+TEST(RunLikelihood, AKnotOfHeldOutRunsAloneCostsItsPriorNotItsHeight) {
+  // Closed form: 24 readings of unit variance in one fold, all 50 above the others; a parameter of that fold alone, known to
+  // 0 give or take s = 100. ln p = -(h^2 / s^2 + ln(1 + n s^2)) / 2 to first order in 1 / (n s^2), where h = 50 alone costs
+  // n h^2 / 2 = 30 000.
+  const int rows = 24;
+  std::vector<int> fold;
+  Eigen::VectorXd table = Eigen::VectorXd::Zero(2 * rows * kChannels), column = table;
+  std::vector<SharedFactor> factor(2 * rows, SharedFactor::Zero());
+  for (int row = 0; row < 2 * rows; ++row) {
+    fold.push_back(row / rows);
+    if (fold.back() == 1) table[row * kChannels] = 50.0, column[row * kChannels] = 1.0;
+  }
+  RunLikelihood likelihood(factor, {}, {"", fold, 2});
+  likelihood.setTables(table);
+  const LinearModel knot{column, {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 1e-4)}};
+  EXPECT_NEAR(likelihood.heldOut(likelihood.sums(knot), RunError::Zero(), 0, 1).score()[0],
+              -0.5 * (0.25 + std::log(1.0 + rows * 1e4)), 1e-4);
 }
 
 TEST(RunLikelihood, SumsOfPartsAreThoseOfTheWhole) {

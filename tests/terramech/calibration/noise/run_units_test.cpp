@@ -41,15 +41,15 @@ int countOf(const std::vector<int>& unit) {
   return unit.empty() ? 0 : *std::max_element(unit.begin(), unit.end()) + 1;
 }
 
-TEST(RunUnits, AreTheRuns) {
+TEST(RunUnits, EqualTheGivenRuns) {
   EXPECT_EQ(countOf(Rows(200, 10, 1).units()), 10);
 }
 
-TEST(RunUnits, RowsOfIndependentNoiseWithoutRunsAreOnTheirOwn) {
+TEST(RunUnits, RowsWithIndependentNoiseAndNoRunsFormNoUnits) {
   EXPECT_TRUE(Rows(200, 0, 2).units().empty());
 }
 
-TEST(RunUnits, NoiseThatLastsIsCutIntoStretchesOfTime) {
+TEST(RunUnits, AutocorrelatedNoiseIsSplitIntoTimeSegments) {
   Rows alone(300, 0, 5), in_runs(300, 6, 6);
   alone.last(0.8);
   in_runs.last(0.8);
@@ -58,7 +58,7 @@ TEST(RunUnits, NoiseThatLastsIsCutIntoStretchesOfTime) {
   EXPECT_GT(countOf(in_runs.units()), 6);
 }
 
-TEST(RunUnits, WhatLastsWithTheSlipIsNoNoise) {
+TEST(RunUnits, AutocorrelationAlongSlipIsNotTreatedAsNoise) {
   Rows rows(300, 6, 6);
   rows.trial.covariates = {"slip"};
   rows.last(0.8);
@@ -68,7 +68,7 @@ TEST(RunUnits, WhatLastsWithTheSlipIsNoNoise) {
   EXPECT_EQ(countOf(rows.units()), 6);
 }
 
-TEST(RunUnits, OnADriveWholeMomentsStayTogether) {
+TEST(RunUnits, RowsOfOneMomentShareAUnit) {
   Rows rows(400, 0, 7);
   rows.last(0.95);
   for (int row = 0; row < 400; ++row) {
@@ -84,7 +84,7 @@ TEST(RunUnits, OnADriveWholeMomentsStayTogether) {
     }
 }
 
-TEST(RunUnits, MeansAreWeightedAndGapsAreNought) {
+TEST(RunUnits, UnitMeansAreInverseVarianceWeightedAndZeroIfEmpty) {
   // Closed form: (1/1 * 2 + 1/4 * 7) / (1 + 1/4) = 3.
   Eigen::MatrixXd residual(3, 2), std(3, 2);
   residual << 2.0, std::nan(""), 7.0, 5.0, 9.0, std::nan("");

@@ -27,7 +27,7 @@ Eigen::MatrixXd pullError(const Trial& trial, double std) {
   return residual;
 }
 
-TEST(SensorNoise, ItIsFoundWhereNothingElseIs) {
+TEST(SensorNoise, RecoversNoiseStdFromPureNoise) {
   const Trial trial = pullAlone(400);
   const Eigen::MatrixXd level = Eigen::MatrixXd::Constant(400, kChannels, 0.2);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(400, kChannels);
@@ -39,7 +39,7 @@ TEST(SensorNoise, ItIsFoundWhereNothingElseIs) {
   }
 }
 
-TEST(SensorNoise, WhatIsStatedIsBelievedWhereRowsAreFew) {
+TEST(SensorNoise, FewRowsKeepStatedNoise) {
   const Trial trial = pullAlone(8);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(8, kChannels);
   const SensorNoise noise =
@@ -48,7 +48,7 @@ TEST(SensorNoise, WhatIsStatedIsBelievedWhereRowsAreFew) {
   EXPECT_NEAR(std::log(noise.absolute[0] / 1.0), 0.0, 0.75);
 }
 
-TEST(SensorNoise, ASensorThatErrsFarMoreThanStatedIsNamed) {
+TEST(SensorNoise, SensorWithNoiseFarAboveItsStatedStdIsListed) {
   // Closed form: 0.6 and 0.8 of 0.2 times 50 N add to 1 N in squares, 1.6 times and 1.7 times what is stated;
   // e^0.5 = 1.65.
   const Trial trial = pullAlone(20);
@@ -71,7 +71,7 @@ TEST(SensorNoise, ASensorThatErrsFarMoreThanStatedIsNamed) {
   EXPECT_THAT(unstatedSensors(trial, {.slip = 0.005}), ElementsAre("drawbar_pull_N", "load_N"));
 }
 
-TEST(SensorNoise, WithoutASmoothOnlyNoiseIsLeft) {
+TEST(SensorNoise, WithoutSmoothRemovesLinearTrends) {
   const Trial trial = pullAlone(200);
   Eigen::MatrixXd line = trial.measured;
   for (int row = 0; row < 200; ++row) line(row, 0) = 3.0 - 4.0 * trial.slip[static_cast<std::size_t>(row)];
@@ -82,7 +82,7 @@ TEST(SensorNoise, WithoutASmoothOnlyNoiseIsLeft) {
 
 // Property: of noise the mean square stays, for the freedom that was taken is made up for. Tolerance: four
 // standard errors of the ratio over 300 tables, for which four columns of forty rows make a tenth.
-TEST(SensorNoise, ASmoothTakesNoNoiseAway) {
+TEST(SensorNoise, WithoutSmoothPreservesNoiseVariance) {
   const Trial trial = pullAlone(40);
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -96,7 +96,7 @@ TEST(SensorNoise, ASmoothTakesNoNoiseAway) {
   EXPECT_NEAR(after / before, 1.0, 0.02);
 }
 
-TEST(SensorNoise, SpeedsTellTheSlipTogetherWithTheRims) {
+TEST(SensorNoise, AllButSlipKeepsOneOfTravelSpeedAndRimSpeed) {
   Trial trial;
   trial.covariates = {"slip", "load_N", "speed_mps"};
   EXPECT_THAT(allButSlip(trial), ElementsAre("load_N", "speed_mps"));

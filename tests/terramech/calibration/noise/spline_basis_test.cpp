@@ -7,7 +7,7 @@ namespace spline_basis_test {
 
 using testing::ElementsAre;
 
-TEST(SplineBasis, ColumnsAreOneAtTheirKnotAndAddUpToOne) {
+TEST(SplineBasis, ColumnsAreOneAtTheirKnotAndSumToOne) {
   const std::vector<double> knots{0.0, 1.0, 2.5, 4.0};
   const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(knots.data(), 4);
   EXPECT_LT((splineBasis(at, knots) - Eigen::MatrixXd::Identity(4, 4)).norm(), 1e-12);
@@ -15,7 +15,7 @@ TEST(SplineBasis, ColumnsAreOneAtTheirKnotAndAddUpToOne) {
   EXPECT_LT((splineBasis(between, knots).rowwise().sum() - Eigen::VectorXd::Ones(41)).norm(), 1e-12);
 }
 
-TEST(SplineBasis, HoldsStraightLines) {
+TEST(SplineBasis, ReproducesStraightLines) {
   // Closed form: the natural spline through points of a line is the line.
   const std::vector<double> knots{0.0, 1.0, 2.5, 4.0};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(33, 0.0, 4.0);
@@ -23,12 +23,12 @@ TEST(SplineBasis, HoldsStraightLines) {
   EXPECT_LT((splineBasis(x, knots) * values - (3.0 - 2.0 * x.array()).matrix()).norm(), 1e-12);
 }
 
-TEST(SplineBasis, WhatIsUnknownHasARowOfZeros) {
+TEST(SplineBasis, NanValuesYieldZeroRows) {
   const Eigen::Vector3d x(0.5, std::nan(""), 1.5);
   EXPECT_EQ(splineBasis(x, {0.0, 1.0, 2.0}).row(1).norm(), 0.0);
 }
 
-TEST(SplineBasis, KnotsAreTheLevelsOrTheirQuantiles) {
+TEST(SplineBasis, KnotsAreDistinctLevelsOrQuantiles) {
   Eigen::VectorXd levels(7);
   levels << 3.0, 1.0, std::nan(""), 2.0, 1.0, 3.0, 2.0;
   EXPECT_THAT(quantileKnots(levels, 5), ElementsAre(1.0, 2.0, 3.0));
@@ -42,7 +42,7 @@ TEST(SplineBasis, KnotsAreTheLevelsOrTheirQuantiles) {
   for (std::size_t k = 1; k < apart.size(); ++k) EXPECT_GT(apart[k] - apart[k - 1], 2.0);
 }
 
-TEST(SplineBasis, OrthonormalColumnsSpanTheSame) {
+TEST(SplineBasis, OrthonormalColumnsSpanTheSameSpace) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Random(12, 4);
   columns.col(3) = 2.0 * columns.col(0) - columns.col(1);  // of rank three
   const Eigen::MatrixXd q = orthonormal(columns);

@@ -36,7 +36,7 @@ Whitening plain() {
   return w;
 }
 
-TEST(Whitening, AMeanThatRowsShareWeighsWhatItIsWorth) {
+TEST(Whitening, SharedErrorLimitsTheWeightOfAMean) {
   // Closed form: with variance q shared and 1 of its own, the mean of m rows has variance q + 1/m, so that a
   // constant of 1 is worth units / (q + 1/m) in chi-squared.
   Whitening w = plain();
@@ -46,7 +46,7 @@ TEST(Whitening, AMeanThatRowsShareWeighsWhatItIsWorth) {
   EXPECT_NEAR(w.apply(one).squaredNorm(), kUnits / (4.0 + 1.0 / kRows), 1e-9);
 }
 
-TEST(Whitening, RowsThatShareNothingAreLeftAlone) {
+TEST(Whitening, ResidualsWithoutSharedErrorAreUnchanged) {
   Whitening w = plain();
   const Eigen::MatrixXd r = residual(0.0, 3);
   double sum = 0.0;

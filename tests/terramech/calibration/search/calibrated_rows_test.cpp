@@ -18,7 +18,7 @@ TEST(CalibratedRows, WhitenedResidualsHaveUnitVariance) {
   }
 }
 
-TEST(CalibratedRows, TheSensorsErrorIsFound) {
+TEST(CalibratedRows, RecoversSensorNoise) {
   RefinedModel model = sand();
   SolvedContacts solved;
   CalibratedRows{noisyTrial(model, 0.05)}.calibrate(model, solved);
@@ -26,7 +26,7 @@ TEST(CalibratedRows, TheSensorsErrorIsFound) {
   EXPECT_NEAR(std::hypot(model.noise.absolute[2], 2.4 * model.noise.relative[2]), 0.12, 0.04);
 }
 
-TEST(CalibratedRows, AnotherModelIsComparedUnderTheSameNoise) {
+TEST(CalibratedRows, LevelOfAnotherModelKeepsTheNoise) {
   RefinedModel model = sand();
   SolvedContacts solved;
   CalibratedRows rows{noisyTrial(model, 0.02)};

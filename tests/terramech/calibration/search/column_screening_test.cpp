@@ -40,7 +40,7 @@ bool isIn(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-TEST(ColumnScreening, ASampleHasItsShareOfEachRun) {
+TEST(ColumnScreening, SampleIsStratifiedByRun) {
   // Closed form: stretches of five rows, one of each, whatever the period of the design.
   const Trial trial = wide(200, 2, 0.0);
   const auto keep = rowSample(trial, 40, 1);
@@ -56,7 +56,7 @@ TEST(ColumnScreening, ASampleHasItsShareOfEachRun) {
   EXPECT_EQ(rowSample(trial, 200, 1), std::vector<char>(200, 1));
 }
 
-TEST(ColumnScreening, OfADriveWholeMomentsAreDrawn) {
+TEST(ColumnScreening, RowsOfOneMomentAreSampledTogether) {
   Trial trial = wide(120, 2, 0.0);
   for (int row = 0; row < 120; ++row) trial.moment.push_back(row / 4);
   const auto keep = rowSample(trial, 40, 1);
@@ -66,7 +66,7 @@ TEST(ColumnScreening, OfADriveWholeMomentsAreDrawn) {
   EXPECT_EQ(std::count(keep.begin(), keep.end(), 1), 40);
 }
 
-TEST(ColumnScreening, TheColumnThatMattersIsKeptAmongForty) {
+TEST(ColumnScreening, RelevantColumnIsKeptAmongForty) {
   TraceOptions options;
   options.most_columns = 6;
   const Trial trial = wide(120, 40, 0.02);
@@ -82,13 +82,13 @@ TEST(ColumnScreening, TheColumnThatMattersIsKeptAmongForty) {
   EXPECT_TRUE(screenColumns(base(), wide(60, 4, 0.0), options, [](double) { return true; }).dropped.empty());
 }
 
-TEST(ColumnScreening, ATableWithManyColumnsOfChanceRaisesNoAlarm) {
+TEST(ColumnScreening, ManyChanceColumnsYieldNoEffect) {
   TraceOptions options;
   options.most_columns = 6;
   EXPECT_TRUE(traceResiduals(base(), wide(120, 60, 0.0), options).effects.empty());
 }
 
-TEST(ColumnScreening, RowsBeyondTheSampleJudgeWhatItFound) {
+TEST(ColumnScreening, RowsOutsideTheSampleValidateTheEffect) {
   TraceOptions options;
   options.most_rows = 150;
   const TraceResult result = traceResiduals(base(), wide(400, 3, 0.02), options);
@@ -100,7 +100,7 @@ TEST(ColumnScreening, RowsBeyondTheSampleJudgeWhatItFound) {
   EXPECT_LT(result.unsearched.refined_rmse[0], 0.7 * result.unsearched.base_rmse[0]);
 }
 
-TEST(ColumnScreening, WhatIsTakenInAndLeftOut) {
+TEST(ColumnScreening, AcceptedEffectsReduceHeldOutErrorAndRejectedColumnsAreUnused) {
   // Property: with runs held out of the search, what it takes in lowers the error on them; what it leaves out is in no
   // effect, and they err as the sensors do without it.
   Trial trial = wide(240, 4, 0.02);

@@ -25,7 +25,7 @@ blind::World tied() {
   return world;
 }
 
-TEST(RivalCauses, ColumnsThatGoTogetherAreEqual) {
+TEST(RivalCauses, CollinearColumnsAreReportedAsEqualCauses) {
   // Property: each of two columns, one a multiple of the other, explains what the other does.
   const TraceResult result = traced(tied());
   ASSERT_EQ(result.effects.size(), 1U);
@@ -36,7 +36,7 @@ TEST(RivalCauses, ColumnsThatGoTogetherAreEqual) {
   EXPECT_FALSE(result.rivals[0].model.covariance.empty());
 }
 
-TEST(RivalCauses, ACauseThatTheRowsShowHasNoEqual) {
+TEST(RivalCauses, IdentifiableCauseHasNoEqual) {
   // Property: the same world without the column that goes with dust.
   blind::World world = tied();
   world.columns.pop_back();
@@ -46,7 +46,7 @@ TEST(RivalCauses, ACauseThatTheRowsShowHasNoEqual) {
   EXPECT_EQ(columns(result.effects[0]), std::vector<std::string>{"dust_index"});
 }
 
-TEST(RivalCauses, AConstantOffsetIsNoDrift) {
+TEST(RivalCauses, ConstantOffsetHasNoDriftAsEqualCause) {
   // Property: the zero of the sinkage is off in every row; a drift or a curve that is nearly level is the same offset.
   const blind::World world =
       blind::makeWorld({.seed = 1303, .effects = 1, .library = true, .campaign = true});

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace trace_result_test {
 
-TEST(TraceResult, ErrorsAreRootMeanSquaresOfEachChannel) {
+TEST(TraceResult, ErrorsAreRootMeanSquaresPerChannel) {
   RefinedModel model;
   model.soil = madeSand();
   MadeRows rows(wheelColumns());

@@ -33,7 +33,7 @@ Candidate torqueOffset() {
           1};
 }
 
-TEST(TraceSearch, ScreeningPutsWhatTheRowsHideFirst) {
+TEST(TraceSearch, ScreeningRanksTheHiddenEffectFirst) {
   TraceSearch search(sand(), offsetTrial(), {});
   const auto screening = search.screen(19);
   ASSERT_FALSE(screening.promises.empty());
@@ -44,7 +44,7 @@ TEST(TraceSearch, ScreeningPutsWhatTheRowsHideFirst) {
     EXPECT_LE(screening.promises[k].gain, screening.promises[k - 1].gain);
 }
 
-TEST(TraceSearch, APromiseIsWhatTheFitKeeps) {
+TEST(TraceSearch, ScreenedGainEqualsFittedGainForALinearEffect) {
   // Property: an offset is linear, so that what it gains to first order it gains when fitted, up to the noise of
   // slip and load that its relative part moves.
   TraceSearch search(sand(), offsetTrial(), {});
@@ -52,7 +52,7 @@ TEST(TraceSearch, APromiseIsWhatTheFitKeeps) {
   EXPECT_NEAR(search.fitted(promise.candidate).gain, promise.gain, 0.02 * promise.gain);
 }
 
-TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsLeftOutIsGone) {
+TEST(TraceSearch, AcceptedEffectIsFittedAndLeftOutEffectIsRemoved) {
   TraceSearch search(sand(), offsetTrial(), {});
   const double before = search.chi2();
   search.accept(torqueOffset());
@@ -68,7 +68,7 @@ TEST(TraceSearch, WhatIsAcceptedIsFittedAndWhatIsLeftOutIsGone) {
   EXPECT_NEAR(search.chi2(), before, 1e-6 * before);
 }
 
-TEST(TraceSearch, LeavingOutKeepsTheNoiseAsItIs) {
+TEST(TraceSearch, LeavingAnEffectOutKeepsTheNoise) {
   TraceSearch search(sand(), offsetTrial(), {});
   search.accept(torqueOffset());
   const double with = search.chi2();
@@ -78,14 +78,14 @@ TEST(TraceSearch, LeavingOutKeepsTheNoiseAsItIs) {
   EXPECT_EQ(search.model().noise.absolute, noise.absolute);
 }
 
-TEST(TraceSearch, ATrustedPriorHoldsTheFirstParameter) {
+TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
   TraceSearch search(sand(), offsetTrial(), {});
   search.trust(Estimate{.value = 0.3, .std = 1e-4});
   search.accept(torqueOffset());
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
 }
 
-TEST(TraceSearch, PairsTellTwoFaultsApart) {
+TEST(TraceSearch, PairRankingSeparatesTwoSensorFaults) {
   // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
   TraceSearch search(sand(), makeTrial(twoFaults(madeSand()), sand()), {});
   const auto ranked = search.pairs();
@@ -97,7 +97,7 @@ TEST(TraceSearch, PairsTellTwoFaultsApart) {
     EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
 }
 
-TEST(TraceSearch, AnEffectOfSizeZeroDoesNotAct) {
+TEST(TraceSearch, EffectOfSizeZeroIsInactive) {
   TraceSearch search(sand(), offsetTrial(), {});
   search.accept(torqueOffset());
   EXPECT_TRUE(search.acts(0));
@@ -107,7 +107,7 @@ TEST(TraceSearch, AnEffectOfSizeZeroDoesNotAct) {
   EXPECT_FALSE(search.acts(1));
 }
 
-TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
+TEST(TraceSearch, ThinningKeepsOnlyPartsWithSufficientGain) {
   TraceSearch search(sand(), offsetTrial(), {});
   Candidate both = torqueOffset();
   both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
@@ -117,7 +117,7 @@ TEST(TraceSearch, OfFormsTakenTogetherOnlyThoseThatPayStay) {
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
 }
 
-TEST(TraceSearch, OfFormsTakenTogetherOneOfSizeZeroLeaves) {
+TEST(TraceSearch, IdlePartsOfSizeZeroAreDropped) {
   TraceSearch search(sand(), offsetTrial(), {});
   Candidate both = torqueOffset();
   both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}});

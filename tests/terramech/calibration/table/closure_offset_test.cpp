@@ -29,7 +29,7 @@ Trial twoSources(double offset) {
   return makeTrial(rows.telemetry("source"), RefinedModel{});
 }
 
-TEST(ClosureOffset, NamesTheSourceThatIsOffAndByHowMuch) {
+TEST(ClosureOffset, FindsTheSourceAndSizeOfTheOffset) {
   for (const double offset : {-0.18, 0.1}) {
     const auto found = findClosureOffset(twoSources(offset), 1);
     ASSERT_TRUE(found.has_value()) << offset;
@@ -41,11 +41,11 @@ TEST(ClosureOffset, NamesTheSourceThatIsOffAndByHowMuch) {
   }
 }
 
-TEST(ClosureOffset, DifferentSoilsAloneAreNoOffset) {
+TEST(ClosureOffset, DifferentSoilsYieldNoOffset) {
   EXPECT_FALSE(findClosureOffset(twoSources(0.0), 1).has_value());
 }
 
-TEST(ClosureOffset, TheRelationHoldsForAnySoil) {
+TEST(ClosureOffset, ClosureRelationIsValidForAnySoil) {
   // Property: the stated accuracy, against the integral over a grid of soils and slips.
   std::mt19937_64 random{6};
   MadeRows rows(wheelColumns());

@@ -20,21 +20,21 @@ Telemetry table() {
   return rows.telemetry();
 }
 
-TEST(ModelRows, ASideForceNeedsItsSlipAngle) {
+TEST(ModelRows, SideForceRequiresSlipAngle) {
   const ModelRows rows = modelRows(table(), {});
   ASSERT_EQ(rows.rejected.size(), 1U);
   EXPECT_EQ(rows.rejected[0].line, 3U);
   EXPECT_THAT(rows.rejected[0].reason, testing::HasSubstr("side_force_N = 5 without slip_angle_rad"));
 }
 
-TEST(ModelRows, SunkWheelsStandApart) {
+TEST(ModelRows, RowsBeyondTheAxleAreSeparated) {
   const ModelRows rows = modelRows(table(), {});
   EXPECT_EQ(rows.trial.rows(), 3);
   ASSERT_EQ(rows.beyond_axle.rows(), 1);
   EXPECT_NEAR(rows.beyond_axle.measured(0, 1), 1.2, 1e-12);
 }
 
-TEST(ModelRows, TheRoverGivesTheWheelAndNoFileAnUnknownSoil) {
+TEST(ModelRows, WheelComesFromTheRoverAndSoilIsUnknownWithoutName) {
   const ModelFile none = baseModel("", "");
   EXPECT_FALSE(none.soil_given);
   EXPECT_FALSE(none.model.wheel);

@@ -30,7 +30,7 @@ Eigen::MatrixXd covarianceOf(const MomentSlip& slip) {
   return all;
 }
 
-TEST(MomentSlip, WhatIsTakenOutLeavesRowsIndependent) {
+TEST(MomentSlip, WhiteningYieldsIndependentRows) {
   const MomentSlip slip = someSlip();
   const Eigen::Index n = slip.moved.size();
   Eigen::MatrixXd taken(n, n);
@@ -43,7 +43,7 @@ TEST(MomentSlip, WhatIsTakenOutLeavesRowsIndependent) {
   EXPECT_LT((taken * covarianceOf(slip) * taken.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-12);
 }
 
-TEST(MomentSlip, LikelihoodIsThatOfTheDenseNormal) {
+TEST(MomentSlip, LikelihoodEqualsThatOfTheDenseNormal) {
   const MomentSlip slip = someSlip();
   const Eigen::VectorXd rows = Eigen::VectorXd::LinSpaced(slip.moved.size(), -2.0, 1.5);
   const Eigen::MatrixXd covariance = covarianceOf(slip);
@@ -53,7 +53,7 @@ TEST(MomentSlip, LikelihoodIsThatOfTheDenseNormal) {
   EXPECT_NEAR(slip.logLikelihood(rows), dense + 0.5 * rows.squaredNorm(), 1e-10);
 }
 
-TEST(MomentSlip, ASubsetKeepsTheMomentsOfItsRows) {
+TEST(MomentSlip, SubsetKeepsMomentsOfItsRows) {
   const MomentSlip slip = someSlip(), part = subset(slip, {1, 0, 1, 1, 0, 0, 1});
   EXPECT_EQ(part.moment, (std::vector<int>{0, 1, 0, 1}));
   EXPECT_EQ(part.moved.row(3), slip.moved.row(6));

@@ -26,7 +26,7 @@ PredictionTable predicted(const std::string& content) {
   return predictTable(file.path(), refined());
 }
 
-TEST(PredictionTable, NeverReadsTheMeasuredAnswer) {
+TEST(PredictionTable, PredictionsAreIndependentOfMeasuredColumns) {
   const std::string head = "load_N,slip,drawbar_pull_N,sinkage_m,torque_Nm,wheel_radius_m,wheel_width_m\n";
   const auto tail = [](const std::string& text) { return text.substr(text.find("0.1,0.1,")); };
   const auto honest = predicted(head + "80,0.3,5,0.01,2,0.1,0.1\n");
@@ -37,7 +37,7 @@ TEST(PredictionTable, NeverReadsTheMeasuredAnswer) {
               HasSubstr("predicted_drawbar_pull_N,predicted_drawbar_pull_N_std,predicted_sinkage_m"));
 }
 
-TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
+TEST(PredictionTable, UnpredictableRowsKeepTheirPosition) {
   const auto table =
       predicted("load_N,slip,wheel_radius_m,wheel_width_m\n80,,0.1,0.1\n-2,0.3,0.1,0.1\n80,0.3,0.1,0.1\n");
   EXPECT_EQ(table.predicted, 1U);
@@ -48,7 +48,7 @@ TEST(PredictionTable, ARowThatCannotBePredictedKeepsItsPlace) {
   EXPECT_THAT(table.text, HasSubstr("80,,0.1,0.1,,,,,,,,,\n"));
 }
 
-TEST(PredictionTable, OfAPlainSoilItIsTheEquilibrium) {
+TEST(PredictionTable, PredictionForPlainSoilIsTheEquilibrium) {
   const PredictionTable table = predicted("load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n");
   const WheelForces f =
       equilibrium(madeSand(), Wheel{.radius_m = 0.1, .width_m = 0.1}, {.load_N = 80.0, .slip = 0.3});
@@ -64,7 +64,7 @@ TEST(PredictionTable, OfAPlainSoilItIsTheEquilibrium) {
   EXPECT_GT(pull_std, 0.0);
 }
 
-TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
+TEST(PredictionTable, RowOutsideTrainingRangeIsFlaggedWithLargerStd) {
   const test::TemporaryFile file{
       "load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n80,0.6,0.1,0.1\n"};
   const auto stdOf = [&](double high, std::string& flag) {
@@ -84,7 +84,7 @@ TEST(PredictionTable, OutsideTheTrainedRangeARowIsFlaggedAndItsDeviationGrows) {
   EXPECT_NEAR(widened, std::hypot(plain, 0.5 * 0.2), 1e-9);  // Closed form: 0.2 beyond at 0.5 a unit
 }
 
-TEST(PredictionTable, BeyondTheReachOfCorrectionsItIsTheBaseAndSaysHowFarTheyDiffer) {
+TEST(PredictionTable, BeyondScopePredictionIsTheBaseWithTheDifferenceInItsStd) {
   const test::TemporaryFile file{"load_N,slip,wheel_radius_m,wheel_width_m\n80,0.6,0.1,0.1\n"};
   RefinedModel model = refined();
   model.effects = {
@@ -104,7 +104,7 @@ TEST(PredictionTable, BeyondTheReachOfCorrectionsItIsTheBaseAndSaysHowFarTheyDif
   EXPECT_NEAR(far.std, std::hypot(own.std, own.value - base.value), 1e-9);  // Closed form
 }
 
-TEST(PredictionTable, OlderPredictionsAreReplacedAndOtherColumnsKept) {
+TEST(PredictionTable, EarlierPredictionsAreReplacedAndOtherColumnsKept) {
   const PredictionTable table = predicted(
       "predicted_sinkage_m,note,load_N,slip,wheel_radius_m,wheel_width_m\n9,\"a,b\",80,0.3,0.1,0.1\n");
   EXPECT_TRUE(table.replaced);

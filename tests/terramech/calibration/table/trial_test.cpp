@@ -38,7 +38,7 @@ Telemetry drive(double front_N, double pull_N = kMissing) {
   return t;
 }
 
-TEST(Trial, ARoversPullIsWhatTheSlopeAsks) {
+TEST(Trial, RoverDrawbarPullEqualsTangentOfSlope) {
   const Trial trial = makeTrial(drive(80.0), RefinedModel{});
   ASSERT_EQ(trial.moment, (std::vector<int>{0, 0, 1, 1, 2, 2}));
   EXPECT_EQ(trial.run, trial.moment);
@@ -54,7 +54,7 @@ TEST(Trial, ARoversPullIsWhatTheSlopeAsks) {
   EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "pass_index"), 1);
 }
 
-TEST(Trial, ItsModelledPullIsThatOfAllWheelsUnderTheirLoads) {
+TEST(Trial, ModelledRoverPullSumsAllWheels) {
   const Trial trial = makeTrial(drive(60.0), RefinedModel{});
   RefinedModel model;
   model.soil = {
@@ -70,14 +70,14 @@ TEST(Trial, ItsModelledPullIsThatOfAllWheelsUnderTheirLoads) {
   }
 }
 
-TEST(Trial, WithoutAllItsWheelsTheRoversPullIsNotKnown) {
+TEST(Trial, RoverPullIsNanIfAWheelIsMissing) {
   const Trial part = subset(makeTrial(drive(80.0), RefinedModel{}), {1, 1, 1, 0, 1, 1});
   EXPECT_TRUE(std::isfinite(part.measured(0, 0)));
   EXPECT_TRUE(std::isnan(part.measured(2, 0)));
   EXPECT_TRUE(std::isfinite(part.measured(3, 0)));
 }
 
-TEST(Trial, RowsThatAreNoDriveShareNothing) {
+TEST(Trial, RowsNotFromADriveHaveNoMoments) {
   EXPECT_TRUE(makeTrial(drive(80.0, 5.0), RefinedModel{}).moment.empty());  // the pull is measured
   Telemetry same = drive(80.0);
   same.words[1].values.assign(6, "front");  // repeats of one wheel
@@ -87,7 +87,7 @@ TEST(Trial, RowsThatAreNoDriveShareNothing) {
   EXPECT_TRUE(makeTrial(unnamed, RefinedModel{}).moment.empty());
 }
 
-TEST(Trial, AWheelSunkToItsAxleIsBeyondItAndUnknownSinkageIsNot) {
+TEST(Trial, BeyondAxleIsSinkageAtOrAboveRadius) {
   MadeRows rows(wheelColumns());
   for (const double z : {0.05, 0.0999, 0.1, 0.15}) rows.add({60.0, 0.2, 2.0, z, 5.0, 0.1, 0.1});
   rows.add({60.0, 0.2, 2.0, std::nan(""), 5.0, 0.1, 0.1});

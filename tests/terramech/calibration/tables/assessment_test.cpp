@@ -15,7 +15,7 @@ WheelForces forcesOf(std::size_t line) {
   return equilibrium(kMadeSoil, kMadeWheel, madeOperation(static_cast<int>(line) - 2));
 }
 
-TEST(Assessment, GivesThePullOfEachRow) {
+TEST(Assessment, DrawbarPullOfEachRowMatchesTheModel) {
   const WheelTable table;
   const AssessedTable assessed = assessTable({.table = table.path()}, {});
   ASSERT_EQ(assessed.rows.size(), 12U);
@@ -30,7 +30,7 @@ TEST(Assessment, GivesThePullOfEachRow) {
   }
 }
 
-TEST(Assessment, AModelOfTheSoilGivesItsOwnPull) {
+TEST(Assessment, SoilModelPredictsItsOwnPull) {
   const WheelTable table;
   const test::TemporaryFile model{kMadeSoilText, ".yaml"};
   const AssessedTable assessed = assessTable({.table = table.path(), .model = model.path()}, {});
@@ -42,7 +42,7 @@ TEST(Assessment, AModelOfTheSoilGivesItsOwnPull) {
 }
 
 // Closed form: above its threshold the sinkage costs one category, above the critical one it is dangerous.
-TEST(Assessment, SinkageAboveItsBoundsIsWorse) {
+TEST(Assessment, SinkageAboveThresholdsLowersTheCategory) {
   const WheelTable table;
   const auto category = [&](double threshold, double critical) {
     return assessTable(
@@ -56,7 +56,7 @@ TEST(Assessment, SinkageAboveItsBoundsIsWorse) {
   EXPECT_EQ(category(1e-6, 2e-6), Category::Dangerous);
 }
 
-TEST(Assessment, ForecastsOfTheReferenceSlipAreNearTheTruth) {
+TEST(Assessment, ForecastAtReferenceSlipIsAccurate) {
   const WheelTable table;
   const AssessedTable assessed = assessTable({.table = table.path(), .noise = 0.01, .extrapolate = true}, {});
   for (const Assessment& row : assessed.rows) {
@@ -67,7 +67,7 @@ TEST(Assessment, ForecastsOfTheReferenceSlipAreNearTheTruth) {
   }
 }
 
-TEST(Assessment, WhatCannotBeJudgedIsRefused) {
+TEST(Assessment, UnknownFormulaAndInvertedThresholdsAreRejected) {
   const WheelTable table;
   EXPECT_REFUSED(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument,
                  "formula 'no-such' is unknown, must be single-force, small-angle, triangular or plane");

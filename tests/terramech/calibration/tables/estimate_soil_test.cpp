@@ -12,7 +12,7 @@ namespace estimate_soil_test {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(EstimateSoil, ExactRowsGiveTheSoilThatMadeThem) {
+TEST(EstimateSoil, ExactRowsRecoverTheSoil) {
   const WheelTable table;
   const SoilEstimate found =
       estimateSoil({.table = table.path(), .method = "wong-reece", .noise = 0.005}, {});
@@ -39,7 +39,7 @@ std::string angledRows(bool side_force, double times = 1.0) {
   return text;
 }
 
-TEST(EstimateSoil, SideForcesAreHeldAgainstTheWholeModel) {
+TEST(EstimateSoil, SideForcesAreFittedWithTheFullModel) {
   const test::TemporaryFile with{angledRows(true)}, without{angledRows(false)};
   const SoilEstimate found = estimateSoil({.table = with.path(), .method = "wong-reece", .noise = 0.01}, {});
   EXPECT_EQ(found.rows_used, 24U);
@@ -54,7 +54,7 @@ TEST(EstimateSoil, SideForcesAreHeldAgainstTheWholeModel) {
 }
 
 // Property: side forces of another unit are those of no soil, whatever the bounds of the search make of them; the column is named.
-TEST(EstimateSoil, SideForcesThatNoSoilGivesEndInNone) {
+TEST(EstimateSoil, SideForcesInWrongUnitsAreRejectedNamingTheColumn) {
   for (const double times : {100.0, 1000.0}) {
     const test::TemporaryFile table{angledRows(true, times)};
     EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
@@ -85,7 +85,7 @@ std::string heldRows(double slip_angle_rad, double side_over_load) {
 
 // Property: a wheel that runs straight holds nothing across, and one at an angle something; what reads otherwise is named, and no
 // soil is bent to it, be the misfit small.
-TEST(EstimateSoil, AColumnThatContradictsTheOthersEndsInNone) {
+TEST(EstimateSoil, ContradictorySideForceIsRejectedNamingTheColumn) {
   for (const auto& [angle, side] : {std::pair{0.0, 0.5}, {0.3, 0.0}, {0.3, 0.5}, {0.3, -1.5}}) {
     const test::TemporaryFile table{heldRows(angle, side)};
     EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
@@ -97,13 +97,13 @@ TEST(EstimateSoil, AColumnThatContradictsTheOthersEndsInNone) {
 }
 
 // Property: a sensor's offset across is no side force of the soil.
-TEST(EstimateSoil, ALittleSideForceOfStraightWheelsChangesNothing) {
+TEST(EstimateSoil, SmallSideForceOfStraightWheelsIsIgnored) {
   const test::TemporaryFile none{heldRows(0.0, 0.0)}, little{heldRows(0.0, 0.05)};
   EXPECT_EQ(estimateSoil({.table = none.path(), .method = "wong-reece"}, {}).cohesion_Pa,
             estimateSoil({.table = little.path(), .method = "wong-reece"}, {}).cohesion_Pa);
 }
 
-TEST(EstimateSoil, NamesThatAreNotOnOfferAreRefused) {
+TEST(EstimateSoil, UnknownMethodAndModulusNamesAreRejected) {
   const WheelTable table;
   EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-rece"}, {}); },
               ThrowsMessage<InputError>(HasSubstr("'wong-rece': is unknown; there are bevameter")));

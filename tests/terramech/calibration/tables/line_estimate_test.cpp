@@ -31,7 +31,7 @@ SoilEstimate estimate(const std::string& content, EstimateOptions options) {
 
 // Closed form: c = 3000 Pa, tan phi = 0.5 made the rows. Tolerance: the samples' quadrature, 1e-7, times what
 // the line's spread makes of it.
-TEST(LineEstimate, IsExactInTheWorldOfItsMethod) {
+TEST(LineEstimate, IsExactForDataOfItsOwnModel) {
   const SoilEstimate offset =
       estimate(linearRows({}), {.method = "linear-offset", .shear_modulus = "0.02", .whole_equation = true});
   EXPECT_NEAR(offset.cohesion_Pa, 3000.0, 3.0);
@@ -45,7 +45,7 @@ TEST(LineEstimate, IsExactInTheWorldOfItsMethod) {
   EXPECT_NEAR(iagnemma.tan_friction, 0.5, 1e-3);
 }
 
-TEST(LineEstimate, RowByRowEndsWhereAllAtOnceDoes) {
+TEST(LineEstimate, RecursiveEstimateEqualsBatchEstimate) {
   for (const char* method : {"linear-offset", "iagnemma", "sojourner"}) {
     const EstimateOptions all{.method = method, .shear_modulus = "0.02"};
     EstimateOptions recursive = all;
@@ -59,12 +59,12 @@ TEST(LineEstimate, RowByRowEndsWhereAllAtOnceDoes) {
   }
 }
 
-TEST(LineEstimate, AModulusThatIsNotStatedIsFound) {
+TEST(LineEstimate, UnstatedShearModulusIsEstimated) {
   const SoilEstimate found = estimate(linearRows({}), {.method = "linear-offset"});
   EXPECT_NEAR(found.shear_modulus_m, 0.02, 0.002);
 }
 
-TEST(LineEstimate, TheFilesColumnThenThePriorTellTheModulus) {
+TEST(LineEstimate, ShearModulusComesFromTheFileColumnThenThePrior) {
   std::string content = linearRows({});
   std::string with_column;
   for (std::size_t at = 0, end; (end = content.find('\n', at)) != std::string::npos; at = end + 1)
@@ -78,7 +78,7 @@ TEST(LineEstimate, TheFilesColumnThenThePriorTellTheModulus) {
   EXPECT_EQ(estimate(content, {.method = "linear-offset", .prior = prior.path()}).shear_modulus_m, 0.023);
 }
 
-TEST(LineEstimate, WhatCannotBeComparedIsRefused) {
+TEST(LineEstimate, WheelSizesAndRecursiveM1RequireAStatedModulus) {
   EXPECT_THAT([] { estimate(linearRows({}, 0.16), {.method = "linear-offset"}); },
               ThrowsMessage<InputError>(HasSubstr("wheels of several sizes")));
   EXPECT_EQ(estimate(linearRows({}, 0.16), {.method = "linear-offset", .shear_modulus = "0.02"}).rows_used,

@@ -41,7 +41,7 @@ SoilEstimate estimate(const std::string& rows, const std::string& model_text, Es
   return modelEstimate(options, {});
 }
 
-TEST(ModelEstimate, UnderTheEffectsThatActedItIsTheSoilThatMadeTheRows) {
+TEST(ModelEstimate, RecoversTheSoilUnderKnownEffects) {
   const SoilEstimate found = estimate(diggingRows(), "soil: sand\n" + kEffect, {.noise = 0.01});
   EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
   EXPECT_NEAR(found.tan_friction, std::tan(0.45), 3.0 * std::sqrt(found.covariance(1, 1)));
@@ -50,7 +50,7 @@ TEST(ModelEstimate, UnderTheEffectsThatActedItIsTheSoilThatMadeTheRows) {
   EXPECT_EQ(found.rows_used, 24U);
 }
 
-TEST(ModelEstimate, RowsBeyondTheAxleAreLeftOutAndSaid) {
+TEST(ModelEstimate, RowsBeyondTheAxleAreExcludedWithAWarning) {
   const SoilEstimate found = estimate(diggingRows(true), "soil: sand\n" + kEffect);
   EXPECT_EQ(found.rows_used, 24U);
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("1 rows with sinkage at or above the axle")));
@@ -59,7 +59,7 @@ TEST(ModelEstimate, RowsBeyondTheAxleAreLeftOutAndSaid) {
               ThrowsMessage<InputError>(HasSubstr("in every row the sinkage reaches the axle")));
 }
 
-TEST(ModelEstimate, WhatDoesNotGoTogetherIsRefused) {
+TEST(ModelEstimate, IncompatibleOptionsAreRejected) {
   const std::string soil = "soil: sand\n";
   EXPECT_THAT([&] { estimate(diggingRows(), soil, {.method = "iagnemma"}); },
               ThrowsMessage<InputError>(HasSubstr("use --method wong-reece")));

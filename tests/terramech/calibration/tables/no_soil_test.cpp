@@ -30,7 +30,7 @@ SoilEstimate sand() {
 }
 
 // Closed form: one level a column, so that what is left is |y - f| / |y|.
-TEST(NoSoil, TheColumnOfWhichMoreThanHalfIsLeftIsNamed) {
+TEST(NoSoil, ColumnWithMoreThanHalfUnexplainedIsNamed) {
   const UnexplainedColumn worst = unexplained(answer(1.0, 0.4, 10.0));
   EXPECT_EQ(worst.column, "side_force_N");
   EXPECT_NEAR(worst.left, 0.6, 1e-12);
@@ -38,7 +38,7 @@ TEST(NoSoil, TheColumnOfWhichMoreThanHalfIsLeftIsNamed) {
   EXPECT_EQ(unexplained(answer(0.09, 0.0, 10.0)).column, "") << "little of the load";
 }
 
-TEST(NoSoil, WhatReadsNothingAndIsForetoldIsUnexplained) {
+TEST(NoSoil, ZeroReadingWithNonZeroPredictionIsUnexplained) {
   EXPECT_TRUE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::SideForce));
   EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.09, 10.0), Channel::SideForce));
   EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::DrawbarPull));
@@ -46,13 +46,13 @@ TEST(NoSoil, WhatReadsNothingAndIsForetoldIsUnexplained) {
   EXPECT_THAT(noSoilExplains(sand(), answer(0.0, 0.3, 10.0)), HasSubstr("has a side_force_N that reads 0"));
 }
 
-TEST(NoSoil, SaysWhyOnlyWhereTheMisfitIsLarge) {
+TEST(NoSoil, ReasonIsGivenOnlyForLargeMisfit) {
   EXPECT_THAT(noSoilExplains(sand(), answer(1.0, 0.4, 10.0)), HasSubstr("leaves 60 % of side_force_N"));
   EXPECT_EQ(noSoilExplains(sand(), answer(1.0, 0.4, 2.9)), "") << "within the stated noise";
   EXPECT_EQ(noSoilExplains(sand(), answer(1.0, 0.9, 10.0)), "") << "a warning does";
 }
 
-TEST(NoSoil, AStrengthBeyondAnySoilIsNone) {
+TEST(NoSoil, ImplausibleFrictionAngleIsRejectedAtAnyMisfit) {
   SoilEstimate steel = sand();
   steel.friction_angle_rad = 1.2;
   steel.tan_friction = 2.57;

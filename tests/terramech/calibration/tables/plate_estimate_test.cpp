@@ -46,7 +46,7 @@ SoilEstimate estimate(const std::string& content, EstimateOptions options = {}) 
   return plateEstimate(options, {});
 }
 
-TEST(PlateEstimate, ExactShearTestsGiveTheirSoil) {
+TEST(PlateEstimate, ExactShearTestsRecoverTheSoil) {
   const SoilEstimate found = estimate(shearRows());
   EXPECT_EQ(found.rows_used, 9U);
   EXPECT_NEAR(found.cohesion_Pa, 900.0, 0.01);
@@ -57,7 +57,7 @@ TEST(PlateEstimate, ExactShearTestsGiveTheirSoil) {
   for (const StressPair& p : found.points) EXPECT_NEAR(p.shear_Pa, 900.0 + 0.6 * p.normal_Pa, 0.05);
 }
 
-TEST(PlateEstimate, ExactPlateTestsGiveTheirModuli) {
+TEST(PlateEstimate, ExactPlateTestsRecoverTheModuli) {
   const SoilEstimate found = estimate(plateRows(2000.0));
   EXPECT_NEAR(found.sinkage_exponent, 0.8, 1e-9);
   ASSERT_TRUE(found.cohesive_modulus && found.frictional_modulus);
@@ -68,13 +68,13 @@ TEST(PlateEstimate, ExactPlateTestsGiveTheirModuli) {
   EXPECT_TRUE(std::isnan(found.cohesion_Pa));  // plates alone do not shear
 }
 
-TEST(PlateEstimate, WhatTheTestsDoNotBearOutIsSaid) {
+TEST(PlateEstimate, NegativeOrUnidentifiableModuliAreReported) {
   EXPECT_THAT(estimate(plateRows(-2000.0)).warnings, ElementsAre(HasSubstr("k_c < 0")));
   EXPECT_THAT(estimate(plateRows(0.0), {.plate_width_m = 0.1}).unseen,
               ElementsAre(HasSubstr("cohesive_modulus, frictional_modulus")));
 }
 
-TEST(PlateEstimate, APriorHoldsOfShearTestsAlone) {
+TEST(PlateEstimate, PriorAppliesToShearTestsOnly) {
   const test::TemporaryFile prior{
       "{cohesion_Pa: {mean: 2000, std: 100}, friction_angle_rad: {mean: 0.5, std: 0.3}, sinkage_exponent: "
       "1.0, "

@@ -10,7 +10,7 @@ namespace posterior_estimate_test {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(PosteriorEstimate, IsThePosteriorInTheFormOfAllMethods) {
+TEST(PosteriorEstimate, EstimateEqualsPosteriorMean) {
   const WheelTable table;
   const SoilEstimate found =
       posteriorEstimate({.table = table.path(), .method = "wong-reece", .noise = 0.01}, {});
@@ -25,13 +25,13 @@ TEST(PosteriorEstimate, IsThePosteriorInTheFormOfAllMethods) {
   EXPECT_TRUE(found.warnings.empty());
 }
 
-TEST(PosteriorEstimate, AStatedModulusIsKept) {
+TEST(PosteriorEstimate, StatedShearModulusIsKept) {
   const WheelTable table;
   EXPECT_NEAR(posteriorEstimate({.table = table.path(), .shear_modulus = "0.02"}, {}).shear_modulus_m, 0.02,
               1e-12);
 }
 
-TEST(PosteriorEstimate, RowByRowThereIsAnAnswerAfterEach) {
+TEST(PosteriorEstimate, RecursiveEstimateHasAResultPerRowWithDecreasingVariance) {
   const WheelTable table;
   const EstimateOptions options{.table = table.path(), .recursive = true, .noise = 0.02};
   const SoilEstimate found = posteriorEstimate(options, {});
@@ -50,7 +50,7 @@ std::string torqueRows(double first_Nm, double step_Nm) {
   return text;
 }
 
-TEST(PosteriorEstimate, ARowBeyondTheAxleIsLeftOutWithItsLine) {
+TEST(PosteriorEstimate, RowBeyondTheAxleIsExcludedWithItsLineNumber) {
   const std::string rows = torqueRows(5.0, 0.2);
   const test::TemporaryFile sound{rows}, deep{rows + wheelLine({100.0, 8.0, 0.17, 0.6}, kMadeWheel) + "\n"};
   const SoilEstimate of_sound = posteriorEstimate({.table = sound.path()}, {}),
@@ -61,7 +61,7 @@ TEST(PosteriorEstimate, ARowBeyondTheAxleIsLeftOutWithItsLine) {
   EXPECT_THAT(of_deep.rejected[0].reason, HasSubstr("sinkage_m = 0.17, must be < 0.15"));
 }
 
-TEST(PosteriorEstimate, DoubtsAreSaid) {
+TEST(PosteriorEstimate, MixedWheelWidthsAndImplausibleTorquesProduceWarnings) {
   std::string widths = kWheelHead + "\n";
   for (int k = 0; k < 12; ++k) {
     const Wheel wheel{.radius_m = 0.15, .width_m = k % 2 ? 0.1 : 0.15};
@@ -79,7 +79,7 @@ TEST(PosteriorEstimate, DoubtsAreSaid) {
 }
 
 // Property: a torque three times that of any soil under the load is no reading of one, and no estimate comes of it.
-TEST(PosteriorEstimate, ATorqueBeyondAnySoilEndsInNone) {
+TEST(PosteriorEstimate, ImplausibleTorqueIsRejectedNamingTheColumn) {
   const test::TemporaryFile none{torqueRows(45.0, 1.0)};
   EXPECT_THAT([&] { posteriorEstimate({.table = none.path()}, {}); },
               testing::ThrowsMessage<std::domain_error>(testing::AllOf(

@@ -10,7 +10,7 @@ namespace soil_estimate_test {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(SoilEstimate, AStatedModulusIsANumberAboveZero) {
+TEST(SoilEstimate, StatedModulusMustBePositiveAndFinite) {
   EXPECT_EQ(statedModulus({.shear_modulus = "0.02"}), 0.02);
   EXPECT_EQ(statedModulus({.shear_modulus = "2e-2"}), 0.02);
   for (const char* word : {"", "joint", "0.02m", "0.02 ", "effective-torque"})
@@ -21,14 +21,14 @@ TEST(SoilEstimate, AStatedModulusIsANumberAboveZero) {
         << word;
 }
 
-TEST(SoilEstimate, StdOfTheAngleIsThatOfItsTangentByTheSlope) {
+TEST(SoilEstimate, FrictionStdFollowsFromTangentStdByTheDeltaMethod) {
   // Closed form: d(phi) = d(tan phi) cos^2(phi); a quarter at 60 deg.
   Eigen::Matrix2d covariance;
   covariance << 1e4, 3.0, 3.0, 0.01;
   EXPECT_NEAR(frictionStd_rad(covariance, std::numbers::pi / 3), 0.025, 1e-12);
 }
 
-TEST(SoilEstimate, BeforeAnyFitNothingIsKnown) {
+TEST(SoilEstimate, DefaultEstimateIsNan) {
   const SoilEstimate estimate;
   EXPECT_TRUE(std::isnan(estimate.cohesion_Pa));
   EXPECT_TRUE(std::isnan(estimate.friction_angle_rad));
@@ -36,7 +36,7 @@ TEST(SoilEstimate, BeforeAnyFitNothingIsKnown) {
   EXPECT_FALSE(estimate.cohesive_modulus);
 }
 
-TEST(SoilEstimate, TakesAFittedLine) {
+TEST(SoilEstimate, CopiesStrengthAndCovarianceOfAFittedLine) {
   SoilEstimate estimate;
   estimate.unseen = {"before"};
   ShearStrength fit;
@@ -51,7 +51,7 @@ TEST(SoilEstimate, TakesAFittedLine) {
   EXPECT_THAT(estimate.unseen, testing::ElementsAre("before", "after"));
 }
 
-TEST(SoilEstimate, OnlyWhatIsFarFromAnySoilIsImplausible) {
+TEST(SoilEstimate, ImplausibleIsBeyondTwoStandardDeviationsOfPlausibleBounds) {
   SoilEstimate estimate;
   estimate.covariance << 1e4, 0.0, 0.0, 0.01;  // 100 Pa, 0.1
   const auto said = [&](double cohesion_Pa, double tan_friction) {

@@ -42,17 +42,17 @@ SoilPosterior truth() {
   return p;
 }
 
-TEST(SoilGroups, OneSoilForAllRowsRaisesNoAlarm) {
+TEST(SoilGroups, RowsOfOneSoilShowNoGroupDisagreement) {
   EXPECT_EQ(groupsThatDisagree(rowsOf(0.0), truth(), ReadingErrors::relative(0.05)), "");
 }
 
-TEST(SoilGroups, TheColumnAndTheGroupThatDepartAreNamed) {
+TEST(SoilGroups, DisagreeingColumnAndGroupAreNamed) {
   const std::string said = groupsThatDisagree(rowsOf(0.4), truth(), ReadingErrors::relative(0.05));
   EXPECT_THAT(said, HasSubstr("all values of box"));
   EXPECT_THAT(said, HasSubstr("box = B"));
 }
 
-TEST(SoilGroups, AColumnOfOneRowAGroupTellsNothing) {
+TEST(SoilGroups, ColumnWithOneRowPerGroupIsIgnored) {
   WheelRows rows = rowsOf(0.4);
   rows.words = {{"note", {}}};
   for (int k = 0; k < 30; ++k) rows.words[0].values.push_back(std::to_string(k));

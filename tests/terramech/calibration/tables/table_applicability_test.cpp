@@ -39,7 +39,7 @@ std::string tableOf(bool shuffled) {
   return text;
 }
 
-TEST(TableApplicability, HoldsForAWheelOnSoilAlone) {
+TEST(TableApplicability, ModelAppliesToWheelDataAndNotToOtherData) {
   const test::TemporaryFile sand{tableOf(false)}, other{tableOf(true)};
   EXPECT_TRUE(tableApplicability(sand.path(), "", "").applies);
   const Applicability none = tableApplicability(other.path(), "", "");
@@ -47,7 +47,7 @@ TEST(TableApplicability, HoldsForAWheelOnSoilAlone) {
   EXPECT_FALSE(none.reason.empty());
 }
 
-TEST(TableApplicability, WhereNothingCanBeJudgedItApplies) {
+TEST(TableApplicability, TableWithTooLittleDataIsAssumedApplicable) {
   const test::TemporaryFile few{"load_N,slip,sinkage_m,wheel_radius_m,wheel_width_m\n50,0.2,0.01,0.1,0.1\n"};
   EXPECT_TRUE(tableApplicability(few.path(), "", "").applies);
   const test::TemporaryFile bare{"slip,sinkage_m\n0.2,0.01\n"};

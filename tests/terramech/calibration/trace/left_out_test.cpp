@@ -24,7 +24,7 @@ long rowsIn(const LeftOut& part) {
   return std::count(part.rows.begin(), part.rows.end(), 1);
 }
 
-TEST(LeftOut, EachLevelOfAColumnOnce) {
+TEST(LeftOut, ColumnIsLeftOutLevelByLevel) {
   for (const auto& [column, levels] :
        {std::pair{"slip", 4U}, std::pair{"load_N", 3U}, std::pair{"wheel", 2U}}) {
     const auto all = leftOut(trial(), column, "t.csv");
@@ -35,14 +35,14 @@ TEST(LeftOut, EachLevelOfAColumnOnce) {
   }
 }
 
-TEST(LeftOut, ValuesAndRanges) {
+TEST(LeftOut, ValuesAndRangesSelectTheirRows) {
   EXPECT_EQ(rowsIn(leftOut(trial(), "slip=0.2,0.4", "t.csv").front()), 24);
   EXPECT_EQ(rowsIn(leftOut(trial(), "slip=0.25..", "t.csv").front()), 24);
   EXPECT_EQ(rowsIn(leftOut(trial(), "wheel=a", "t.csv").front()), 24);
 }
 
 // Property: a level with a comma or a quote is one value, in the loop over all levels and in quotes as a CSV field.
-TEST(LeftOut, AQuotedValueHoldsItsCommas) {
+TEST(LeftOut, QuotedValueMayContainCommas) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(3);
   const std::vector<std::string> wheels{"smooth, wide", "smooth", "5\" rim, old"};
@@ -60,7 +60,7 @@ TEST(LeftOut, AQuotedValueHoldsItsCommas) {
 }
 
 // Property: two dots are a range of numbers, and part of a word.
-TEST(LeftOut, AWordMayHoldTwoDots) {
+TEST(LeftOut, TextValueMayContainTwoDots) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(3);
   for (int k = 0; k < 48; ++k)
@@ -71,7 +71,7 @@ TEST(LeftOut, AWordMayHoldTwoDots) {
   EXPECT_EQ(rowsIn(leftOut(trial, "wheel=1..2", "t.csv").front()), 32);
 }
 
-TEST(LeftOut, WhatLeavesNothingIsRefused) {
+TEST(LeftOut, EmptyOrCompleteSelectionIsRejected) {
   for (const auto& [request, reason] :
        {std::pair{"slop", "has no column slop"}, std::pair{"slip=0.9", "has no row with"},
         std::pair{"slip=0..1", "has only rows with"}, std::pair{"slip=low..0.3", "are no numbers"},
@@ -84,7 +84,7 @@ TEST(LeftOut, WhatLeavesNothingIsRefused) {
     }
 }
 
-TEST(LeftOut, RowsThatTheSearchNeverSawAreForetold) {
+TEST(LeftOut, ErrorsAreThoseOfPredictingTheLeftOutRows) {
   RefinedModel base;
   base.soil = madeSand();
   const auto part = leftOut(trial(), "slip=0.2", "t.csv").front();

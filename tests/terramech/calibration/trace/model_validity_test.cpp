@@ -15,7 +15,7 @@ Applicability judged(const Telemetry& telemetry) {
   return applicability(traceResiduals(base, makeTrial(telemetry, base), options), options);
 }
 
-TEST(ModelValidity, SandThatTheModelCanBeIsNotRefused) {
+TEST(ModelValidity, SandIsApplicable) {
   const Soil sand{.name = "sand",
                   .cohesion_Pa = 500.0,
                   .friction_angle_rad = 0.55,
@@ -30,7 +30,7 @@ TEST(ModelValidity, SandThatTheModelCanBeIsNotRefused) {
   EXPECT_TRUE(a.applies) << a.reason;
 }
 
-TEST(ModelValidity, SnowThatNoCohesionAndFrictionExplainIsRefused) {
+TEST(ModelValidity, SnowInconsistentWithMohrCoulombIsNotApplicable) {
   // Made up after snow: it is strongest unsheared and breaks with slip, is compacted to a stop whatever the
   // load, and the wheel is pulled harder than its torque could.
   MadeRows rows(wheelColumns());
@@ -46,7 +46,7 @@ TEST(ModelValidity, SnowThatNoCohesionAndFrictionExplainIsRefused) {
   EXPECT_FALSE(a.reason.empty());
 }
 
-TEST(ModelValidity, TorqueThatFollowsNothingIsRefused) {
+TEST(ModelValidity, TorqueUnrelatedToSlipIsNotApplicable) {
   MadeRows rows({"load_N", "slip", "torque_Nm", "wheel_radius_m", "wheel_width_m"});
   std::mt19937_64 random{4};
   std::normal_distribution<double> scatter(0.0, 0.08);

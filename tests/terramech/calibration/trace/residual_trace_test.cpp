@@ -14,14 +14,14 @@ Explanation explanation(double gain) {
   return e;
 }
 
-TEST(ResidualTrace, TakesTheBestThatGainsMoreThanNoise) {
+TEST(ResidualTrace, BestCandidateIsAcceptedOnlyAboveThreshold) {
   // Closed form: the rule itself, at either side of the threshold.
   EXPECT_FALSE(accepted({}, 5.0));
   EXPECT_FALSE(accepted({explanation(4.9), explanation(4.0)}, 5.0));
   EXPECT_TRUE(accepted({explanation(5.1), explanation(4.0)}, 5.0));
 }
 
-TEST(ResidualTrace, ACurveMustSayMoreThanNoiseBeyondAKnownForm) {
+TEST(ResidualTrace, EmpiricalCurveMustExceedKnownFormsByTheThreshold) {
   // Closed form: the rule itself, at a threshold of 6.
   const auto named = [](double gain, const char* name, const char* family) {
     Explanation e = explanation(gain);
@@ -48,7 +48,7 @@ TEST(ResidualTrace, ACurveMustSayMoreThanNoiseBeyondAKnownForm) {
   preferSimple(none, 6.0);
 }
 
-TEST(ResidualTrace, NamesAHiddenEffectAndReachesTheNoise) {
+TEST(ResidualTrace, HiddenEffectIsIdentifiedAndErrorReachesTheNoiseFloor) {
   // Property: worlds of an independent generator; which effect each hides is decided by its seed.
   for (const std::uint64_t seed : {5U, 17U, 40U}) {
     const blind::World world = blind::makeWorld({.seed = seed, .effects = 1, .library = true});
@@ -61,13 +61,13 @@ TEST(ResidualTrace, NamesAHiddenEffectAndReachesTheNoise) {
   }
 }
 
-TEST(ResidualTrace, FindsNothingWhereNothingIs) {
+TEST(ResidualTrace, TablesWithoutEffectsYieldNone) {
   for (const std::uint64_t seed : {1U, 2U, 3U})
     EXPECT_TRUE(traced(blind::makeWorld({.seed = seed, .effects = 0, .library = true})).effects.empty())
         << seed;
 }
 
-TEST(ResidualTrace, WhatMovesTheReadingsFartherOffExplainsNothing) {
+TEST(ResidualTrace, CandidateThatIncreasesReadingErrorIsRejected) {
   // Property: no effect in 18 runs at loads of their own; a curve over the speeds of runs gained 24 while the error of
   // DP/W rose fourfold.
   const TraceResult result =
@@ -75,7 +75,7 @@ TEST(ResidualTrace, WhatMovesTheReadingsFartherOffExplainsNothing) {
   EXPECT_TRUE(result.effects.empty());
 }
 
-TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
+TEST(ResidualTrace, LoadErrorsYieldNoLoadEffect) {
   // Property: a rate effect among runs at loads of their own, read with 5 % error: it alone, and no effect of that error.
   const blind::World world =
       blind::makeWorld({.seed = 190801, .effects = 1, .library = true, .campaign = true});
@@ -84,7 +84,7 @@ TEST(ResidualTrace, ACampaignAtSetLoadsHasNoEffectOfLoad) {
   EXPECT_EQ(blind::judge(world, claims(result)).family, 1) << world.hidden[0].kind;
 }
 
-TEST(ResidualTrace, TwoFaultsAreToldApart) {
+TEST(ResidualTrace, TwoSensorFaultsAreBothIdentified) {
   // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
   RefinedModel base;
   base.soil = madeSand();
@@ -94,7 +94,7 @@ TEST(ResidualTrace, TwoFaultsAreToldApart) {
   EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
 }
 
-TEST(ResidualTrace, ACampaignWithTwoEffectsHasBothNamed) {
+TEST(ResidualTrace, TwoEffectsOfACampaignAreBothIdentified) {
   // Property: a pile behind the wheel or a wheel that yields, and load shifted by the slope of the run. While a
   // speed set for a run held the error of its slips, a rate effect took the place of the slope.
   for (const std::uint64_t seed : {1400U, 1405U}) {
@@ -106,7 +106,7 @@ TEST(ResidualTrace, ACampaignWithTwoEffectsHasBothNamed) {
   }
 }
 
-TEST(ResidualTrace, ASoilThatScattersFromRunToRunHasNoCause) {
+TEST(ResidualTrace, SoilScatterBetweenRunsYieldsNoEffect) {
   // Property: tan phi and c scatter by 10 and 20 % from run to run and nothing else acts. With an offset of each
   // channel as the only error that runs share these tables had a grouser's thrust and daily drifts at p = .005.
   for (const auto& [seed, scatter] : {std::pair{501U, 0.1}, {509U, 0.1}, {604U, 0.2}})
@@ -115,14 +115,14 @@ TEST(ResidualTrace, ASoilThatScattersFromRunToRunHasNoCause) {
         << seed;
 }
 
-TEST(ResidualTrace, CallsAFormThatNoLibraryHoldsEmpirical) {
+TEST(ResidualTrace, FormOutsideTheLibraryIsClassifiedEmpirical) {
   const blind::World world = blind::makeWorld({.seed = 2, .effects = 1, .library = false});
   const blind::Marks marks = blind::judge(world, claims(traced(world)));
   EXPECT_EQ(marks.located, 1) << world.hidden[0].kind;
   EXPECT_EQ(marks.family, 1) << world.hidden[0].kind;
 }
 
-TEST(ResidualTrace, ANameOfAColumnChangesNoAnswer) {
+TEST(ResidualTrace, ResultIsIndependentOfColumnNames) {
   // Property: a pull that a column of one's own takes, whatever the column and its neighbours are called.
   const std::map<std::string, std::string> other{
       {"temperature_C", "operator"}, {"dust_index", "moisture_pct"}, {"battery_V", "hours_since_rain"}};
@@ -143,7 +143,7 @@ TEST(ResidualTrace, ANameOfAColumnChangesNoAnswer) {
   }
 }
 
-TEST(ResidualTrace, SameSeedSameAnswer) {
+TEST(ResidualTrace, SameSeedReproducesTheResult) {
   const blind::World world = blind::makeWorld({.seed = 10, .effects = 1, .library = true});
   const TraceResult a = traced(world), b = traced(world);
   ASSERT_EQ(a.effects.size(), b.effects.size());

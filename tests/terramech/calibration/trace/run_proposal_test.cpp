@@ -47,7 +47,7 @@ Trial made(const std::vector<ProposedRun>& runs, const RefinedModel& truth, std:
   return trial;
 }
 
-TEST(RunProposal, SimulatedRunsPickTheCauseThatMadeThem) {
+TEST(RunProposal, SimulatedRunsIdentifyTheTrueCause) {
   // Property: either of two equal causes as the truth, twenty times each.
   const TraceResult result = tied();
   const std::vector<Cause> causes = causesOf(result);
@@ -64,7 +64,7 @@ TEST(RunProposal, SimulatedRunsPickTheCauseThatMadeThem) {
   EXPECT_GE(right, 38);
 }
 
-TEST(RunProposal, EqualCausesPredictApartInTheRunsProposed) {
+TEST(RunProposal, EqualCausesDifferByTwoStdInTheProposedRun) {
   // Property: in the first run, somewhere, by more than two standard deviations of either.
   const TraceResult result = tied();
   const std::vector<ProposedRun> runs = proposeRuns(result, 1);
@@ -77,7 +77,7 @@ TEST(RunProposal, EqualCausesPredictApartInTheRunsProposed) {
   EXPECT_GT(apart, 2.0);
 }
 
-TEST(RunProposal, RunsStayWithinTheRows) {
+TEST(RunProposal, ProposedRunsStayWithinTheMeasuredRange) {
   const TraceResult result = tied();
   for (const ProposedRun& run : proposeRuns(result, 3))
     for (const auto& [column, value] : run.columns) {
@@ -87,7 +87,7 @@ TEST(RunProposal, RunsStayWithinTheRows) {
     }
 }
 
-TEST(RunProposal, OneCauseNeedsNoRun) {
+TEST(RunProposal, SingleCauseNeedsNoRun) {
   TraceResult result = tied();
   result.rivals.clear();
   EXPECT_EQ(causesOf(result).size(), 1U);

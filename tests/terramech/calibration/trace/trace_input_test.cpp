@@ -13,7 +13,7 @@ Telemetry table(int count) {
   return rows.telemetry();
 }
 
-TEST(TraceInput, AGivenSoilGetsDefaultDeviationsAndAnUnknownOneIsFitted) {
+TEST(TraceInput, GivenSoilGetsDefaultStdAndUnknownSoilIsFitted) {
   ModelFile given;
   given.model.soil = madeSand();
   const TraceInput of_given = traceInput(table(12), given, {.significance = 0.1, .seed = 7});
@@ -26,7 +26,7 @@ TEST(TraceInput, AGivenSoilGetsDefaultDeviationsAndAnUnknownOneIsFitted) {
   EXPECT_EQ(of_unknown.rows.model.soil_prior_std, unknownSoil().model.soil_prior_std);
 }
 
-TEST(TraceInput, FourRowsAreTooFew) {
+TEST(TraceInput, FewerThanFiveRowsAreRejected) {
   EXPECT_EQ(traceInput(table(5), unknownSoil(), {}).rows.trial.rows(), 5);
   EXPECT_THAT([] { traceInput(table(4), unknownSoil(), {}); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr(

@@ -40,7 +40,7 @@ class TraceTable : public testing::Test {
   static inline TableTrace* trace_ = nullptr;
 };
 
-TEST_F(TraceTable, EveryRowIsUsedOrNamed) {
+TEST_F(TraceTable, EveryRowIsUsedOrReported) {
   EXPECT_EQ(trace_->rowsUsed(), 40);
   ASSERT_EQ(trace_->rejected.size(), 2U);
   EXPECT_EQ(trace_->rejected[0].line, 12U);
@@ -49,21 +49,21 @@ TEST_F(TraceTable, EveryRowIsUsedOrNamed) {
   EXPECT_GT(trace_->beyond_axle_rmse[1], 0.5);
 }
 
-TEST_F(TraceTable, TheFaultIsFoundAndExplains) {
+TEST_F(TraceTable, SensorFaultIsIdentifiedAndExplains) {
   ASSERT_EQ(trace_->result.effects.size(), 1U);
   EXPECT_EQ(trace_->result.effects[0].chosen.candidate.family, "torque_sensor");
   EXPECT_EQ(trace_->answer.verdict, Verdict::Explained);
   EXPECT_TRUE(trace_->applies.applies);
 }
 
-TEST_F(TraceTable, HeldOutErrorsAreThoseOfTheSearchThenOfTheEffectsColumns) {
+TEST_F(TraceTable, HeldOutErrorsListTheSearchFirst) {
   ASSERT_GE(trace_->held_out.size(), 1U);
   EXPECT_EQ(trace_->held_out[0].scheme, trace_->result.held_out.scheme);
   EXPECT_EQ(trace_->held_out[0].refined_rmse[1], trace_->result.held_out.refined_rmse[1]);
 }
 
 // Property: the file reads back to the bits that it was written from.
-TEST_F(TraceTable, TheModelReadsBack) {
+TEST_F(TraceTable, ModelFileRoundTrips) {
   const test::TemporaryFile file{trace_->modelText()};
   const ModelFile read = loadModel(file.path());
   EXPECT_EQ(modelText(read.model, read.scope), trace_->modelText());
@@ -72,7 +72,7 @@ TEST_F(TraceTable, TheModelReadsBack) {
 }
 
 // Property: rows left out before, as a reader leaves them out, change nothing.
-TEST(ReadTraceTable, LeavesOutWhatTracingLeavesOut) {
+TEST(ReadTraceTable, RejectsRowsThatTracingRejects) {
   const test::TemporaryFile file{
       "load_N,slip,sinkage_m,side_force_N,wheel_radius_m,wheel_width_m\n"
       "50,0.2,0.01,,0.1,0.1\n50,0.2,0.01,4,0.1,0.1\n-3,0.2,0.01,,0.1,0.1\n"};

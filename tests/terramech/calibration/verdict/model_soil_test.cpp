@@ -52,7 +52,7 @@ RefinedModel elsewhere(RefinedModel model) {
   return model;
 }
 
-TEST(ModelSoil, TheSoilIsFoundUnderTheEffectsThatActedAndNotWithoutThem) {
+TEST(ModelSoil, SoilIsRecoveredOnlyWithTheActiveEffects) {
   const RefinedModel truth = digging();
   const Trial trial = drive(truth);
   const ModelSoil with = soilUnder(elsewhere(truth), trial, {.noise = 0.02});
@@ -69,12 +69,12 @@ TEST(ModelSoil, TheSoilIsFoundUnderTheEffectsThatActedAndNotWithoutThem) {
   EXPECT_GT(without.misfit, 3.0 * with.misfit);
 }
 
-TEST(ModelSoil, AStatedShearModulusStays) {
+TEST(ModelSoil, StatedShearModulusIsKept) {
   const ModelSoil found = soilUnder(digging(), drive(digging()), {.shear_modulus_m = 0.02, .noise = 0.02});
   EXPECT_EQ(found.soil.shear_modulus_m, 0.02);
 }
 
-TEST(ModelSoil, AParameterAtTheLimitOfItsRangeIsMarked) {
+TEST(ModelSoil, ParameterAtItsRangeLimitIsReported) {
   RefinedModel truth = digging();
   truth.effects.clear();
   EXPECT_THAT(soilUnder(truth, drive(truth), {.noise = 0.02}).unseen,
@@ -85,7 +85,7 @@ TEST(ModelSoil, AParameterAtTheLimitOfItsRangeIsMarked) {
   EXPECT_THAT(found.unseen, testing::Contains("sinkage_exponent: ended at the limit of its range"));
 }
 
-TEST(ModelSoil, WhatThePriorFixesStays) {
+TEST(ModelSoil, ParametersFixedByThePriorAreKept) {
   RefinedModel prior = digging();
   prior.soil.cohesion_Pa = 500.0;
   prior.soil_prior_mean = {{"friction_angle_rad", 0.5}};

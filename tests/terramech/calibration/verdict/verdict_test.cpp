@@ -28,7 +28,7 @@ TraceResult resultOf(double base, double refined, double floor, std::size_t effe
   return result;
 }
 
-TEST(Verdict, IsOneOfThree) {
+TEST(Verdict, DistinguishesExplainedUnexplainedAndNothingMissing) {
   // Closed form: a variance of 100 values may exceed its floor by 3 sqrt(2/100) = 42 %, an rms by 19 %.
   EXPECT_EQ(answerOf(resultOf(0.0165, 0.0165, 0.0141, 0)).verdict, Verdict::NothingMissing);
   EXPECT_EQ(answerOf(resultOf(0.0170, 0.0170, 0.0141, 0)).verdict, Verdict::Unexplained);
@@ -36,7 +36,7 @@ TEST(Verdict, IsOneOfThree) {
   EXPECT_EQ(answerOf(resultOf(0.0345, 0.0330, 0.0141, 1)).verdict, Verdict::Unexplained);
 }
 
-TEST(Verdict, IsHeldAgainstTheDeclaredSensors) {
+TEST(Verdict, ComparesResidualsWithDeclaredSensorNoise) {
   // Property: errors that a fitted noise of 0.0141 holds, where the load cell is declared at a tenth of it.
   TraceResult result = resultOf(0.0141, 0.0141, 0.0141, 0);
   EXPECT_EQ(answerOf(result).verdict, Verdict::NothingMissing);
@@ -49,7 +49,7 @@ TEST(Verdict, IsHeldAgainstTheDeclaredSensors) {
   EXPECT_EQ(a.strained[0].column, "drawbar_pull_N");
 }
 
-TEST(Verdict, AScatterOfTheSoilIsSaidWhereItMakesMostOfTheRest) {
+TEST(Verdict, StrengthScatterIsReportedIfItDominatesTheResidual) {
   // Closed form: a strength that scatters by 0.1 moves DP/W by 0.03, of 0.0345^2 - 0.0141^2 = 0.0315^2 above the
   // floor.
   TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
@@ -68,7 +68,7 @@ TEST(Verdict, AScatterOfTheSoilIsSaidWhereItMakesMostOfTheRest) {
   EXPECT_EQ(answerOf(result).strength_scatter, 0.0);
 }
 
-TEST(Verdict, AnUnexplainedRestIsNamedWithWhatWouldDecide) {
+TEST(Verdict, UnexplainedResidualNamesChannelColumnAndNextMeasurement) {
   TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
   Answer a = answerOf(result);
   EXPECT_EQ(a.channel, Channel::DrawbarPull);
@@ -81,7 +81,7 @@ TEST(Verdict, AnUnexplainedRestIsNamedWithWhatWouldDecide) {
             "further runs at other values of pass_index, now 3, the other columns the same");
 }
 
-TEST(Verdict, ASoilFarFromItsPriorIsReported) {
+TEST(Verdict, SoilFarFromItsPriorIsReported) {
   TraceResult result = resultOf(0.01, 0.01, 0.01, 0);
   RefinedModel& model = result.refined;
   result.given = model.soil = {.cohesion_Pa = 1900.0, .cohesive_modulus = 0.0, .frictional_modulus = 1e6};
@@ -94,14 +94,14 @@ TEST(Verdict, ASoilFarFromItsPriorIsReported) {
   EXPECT_NEAR(movedSoil(result)[1].away(), -5.0, 1e-9);
 }
 
-TEST(Verdict, ValuesAtABoundAreMarked) {
+TEST(Verdict, ParametersAtABoundAreReported) {
   Effect effect{.name = "rear_fill", .covariate = "slip", .parameters = {1.0}};
   EXPECT_EQ(atBounds(effect), std::vector<std::string>{"a"});
   effect.parameters = {0.99};
   EXPECT_TRUE(atBounds(effect).empty());
 }
 
-TEST(Verdict, PredictionsCarryWhatANewRunWouldShare) {
+TEST(Verdict, PredictionNoiseIncludesSharedRunError) {
   // Closed form: hypot(0.3 N, 0.008 * 50 N) = 0.5 N.
   TraceResult result = resultOf(0.01, 0.01, 0.01, 0);
   result.refined.noise.absolute[0] = 0.3;
@@ -109,7 +109,7 @@ TEST(Verdict, PredictionsCarryWhatANewRunWouldShare) {
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 0.5, 1e-12);
 }
 
-TEST(Verdict, PredictionsCarryWhatNothingExplains) {
+TEST(Verdict, PredictionNoiseIncludesUnexplainedResidual) {
   TraceResult result = resultOf(0.05, 0.05, 0.03, 0);
   result.refined.noise.absolute[0] = 0.03 * 50.0;
   result.held_out.refined_rmse[0] = 0.05;

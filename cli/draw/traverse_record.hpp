@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <talus/maps/grid/grid.hpp>
+#include <talus/planner/simulation/drive/traverse_simulation.hpp>
+#include <talus/planner/simulation/worlds/true_world.hpp>
+
+namespace talus::cli {
+
+/// A cell whose displayed category changed during a drive.
+struct CellChange {
+  double time_s = 0.0;
+  maps::Cell cell;
+  std::uint8_t category = 0;  ///< terramech::Category as a number
+};
+
+/// Data of a simulated drive for a page: events, changes of the map, and the true soil patches unknown to the
+/// rover.
+struct TraverseRecord {
+  planner::TraverseSimulation drive;
+  std::vector<CellChange> changes;
+  std::vector<planner::SoilPatch> patches;
+  maps::Grid grid;  ///< of the cells of `changes`
+};
+
+}  // namespace talus::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <talus/cli/ground/mission.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/planner/check/chassis.hpp>
+#include <talus/planner/route/kinematics.hpp>
+
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
+
+namespace talus::cli {
+
+/// Declares --start-heading, --goal-heading (each also in degrees), --turning-radius, --no-reverse and
+/// --chassis.
+void addMotionOptions(CLI::App& command, MotionOptions& drive);
+
+/// Declares --chassis.
+void addChassisOption(CLI::App& command, std::string& chassis);
+
+/// Refuses values that are not terramech::isTurningRadius().
+CLI::Validator turningRadius();
+
+/// Kinematics of the map's rover, overridden by the options of the call.
+planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::TraversabilityMap& map);
+
+/// Chassis of the kind "rigid" or "rocker-bogie"; nothing if `kind` is empty. The chassis holds a reference
+/// to the map.
+std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
+
+}  // namespace talus::cli

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/numerics/estimate.hpp>
+
+namespace talus::costmap {
+
+using terramech::Estimate;
+
+/// Expected cost per metre along the surface for an uncertain demand.
+struct ExpectedCost {
+  double energy_J_per_m = 0.0;
+  double time_s_per_m = 0.0;
+};
+
+/// Mobility curve of a soil over the demand (gradient plus the pull by which the ground is weaker than the
+/// soil), and the expected cost per metre for an uncertain demand.
+///
+/// A demand beyond the limit adds the cost of an attempt at the limit and of the way back (ours, not from the
+/// literature). TravelState::risk_per_m covers the risk of permanent immobilisation. The expected cost never
+/// decreases with the standard deviation or the mean, by construction:
+///   - The tabulated cost is the running maximum over the demand.
+///   - The quadrature is seven-point Gauss-Hermite: pairs of points mean -+ d of equal positive weight. A
+///     pair counts with the maximum of c(mean - d') + c(mean + d') over all d' <= d. For a convex cost, the
+///     maximum is the pair itself; elsewhere, the maximum prevents a lower cost for a greater uncertainty.
+///     The maximum is exact, because between the demands at which the slope of the tabulated cost falls the
+///     sum has no interior maximum.
+/// Immutable and thread-safe.
+class ExpectedTravel {
+ public:
+  explicit ExpectedTravel(const terramech::MobilityCurve& curve);
+
+  /// Interval of drivable demands: from the steepest descent that locked wheels hold to the limit of slip,
+  /// torque and soil. first > last: empty.
+  double first() const noexcept { return first_; }
+  double last() const noexcept { return last_; }
+
+  /// Expected cost for a normally distributed demand with mean <= last(). Demands below `least` count as
+  /// `least`: ground that is stronger than the soil does not propel the rover.
+  ExpectedCost at(const Estimate& demand, double least) const noexcept;
+
+  /// Greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0, the sinkage
+  /// at the demand.
+  double sinkage_m(double demand) const noexcept;
+
+ private:
+  // Values at equal steps of the demand, linear between steps, constant outside.
+  struct Table {
+    std::vector<double> values;
+    std::vector<double> bends;  // demands at which the slope of the table decreases
+  };
+  double value(const Table& table, double demand) const noexcept;
+  double expected(const Table& table, const Estimate& demand, double least) const noexcept;
+  void findBends(Table& table) const;
+
+  double first_ = 0.0, last_ = -1.0, step_ = 0.0;
+  Table energy_, time_;
+  std::vector<double> sinkage_m_;
+};
+
+}  // namespace talus::costmap

@@ -1,0 +1,225 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <talus/costmap/cost/travel_state.hpp>
+
+namespace talus::terramech {
+class RoverStance;
+}
+
+namespace talus::costmap {
+
+/// A heading as a unit vector in the map frame (x east, y north).
+struct Direction {
+  double x = 1.0;
+  double y = 0.0;
+};
+
+/// Planner data of one cell in 4 bytes: the gradient of the plane under the rover and the index of a drive
+/// curve. dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, error at most half a step), clamped
+/// to [-2, 2).
+class CellCode {
+ public:
+  static constexpr std::uint8_t kUnknown = 254;  ///< curve index of an unobserved cell
+  static constexpr std::uint8_t kBlocked = 255;  ///< curve index of a cell that no heading may enter
+
+  /// The unpacked values.
+  struct Parts {
+    double dz_dx = 0.0;  ///< rise over run eastward [-]
+    double dz_dy = 0.0;  ///< rise over run northward [-]
+    std::uint8_t curve = kUnknown;
+  };
+
+  CellCode() : CellCode(Parts{}) {}
+  explicit CellCode(const Parts& parts)
+      : bits_(quantised(parts.dz_dx) << 20 | quantised(parts.dz_dy) << 8 | parts.curve) {}
+
+  double dzDx() const noexcept { return static_cast<double>(stepsX()) * kStep; }
+  double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
+  int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
+  int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
+  /// The same gradient with another curve index.
+  CellCode withCurve(std::uint8_t curve) const noexcept {
+    CellCode code = *this;
+    code.bits_ = (bits_ & 0xffffff00U) | curve;
+    return code;
+  }
+  std::uint8_t curve() const noexcept { return static_cast<std::uint8_t>(bits_); }
+  std::uint32_t bits() const noexcept { return bits_; }
+
+  friend bool operator==(CellCode, CellCode) = default;
+
+  static constexpr double kStep = 1.0 / 1024.0;
+
+ private:
+  static std::uint32_t quantised(double gradient) noexcept;
+
+  std::uint32_t bits_;
+};
+
+/// Cost per horizontal metre on one kind of ground, tabulated over the gradient along the heading (rise over
+/// run, climbing > 0; kBins nodes at k/256, k = -256..255) and over |gradient across| (rows at multiples of
+/// 1/64). Bilinear between nodes; infinite for a refused motion. price() is finite only if every node of
+/// positive weight is finite.
+struct TravelCurve {
+  static constexpr int kBins = 512;
+  static constexpr int kBinsPerUnit = 256;
+  static constexpr int kRowsPerUnit = 64;
+  static constexpr double kSame = 1e-9;  ///< tolerance [bins or rows] for positions on a node
+  static constexpr double kLastPlace =
+      kBins - 1 - kSame;  ///< upper bound of positions along [bins], exclusive
+  /// Row 0, without cross slope: energy + weighted time + weighted risk [J/m].
+  std::array<float, kBins> cost_J_per_m;
+  /// All rows, row 0 first; gradients beyond use the last row. Null: no additional cost across. Costs must
+  /// not decrease from row to row in any bin, because lower bounds rely on monotone costs.
+  std::shared_ptr<const std::vector<float>> crossing{};
+
+  /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
+  static int bin(double gradient) noexcept;
+  /// Gradient at a node, or at a position between nodes.
+  static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
+  /// First row whose gradient is at least |across|.
+  static int row(double across) noexcept {
+    const Between at = between((across < 0.0 ? -across : across) * kRowsPerUnit);
+    return at.whole + static_cast<int>(at.share > 0.0F);
+  }
+
+  /// Node at or before a position in nodes (>= 0), and the fraction of the way to the next node.
+  struct Between {
+    int whole;
+    float share;  ///< [0, 1]
+  };
+  static Between between(double place) noexcept {
+    const int whole = static_cast<int>(place + kSame);
+    const double rest = place - whole;
+    return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
+  }
+
+  /// Costs of all rows, and the index of the last row.
+  const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
+  int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
+
+  /// Cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
+  float price(double along, double across) const noexcept {
+    constexpr float blocked = std::numeric_limits<float>::infinity();
+    const double place = along * kBinsPerUnit + kBins / 2;
+    if (!(place >= 0.0 && place < kLastPlace)) return blocked;
+    const Between bin = between(place), row = between((across < 0.0 ? -across : across) * kRowsPerUnit);
+    const int last = lastRow(), next_bin = bin.share > 0.0F ? 1 : 0,
+              next_row = row.whole + (row.share > 0.0F ? 1 : 0);
+    const float* low = rows() + (row.whole < last ? row.whole : last) * kBins + bin.whole;
+    const float* high = rows() + (next_row < last ? next_row : last) * kBins + bin.whole;
+    const float a = low[0], b = low[next_bin], c = high[0], d = high[next_bin];
+    if (!(a < blocked && b < blocked && c < blocked && d < blocked)) return blocked;
+    const float below = a + bin.share * (b - a), above = c + bin.share * (d - c);
+    return below + row.share * (above - below);
+  }
+};
+
+class CrossSlope;
+
+/// Cost of a turn of one radian, or of a change of direction, in addition to the path length.
+struct TurnCost {
+  double cost_J = 0.0;    ///< by the weights of the cost function, >= 0
+  double energy_J = 0.0;  ///< >= 0
+  double time_s = 0.0;    ///< >= 0
+};
+
+/// Cost of a turn of one radian on one kind of ground.
+struct TurnCosts {
+  TurnCost on_arc;
+  TurnCost in_place;
+  TurnCost at_vertex;  ///< vertex of a polyline: in place if the rover turns in place, else on an arc
+};
+
+/// One kind of ground: the cost curve for planners and the states behind the costs.
+struct GroundCost {
+  TravelCurve curve;
+  std::shared_ptr<const TravelTable> states;  ///< may be null if details are not needed (tests)
+  std::shared_ptr<const CrossSlope>
+      crossing{};     ///< source of the curve's rows; null for a curve without rows
+  TurnCosts turns{};  ///< cost of one radian on level ground; zeros if turning is free (tests)
+};
+
+/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the class; NaN without
+/// an equilibrium.
+struct SlopeHold {
+  /// relative to the direction of travel, left positive
+  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
+  double side_force_over_load = std::numeric_limits<double>::quiet_NaN();  ///< greatest |F|/N of a wheel
+  double stability_margin_rad =
+      std::numeric_limits<double>::quiet_NaN();  ///< additional tilt until the rover tips; NaN also for a
+                                                 ///< rover without a height of the centre of mass
+};
+
+/// Correlation of the soil uncertainty between places, and the consequence of insufficient drawbar pull.
+struct SoilUncertainty {
+  double correlation_length_m = 0.0;  ///< correlation length of the soil; 0: unknown, every metre independent
+  double entrapment = 1.0;            ///< probability that a place with insufficient drawbar pull immobilises
+                                      ///< the rover [-]
+  std::vector<double> shared{};  ///< by class: fraction of the variance of the pull that all places share
+};
+
+/// The cost function that planners, route checks and reports share. Immutable and thread-safe.
+class TravelCost {
+ public:
+  /// Limits on every ground, as rise over run.
+  struct Limits {
+    double max_along = 0.36;   ///< greatest gradient along the heading, tan(max pitch)
+    double max_across = 0.36;  ///< greatest gradient across the heading, tan(max roll)
+    std::shared_ptr<const terramech::RoverStance>
+        stance{};  ///< geometry for the tipping limit; null: the rover never tips
+  };
+
+  /// Throws std::invalid_argument for more than 254 curves.
+  TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
+  TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty doubt = {});
+
+  /// Cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused motion.
+  float costPerMetre(CellCode cell, Direction heading) const noexcept;
+
+  /// State behind costPerMetre(): the cost is finite if and only if refusal is None. Zeros with category
+  /// Unknown for a curve without states.
+  TravelState detail(CellCode cell, Direction heading) const noexcept;
+
+  /// Slip angle, side force and stability margin on the cell.
+  SlopeHold hold(CellCode cell, Direction heading) const noexcept;
+
+  /// Cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns() has the
+  /// costs by curve.
+  TurnCost turn(CellCode cell) const noexcept {
+    return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnCost{};
+  }
+  const std::vector<TurnCosts>& turns() const noexcept { return turns_; }
+
+  /// Whether the rover tips on the cell with this heading, standing or turning in place, on any soil.
+  bool tips(CellCode cell, Direction heading) const noexcept;
+  /// Whether the cell is steep enough that the rover may tip in some heading.
+  bool mayTip(CellCode cell) const noexcept;
+
+  const Limits& limits() const noexcept { return limits_; }
+  /// Correlation of the soil uncertainty, for the risk of a whole route.
+  const SoilUncertainty& doubt() const noexcept { return doubt_; }
+  const std::vector<TravelCurve>& curves() const noexcept { return curves_; }
+  /// States of each curve; null for a curve made without states.
+  const std::vector<std::shared_ptr<const TravelTable>>& states() const noexcept { return states_; }
+  const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
+
+ private:
+  TravelState detailAt(std::size_t curve, double place, double across) const noexcept;
+
+  Limits limits_;
+  std::vector<TravelCurve> curves_;
+  std::vector<std::shared_ptr<const TravelTable>> states_;
+  std::vector<std::shared_ptr<const CrossSlope>> crossings_;
+  std::vector<TurnCosts> turns_;
+  double steady_gradient_;  // gradient up to which no heading tips
+  SoilUncertainty doubt_;
+};
+
+}  // namespace talus::costmap

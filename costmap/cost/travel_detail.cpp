@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <cmath>
+
+#include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/cost/travel_cost.hpp>
+
+// State behind the cost of a metre. Separate from travel_cost.cpp, which is independent of the construction of
+// curves.
+namespace talus::costmap {
+namespace {
+
+terramech::Gradient gradientSeen(CellCode cell, Direction heading) noexcept {
+  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
+          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
+}
+
+TravelState refused(Refusal reason) noexcept {
+  TravelState state;
+  state.refusal = reason;
+  return state;
+}
+
+}  // namespace
+
+TravelState TravelCost::detail(CellCode cell, Direction heading) const noexcept {
+  if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
+  if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
+  const terramech::Gradient d = gradientSeen(cell, heading);
+  const double place = d.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2;
+  const double inside = std::clamp(place, 0.0, TravelCurve::kBins - 1.5);
+  TravelState state = states_[cell.curve()] ? detailAt(cell.curve(), inside, d.across) : TravelState{};
+  if (std::abs(d.across) > limits_.max_across) state.refusal = Refusal::Roll;
+  if (std::abs(d.along) > limits_.max_along || !(place >= 0.0 && place < TravelCurve::kLastPlace))
+    state.refusal = Refusal::Pitch;
+  return state;
+}
+
+// Interpolates between the nodes that TravelCurve::price() reads.
+TravelState TravelCost::detailAt(std::size_t curve, double place, double across) const noexcept {
+  const TravelTable& table = *states_[curve];
+  const auto& crossing = crossings_[curve];
+  const auto bin = TravelCurve::between(place),
+             row = TravelCurve::between(std::abs(across) * TravelCurve::kRowsPerUnit);
+  const auto inRow = [&](int at) {
+    const auto node = [&](int k) {
+      return crossing ? crossing->state(table, at, k) : table[static_cast<std::size_t>(k)];
+    };
+    const TravelState here = node(bin.whole);
+    return bin.share > 0.0F ? between(here, node(bin.whole + 1), bin.share) : here;
+  };
+  const TravelState below = inRow(row.whole);
+  return crossing && row.share > 0.0F ? between(below, inRow(row.whole + 1), row.share) : below;
+}
+
+SlopeHold TravelCost::hold(CellCode cell, Direction heading) const noexcept {
+  if (cell.curve() >= curves_.size() || !crossings_[cell.curve()]) return {};
+  const terramech::Gradient d = gradientSeen(cell, heading);
+  return crossings_[cell.curve()]->hold(d);
+}
+
+}  // namespace talus::costmap
