@@ -133,7 +133,7 @@ struct TraceResult {
   ModelScope scope;            ///< where held-out rows confirmed the effects
 };
 
-/// Root mean square of measured less predicted, scaled.
+/// Root mean square of the residuals (measured - predicted), scaled.
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial);
 ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial);
 
