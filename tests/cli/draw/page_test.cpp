@@ -338,7 +338,8 @@ TEST(Page, PrintsLegendAndCellBesideTheMap) {
   const Shown shown = show(played(exampleScene(), R"(
     const map = document.getElementById("map"), at = map.getBoundingClientRect();
     map.dispatchEvent(new MouseEvent("click", {bubbles: true, clientX: at.left + 300, clientY: at.top + 300}));
-    setTimeout(() => {
+    const print = () => {
+      if (!map.querySelector(".probe figure")) return void setTimeout(print, 50);
       dispatchEvent(new Event("beforeprint"));
       const box = part => document.querySelector(part).getBoundingClientRect(), paper = box("body"), sheet = box("#map");
       const seen = ["#key #legend", "#key table", "#key figure svg"].map(part => {
@@ -349,7 +350,8 @@ TEST(Page, PrintsLegendAndCellBesideTheMap) {
       dispatchEvent(new Event("afterprint"));
       seen.push(map.querySelector(".legend #legend") && map.querySelector(".probe figure") ? true : false);
       document.documentElement.dataset.seen = seen.join();
-    }, 300);)"));
+    };
+    print();)"));
   EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"true,true,true,true,true,true\"")) << shown.console;
 }
 

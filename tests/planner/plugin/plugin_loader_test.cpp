@@ -57,7 +57,7 @@ TEST(PluginLoader, LibraryStaysLoadedWhileItsPlannersExist) {
 TEST(PluginLoader, OtherInterfaceVersionIsRejected) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
-                                              HasSubstr("this program has 6"), HasSubstr("rebuild"))));
+                                              HasSubstr("this program has 7"), HasSubstr("rebuild"))));
 }
 
 // Loading one may end the process by a signal: a child finds out.
