@@ -53,7 +53,7 @@ struct ClassReading {
   TelemetryReading reading;
 };
 
-/// How well the readings are known, one standard deviation.
+/// Measurement errors, one standard deviation [-].
 struct ReadingNoise {
   double slip = 0.03;
   double gradient = 0.01;
@@ -74,8 +74,8 @@ struct WheelObservation {
   Estimate sinkage;          ///< sinkage over radius [-]; infinite standard deviation: not measured
   double demand = 0.0;       ///< drawbar pull over load that the slope requires [-]
   double from_torque = 0.0;  ///< drawbar pull over load from torque and sinkage [-]; NaN: not measured
-  /// Of the pull: standard deviation by the error that readings share, however many there are, as of the slip by which
-  /// all of them are read; >= 0 [-]. NaN: not known, so that the pull may only lower.
+  /// Standard deviation of `pull` by errors common to all readings, such as the error of the slip, which more readings
+  /// do not reduce; >= 0 [-]. NaN: unknown, `pull` may then only lower an estimate.
   double shared_std = 0.0;
   double share = 1.0;  ///< thrust of the class at the measured slip over that at the reference slip [-]
   Estimate by_slope{std::numeric_limits<double>::quiet_NaN(),
