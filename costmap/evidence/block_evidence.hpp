@@ -13,10 +13,10 @@ namespace talus::costmap {
 
 /// Number of times that a block received one quantised reading of one drive, at most 65535 (saturated).
 struct ReadingCount {
-  std::uint8_t kind = 0;  ///< measured quantity and grade of certainty (reading_kind)
-  std::uint8_t step = 0;  ///< value in steps of 0.01: rounded to nearest for a pull that may raise, else
-                          ///< towards danger
-  std::uint16_t count = 0;
+  std::uint8_t kind = 0;    ///< measured quantity and grade of certainty (reading_kind)
+  std::uint8_t step = 0;    ///< value in steps of 0.01: rounded to nearest for a pull that may raise, else
+                            ///< towards danger
+  std::uint16_t count = 0;  ///< number of readings
   std::uint16_t drive = 0;  ///< WheelObservation::drive
 
   friend bool operator==(const ReadingCount&, const ReadingCount&) = default;
@@ -27,17 +27,17 @@ struct ReadingCount {
 /// error. Pulls that may only lower an estimate have one kind for each grade of certainty. Bounds apply to the block
 /// itself: the strictest bound applies, whatever the number of other readings.
 namespace reading_kind {
-inline constexpr std::uint8_t kGrades = 8;
-inline constexpr std::uint8_t kSharedGrades = 8;
+inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
+inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
 inline constexpr std::uint8_t kPull = 0;  ///< plus the grade of certainty and 8 times the grade of the
                                           ///< shared error
 inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< first of eight kinds: plus the
                                                                       ///< grade of certainty
-inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;
-inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;
-inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;
-inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;
-inline constexpr std::uint8_t kCount = kSinkage + 4;
+inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;       ///< sinkage that may raise
+inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;          ///< sinkage that may only lower
+inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;           ///< upper bound of the pull
+inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;       ///< lower bound of the sinkage
+inline constexpr std::uint8_t kCount = kSinkage + 4;                  ///< number of kinds
 }  // namespace reading_kind
 
 /// Standard deviation of drawbar pull over load for a grade of the shared error [-]: 0 for grade 0, 0.02 * 1.5^(grade -
@@ -79,6 +79,7 @@ struct BlockEvidence {
   float most_pull = 0.0F;           ///< least upper bound of drawbar pull over load [-]; NaN: no bound
   float least_sinkage = 0.0F;       ///< greatest lower bound of sinkage over radius [-]; NaN: no bound
 
+  /// Position uncertainty of the place [m].
   double reach_m() const noexcept { return 0.1 * reach; }
 };
 static_assert(sizeof(BlockEvidence) == 44);

@@ -8,8 +8,8 @@
 
 namespace talus::costmap {
 
-/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of cells, 1 to
-/// 256, that does not exceed a quarter of the correlation length, and at least one cell. Blocks are aligned with the
+/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of cells, at
+/// most 256, that does not exceed a quarter of the correlation length, or one cell. Blocks are aligned with the
 /// octree. A block is identified by its south-west cell, which may lie outside the grid, or by its column and row from
 /// the map's south-west. Immutable.
 class BlockGrid {

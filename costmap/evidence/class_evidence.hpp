@@ -89,7 +89,7 @@ class ClassEvidence {
   /// (B12). The departure is multiplied by 0 for one independent place, by 0.5 for two, by 1 from three on: a single
   /// place cannot be distinguished from local variation. The mean rises, and its standard deviation decreases, only if
   /// kPlaces places may raise, and by at most mostRise(). The error common to all contributions is one factor b of the
-  /// regression, y_i = m + c_i b, b standard normal. With v the variance of their mean without b, p the variance of the
+  /// regression, y_i = m + c_i b, b standard normal. With v the variance of the mean without b, p the variance of the
   /// prior and c the mean of c_i, the posterior variance is p (v + c^2) / (p + v + c^2). Contributions that may not
   /// raise are summed for each drive. The mean is the least over all combinations of the contributions that may raise
   /// with any of these drives (B12), so that a drive that may not raise never increases the mean or changes its

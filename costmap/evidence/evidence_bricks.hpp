@@ -22,6 +22,7 @@ struct BlockLevel {
 /// much again.) Not thread-safe while changed; pointers are valid until the next change.
 class EvidenceBricks {
  public:
+  /// No evidence on a map of so many columns and rows of blocks.
   EvidenceBricks(int block_columns, int block_rows);
 
   /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the map.

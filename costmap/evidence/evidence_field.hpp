@@ -42,6 +42,7 @@ struct EvidenceStore;
 /// evidence.
 class EvidenceField {
  public:
+  /// A field without evidence.
   explicit EvidenceField(std::shared_ptr<const GroundSite> site);
   ~EvidenceField();
   EvidenceField(EvidenceField&&) noexcept;
@@ -79,6 +80,7 @@ class EvidenceField {
   /// Evidence of all floors, in a fixed order.
   std::vector<FloorEvidence> floorEvidence() const;
 
+  /// Posterior of a class, not rounded.
   const ClassPosterior& posterior(int class_index) const;
   /// Estimate for ground of a class without nearby evidence.
   GroundBelief classBelief(int class_index, Classes classes = Classes::AsKnown) const;

@@ -43,7 +43,9 @@ struct GroundBound {
   double least_sinkage = std::numeric_limits<double>::quiet_NaN();  ///< lower bound of sinkage over radius
                                                                     ///< [-]
 
+  /// True if the pull or the sinkage has a bound.
   bool any() const noexcept { return !std::isnan(most_pull) || !std::isnan(least_sinkage); }
+  /// Limits the bound of the pull to at most `pull` [-].
   void lower(double pull) noexcept { most_pull = std::fmin(most_pull, pull); }
 };
 
@@ -55,8 +57,8 @@ struct ClassReading {
 
 /// Measurement errors, one standard deviation [-].
 struct ReadingNoise {
-  double slip = 0.03;
-  double gradient = 0.01;
+  double slip = 0.03;           ///< of the slip
+  double gradient = 0.01;       ///< of the slope, rise over run
   double torque_share = 0.05;   ///< of T/(rW), relative
   double sinkage_share = 0.05;  ///< of z/r, relative, and its effect on DP/W
   double mobilised = 0.15;      ///< of T/(rW) at the reference slip, per unit of growth factor - 1
@@ -88,7 +90,7 @@ struct WheelObservation {
   bool sinkage_may_raise = false;  ///< the same for the sinkage
   std::uint16_t drive = 0;  ///< number of the drive (driveTag()): the sensors of each drive have their own
                             ///< errors
-  GroundBound here{};
+  GroundBound here{};       ///< bounds of the place itself
 
   /// True if the observation contains an estimate of the pull.
   bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0; }
@@ -126,6 +128,7 @@ struct WheelObservation {
 /// deviation of the class; the estimate then follows the sinkage, because a deeper wheel has a higher resistance.
 class WheelObserver {
  public:
+  /// Keeps a reference to `model`.
   explicit WheelObserver(const GroundModel& model, const ReadingNoise& noise = {});
 
   /// Observation of one wheel; nothing if slip or a positive load is missing, or if slope, torque with sinkage, and

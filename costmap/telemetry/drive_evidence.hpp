@@ -13,7 +13,7 @@ namespace talus::costmap {
 
 /// Mean drawbar pull over load of one class at slip 0.5 from the slips of a drive (SlipFit) [-].
 struct LearnedClass {
-  int class_number = 0;
+  int class_number = 0;     ///< number of the terrain class
   Estimate pull;            ///< for any offset and scale of the slip sensor
   Estimate if_sound;        ///< for a sensor with offset 0.03 and scale error 5 % (standard deviations)
   double counted_on = 0.0;  ///< value that decisions use
@@ -21,7 +21,7 @@ struct LearnedClass {
 
 /// Result of adding a drive to a map.
 struct DriveReport {
-  std::size_t used = 0;
+  std::size_t used = 0;      ///< rows that the map uses
   std::size_t raising = 0;   ///< of those, rows that may raise an estimate: their sensors are verified
   std::size_t rejected = 0;  ///< rows rejected by the sensor checks, or without a place on the map
   std::size_t repeated = 0;  ///< rows that the map contains already, all or the first of a drive: not
@@ -38,7 +38,7 @@ struct DriveReport {
   double slip_scale = 1.0;            ///< scale of the slip sensor, from its rows [-]
 };
 
-/// Properties of a telemetry that its file does not contain.
+/// Options of adding telemetry, and properties that its file may lack.
 struct IntakeOptions {
   double pose_std_m = 0.5;  ///< standard deviation of positions if the file has no column pose_std_m
   /// Whether a DriveIntake keeps its rows, of some 400 bytes each, for settle().

@@ -37,7 +37,7 @@ class Response {
   double cause_ = 0.0, effect_ = 0.0, causes_ = 0.0, effects_ = 0.0, product_ = 0.0;
 };
 
-/// A regression that grows, over all pairs and over the last pairs.
+/// Regressions of a growing series of pairs: over all pairs, and over the last pairs.
 class ResponseSeries {
  public:
   void add(double cause, double effect);

@@ -17,8 +17,8 @@ namespace talus::costmap {
 struct SlipPosterior {
   double slip_bias = 0.0;   ///< b: offset, the reading of a wheel without slip [-]
   double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
-  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and the standard deviation
-  /// by the likelihood alone; infinite if the drive gives no information [-].
+  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and its standard
+  /// deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
   /// By class: the same departure with its posterior standard deviation; and for a sound sensor: b normal, 0.03, -ln s
   /// half normal, 0.05 [-].
@@ -51,22 +51,22 @@ class SlipFit {
   struct Moment {
     std::string run;
     int class_index = 0;
-    int rutted = 0, wheels = 0;  ///< of which so many are in ruts
+    int rutted = 0, wheels = 0;  ///< wheels in a rut, and all wheels
     maps::Point place;
     double gradient = 0.0;  ///< along the heading, rise over run
     double slip = 0.0;      ///< mean of the wheels
   };
-  /// What is not finite is left out.
+  /// Adds a moment; a moment with a number that is not finite is ignored.
   void take(const Moment& moment);
 
-  /// The estimate by all moments so far. `excess`: by how much the slopes of a run are measured too steep.
+  /// Estimate from all moments so far. `excess`: mean excess of the measured slopes of a run over the map's [-].
   std::shared_ptr<const SlipPosterior> fitted(
       const std::function<double(const std::string& run)>& excess) const;
 
   std::size_t moments() const noexcept { return moments_; }
 
  private:
-  // Class, rutted, wheels, run, square and gradient of moments that are taken together.
+  // Moments that are summed: class, rutted, wheels, run, column and row of the square, step of the gradient.
   using Key = std::tuple<int, int, int, std::string, int, int, int>;
   struct Sum {
     double count = 0.0, gradient = 0.0, slip = 0.0;

@@ -17,10 +17,10 @@ namespace talus::terramech {
 /// Options of residual tracing.
 struct TraceOptions {
   double significance = 0.05;  ///< probability of finding an effect in a table without effects, (0, 1)
-  int max_effects = 7;
-  double least_share = 0.0;  ///< least chi-squared per value that an effect must explain [-]
-  int fits = 6;              ///< known forms fitted in the full model per round; half as many curves
-  int draws = 199;           ///< tables drawn from the null model: the least p-value is 1 / (draws + 1)
+  int max_effects = 7;         ///< greatest number of effects
+  double least_share = 0.0;    ///< least chi-squared per value that an effect must explain [-]
+  int fits = 6;                ///< known forms fitted in the full model per round; half as many curves
+  int draws = 199;             ///< tables drawn from the null model: the least p-value is 1 / (draws + 1)
   /// Greatest number of rows that are searched; of a larger table a sample (rowSample()). More rows only cost time: an
   /// effect of a tenth of the scatter of single readings has 3 standard errors with a thousand rows.
   int most_rows = 1000;
@@ -93,8 +93,8 @@ struct EndLevel {
 
 /// Errors on the rows of one group of a text column, for a fit to all groups.
 struct GroupErrors {
-  std::string column, value;
-  int rows = 0;
+  std::string column, value;  ///< text column, and value of the group
+  int rows = 0;               ///< number of rows of the group
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 

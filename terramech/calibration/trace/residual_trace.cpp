@@ -34,7 +34,7 @@ TracedEffect traced(const Explanation& chosen, double p_value) {
 }
 
 /// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases held-out
-/// errors. The search never removes this effect: a soil fitted to all rows hides most of it.
+/// errors. The effect stays unless it changes no prediction: a soil fitted to all rows hides most of it.
 bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
                    std::vector<TracedEffect>& effects) {
   const auto found = findClosureOffset(trial, seed);
@@ -68,7 +68,7 @@ struct Path {
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
   GainDistribution noise{};
-  std::size_t pinned = 0;  ///< number of leading effects that are never removed
+  std::size_t pinned = 0;  ///< number of leading effects that only dropIdle() removes
 };
 
 /// Accepts the first of the ranked explanations.
