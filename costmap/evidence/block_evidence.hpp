@@ -13,9 +13,9 @@ namespace talus::costmap {
 
 /// Number of times that a block received one quantised reading of one drive, at most 65535 (saturated).
 struct ReadingCount {
-  std::uint8_t kind = 0;    ///< measured quantity and grade of certainty (reading_kind)
-  std::uint8_t step = 0;    ///< value in steps of 0.01: rounded to nearest for a pull that may raise, else
-                            ///< towards danger
+  std::uint8_t kind = 0;  ///< measured quantity and grade of certainty (reading_kind)
+  std::uint8_t step =
+      0;  ///< value in steps of 0.01; a pull that may raise is rounded to nearest, else towards danger
   std::uint16_t count = 0;  ///< number of readings
   std::uint16_t drive = 0;  ///< WheelObservation::drive
 
@@ -29,10 +29,8 @@ struct ReadingCount {
 namespace reading_kind {
 inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
 inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
-inline constexpr std::uint8_t kPull = 0;  ///< plus the grade of certainty and 8 times the grade of the
-                                          ///< shared error
-inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< first of eight kinds: plus the
-                                                                      ///< grade of certainty
+inline constexpr std::uint8_t kPull = 0;          ///< plus grade of certainty + 8 x grade of shared error
+inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< plus grade of certainty
 inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;       ///< sinkage that may raise
 inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;          ///< sinkage that may only lower
 inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;           ///< upper bound of the pull
@@ -56,8 +54,7 @@ std::vector<ReadingCount> boundReadings(const GroundBound& bound);
 
 /// Numbers computed from the counts of one class on one level of a block.
 struct BlockEvidence {
-  static constexpr std::uint16_t kTop = 0xffff;  ///< level of the top surface, which the map's elevation
-                                                 ///< describes
+  static constexpr std::uint16_t kTop = 0xffff;  ///< level of the top surface
 
   std::uint16_t level = kTop;       ///< kTop, or the octree's height key of a floor below the top surface
   std::uint8_t terrain_class = 0;   ///< number of the terrain class
@@ -66,18 +63,14 @@ struct BlockEvidence {
   std::uint8_t reach = 0;           ///< position uncertainty of the place, in steps of 0.1 m
   bool sinkage_raises = false;      ///< true if a sinkage below that of the class is accepted
   bool lowers = false;              ///< true if some pull readings may only lower
-  float pull = 0.0F;                ///< drawbar pull over load from readings that may raise [-]; NaN: no
-                                    ///< such reading
+  float pull = 0.0F;                ///< DP/W from readings that may raise [-]; NaN: no such reading
   float variance = 0.0F;            ///< variance of `pull` without the shared error [-]
-  float shared = 0.0F;              ///< standard deviation of `pull` by the error common to all readings
-                                    ///< [-]
-  float weak_pull = 0.0F;           ///< drawbar pull over load of the weakest subset of all readings [-];
-                                    ///< NaN: no reading
+  float shared = 0.0F;              ///< standard deviation of `pull` by the shared error [-]
+  float weak_pull = 0.0F;           ///< DP/W of the weakest subset of all readings [-]; NaN: no reading
   float weak_variance = 0.0F;       ///< variance of `weak_pull` [-]
-  float sinkage = 0.0F;             ///< sinkage over radius of the deepest subset of all readings [-]; NaN:
-                                    ///< not measured
-  float most_pull = 0.0F;           ///< least upper bound of drawbar pull over load [-]; NaN: no bound
-  float least_sinkage = 0.0F;       ///< greatest lower bound of sinkage over radius [-]; NaN: no bound
+  float sinkage = 0.0F;             ///< z/r of the deepest subset of all readings [-]; NaN: not measured
+  float most_pull = 0.0F;           ///< least upper bound of DP/W [-]; NaN: no bound
+  float least_sinkage = 0.0F;       ///< greatest lower bound of z/r [-]; NaN: no bound
 
   /// Position uncertainty of the place [m].
   double reach_m() const noexcept { return 0.1 * reach; }

@@ -13,8 +13,7 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kFarthestReach_m = 25.5;  // greatest value of BlockEvidence::reach
-constexpr double kPlaceStd = 0.06;         // greatest standard deviation of DP/W of a block that counts as
-                                           // measured [-]
+constexpr double kPlaceStd = 0.06;         // greatest std of DP/W of a block that counts as measured [-]
 
 // Drive of all readings that may raise; 0 if there are several such drives or none.
 std::uint16_t driveOf(std::span<const ReadingCount> counts) noexcept {

@@ -89,8 +89,7 @@ class EvidenceField {
   /// Disjoint boxes of cells; ground outside these boxes has the estimate of its class.
   std::vector<maps::CellBox> reached() const;
 
-  static constexpr double kPoseReach = 2.0;  ///< reach of a bound, in standard deviations of the position
-                                             ///< [-]
+  static constexpr double kPoseReach = 2.0;  ///< reach of a bound in position deviations [-]
 
   /// Side of a block, in cells.
   int blockCells() const noexcept;

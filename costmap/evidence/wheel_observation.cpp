@@ -12,8 +12,7 @@ constexpr double kReferenceSlip = 0.5;
 // a term in proportion to the departure (ours).
 constexpr double kMissPerSlip = 0.06;
 constexpr double kMissPerSlipAndDeparture = 1.2;
-constexpr double kFlatFrom = 0.25;  // slip difference from which both curves are flat and the error no
-                                    // longer grows
+constexpr double kFlatFrom = 0.25;  // slip difference from which the error no longer grows
 // Further error by differences between soils of a class other than strength, in standard deviations of the class, per
 // H(0.5)/H - 1 (ours; for soils drawn from the deviations of mars_crusty, clay, sandy_loam, dry_sand at slip 0.1 to
 // 0.3: 0.2 to 0.6).
@@ -28,8 +27,7 @@ constexpr double kStandIn = 2.0;
 constexpr double kStanding = 0.9;  // slip from which a rover may be stationary (ours)
 constexpr double kHeld =
     0.05;  // least side force over load that is not due to a turn or a drift of the pose (ours)
-constexpr double kRutDoubt = 1.0;  // relative error of the pull gained in a rut, whose stiffness is
-                                   // uncertain (ours)
+constexpr double kRutDoubt = 1.0;  // relative error of the pull gained in a rut (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
@@ -77,11 +75,10 @@ struct WheelObserver::Wheel {
   SteadyWheel reference;   // at the reference slip, likewise
   double steepness = 0.0;  // change of the expected gradient per standard deviation of slip
   double rut_gain = 0.0;   // pull in a rut minus pull on undisturbed ground, over load
-  double share = 1.0;  // thrust of the class at the measured slip over that at the reference slip, straight
-                       // ahead
-  double asked = 0.0;  // pull over load that the slope requires in the wheel's plane
-  double held = 0.0;   // side force over load that the slope requires
-  double known = 0.0;  // departure of the ground at the reference slip that is known by other means
+  double share = 1.0;      // thrust over that at the reference slip, of the class straight ahead
+  double asked = 0.0;      // pull over load that the slope requires in the wheel's plane
+  double held = 0.0;       // side force over load that the slope requires
+  double known = 0.0;      // departure of the ground at the reference slip that is known by other means
   double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at the measured slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
   double torque_std =

@@ -17,8 +17,7 @@ namespace talus::costmap {
 struct TelemetryReading {
   double time_s = 0.0;
   maps::Point place;                                      ///< position of the wheel on the map [m]
-  double z_m = std::numeric_limits<double>::quiet_NaN();  ///< elevation of the wheel, which selects the
-                                                          ///< floor
+  double z_m = std::numeric_limits<double>::quiet_NaN();  ///< elevation of the wheel: selects the floor
   double load_N = 0.0;                                    ///< on the wheel, > 0
   double slip = 0.0;                                      ///< slip, [-1, 1]
   double torque_Nm = 0.0;                                 ///< torque of the wheel
@@ -30,10 +29,8 @@ struct TelemetryReading {
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double drawbar_pull_N = 0.0;  ///< drawbar pull, measured on a test stand
   double pose_std_m = 0.0;      ///< position uncertainty, one standard deviation
-  int pass = 1;  ///< number of wheels that rolled here, this wheel included: from 2 on the wheel is in a
-                 ///< rut
-  double speed_slip = std::numeric_limits<double>::quiet_NaN();  ///< slip from the speeds of rim and rover
-                                                                 ///< [-]
+  int pass = 1;                 ///< number of this wheel among those that rolled here: from 2 on in a rut
+  double speed_slip = std::numeric_limits<double>::quiet_NaN();  ///< slip from rim and rover speed [-]
 };
 
 /// Bounds of the ground under a measured wheel, independent of all other evidence. NaN: no bound.

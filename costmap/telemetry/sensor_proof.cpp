@@ -10,20 +10,15 @@ constexpr double kApart_m = 0.5;             // least distance between rows that
 constexpr double kGradientVariation = 0.03;  // least standard deviation of the gradients
 constexpr double kLevel = 0.08;              // gradient of ground that counts as level
 constexpr std::size_t kLevelRows = 6;        // least number of rows on level ground
-constexpr double kFelt = 0.6;                // share of the thrust at the reference slip that counts as
-                                             // most of the thrust
+constexpr double kFelt = 0.6;                // share that counts as most of the thrust
 constexpr double kSlipPerGradient = 0.1;     // least slope of slip over gradient, that of the firmest soil
-constexpr double kPerGradient = 0.5;         // least slope of the measured gradient, and of the pull from
-                                             // torque
+constexpr double kPerGradient = 0.5;         // least slope of measured gradient and torque pull
 constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's slopes against the map's
 constexpr double kSlopeBias = 0.03;          // greatest mean difference of the rover's slopes and the map's
 constexpr double kSlopeScaleCertain = 2.0;   // standard errors above kSlopeScale
-constexpr double kTorqueBias = 0.08;         // greatest mean difference of the pull from torque, for one
-                                             // wheel
-constexpr double kJump_m = 1.5;              // greatest distance that three deviations of a good position
-                                             // explain
-constexpr double kFirstStep_m = 3.0;         // greatest distance of the first step, before the speed is
-                                             // known
+constexpr double kTorqueBias = 0.08;         // greatest mean difference of one wheel's torque pull
+constexpr double kJump_m = 1.5;              // three standard deviations of a good position
+constexpr double kFirstStep_m = 3.0;         // greatest first step, before the speed is known
 constexpr double kFaster = 3.0;              // factor on the fastest speed so far
 
 bool isOff(const maps::Point& off) noexcept {

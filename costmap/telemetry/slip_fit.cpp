@@ -145,8 +145,7 @@ std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
 }
 
 std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<double>& departures) const {
-  constexpr double kNothing = 40.0;  // difference from the greatest log-likelihood beyond which a term is
-                                     // ignored
+  constexpr double kNothing = 40.0;  // terms so far below the greatest log-likelihood are ignored
   const std::vector<Parabola> all = parabolas(departures);
   double greatest = -std::numeric_limits<double>::infinity();
   for (const Parabola& p : all) greatest = std::max(greatest, p.greatest());

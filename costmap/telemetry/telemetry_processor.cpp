@@ -12,8 +12,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastTold =
     2.0;  // of the class's mean_std: a drive with a greater standard deviation raises nothing (ours)
 constexpr std::size_t kFirstFit = 32;  // moments before the first fit
-constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not travel straight ahead
-                                       // [rad]
+constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 constexpr double kSlipOfResistance =
     0.03;  // slip on level ground that ground with more resistance than its class may cause (ours)
 constexpr double kLittleSlip =

@@ -59,10 +59,8 @@ inline double closeGain(const TraceOptions& options) {
 struct TracedEffect {
   Explanation chosen;
   Channel channel = Channel::DrawbarPull;  ///< channel in which the effect is largest
-  std::vector<double> parameter_std;       ///< standard deviations of the fitted parameters of
-                                           ///< chosen.candidate, in order
-  double p_value = 1.0;                    ///< probability that any candidate reaches this gain in a table
-                                           ///< without the effect
+  std::vector<double> parameter_std;       ///< of the fitted parameters of chosen.candidate, in order
+  double p_value = 1.0;                    ///< of its gain in a table without the effect
   /// Other causes that the rows cannot distinguish from the effect: in its place the gain of each is higher, or lower
   /// by at most closeGain(); best first.
   std::vector<Explanation> equal;
@@ -124,8 +122,7 @@ struct TraceResult {
                                       ///< the rejected explanations
   std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or below the threshold
   std::vector<Promise> first_promises, last_promises;  ///< of base and refined model, best first
-  double threshold = 0.0;                              ///< gain that noise exceeds with probability
-                                                       ///< `significance`
+  double threshold = 0.0;                              ///< gain that noise exceeds at `significance`
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   std::vector<StrainedSensor> strained;  ///< sensors whose fitted noise exceeds the stated noise, with the
                                          ///< refined model

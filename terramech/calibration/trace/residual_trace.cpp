@@ -338,8 +338,7 @@ class Rounds {
 TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
                      const ProgressMonitor& watch) {
   TraceOptions options = given;
-  if (!trial.moment.empty()) {  // errors of slip and slope on a drive are not normal noise: see
-                                // docs/effects.md
+  if (!trial.moment.empty()) {  // non-normal errors of slip and slope: docs/effects.md
     options.max_effects = 1;
     options.least_share = 0.06;
   }

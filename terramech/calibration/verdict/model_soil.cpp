@@ -9,8 +9,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kTold = 0.9;  // greatest posterior standard deviation, over that of the prior, of a
-                               // determined parameter
+constexpr double kTold = 0.9;  // greatest posterior over prior std of a determined parameter
 
 int indexOf(const std::string& name) {
   const auto& all = soilParameters();
