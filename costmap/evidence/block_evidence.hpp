@@ -13,9 +13,8 @@ namespace talus::costmap {
 
 /// Number of times that a block received one quantised reading of one drive, at most 65535 (saturated).
 struct ReadingCount {
-  std::uint8_t kind = 0;  ///< measured quantity and grade of certainty (reading_kind)
-  std::uint8_t step =
-      0;  ///< value in steps of 0.01; a pull that may raise is rounded to nearest, else towards danger
+  std::uint8_t kind = 0;    ///< measured quantity and grade of certainty (reading_kind)
+  std::uint8_t step = 0;    ///< value in steps of 0.01: pullReading(), sinkageReading()
   std::uint16_t count = 0;  ///< number of readings
   std::uint16_t drive = 0;  ///< WheelObservation::drive
 
