@@ -33,7 +33,7 @@ struct SensorLimits {
 /// Checks the readings of a drive, wheel by wheel, in their order. Rejected with a reason: stuck values (of a wheel, or
 /// of one sensor that changed before), spikes, and negative slip of a driven wheel on a climb. A decrease of time is
 /// counted and begins a new series. An offset of torque or sinkage appears as pull that the slope does not require, on
-/// all ground alike; both channels are then excluded, and slip against slope remains. One rover cannot distinguish
+/// all ground; both channels are then excluded, and slip against slope remains. One rover cannot distinguish
 /// another bias of slip from ground that is weaker or firmer than estimated: a mean excess on all ground is reported
 /// with both explanations. Gaps in time and single missing values are counted.
 class SensorWatch {

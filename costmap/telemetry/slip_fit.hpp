@@ -28,8 +28,8 @@ struct SlipPosterior {
   std::vector<double> caution;
 };
 
-/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For a class
-/// whose wheels pull P(i) at slip i, with thrust H(i), ground that departs by d at the reference slip pulls
+/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For wheels on
+/// ground of a class that pull P(i) at slip i, with thrust H(i), ground that departs by d at the reference slip pulls
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)

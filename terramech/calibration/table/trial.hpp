@@ -73,7 +73,7 @@ std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel&
 /// plane, according to speed_mps and rim_speed_mps of rows with a slip angle; false if undecided.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
-/// Marks rows with z >= r, whose wheel is sunk to its axle or deeper. In all contact models the rim's contact
+/// Marks rows with z >= r: the wheel is sunk to its axle or deeper. In all contact models the rim's contact
 /// ends at the height of the axle; such rows would distort a fit.
 std::vector<char> beyondAxle(const Trial& trial);
 
