@@ -7,8 +7,8 @@
 
 namespace talus::cli {
 
-/// A coarser version of a grid: each cell is a block of factor x factor fine cells; blocks at the edge are
-/// cut off.
+/// A coarser version of a grid: each cell is a block of factor x factor fine cells. Blocks at the east and
+/// north edges may have fewer cells.
 class Blocks {
  public:
   /// Uses the smallest factor for which neither side exceeds max_side cells.

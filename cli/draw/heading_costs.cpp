@@ -32,7 +32,8 @@ struct Nodes {
   }
 };
 
-/// Costs on a logarithmic scale, with a relative error of a few millionths; 0 for refused headings.
+/// Image of the costs [J/m] of all curves, as 24-bit words on a logarithmic scale. Word 0 is a refused
+/// heading; word w > 0 is the cost low exp(span (w - 1)), with a relative error of a few millionths.
 nlohmann::ordered_json tableOf(const std::vector<const TravelCurve*>& curves, const Nodes& nodes) {
   std::vector<double> costs;
   double low = INFINITY, high = 0.0;

@@ -121,8 +121,9 @@ class Panel {
       return std::pair{std::floor(spot.x / 2.0), std::floor(spot.y / 2.0)};
     };
     std::ranges::sort(spots, {}, square);
-    const auto rest = std::ranges::unique(spots, {}, square);
-    spots.erase(rest.begin(), rest.end());
+    spots.erase(std::unique(spots.begin(), spots.end(),
+                            [&](const Spot& a, const Spot& b) { return square(a) == square(b); }),
+                spots.end());
   }
 
   /// Draws one standard deviation about each reading; overlapping bars in one pixel column are merged.

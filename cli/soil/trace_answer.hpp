@@ -14,8 +14,9 @@ std::string refusal(const terramech::TraceResult& result);
 /// Reason why a fitted candidate was not selected.
 std::string refusal(const terramech::TraceResult& result, const terramech::Explanation& rejected);
 
-/// The conclusion in one line: the remaining residual, its channel and column, and the rows that would
-/// discriminate.
+/// The verdict in one line: nothing missing, explained by n effects, or unexplained with the reason. Includes
+/// the rms residual of the answer's channel, and for an unexplained residual the measurement that would
+/// identify its cause.
 std::string verdictText(const terramech::TraceResult& result, const terramech::Answer& answer);
 
 /// Contribution of an effect to the refined model.

@@ -27,7 +27,9 @@ struct SlopeRow {
   double margin_rad(double along) const;
 };
 
-/// Solves rows of equilibria. For a rover whose left and right sides differ, the less favourable side counts.
+/// Solves the slope equilibria of a gradient across for all tabulated gradients along. For a rover whose left
+/// and right sides differ, each state is that of the less favourable side: the side that fails, else the side
+/// with the higher energy.
 class SlopeRows {
  public:
   /// Gradients along at the multiples of `step` from low to high, both included. The equilibrium must outlive

@@ -36,9 +36,9 @@ class CostCurveTable {
     return learned(class_index, class_index, belief);
   }
 
-  /// Number of the ground of `number` (not a result of dearer()) with an additional energy per metre. `step`
-  /// > 0 is the key of the energy and increases with the energy. If no number is left, the number of a
-  /// greater step of the same ground substitutes, else the ground is blocked.
+  /// Number of the curve of `number` with `added_J_per_m` added to its energy. `number` must not be a result
+  /// of dearer(). `step` > 0 identifies the added energy and increases with it. If no number is free, returns
+  /// the number assigned to the next greater step of the same curve, else CellCode::kBlocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
   /// Whether a substitute was needed since the last restart.

@@ -139,7 +139,8 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    // References throw here if a field is out of range; later computations use the same values.
+    // referenceOf() throws if a field of the class is out of range: an invalid class is refused here, not at
+    // the first use of its curve.
     const GroundClass rut = rutOf(c);
     const terramech::MobilityReference fresh = costmap::referenceOf(c, parts_.rover);
     references_.push_back(

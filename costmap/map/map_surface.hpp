@@ -79,7 +79,7 @@ class MapSurface {
   /// Measures the whole surface: hazards and gradients of all cells.
   void measure(const TakeShape& take, const ProgressMonitor& watch);
 
-  /// Gradients of a box, as codes without a curve on a grid of that box.
+  /// Gradients of the cells of `box`: `codes` has one code for each cell of the box; the codes have no curve.
   struct Gradients {
     maps::CellBox box;
     maps::Raster<CellCode> codes;

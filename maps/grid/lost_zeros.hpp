@@ -21,15 +21,18 @@ struct LostCells {
   std::size_t count = 0;        ///< number of cells with the value 0 (below 1e-37) in the lost regions
 };
 
-/// Finds connected regions of zeros that are lost data: a disk block of zero bytes leaves such a region in a
-/// file of numbers. At each border of a region, the step from 0 to the first cell outside is compared with
-/// the next three steps outwards. The border step is abrupt if it exceeds three times the greatest of them. A
-/// region is lost if more than half of its border steps are abrupt (ours, not from the literature). Terrain
-/// that descends to a plain or a sea of height 0 has no abrupt border steps. A border step is not abrupt if
-/// the cells outside are level (a drawn wall) or unknown beyond the first. A border step is not counted if
-/// the first cell outside is unknown. A region without counted border steps (a level map) is ground. If 0 is
-/// an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost byte
-/// range: consecutive cells in the rows of a strip or tile of constant width.
+/// Finds connected regions of zeros that are lost data: a lost disk block leaves zero bytes in a file of
+/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0 to
+/// the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
+/// exceeds three times the largest of these three steps. A region is lost if more than half of its border
+/// steps are abrupt.
+///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.
+///   - A border step to level cells (a wall on a plain), or to cells that are unknown beyond the first, is
+///     not abrupt.
+///   - A border step to an unknown cell is not counted. A region without counted steps (a level map) is ground.
+/// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
+/// byte range: every row of the region spans the full width of the region; only its first row may begin later
+/// and only its last row may end earlier.
 class LostZeros {
  public:
   /// `zero_is_ordinary`: whether a lost region must also have the shape of a lost byte range.

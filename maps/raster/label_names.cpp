@@ -19,7 +19,8 @@ namespace {
 // GDAL searches a shorter start of the file for the keywords of a label.
 constexpr std::size_t kBeginning = std::size_t{64} << 10U;
 constexpr std::size_t kMostText = std::size_t{16} << 20U;  // no label or VRT is longer
-// Memory of the XML tree per byte of text: a node of "<a/>" takes 100 bytes, and GDAL builds the tree twice.
+// Memory of the XML tree [bytes] per byte of text: the 4 bytes "<a/>" become a node of 100 bytes, and GDAL
+// builds the tree twice.
 constexpr double kTreePerByte = 50.0;
 
 std::string read(std::ifstream& file, std::size_t most) {

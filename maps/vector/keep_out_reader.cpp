@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 
 // Memory of GDAL's geometry, the ring and its edges per byte of a position of 16 bytes.
-constexpr double kMemoryPerWkbByte = 8.0;
+constexpr double kMemoryPerDrawnByte = 8.0;
 
 /// Rasterises the features of a file one by one. Refuses each feature that would exclude no ground on any
 /// map.
@@ -42,7 +42,7 @@ class KeepOutReader {
   void drawFeature(const std::string& name, const OGRGeometry* drawn) {
     begin(name);
     if (drawn == nullptr) refuse("has no geometry", "write its polygon, or remove it");
-    requireMemory(kMemoryPerWkbByte * static_cast<double>(drawn->WkbSize()), path_);
+    requireMemory(kMemoryPerDrawnByte * static_cast<double>(drawn->WkbSize()), path_);
     drawGeometry(*drawn);
   }
 

@@ -92,8 +92,9 @@ double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 
   return std::max(0.0, most - before[k]);
 }
 
-// Heading costs below the limits. Each heading is raised by half of its allowed increase, so that two
-// neighbours raised in one round stay within a shared limit.
+// Costs of the eight headings for which the gauge is below the limit of every direction. Each round raises
+// each cost by half of its allowed increase: two neighbouring headings share a limit, and half each stays
+// within the limit.
 std::array<double, 8> raised(const ByDirection& limit) noexcept {
   std::array<double, 8> prices{};
   prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));

@@ -55,7 +55,8 @@ class Chassis {
     double turn_m = 0.0;   ///< >= 0
   };
 
-  /// Bounds that apply to every pose within the slack; empty if the ground under the rover is not known.
+  /// Bounds of pitch, roll and clearance over all poses within the slack; empty if the ground under the rover
+  /// is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
   /// Bounds at the pose itself.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }

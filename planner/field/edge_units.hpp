@@ -75,9 +75,9 @@ class EdgeUnits {
             straight_along[y] + straight_across[x], diagonal_along[y - x] + diagonal_across[x + y]};
   }
 
-  // For each curve, by row: half costs of a straight step by bin from -reach_ to reach_, with the opposite
-  // heading in the upper 16 bits, and a blocked entry; then the same for a diagonal step. The last row of
-  // each curve is stored twice.
+  // Half-step costs [units] of all nodes, ordered by curve, row, kind of step (straight, diagonal) and bin
+  // (-reach_ to reach_, then a blocked entry). The upper 16 bits are the cost in the opposite heading. Rows
+  // beyond the last row of a curve repeat the last row, so that all curves have equally many rows.
   std::vector<std::uint32_t> pairs_;
   std::vector<std::uint32_t> first_;  // by curve
   int reach_ = 0;

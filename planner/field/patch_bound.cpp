@@ -10,8 +10,8 @@ namespace {
 
 using maps::Cell;
 
-// Lower bounds of paths outside the box between two cells of its rim. Stored as arrays: each improved rim
-// cell is compared with all rim cells.
+// Lower bounds of the cost of a path that leaves the box at one rim cell and enters at another. One array for
+// each quantity, because to() compares an improved rim cell with all rim cells.
 class RimDetours {
  public:
   RimDetours(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {

@@ -114,7 +114,8 @@ class Search {
       reach(cell, cost_({start, grid_.centre(cell)}), kNoNode);
   }
 
-  // The last leg, to the goal or to a cell within the tolerance.
+  // Ends a route at a settled cell within the tolerance of the goal, or with a last leg from the cell to the
+  // goal. Keeps the route if it costs less than the best route so far.
   void end(Cell cell, Point goal, double tolerance_m) {
     const Point here = grid_.centre(cell);
     const double away_m = std::hypot(goal.x_m - here.x_m, goal.y_m - here.y_m);

@@ -150,7 +150,8 @@ class PointSearch {
     return {grid_.south_west.x_m + (cell.column + spot.x) * grid_.resolution_m,
             grid_.south_west.y_m + (cell.row + spot.y) * grid_.resolution_m};
   }
-  // Cell and spot of a node. For a side point, the cell east or north of the side.
+  // Cell of a node and index of its point in spots_. A point on a side belongs to two cells; the cell returned
+  // is the cell east or north of the side.
   std::pair<Cell, std::size_t> whereIs(std::uint32_t node) const {
     if (node >= inner_) {
       const auto k = static_cast<int>(node - inner_), per = inner_points_;

@@ -43,8 +43,10 @@ struct LaidChain {
 LaidChain laidChain(const MotionCost& cost, const std::vector<ChainLink>& chain, const Segment& places,
                     double tolerance_m, const ChainMargins& margins = {});
 
-/// Place in the cell, reachable from the segment between two places of the cell, that is nearest to
-/// `places.to`, if within the tolerance; `places.to` itself if the tolerance is 0.
+/// Returns the place of the cell nearest to `places.to` that is reachable, with headings of `cone`, from the
+/// segment between the two places `from`. Returns nothing if the place is farther than `tolerance_m` from
+/// `places.to`; with tolerance 0, only `places.to` itself is accepted. `slack` [cell sides] widens the cone;
+/// a negative value narrows the cone.
 std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const HeadingCone& cone,
                                      const std::pair<InCell, InCell>& from, const Segment& places,
                                      double tolerance_m, double slack);

@@ -69,7 +69,8 @@ class Stretch {
   std::size_t first_, last_;
 };
 
-// One round over stretches of `legs` legs, starting half a stretch apart.
+// Replaces stretches of `legs` legs by two legs where gather() allows; successive stretches begin legs / 2
+// legs apart. Returns true if the route changed.
 bool gatherAll(const MotionCost& cost, Polyline& route, std::size_t legs) {
   bool any = false;
   for (std::size_t first = 0; first + kShortest < route.size();) {

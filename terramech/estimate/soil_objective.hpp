@@ -78,7 +78,7 @@ class SoilObjective {
     return {*soil_, {setting_.noise, 0.0, setting_.population, setting_.watch}};
   }
 
-  /// Returns the objective with progress and cancellation of its passes over many samples.
+  /// Returns a copy of the objective whose passes over many samples report progress and can be cancelled.
   SoilObjective watchedBy(const ProgressMonitor& watch) const {
     SoilObjective watched = *this;
     watched.setting_.watch = watch;

@@ -52,7 +52,8 @@ class WheelForcesTable {
   /// and 0.2 to 4.8 of the even load.
   WheelRatios at(const WheelMotion& motion) const noexcept;
 
-  /// Returns a node under the even load; slips start at -1, angles at 0.
+  /// Returns the tabulated value under the even load. `slip` and `angle` are node indices from 0, of the slip
+  /// slipOf(slip) and the slip angle angleOf(angle) [rad].
   double atNode(WheelChannel channel, int slip, int angle) const {
     return even_[static_cast<std::size_t>((angle * kSlips + slip) * kWheelChannels + channel)];
   }

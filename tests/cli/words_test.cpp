@@ -130,11 +130,9 @@ TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
 /// Public headers whose comments still hold replaced words: remove a name when its comments are rewritten.
 const std::set<std::string>& toBeRewritten() {
   static const std::set<std::string> headers{
-      "costmap/evidence/block_evidence.hpp",           "costmap/evidence/evidence_bricks.hpp",
-      "costmap/evidence/evidence_field.hpp",           "costmap/evidence/wheel_observation.hpp",
-      "costmap/telemetry/drive_evidence.hpp",          "maps/vector/place_reader.hpp",
-      "terramech/calibration/search/trace_result.hpp", "terramech/calibration/table/trial.hpp",
-      "terramech/calibration/tables/assessment.hpp",   "terramech/calibration/tables/soil_estimate.hpp",
+      "costmap/evidence/block_evidence.hpp",  "costmap/evidence/evidence_bricks.hpp",
+      "costmap/evidence/evidence_field.hpp",  "costmap/evidence/wheel_observation.hpp",
+      "costmap/telemetry/drive_evidence.hpp",
   };
   return headers;
 }

@@ -54,9 +54,9 @@ std::vector<Row> solved(const terramech::Soil& soil, const terramech::Rover& rov
 }
 
 std::vector<Row> predicted(const terramech::RefinedModel& model, const terramech::Rover& rover) {
-  std::vector<terramech::SimulatedWheel> states;
+  std::vector<terramech::WheelState> states;
   for (const auto& operation : operations(rover)) {
-    terramech::SimulatedWheel state;
+    terramech::WheelState state;
     state.wheel = rover.wheel;
     state.load_N = operation.load_N;
     state.slip = operation.slip;
