@@ -59,8 +59,7 @@ TEST(ExpectedTravel, CostIsTheExpectationOverTheDemandDistribution) {
     sum += w * (at > drive.last() ? 2.0 * most : curve.at(std::atan(at)).energy_J_per_m);
     weight += w;
   }
-  EXPECT_NEAR(drive.at(demand, -1.0).energy_J_per_m, sum / weight,
-              1e-3 * sum / weight);  // the product uses seven quadrature points
+  EXPECT_NEAR(drive.at(demand, -1.0).energy_J_per_m, sum / weight, 1e-3 * sum / weight);  // seven-point rule
 }
 
 // Property: neither cost nor risk decreases as a standard deviation grows, for random rovers, soils and

@@ -130,8 +130,8 @@ TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
   }
 }
 
-// Closed form: the mean is the minimum over sets of drives of q^2 sum(h y)/(q^2 sum(h) + p^2). For -0.10,
-// -0.08 and 0 at one place each, the minimum is that of the first and the third.
+// Closed form: the mean is the minimum over sets of drives of q^2 sum(h y)/(q^2 sum(h) + p^2). For -0.10, 0
+// and -0.08 at one place each, the minimum is that of the set {-0.10, -0.08}.
 TEST(ClassEvidence, IsWhatTheWeakestDrivesMakeOfIt) {
   ClassEvidence lessons(sand());
   for (int column = 0; column < 8; ++column) lessons.places().set({2 * column, 0}, -INFINITY);

@@ -20,7 +20,8 @@ TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
   EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
 }
 
-// The error names the value that is outside the range of soils, not the value in the file.
+// The error message names the stated standard deviation, not the parameter's value at half of it, which no
+// soil has.
 TEST(GroundClass, StdOutsideTheSoilRangeIsReported) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
   EXPECT_THAT(
