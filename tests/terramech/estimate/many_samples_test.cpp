@@ -16,9 +16,9 @@ std::vector<WheelReading> numbered(std::size_t count) {
 }
 
 TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
-  // Property: over twelve soils of known class with 600 samples each, c, phi and K err by about what the
-  // posterior says, rms within a factor of two. A search that leaves out the slope of the normalisation errs
-  // by more than five times of it.
+  // Property: over twelve soils of known class with 600 samples each, the RMS errors of c, phi and K are
+  // within a factor of two of the posterior standard deviations. A search without the slope of the
+  // normalisation exceeds them five times.
   ThesisRuns runs(71);
   double squares[3] = {};
   constexpr int kSoils = 12;
