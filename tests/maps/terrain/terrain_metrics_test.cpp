@@ -35,7 +35,7 @@ struct Expected {
   double dz_dx, dz_dy, roughness_m, relief_m;
 };
 
-// Least squares by Eigen's QR on the cells of the disc; simple and slow.
+// Measured by others: least squares by Eigen's QR on the cells of the disc; slow.
 Expected leastSquares(const Raster<float>& z, Cell middle, double radius_m) {
   const Grid& grid = z.grid();
   std::vector<Eigen::Vector3d> points;
