@@ -36,7 +36,8 @@ class OutputFile {
   /// Throws InputError with the message "cannot be written: `reason`".
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// As fail(), for a library whose message lacks the system's reason: states that reason if the file cannot grow.
+  /// Throws as fail(), with the system's reason if the file cannot grow. For libraries whose messages lack that
+  /// reason.
   [[noreturn]] void failToGrow(const std::string& reason) const;
 
  private:

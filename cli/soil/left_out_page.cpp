@@ -63,7 +63,7 @@ void table(HtmlReport& page, const std::vector<LeftOutErrors>& all) {
   page.table({"held out", "channel", "base", "refined", "noise floor", "regression", ""}, rows);
 }
 
-/// Values over the held-out column; over the row number if the column contains text.
+/// Plots values against the held-out column, or against the row index if the column contains text.
 Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column, Channel channel) {
   Series base{.name = "base", .x = {}, .y = {}, .mark = Series::Mark::Points}, refined = base,
                                                                                measured = base;

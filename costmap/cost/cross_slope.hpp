@@ -36,7 +36,7 @@ struct CostWeights {
 /// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
 /// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
 /// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
-/// intervals, the interval nearest to level ground counts, of equally near intervals the longest. Immutable.
+/// intervals, the interval nearest to level ground is used; of equally near intervals, the longest. Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
@@ -62,7 +62,7 @@ class CrossSlope {
   /// the climbs up to `leaves`. Risk and refusal: from `brakes` to `leaves`.
   TravelState state(const TravelTable& states, int row, int bin) const noexcept;
 
-  /// Costs [J/m] of all nodes, row by row: those of state().
+  /// Returns the costs [J/m] of state() at all nodes, row by row.
   std::shared_ptr<const std::vector<float>> costs(const TravelTable& states,
                                                   const CostWeights& weights) const;
 
@@ -76,7 +76,8 @@ class CrossSlope {
   double steepest(double gradient) const noexcept;
 
  private:
-  // Positions in bins of TravelCurve; `refused` applies at any strength.
+  // Gradients of the three straight climbs (class comment), in bins of TravelCurve; `refused` applies at any
+  // strength.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
     float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
@@ -112,7 +113,7 @@ class CrossSlope {
   std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };
 
-/// Cost per metre on ground with these states and weights, with the rows of `crossing` if not null.
+/// Returns the cost [J/m] of ground with these states and weights, with the rows of `crossing` if not null.
 TravelCurve priced(const TravelTable& states, const CrossSlope* crossing, const CostWeights& weights);
 
 }  // namespace talus::costmap

@@ -13,7 +13,7 @@ double interpolated(const std::vector<double>& values, double at);
 /// Straight climbs under even loads, for finding the climb with the same cost as a two-dimensional slope.
 class LevelClimbs {
  public:
-  /// Uses row 0 (no gradient across); climbs beyond `last` count as `last`.
+  /// Uses row 0 (no gradient across); climbs beyond `last` are reduced to `last`.
   LevelClimbs(const SlopeRow& level, double last);
 
   /// For each state of a row: additional gradient of the straight climb with the same energy and time (>= 0),

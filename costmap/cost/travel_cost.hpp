@@ -43,7 +43,7 @@ class CellCode {
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
   int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
   int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
-  /// The same gradient with another curve index.
+  /// Returns the code with an unchanged gradient and another curve index.
   CellCode withCurve(std::uint8_t curve) const noexcept {
     CellCode code = *this;
     code.bits_ = (bits_ & 0xffffff00U) | curve;
@@ -89,7 +89,7 @@ struct TravelCurve {
     return at.whole + static_cast<int>(at.share > 0.0F);
   }
 
-  /// Node at or before a position in nodes (>= 0), and the fraction of the way to the next node.
+  /// A fractional node index >= 0 as the index of the node at or before it, and the fraction to the next node.
   struct Between {
     int whole;
     float share;  ///< [0, 1]
@@ -100,7 +100,7 @@ struct TravelCurve {
     return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
   }
 
-  /// Costs of all rows, and the index of the last row.
+  /// rows(): costs [J/m] of all nodes, row by row, kBins a row. lastRow(): index of the last row.
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 
@@ -130,14 +130,14 @@ struct TurnCost {
   double time_s = 0.0;    ///< >= 0
 };
 
-/// Cost of a turn of one radian on one kind of ground.
+/// Costs of a turn of one radian on one kind of ground, for the three ways to turn.
 struct TurnCosts {
   TurnCost on_arc;
   TurnCost in_place;
   TurnCost at_vertex;  ///< vertex of a polyline: in place if the rover turns in place, else on an arc
 };
 
-/// One kind of ground: the cost curve for planners and the states behind the costs.
+/// Cost curve of one kind of ground for planners, and the tabulated states from which the costs follow.
 struct GroundCost {
   TravelCurve curve;
   std::shared_ptr<const TravelTable> states;  ///< may be null if details are not needed (tests)

@@ -58,7 +58,7 @@ class CostCurveTable {
   /// Category of the ground of a number over the gradient of its plane.
   const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
-  /// Cost function of all assigned numbers; the same object until a number is added.
+  /// Returns the cost function with the curves of all assigned indices; the same object until a curve is added.
   std::shared_ptr<const TravelCost> cost() const;
 
  private:

@@ -116,7 +116,8 @@ class GroundModel {
   GroundCost ground(int class_index, const GroundBelief& belief) const {
     return ground(class_index, class_index, belief);
   }
-  /// The same for ground of either class: each quantity is the less favourable of both.
+  /// Returns the drive curve and states of ground that may have either class: each quantity is the less
+  /// favourable of the two classes.
   GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
 
   /// Effect of cross slopes on ground of a class.

@@ -10,8 +10,8 @@
 
 namespace talus::costmap {
 
-/// Strength of the ground under all wheels of a rover whose centre is in a cell. The pull of the whole rover
-/// counts, not the soil at a point.
+/// Computes the drawbar pull over load [-] of a whole rover whose centre is in a cell, from the ground under
+/// all its wheels.
 ///
 /// The wheels of a rigid rover have equal slip, so their pulls add: the pull over load of the rover is the
 /// mean over its wheels, each on the weakest cell within its width. The result is the least mean over all
@@ -45,8 +45,8 @@ class WheelSwath {
   };
 
   /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,
-  /// the cell itself in the centre. The central cell must have a class; cells outside the map count as the
-  /// central cell.
+  /// the cell itself in the centre. The central cell must have a class; the caller fills
+  /// cells outside the map with the central cell.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

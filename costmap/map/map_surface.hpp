@@ -98,7 +98,7 @@ class MapSurface {
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:
-  // Code and hazards of a measured cell.
+  // Cell code (gradients and index of the cost curve) and hazards of a measured cell.
   struct Ground {
     CellCode code;
     Hazard hazards;

@@ -88,9 +88,9 @@ class TraversabilityMap {
   void refuse(const maps::Point& place, double radius_m);
 
   /// Replaces a window of the ground and publishes the window, with all learned evidence, as one new version.
-  /// Heights, rocks, classes and keep-out areas then count as if the map had been built with them. Only cells
-  /// affected through footprint, clearance or wheel swath are measured again. Evidence is kept with the class
-  /// for which it was learned. Throws std::invalid_argument with place and remedy for a patch of another
+  /// The new version equals a map that was built with these heights, rocks, classes and keep-out areas. Only
+  /// cells whose footprint, clearance or wheel swath overlaps the window are measured again. Evidence stays
+  /// assigned to the class for which the evidence was recorded. Throws std::invalid_argument with place and remedy for a patch of another
   /// resolution, outside the map, without an observation, or with an invalid value; the map is then
   /// unchanged.
   void patch(const SurfacePatch& patch);

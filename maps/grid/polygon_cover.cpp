@@ -185,7 +185,7 @@ class EdgesByRow {
     return std::span(edges_).subspan(first, ends_[at] - first);
   }
 
-  /// The first row in which an edge begins; the height of the grid if there is no edge.
+  /// Returns the index of the first row in which an edge begins; the height of the grid if there is no edge.
   int firstRow() const {
     return static_cast<int>(std::ranges::find_if(ends_, [](std::size_t end) { return end > 0; }) -
                             ends_.begin());

@@ -9,7 +9,7 @@
 namespace talus::maps {
 namespace {
 
-// The same source serves every processor, as in plane_kernel.cpp.
+// GCC compiles the vector type for the target's registers, as in plane_kernel.cpp.
 using StepLanes = float __attribute__((vector_size(kStepLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline void loadStep(StepLanes& to, const float* from) {

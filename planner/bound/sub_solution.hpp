@@ -48,7 +48,8 @@ class SubSolution {
   float at(std::uint32_t node) const noexcept { return to_goal_.at(node); }
   /// True for an expanded node. The solution consists of the triangles with an inner node.
   bool inner(std::uint32_t node) const noexcept { return to_goal_.expanded(node); }
-  /// Costs of a cell; null for cells not searched and cells without an allowed heading.
+  /// Returns the cost lower bounds by heading of a cell; null for cells not searched and cells without an
+  /// allowed heading.
   const TriangleCosts* pricesOf(maps::Cell cell) const noexcept;
 
   /// Near-optimal route from start to goal over all headings, without turn costs; see meshRoute().

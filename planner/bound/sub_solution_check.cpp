@@ -40,7 +40,7 @@ double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const Triangl
   return worst;
 }
 
-// Value of the solution at a place; empty outside the solution.
+// Returns the value [J] of the solution at a place, linear on each triangle; empty outside the solution.
 std::optional<double> valueAt(const SubSolution& u, Point place) {
   const maps::Grid& grid = u.mesh().grid();
   const auto cell = grid.cellAt(place);

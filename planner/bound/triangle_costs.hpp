@@ -10,8 +10,8 @@
 
 namespace talus::planner {
 
-/// Lower bounds of the cost of one cell side by heading, and the resulting limits for a function that is
-/// linear on each triangle of the cell (CellMesh). Triangles are numbered by their first corner.
+/// Lower bounds [J] of the cost of a motion as long as one cell side, by heading, and the resulting limits for
+/// a function that is linear on each triangle of the cell (CellMesh). Triangles are numbered by their first corner.
 struct TriangleCosts {
   static constexpr std::size_t kStored = DirectionalCostBounds::kHeadings + 12;
   std::array<float, kStored> prices;  ///< by heading; the first 12 are repeated at the end
@@ -20,7 +20,7 @@ struct TriangleCosts {
 
   TriangleCosts(const DirectionalCostBounds::Limits& limits, double side_m) noexcept;
 
-  /// Values of a triangle's nodes.
+  /// Values [J] of the linear function at the three nodes of a triangle.
   struct Values {
     float first, second, middle;
   };

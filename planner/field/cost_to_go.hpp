@@ -52,7 +52,7 @@ class CostToGo {
   /// settled cells.
   std::uint32_t units(maps::Cell cell) const noexcept { return distance_[edges_->padded().index(cell)]; }
 
-  /// The same cost in joules; empty if there is no path.
+  /// Returns units() in joules; empty if there is no path.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
 
   /// Lower bound of the minimum cost from a padded index in units, whether settled or not; kUnreached if no

@@ -52,7 +52,7 @@ class EdgeUnits {
 
   // Interpolation weights in 1/kShares. A coordinate between two nodes never has a weight of 0 or kShares.
   static constexpr int kShareBits = 7, kShares = 1 << kShareBits;
-  // Position of a gradient among the nodes: the lower 32 bits are an offset into pairs_, the upper two 16-bit
+  // Fractional node index of a gradient: the lower 32 bits are an offset into pairs_, the upper two 16-bit
   // fields are the weights of the next bin and the next row. A gradient beyond the limit has the highest bit
   // of its weight set. Positions along and across are added.
   using Place = std::uint64_t;

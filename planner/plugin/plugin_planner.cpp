@@ -157,7 +157,7 @@ std::string text(Point p) {
 // Compares the headings of the polyline, regardless of the headings stated by the plugin, with the requested
 // headings and the turning radius; no check for a rover that turns in place. Chords represent arcs: each
 // heading may deviate by half of the chord's change of heading, for chords of up to 0.4 of the radius; the
-// rest of a longer chord counts as straight.
+// rest of a longer chord is treated as straight.
 std::string motionAgainst(const Problem& problem, const std::vector<Point>& points) {
   const double radius_m = problem.kinematics.turning_radius_m;
   if (!(radius_m > 0.0) || points.size() < 2) return {};

@@ -59,8 +59,8 @@ struct Prices {
   __m128 here, next;
 };
 
-// Costs at four nodes and at their next nodes; if a coordinate lies on its node, the next node is the node
-// itself.
+// Returns the costs `prices` at four node indices `at` and at the indices after them. Lanes without a set sign
+// bit in `off` have their coordinate on the node and get the cost of the node twice.
 __attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m128i at, __m128i off) noexcept {
   alignas(16) std::array<std::int32_t, 4> lane;
   _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);

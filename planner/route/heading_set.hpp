@@ -90,7 +90,7 @@ class HeadingSets {
   };
 
  private:
-  // Code and set of a recent cell, since neighbouring cells are requested repeatedly. Sets in sets_ keep
+  // Cell code and heading set of a recent request, because neighbouring cells are requested repeatedly. Sets in sets_ keep
   // their address.
   struct Recent {
     std::uint32_t bits = 0;
