@@ -54,8 +54,8 @@ class CrossSlope {
   /// For ground of either class: at each node the harder of both.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
-  /// Number of tabulated rows, row 0 included; later rows equal the last row, which refuses every heading
-  /// unless the limits are reached first.
+  /// Returns the number of tabulated rows, row 0 included; later rows equal the last row, which refuses every
+  /// heading unless the limits are reached first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / TravelCurve::kBins; }
 
   /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
@@ -70,9 +70,9 @@ class CrossSlope {
   /// b), those of a.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// Gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
+  /// Returns the gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
   double climb(const terramech::Gradient& gradient) const noexcept;
-  /// Maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
+  /// Returns the maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
   double steepest(double gradient) const noexcept;
 
  private:

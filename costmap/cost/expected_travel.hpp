@@ -41,8 +41,8 @@ class ExpectedTravel {
   /// raised to `least`: ground that is stronger than the soil does not propel the rover.
   ExpectedCost at(const Estimate& demand, double least) const noexcept;
 
-  /// Greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0, the sinkage
-  /// at the demand.
+  /// Returns the greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0,
+  /// the sinkage at the demand.
   double sinkage_m(double demand) const noexcept;
 
  private:

@@ -81,7 +81,7 @@ struct TravelCurve {
 
   /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
   static int bin(double gradient) noexcept;
-  /// Gradient at a node, or at a position between nodes.
+  /// Returns the gradient at a node, or at a position between nodes.
   static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
   /// First row whose gradient is at least |across|.
   static int row(double across) noexcept {
@@ -104,7 +104,7 @@ struct TravelCurve {
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 
-  /// Cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
+  /// Returns the cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
   float price(double along, double across) const noexcept {
     constexpr float blocked = std::numeric_limits<float>::infinity();
     const double place = along * kBinsPerUnit + kBins / 2;
@@ -180,7 +180,8 @@ class TravelCost {
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
   TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty doubt = {});
 
-  /// Cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused motion.
+  /// Returns the cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused
+  /// motion.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
 
   /// State behind costPerMetre(): the cost is finite if and only if refusal is None. Zeros with category
@@ -190,8 +191,8 @@ class TravelCost {
   /// Slip angle, side force and stability margin on the cell.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
-  /// Cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns() has the
-  /// costs by curve.
+  /// Returns the cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns()
+  /// has the costs by curve.
   TurnCost turn(CellCode cell) const noexcept {
     return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnCost{};
   }

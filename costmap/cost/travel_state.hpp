@@ -23,7 +23,7 @@ enum class Refusal : std::uint8_t {
   Tips,       ///< centre of mass beyond the wheel base
 };
 
-/// Text of a reason: "required drawbar pull above the available drawbar pull".
+/// Returns the text of a reason: "required drawbar pull above the available drawbar pull".
 const char* toText(Refusal refusal) noexcept;
 
 /// State of driving over one kind of ground at one gradient: the quantities behind a cost. Per wheel where

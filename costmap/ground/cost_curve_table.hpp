@@ -24,21 +24,21 @@ class CostCurveTable {
  public:
   explicit CostCurveTable(std::shared_ptr<const GroundModel> model);
 
-  /// Number of the prior of a class; priorBelief() is the estimate itself.
+  /// Returns the number of the prior of a class; priorBelief() is the estimate itself.
   std::uint8_t prior(int class_index);
   const GroundBelief& priorBelief(int class_index) const {
     return priors_[static_cast<std::size_t>(class_index)];
   }
-  /// Number of ground with a learned estimate. The curve is nowhere below that of the same estimate on
-  /// `other_class`.
+  /// Returns the number of ground with a learned estimate. The curve is nowhere below that of the same
+  /// estimate on `other_class`.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
   }
 
-  /// Number of the curve of `number` with `added_J_per_m` added to its energy. `number` must not be a result
-  /// of dearer(). `step` > 0 identifies the added energy and increases with it. If no number is free, returns
-  /// the number assigned to the next greater step of the same curve, else CellCode::kBlocked.
+  /// Returns the number of the curve of `number` with `added_J_per_m` added to its energy. `number` must not
+  /// be a result of dearer(). `step` > 0 identifies the added energy and increases with it. If no number is
+  /// free, returns the number assigned to the next greater step of the same curve, else CellCode::kBlocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
   /// Whether a substitute was needed since the last restart.

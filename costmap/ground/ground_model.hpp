@@ -97,7 +97,7 @@ class GroundModel {
   const Parts& parts() const noexcept { return parts_; }
   const terramech::Rover& rover() const noexcept { return parts_.rover; }
 
-  /// Index in parts().classes of a class number; -1 for an undeclared number.
+  /// Returns the index in parts().classes of a class number; -1 for an undeclared number.
   int classIndex(int number) const noexcept;
 
   /// Estimate before any evidence.
@@ -126,7 +126,7 @@ class GroundModel {
   /// State at a gradient along the heading (rise over run) without cross slope, as tabulated by ground().
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const;
 
-  /// Cost of one horizontal metre [J]; infinite if refused.
+  /// Returns the cost of one horizontal metre [J]; infinite if refused.
   double cost_J_per_m(const TravelState& state) const noexcept;
 
   /// Category of ground at a gradient along the heading, and its probability under the estimate.

@@ -23,7 +23,7 @@ class WheelSwath {
   /// For a rover on cells of this size; `pose_error_m` >= 0 widens the positions of the centre.
   WheelSwath(const terramech::Rover& rover, double resolution_m, double pose_error_m);
 
-  /// Greatest column or row offset of the cells that a wheel may touch.
+  /// Returns the greatest column or row offset of the cells that a wheel may touch.
   int reach() const noexcept { return reach_; }
 
   /// Ground of a cell; class_index < 0: outside the map.
@@ -45,8 +45,8 @@ class WheelSwath {
   };
 
   /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,
-  /// the cell itself in the centre. The central cell must have a class; the caller fills
-  /// cells outside the map with the central cell.
+  /// the cell itself in the centre. The central cell must have a class; cells without a
+  /// class, such as cells outside the map, get the pull of the central cell.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

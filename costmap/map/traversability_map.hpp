@@ -44,7 +44,7 @@ class TraversabilityMap {
   const MapSurface& surface() const noexcept { return *surface_; }
   /// Evidence from wheel measurements.
   const EvidenceField& evidence() const noexcept { return field_; }
-  /// Cost grid and categories.
+  /// Returns the cost grid and the categories of the cells.
   const MapCosts& costs() const noexcept { return *costs_; }
 
   const maps::Grid& grid() const noexcept { return surface_->grid(); }

@@ -68,7 +68,7 @@ void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard s
 /// cells.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
              const maps::CellBox& box);
-/// Greatest column or row offset between a cell and the cells marked for that cell.
+/// Returns the greatest column or row offset between a cell and the cells marked for that cell.
 int inflationReach(const HazardLimits& limits, double resolution_m);
 
 }  // namespace talus::costmap

@@ -96,7 +96,8 @@ struct Clean {
   return {2 * span, width - 2 * span};
 }
 
-// Maximum over the half width `to` on either side, given the maximum over the smaller half width `from`.
+// Returns the maximum over the half width `to` on either side, given the maximum over the smaller half width
+// `from`.
 [[gnu::always_inline]] inline void widen(const float* steps, float* wide, int from, int to, int width) {
   for (int column = 0; column < width; column += kStepLanes) {
     StepLanes best;

@@ -17,7 +17,7 @@ struct SlipTerrain {
   double offset = 0.0;     ///< slip on level ground, 0 to 0.1 [-]
   double noise = 0.05;     ///< standard deviation of a cell's slip from the curve, 0.05 to 0.2 [-]
 
-  /// Mean slip [-] on a gradient (rise over run) along the heading.
+  /// Returns the mean slip [-] on a gradient (rise over run) along the heading.
   double slip(double gradient) const noexcept;
 };
 

@@ -22,7 +22,8 @@ class CellMesh {
   using Nodes = std::array<std::uint32_t, 5>;
   static constexpr std::size_t kMiddle = 4;
 
-  /// Index of the corner after corner k. Triangle k of a cell lies between corners k, next(k) and the centre.
+  /// Returns the index of the corner after corner k. Triangle k of a cell lies between corners k, next(k) and
+  /// the centre.
   static constexpr std::size_t next(std::size_t k) noexcept { return (k + 1) % 4; }
 
   std::size_t nodes() const noexcept { return corners_ + grid_.size(); }

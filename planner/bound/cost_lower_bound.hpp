@@ -28,7 +28,7 @@ class CostLowerBounds {
   /// Returns the highest lower bound with tilt_J_per_m = 0.
   CostLowerBound level(costmap::CellCode cell) const noexcept;
 
-  /// Number of drive curves.
+  /// Returns the number of drive curves.
   std::size_t curves() const noexcept { return lines_.size(); }
 
  private:

@@ -16,8 +16,8 @@ double value(const SubSolution& u, std::uint32_t node) noexcept {
   return static_cast<double>(u.at(node));
 }
 
-// Largest ratio, in one cell, of the solution's fall over a side's length along a heading to the heading's
-// limit.
+// Returns the largest ratio, in one cell, of the solution's fall over a side's length along a heading to the
+// heading's limit.
 double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const TriangleCosts& limits) noexcept {
   static constexpr std::array<std::array<double, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   double worst = 0.0;

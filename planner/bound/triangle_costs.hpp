@@ -25,9 +25,9 @@ struct TriangleCosts {
     float first, second, middle;
   };
 
-  /// Largest value that one node may have for given values of the other two: the minimum, over the motions
-  /// between the node and the opposite side (ends included), of the value on the side plus the motion's cost.
-  /// Motions lead from the node to the side, or with Way::ToNode from the side to the node.
+  /// Returns the largest value that one node may have for given values of the other two: the minimum, over
+  /// the motions between the node and the opposite side (ends included), of the value on the side plus the
+  /// motion's cost. Motions lead from the node to the side, or with Way::ToNode from the side to the node.
   float first(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float second(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float middle(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;

@@ -55,8 +55,8 @@ class Chassis {
     double turn_m = 0.0;   ///< >= 0
   };
 
-  /// Bounds of pitch, roll and clearance over all poses within the slack; empty if the ground under the rover
-  /// is not known.
+  /// Returns the bounds of pitch, roll and clearance over all poses within the slack; empty if the ground
+  /// under the rover is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
   /// Returns the bounds at the pose itself, without slack.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }

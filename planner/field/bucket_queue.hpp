@@ -20,7 +20,7 @@ class BucketQueue {
   /// Bucket number of a key.
   std::uint64_t bucketOf(std::uint64_t key) const noexcept { return key >> shift_; }
 
-  /// Number of the current bucket.
+  /// Returns the index of the current bucket.
   std::uint64_t current() const noexcept { return current_; }
 
   std::uint64_t queued() const noexcept { return queued_; }

@@ -34,7 +34,7 @@ class EdgeUnits {
   /// Joules per unit.
   double unit_J() const noexcept { return unit_J_; }
 
-  /// Lower bound of every allowed edge in units; >= 1.
+  /// Returns a lower bound of every allowed edge in units; >= 1.
   std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
 
   /// Returns true if these units assign the same cost to every cell that the older units cover (curves were
@@ -64,7 +64,7 @@ class EdgeUnits {
   Places places(const costmap::TravelCost::Limits& limits, double per_step, int shift) const;
   int width() const noexcept { return 2 * reach_ + 2; }
 
-  // Positions along and across of the headings from east to north-west.
+  // Returns the fractional node indices along and across of the headings from east to north-west.
   std::array<Place, 4> placesOf(costmap::CellCode cell) const noexcept {
     const int x = cell.stepsX(), y = cell.stepsY();
     const Place* straight_along = straight_.along.data() + straight_.middle;

@@ -52,8 +52,8 @@ class ForwardSearch {
   PatchedField::Outcome run(const std::vector<GridLink>& links, std::uint64_t most_cells,
                             const StopCheck& stop);
 
-  /// Cost to the goal [units] by padded index, for each cell on a path from start to goal that costs at most
-  /// kSlack more than the best path.
+  /// Returns the cost to the goal [units] by padded index, for each cell on a path from start to goal that
+  /// costs at most kSlack more than the best path.
   std::unordered_map<std::uint32_t, std::uint32_t> bestWays() const;
 
  private:

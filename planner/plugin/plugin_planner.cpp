@@ -133,7 +133,7 @@ bool near(Point a, Point b, double reach_m) {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) <= reach_m + kSamePlace_m;
 }
 
-// Index of the goal at which a route ends; -1: none.
+// Returns the index of the goal at which a route ends; -1: none.
 int goalOf(const Problem& problem, Point end) {
   if (near(end, problem.goal, problem.goal_tolerance_m)) return 0;
   for (std::size_t i = 0; i < problem.other_goals.size(); ++i)

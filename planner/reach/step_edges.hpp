@@ -31,8 +31,8 @@ class StepEdges {
 
   Kind at(maps::Cell cell) const noexcept { return kinds_[map_.grid().index(cell)]; }
 
-  /// Code of a cell with the gradient of the ground without sheer steps: medians of the rises between
-  /// neighbouring cells in the surrounding 5 x 5 cells.
+  /// Returns the code of a cell with the gradient of the ground without sheer steps: medians of the rises
+  /// between neighbouring cells in the surrounding 5 x 5 cells.
   costmap::CellCode settled(maps::Cell cell) const;
 
  private:

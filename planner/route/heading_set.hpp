@@ -42,8 +42,8 @@ class HeadingSet {
   /// Intersection of two sets.
   HeadingSet shared(const HeadingSet& other) const;
 
-  /// Heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc, or in the
-  /// middle of a narrower arc. The set must not be empty.
+  /// Returns the heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc,
+  /// or in the middle of a narrower arc. The set must not be empty.
   double nearest(double heading_rad, double inside_rad) const noexcept;
 
   /// The opposite headings.

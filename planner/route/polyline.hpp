@@ -13,7 +13,7 @@ using Polyline = std::vector<maps::Point>;
 /// The polyline with each leg divided into equal parts of at most longest_m > 0.
 Polyline subdivided(const Polyline& points, double longest_m);
 
-/// Length of the polyline [m].
+/// Returns the length of the polyline [m].
 double length_m(const Polyline& points) noexcept;
 
 /// Cuts the polyline at remaining lengths offset_m, offset_m + piece_m, offset_m + 2 piece_m, ... The lengths

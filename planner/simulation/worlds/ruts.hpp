@@ -20,7 +20,7 @@ class Ruts {
   void moved(double distance_m) noexcept { odometer_m_ += distance_m; }
   /// The rover reversed its direction: all squares behind it are ruts at once.
   void turnBack() noexcept { odometer_m_ += 3.0 * square_m_; }
-  /// Number of earlier wheel passes at a place.
+  /// Returns the number of earlier wheel passes at a place.
   int passes(const maps::Point& place) const;
 
  private:
