@@ -90,7 +90,7 @@ Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column
           .series = {base, refined, measured}};
 }
 
-/// Predicted over measured values; on the dashed line both are equal.
+/// Plots predicted against measured values; on the dashed line both are equal.
 Plot againstMeasured(const std::vector<LeftOutErrors>& all, Channel channel) {
   const Plot over = overColumn(all, "slip", channel);
   Series base = over.series[0], refined = over.series[1];

@@ -24,7 +24,7 @@ struct CostWeights {
 /// loads:
 ///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
 ///   - leaves: the climb with the same strength reserve, the loss of strength until failure. A loss d reduces
-///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust over load at
+///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust / load at
 ///     the reference slip;
 ///   - brakes: the descent with the same braking reserve, if descents fail at most 0.16 beyond the pitch
 ///     limit.
@@ -36,13 +36,14 @@ struct CostWeights {
 /// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
 /// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
 /// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
-/// intervals, the interval nearest to level ground is used; of equally near intervals, the longest. Immutable.
+/// intervals, the interval nearest to level ground is used; of equally near intervals, the longest.
+/// Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
   struct Level {
     double first = 0.0, last = -1.0;  ///< interval of gradients along without failure; first > last: empty
-    double thrust = 1.0;              ///< gross thrust over load at the reference slip [-], > 0
+    double thrust = 1.0;              ///< gross thrust / load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
              const TravelCost::Limits& limits);

@@ -89,7 +89,8 @@ struct TravelCurve {
     return at.whole + static_cast<int>(at.share > 0.0F);
   }
 
-  /// A fractional node index >= 0 as the index of the node at or before it, and the fraction to the next node.
+  /// A fractional node index >= 0 as the index of the node at or before it, and the fraction to the next
+  /// node.
   struct Between {
     int whole;
     float share;  ///< [0, 1]

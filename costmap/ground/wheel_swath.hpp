@@ -13,8 +13,8 @@ namespace talus::costmap {
 /// Computes the drawbar pull over load [-] of a whole rover whose centre is in a cell, from the ground under
 /// all its wheels.
 ///
-/// The wheels of a rigid rover have equal slip, so their pulls add: the pull over load of the rover is the
-/// mean over its wheels, each on the weakest cell within its width. The result is the least mean over all
+/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean of DP/W of
+/// its wheels, each on the weakest cell within its width. The result is the least mean over all
 /// positions of the centre within the cell (edges, corners and pose error included) and over 16 headings,
 /// 11.25 degrees apart, turns in place included; or the pull of the cell's own ground if less. The standard
 /// deviation and the sinkage are the maxima over the cells that a wheel may touch. Immutable.

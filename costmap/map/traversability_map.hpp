@@ -90,9 +90,9 @@ class TraversabilityMap {
   /// Replaces a window of the ground and publishes the window, with all learned evidence, as one new version.
   /// The new version equals a map that was built with these heights, rocks, classes and keep-out areas. Only
   /// cells whose footprint, clearance or wheel swath overlaps the window are measured again. Evidence stays
-  /// assigned to the class for which the evidence was recorded. Throws std::invalid_argument with place and remedy for a patch of another
-  /// resolution, outside the map, without an observation, or with an invalid value; the map is then
-  /// unchanged.
+  /// assigned to the class for which the evidence was recorded. Throws std::invalid_argument with place and
+  /// remedy for a patch of another resolution, outside the map, without an observation, or with an invalid
+  /// value; the map is then unchanged.
   void patch(const SurfacePatch& patch);
 
   /// The map of a window shifted by `tiles` tiles of 64 cells eastward (columns) and northward (rows). The
@@ -102,8 +102,8 @@ class TraversabilityMap {
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
-  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running planner
-  /// keeps its version. If the numbers of cost curves are exhausted, all cells get new numbers with coarser
+  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running
+  /// planner keeps its version. If no index of a cost curve is free, all cells get new indices with coarser
   /// steps (GroundKind).
   ///
   /// The costs equal those of publishAll() to the bit, for any sequence of changes. A cell depends on its

@@ -64,8 +64,8 @@ inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Haza
 /// Marks all cells as Near that have a point closer than inflation_m to a cell with one of the hazards
 /// `spreading`; if Unknown is one of them, also cells close to the border of the map.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
-/// Marks only cells of `box`, which must lie inside the map; the result in the box is that of inflate() on all
-/// cells.
+/// Marks only cells of `box`, which must lie inside the map; the result in the box is that of inflate() on
+/// all cells.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
              const maps::CellBox& box);
 /// Returns the greatest column or row offset between a cell and the cells marked for that cell.

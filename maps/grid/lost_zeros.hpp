@@ -22,8 +22,8 @@ struct LostCells {
 };
 
 /// Finds connected regions of zeros that are lost data: a lost disk block leaves zero bytes in a file of
-/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0 to
-/// the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
+/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0
+/// to the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
 /// exceeds three times the largest of these three steps. A region is lost if more than half of its border
 /// steps are abrupt.
 ///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.

@@ -54,8 +54,8 @@ void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, i
   }
 }
 
-// Returns the costs of the eight steps into a corner of cells. `below` and `above` point to the western of the
-// two cells south and north of the corner.
+// Returns the costs of the eight steps into a corner of cells. `below` and `above` point to the western of
+// the two cells south and north of the corner.
 DirectionCosts stepsInto(const DirectionCosts* below, const DirectionCosts* above) noexcept {
   constexpr float root = 1.4142135F;
   DirectionCosts into{};

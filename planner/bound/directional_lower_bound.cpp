@@ -92,9 +92,9 @@ double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 
   return std::max(0.0, most - before[k]);
 }
 
-// Returns the costs of the eight headings for which the gauge is below the limit of every direction. Each round
-// raises each cost by half of its allowed increase. Two neighbouring headings share a limit, so that the two
-// halves together stay within the limit.
+// Returns the costs of the eight headings for which the gauge is below the limit of every direction. Each
+// round raises each cost by half of its allowed increase. Two neighbouring headings share a limit, so that
+// the two halves together stay within the limit.
 std::array<double, 8> raised(const ByDirection& limit) noexcept {
   std::array<double, 8> prices{};
   prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));

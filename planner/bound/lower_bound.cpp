@@ -36,8 +36,8 @@ double planeBound_J(const costmap::CostGrid& map, const Segment& places, double 
   DirectionalCostBounds of(map.cost());
   DirectionalCostBounds::Limits limits, least;
   least.fill(std::numeric_limits<float>::infinity());
-  // Returns the cost [J/m] of the direction `way`, composed of the headings i and j; infinite if `way` does not
-  // lie between them.
+  // Returns the cost [J/m] of the direction `way`, composed of the headings i and j; infinite if `way` does
+  // not lie between them.
   const auto price = [&](int i, int j) {
     const costmap::Direction a = DirectionalCostBounds::heading(i), b = DirectionalCostBounds::heading(j);
     const double det = a.x * b.y - a.y * b.x, p = way.x * b.y - way.y * b.x, q = a.x * way.y - a.y * way.x;

@@ -10,8 +10,9 @@
 
 namespace talus::planner {
 
-/// Lower bounds [J] of the cost of a motion as long as one cell side, by heading, and the resulting limits for
-/// a function that is linear on each triangle of the cell (CellMesh). Triangles are numbered by their first corner.
+/// Lower bounds [J] of the cost of a motion as long as one cell side, by heading, and the resulting limits
+/// for a function that is linear on each triangle of the cell (CellMesh). Triangles are numbered by their
+/// first corner.
 struct TriangleCosts {
   static constexpr std::size_t kStored = DirectionalCostBounds::kHeadings + 12;
   std::array<float, kStored> prices;  ///< by heading; the first 12 are repeated at the end

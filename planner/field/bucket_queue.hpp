@@ -17,7 +17,7 @@ class BucketQueue {
   BucketQueue(unsigned shift, std::uint64_t reach)
       : shift_(shift), ring_(std::bit_ceil((reach >> shift) + 2)) {}
 
-  /// Bucket number of a key.
+  /// Returns the index of the bucket of a key.
   std::uint64_t bucketOf(std::uint64_t key) const noexcept { return key >> shift_; }
 
   /// Returns the index of the current bucket.

@@ -10,8 +10,8 @@ namespace {
 
 using maps::Cell;
 
-// Computes lower bounds [units] of the cost of a path that leaves the box at one rim cell and enters the box at
-// another. Each quantity has its own array, because to() compares an improved rim cell with all rim cells.
+// Computes lower bounds [units] of the cost of a path that leaves the box at one rim cell and enters the box
+// at another. Each quantity has its own array, because to() compares an improved rim cell with all rim cells.
 class RimDetours {
  public:
   RimDetours(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {

@@ -18,8 +18,8 @@ namespace {
 // [units] Links have costs in joules; rounding may change the order of paths whose costs differ by this much.
 constexpr std::uint32_t kSlack = 1;
 
-// Cost from the start [units] by cell index; the largest uint32 until set. Memory pages are allocated only when
-// written.
+// Cost from the start [units] by cell index; the largest uint32 until set. Memory pages are allocated only
+// when written.
 class SparseCosts {
  public:
   explicit SparseCosts(std::size_t cells)

@@ -23,8 +23,9 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-// Number of points on each side of a cell, and in each row and column of points inside a cell. kCoarse above kFineCells cells, kFinest up to
-// kTinyCells, kFine between; if kFine finds no route on a map of up to kFinestCells, kFinest is tried.
+// Number of points on each side of a cell, and in each row and column of points inside a cell. kCoarse above
+// kFineCells cells, kFinest up to kTinyCells, kFine between; if kFine finds no route on a map of up to
+// kFinestCells, kFinest is tried.
 struct Fineness {
   int side, inner;
 };

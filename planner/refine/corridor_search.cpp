@@ -39,8 +39,8 @@ class LabelQueue {
     return bucketOf(label) == bucketOf(other) && bucketOf(label) > current_;
   }
 
-  // Calls take(number) for every queued number, including those queued by take(). Entries whose current
-  // label(number) belongs to another bucket are skipped.
+  // Calls take(node) for every queued node index, including those queued by take(). Entries whose current
+  // label(node) belongs to another bucket are skipped.
   template <typename Label, typename Take>
   void run(Label label, Take take) {
     for (std::size_t taken = 0; taken < entries_.size(); ++current_) {
@@ -88,8 +88,8 @@ class EdgePointSearch {
   EdgePath run(const Segment& ends, double below_J);
 
  private:
-  // A point on the edge of a cell of the corridor: index of its node, cells on both sides, map coordinates, and
-  // cost [J per metre of cell size] of the first or last motion of the route, which ends at the point.
+  // A point on the edge of a cell of the corridor: index of its node, cells on both sides, map coordinates,
+  // and cost [J per metre of cell size] of the first or last motion of the route, which ends at the point.
   struct EdgePoint {
     std::uint32_t node;
     std::size_t cell, beyond;

@@ -42,8 +42,8 @@ class EdgeCrossings {
   /// End points of the motions from a point of a side, in the order of prices().
   const End* ends(int side, int k) const noexcept { return &ends_[first(side, k)]; }
 
-  /// Writes to `paid` the cost of each motion from a point of a side plus `here`; infinite if the heading is not
-  /// allowed. `paid` needs space for count() values rounded up to a multiple of kVector.
+  /// Writes to `paid` the cost of each motion from a point of a side plus `here`; infinite if the heading is
+  /// not allowed. `paid` needs space for count() values rounded up to a multiple of kVector.
   void prices(int side, int k, costmap::CellCode cell, float here, float* paid) const noexcept;
 
   static constexpr int kVector = 4;

@@ -55,7 +55,7 @@ class HeadingSet {
   std::pmr::vector<HeadingArc> arcs_;
 };
 
-/// Cache of allowedHeadings() by cell code. Cells of curve number `free`, if given, permit every heading.
+/// Cache of allowedHeadings() by cell code. Cells of curve index `free`, if given, permit every heading.
 /// Large maps have millions of codes; their sets are allocated in an arena, which is freed at once. Not
 /// thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
@@ -90,8 +90,8 @@ class HeadingSets {
   };
 
  private:
-  // Cell code and heading set of a recent request, because neighbouring cells are requested repeatedly. Sets in sets_ keep
-  // their address.
+  // Cell code and heading set of a recent request, because neighbouring cells are requested repeatedly. Sets
+  // in sets_ keep their address.
   struct Recent {
     std::uint32_t bits = 0;
     const HeadingSet* set = nullptr;

@@ -61,7 +61,7 @@ class SlopeEquilibrium::Solver {
     double slip = 0.0, angle_rad = 0.0, difference = 0.0;
   };
 
-  /// Residuals of the force balance along and across, over the normal force, and of the yaw moment over
+  /// Residuals of the force balance along and across, divided by the normal force, and of the yaw moment over
   /// normal force and half wheelbase; derivatives by the unknowns at constant loads.
   struct Balance {
     Eigen::Vector3d rest = Eigen::Vector3d::Zero();

@@ -27,7 +27,8 @@ Planar demandOf(const Gradient& gradient) noexcept;
 struct SlopeOptions {
   double max_slip = 0.8;  ///< above this slip: immobilised; (0, 1], as MobilityOptions::max_slip (ours)
   double max_slip_angle_rad =
-      /// Above this slip angle: sliding; (0, 1.04]. The wheel model was compared with data up to 45 deg (ours).
+      /// Above this slip angle: sliding; (0, 1.04]. The wheel model was compared with data up to 45 deg
+      /// (ours).
       0.7854;
 };
 

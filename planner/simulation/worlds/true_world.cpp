@@ -32,7 +32,7 @@ struct LoadedTable {
   double share;  // share of the rover's weight
 };
 
-// Required force over the normal force; `across` is a magnitude.
+// Required force divided by the normal force; `across` is a magnitude.
 struct RequiredForce {
   double along, across;
 };
