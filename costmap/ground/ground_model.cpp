@@ -327,8 +327,7 @@ TravelState GroundModel::state(int class_index, const GroundBelief& belief, doub
 
   TravelState state;
   state.slip = static_cast<float>(s.slip);
-  // Braking requires more torque on stronger ground of an equal slope; weaker ground gets the larger value,
-  // too.
+  // The larger braking torque on stronger ground of an equal slope is used for weaker ground, too.
   state.sinkage_m = static_cast<float>(
       std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);
