@@ -25,8 +25,9 @@ class OutputFile {
   /// Writes `content` to the temporary file and synchronises it to the disk. Throws InputError on failure.
   void write(std::string_view content);
 
-  /// Synchronises a temporary file that other code wrote to the disk. A power failure after commit() then leaves a complete
-  /// file, and none of several files is moved before all are on the disk. Throws InputError on failure.
+  /// Synchronises a temporary file that other code wrote to the disk. A power failure after commit() then
+  /// leaves a complete file, and none of several files is moved before all are on the disk. Throws InputError
+  /// on failure.
   void sync() const;
 
   /// Moves the temporary file to the final path. Throws InputError on failure and leaves the previous file
@@ -36,7 +37,8 @@ class OutputFile {
   /// Throws InputError with the message "cannot be written: `reason`".
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// As fail(), for a library whose message lacks the system's reason: states that reason if the file cannot grow.
+  /// Throws as fail(), with the system's reason if the file cannot grow. For libraries whose messages lack
+  /// that reason.
   [[noreturn]] void failToGrow(const std::string& reason) const;
 
  private:

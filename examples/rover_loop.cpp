@@ -46,7 +46,7 @@ talus::terramech::Rover rover() {
   return rover;
 }
 
-// Returns a map without observations: unknown ground counts as level ground of its single soil class.
+// Returns a map without observations: unknown ground is planned as level ground of its single soil class.
 talus::costmap::TraversabilityMap unseen() {
   talus::terramech::Soil soil;
   soil.name = "regolith";

@@ -46,7 +46,7 @@ struct Context {
     if (answers_stop) *answers_stop = true;
   }
 
-  /// Number of threads to use, at least 1: the user's limit, or one per core.
+  /// Returns the number of threads to use, at least 1: the user's limit, or one per core.
   int workers() const noexcept;
 
   /// Prints one line "talus: warning: TEXT" to stderr, unless `quiet` is set.

@@ -11,8 +11,8 @@ namespace talus::cli {
 /// Widest line of --help, in characters.
 inline constexpr std::size_t kHelpWidth = 100;
 
-/// Index of the end of a type name: the first colon, after which CLI11 lists the checks. A colon in "[:UNIT]"
-/// does not count.
+/// Returns the index at which a type name ends: that of the first colon, after which CLI11 lists the checks.
+/// A colon in "[:UNIT]" is skipped.
 std::size_t endOfTypeName(const std::string& type);
 
 /// Breaks the text at blanks into lines of at most `width` characters; a longer word gets its own line.

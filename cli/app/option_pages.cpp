@@ -10,7 +10,7 @@
 namespace talus::cli {
 namespace {
 
-// Text of a manual page. No line begins with a roff request or is wider than a terminal.
+// Returns the text of a manual page. No line begins with a roff request or is wider than a terminal.
 std::string roff(std::string_view text) {
   constexpr std::size_t kWidth = 72;
   std::string out;

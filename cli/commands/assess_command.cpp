@@ -174,7 +174,7 @@ Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) 
       .series = {pulls, {.name = "required by the slope", .x = ends, .y = std::vector(ends.size(), asked)}}};
 }
 
-// Number and share of rows in each category.
+// Returns the number and share of rows in each category.
 std::vector<std::vector<std::string>> countsOf(const std::vector<Assessment>& rows) {
   std::vector<std::vector<std::string>> out;
   for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {

@@ -92,7 +92,7 @@ bool makeFolder(const std::string& folder) {
   return made;
 }
 
-// A name given twice would be counted twice.
+// The runs of a name given twice would enter the statistics twice.
 void refuseTwice(const std::string& what, std::vector<std::string> names) {
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);

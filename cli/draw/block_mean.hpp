@@ -40,7 +40,7 @@ class Blocks {
         visit(maps::Cell{column, row});
   }
 
-  /// Mean of value(cell) over each block without NaNs; NaN if all values are NaN.
+  /// Returns the mean of value(cell) over each block without NaNs; NaN if all values are NaN.
   template <typename Value>
   maps::Raster<float> mean(Value value) const {
     maps::Raster<float> out(coarse_, std::nanf(""));

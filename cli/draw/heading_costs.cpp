@@ -17,8 +17,8 @@ using costmap::TravelCurve;
 constexpr std::uint32_t kNoCurve = 255;
 constexpr double kMostWord = 16777214.0;  // largest 24-bit value, less one for "refused"
 
-/// Nodes of the cost curves within the limits of pitch and roll: bins of a row from the steepest descent,
-/// rows from the level row.
+/// Range of the cost-curve nodes within the limits of pitch and roll: index of the bin of the steepest
+/// descent, number of bins in a row, and number of rows from the level row.
 struct Nodes {
   int first_bin, bins, rows;
 

@@ -7,7 +7,7 @@
 
 namespace talus::cli {
 
-/// Text with the characters that HTML reads as markup escaped.
+/// Returns the text with the characters that HTML reads as markup escaped.
 std::string escaped(const std::string& text);
 
 /// A self-contained HTML page of headings, paragraphs, tables and charts, in the order they are added.

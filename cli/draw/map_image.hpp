@@ -18,7 +18,7 @@ Image shadeImage(const maps::Raster<float>& shade);
 /// Category colours, mixed by the shares of a cell; cells without data are transparent.
 Image categoryImage(const maps::Raster<CategoryShares>& categories);
 
-/// Values in the colours of the layer; NaN is transparent.
+/// Returns the values in the colours of the layer; NaN is transparent.
 Image valueImage(const ValueLayer& layer);
 
 /// Colour scale of a layer.

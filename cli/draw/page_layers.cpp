@@ -68,8 +68,8 @@ maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
           grid.south_west.y_m + north * grid.height * grid.resolution_m};
 }
 
-/// Largest interpolation error [m] of the page at centres of lattice squares; checked on both diagonals of
-/// the lattice.
+/// Returns the largest interpolation error [m] of the page at centres of lattice squares; checked on both
+/// diagonals of the lattice.
 double latticeError_m(const maps::Georeference& places, const maps::Grid& grid, int intervals) {
   double most = 0.0;
   for (int i = 0; i < intervals; ++i)

@@ -11,7 +11,7 @@
 /// Charts of lines and points.
 namespace talus::cli {
 
-/// One curve or cloud of points.
+/// Data and style of one curve or one cloud of points.
 struct Series {
   enum class Mark { Line, Points };
 

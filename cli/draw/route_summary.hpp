@@ -22,7 +22,7 @@ std::string summaryLine(std::string_view what, std::string_view value);
 /// The summary as lines of text.
 std::string summaryText(const planner::Route& route);
 
-/// Energy in J, kJ or MJ with four digits.
+/// Returns the energy in J, kJ or MJ with four digits.
 std::string energyText(double joules);
 
 /// Duration as "2 h 05 min", "45 s" or "3 d 04 h".

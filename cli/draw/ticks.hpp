@@ -14,7 +14,7 @@ struct Range {
 /// Round tick values inside the range: multiples of 1, 2 or 5 times a power of ten, about `count` values.
 std::vector<double> ticks(Range range, int count);
 
-/// Largest 1, 2 or 5 times a power of ten that does not exceed the value; value > 0.
+/// Returns the largest 1, 2 or 5 times a power of ten that does not exceed the value; value > 0.
 double roundBelow(double value);
 
 /// The number as a tick label, with no more decimals than the step needs.

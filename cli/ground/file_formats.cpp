@@ -11,7 +11,7 @@ namespace {
 
 using terramech::FileKey;
 
-// Number of a class and its soil, instead of a soil name.
+// Returns the number of a class and its soil, instead of a soil name.
 std::span<const FileKey> classKeys() {
   static constexpr FileKey kKeys[] = {
       {"terrain_classes", "mapping of class numbers, 0 to 254, to soils; classes is the same"},

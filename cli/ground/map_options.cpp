@@ -151,8 +151,8 @@ costmap::CostLayer costLayer(const std::string& given, const maps::ElevationMap&
   return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.dearest_J_per_m};
 }
 
-// Cells without rock data become unknown ground (NaN); if unknown ground is permitted, such cells cost no
-// extra energy.
+// Cells without rock data become unknown ground (NaN); if unknown ground is permitted, such cells
+// cost no extra energy.
 costmap::CostLayer unseenRocks(const maps::Raster<std::uint8_t>& unseen) {
   costmap::CostLayer layer{.name = "rocks", .added_J_per_m = maps::Raster<float>(unseen.grid())};
   std::ranges::transform(unseen.values(), layer.added_J_per_m.values().begin(), [](std::uint8_t hidden) {

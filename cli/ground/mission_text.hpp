@@ -13,8 +13,8 @@ struct MissionDraft {
   std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]
 };
 
-/// Text of a mission file with all keys that the reader accepts. Keys without a value in the draft are
-/// comments with their meaning.
+/// Returns the text of a mission file with all keys that the reader accepts. Keys without a value in the
+/// draft are comments with their meaning.
 std::string missionText(const MissionDraft& draft);
 
 }  // namespace talus::cli

@@ -61,7 +61,7 @@ std::vector<Point> ownMetres(const json& document) {
   return points;
 }
 
-// Positions of a line or of a single-part track; null for other geometries.
+// Returns the positions of a line or of a single-part track; null for other geometries.
 const json* positionsOf(const json& geometry, const std::string& path) {
   const json& positions = geometry["coordinates"];
   const std::string type = geometry.value("type", "");

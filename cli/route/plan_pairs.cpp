@@ -21,7 +21,7 @@ constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
 constexpr std::size_t kNeeded = 4;
 constexpr double kGreatestPlace_m = 1e9;  // as in telemetry; beyond any map, and any heading
 
-// Index of each column in the file; nothing for a missing heading column.
+// Returns the index of each column in the file; empty for a missing heading column.
 std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::string& path,
                                                                   const std::vector<std::string>& header) {
   std::array<std::optional<std::size_t>, kColumns.size()> found;

@@ -32,7 +32,7 @@ using BeliefResults = std::array<std::vector<planner::WorldResult>, planner::kBe
 /// All beliefs in the same worlds, compared with perfect knowledge.
 nlohmann::ordered_json asJson(const BeliefResults& beliefs);
 
-/// The same results as text: lines or a table.
+/// Returns the results of asJson() as text: lines or a table.
 std::string asText(const planner::WorldResult& result);
 std::string asText(const std::vector<planner::WorldResult>& results);
 std::string asText(const BeliefResults& beliefs);

@@ -14,7 +14,7 @@ namespace talus::cli {
 /// Named predictions, rows x channels.
 using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 
-/// Predicted over measured values of one channel; on the dashed line both are equal. Rows without a
+/// Plots predicted against measured values of one channel; on the dashed line both are equal. Rows without a
 /// measurement are omitted.
 Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
                    const std::vector<NamedPredictions>& predictions);

@@ -63,7 +63,7 @@ void table(HtmlReport& page, const std::vector<LeftOutErrors>& all) {
   page.table({"held out", "channel", "base", "refined", "noise floor", "regression", ""}, rows);
 }
 
-/// Values over the held-out column; over the row number if the column contains text.
+/// Plots values against the held-out column, or against the row index if the column contains text.
 Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column, Channel channel) {
   Series base{.name = "base", .x = {}, .y = {}, .mark = Series::Mark::Points}, refined = base,
                                                                                measured = base;
@@ -90,7 +90,7 @@ Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column
           .series = {base, refined, measured}};
 }
 
-/// Predicted over measured values; on the dashed line both are equal.
+/// Plots predicted against measured values; on the dashed line both are equal.
 Plot againstMeasured(const std::vector<LeftOutErrors>& all, Channel channel) {
   const Plot over = overColumn(all, "slip", channel);
   Series base = over.series[0], refined = over.series[1];

@@ -17,11 +17,11 @@ std::string proposalTable(const std::vector<terramech::ProposedRun>& runs,
 nlohmann::ordered_json proposalsJson(const std::vector<terramech::ProposedRun>& runs);
 nlohmann::ordered_json scoresJson(const std::vector<terramech::CauseScore>& scores);
 
-/// One line per run, with the columns that vary in the table and each cause's prediction of the mean of the
-/// run's rows.
+/// Returns one line per run, with the columns that vary in the table and each cause's prediction of the mean
+/// of the run's rows.
 std::string proposalText(const std::vector<terramech::ProposedRun>& runs, const terramech::Trial& trial);
 
-/// One line per cause.
+/// Returns one line per cause.
 std::string causeScoreText(const std::vector<terramech::CauseScore>& scores);
 
 }  // namespace talus::cli

@@ -11,7 +11,7 @@ namespace talus::cli {
 /// Rows and columns of a large table that were not searched, one line each; empty if all were searched.
 std::string searchedText(const terramech::TraceResult& result);
 
-/// As JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
+/// Returns JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
 nlohmann::ordered_json searchedJson(const terramech::TraceResult& result);
 
 }  // namespace talus::cli

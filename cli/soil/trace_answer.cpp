@@ -56,7 +56,7 @@ std::string strainedText(const Answer& a) {
   return text;
 }
 
-/// Text on effects with several equivalent causes; empty if each effect has one cause.
+/// Returns the text on effects with several equivalent causes; empty if each effect has one cause.
 std::string equalCauses(const TraceResult& result) {
   std::string text;
   for (const TracedEffect& e : result.effects) {

@@ -29,7 +29,7 @@ struct EffectRole {
 /// scale of its channel, ten times the difference between the two contact solvers.
 std::vector<EffectRole> rolesOf(const terramech::TraceResult& result);
 
-/// One line about an effect that adds nothing; empty for other effects.
+/// Returns one line about an effect that adds nothing; empty for other effects.
 std::string roleText(const EffectRole& role);
 
 }  // namespace talus::cli

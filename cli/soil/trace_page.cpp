@@ -55,7 +55,7 @@ Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel ch
 }
 
 /// Residuals without one effect, and the contribution of that effect, row by row over its column (over the
-/// row number if the effect acts on a constant or text).
+/// row index if the effect acts on a constant or text).
 Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at,
                 const Eigen::MatrixXd& level, const Eigen::VectorXd& sinkage) {
   RefinedModel without = r.refined;

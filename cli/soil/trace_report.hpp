@@ -29,17 +29,18 @@ std::vector<FittedNumber> fittedNumbers(const terramech::TracedEffect& effect);
 /// A p-value as text; as an upper bound if below 0.001 or below the resolution of the drawn tables.
 std::string pText(double p);
 
-/// One line about the other causes that the rows cannot separate from an effect; requires at least one such
-/// cause.
+/// Returns one line about the other causes that the rows cannot separate from an effect; requires at least
+/// one such cause.
 std::string equalText(const terramech::TracedEffect& effect);
 
 /// The measurement that would discriminate between an effect and its closest alternative.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 
-/// One line about rows left out because the wheel is sunk to its axle; requires at least one such row.
+/// Returns one line about rows left out because the wheel is sunk to its axle; requires at least one such
+/// row.
 std::string beyondAxleText(const terramech::TableTrace& trace);
 
-/// One line about a soil parameter far from its prior.
+/// Returns one line about a soil parameter far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
 
 nlohmann::ordered_json traceJson(const terramech::TableTrace& trace);

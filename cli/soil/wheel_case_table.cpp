@@ -65,7 +65,7 @@ bool isResult(const std::string& name) {
   return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
 }
 
-/// Index of each input in a row; nothing for a missing optional input.
+/// Returns the column index of each input; empty for a missing optional input.
 std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
   terramech::checkColumnUnits(reader.header(), wheelCaseColumns(), path);
   std::vector<std::optional<std::size_t>> at;

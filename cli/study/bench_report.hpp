@@ -39,7 +39,7 @@ struct WorldLine {
   double median_max_slip = 0.0;  ///< of all driven routes [-]; NaN: none
 };
 
-/// One line per group and planner; empty if no case has a world.
+/// Returns one line per group and planner; empty if no case has a world.
 std::vector<WorldLine> drivesOf(const planner::BenchmarkPlan& plan,
                                 const std::vector<planner::BenchmarkRun>& runs);
 

@@ -76,7 +76,7 @@ class CostGrid {
   std::uint64_t version() const noexcept { return content_.version; }
   int tileColumns() const noexcept { return tile_columns_; }
 
-  /// Code of a cell, which must lie inside the grid.
+  /// Returns the cell code (gradients and curve index) of a cell, which must lie inside the grid.
   CellCode at(maps::Cell c) const noexcept {
     const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
     return content_.tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
@@ -98,12 +98,12 @@ struct Revision {
   std::vector<maps::CellBox> ranges;  ///< the changed cells, inside the grid
   /// New code of a cell of the ranges, from its position and its old code.
   std::function<CellCode(maps::Cell, CellCode)> code;
-  /// Cost function of the new version; called after all codes.
+  /// Returns the cost function of the new version; called after `code` was called for all changed cells.
   std::function<std::shared_ptr<const TravelCost>()> cost;
   std::optional<HeightTable> elevation_m{};  ///< elevation of the new version; nullopt: unchanged
 };
 
-/// The next version: copies the tiles that overlap the ranges and shares all others.
+/// Returns the next version of the grid: copies the tiles that overlap the ranges and shares all others.
 CostGrid revised(const CostGrid& grid, const Revision& revision);
 
 }  // namespace talus::costmap

@@ -7,7 +7,7 @@
 
 namespace talus::costmap {
 
-/// The same map with other cost weights; tiles are shared and refusals are unchanged. Throws
+/// Returns the map with other cost weights; tiles are shared and refusals are unchanged. Throws
 /// std::domain_error if the map has a curve without GroundCost::states, std::invalid_argument for a negative
 /// weight.
 std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights);

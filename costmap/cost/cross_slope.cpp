@@ -28,7 +28,7 @@ constexpr double kNowhere = 4.0;       // steeper than any cell
 constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
 constexpr float kSamePlace = 0.02F;    // [bins]
 
-// Position of a gradient in bins, clamped to the table.
+// Returns the fractional bin index of a gradient, clamped to the table.
 float placeOf(double gradient) {
   return static_cast<float>(std::clamp(gradient * TravelCurve::kBinsPerUnit + kBins / 2, 0.0, kBins - 1.0));
 }

@@ -24,7 +24,7 @@ struct CostWeights {
 /// loads:
 ///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
 ///   - leaves: the climb with the same strength reserve, the loss of strength until failure. A loss d reduces
-///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust over load at
+///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust / load at
 ///     the reference slip;
 ///   - brakes: the descent with the same braking reserve, if descents fail at most 0.16 beyond the pitch
 ///     limit.
@@ -36,13 +36,14 @@ struct CostWeights {
 /// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
 /// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
 /// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
-/// intervals, the interval nearest to level ground counts, of equally near intervals the longest. Immutable.
+/// intervals, the interval nearest to level ground is used; of equally near intervals, the longest.
+/// Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
   struct Level {
     double first = 0.0, last = -1.0;  ///< interval of gradients along without failure; first > last: empty
-    double thrust = 1.0;              ///< gross thrust over load at the reference slip [-], > 0
+    double thrust = 1.0;              ///< gross thrust / load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
              const TravelCost::Limits& limits);
@@ -54,15 +55,15 @@ class CrossSlope {
   /// For ground of either class: at each node the harder of both.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
-  /// Number of tabulated rows, row 0 included; later rows equal the last row, which refuses every heading
-  /// unless the limits are reached first.
+  /// Returns the number of tabulated rows, row 0 included; later rows equal the last row, which refuses every
+  /// heading unless the limits are reached first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / TravelCurve::kBins; }
 
   /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
   /// the climbs up to `leaves`. Risk and refusal: from `brakes` to `leaves`.
   TravelState state(const TravelTable& states, int row, int bin) const noexcept;
 
-  /// Costs [J/m] of all nodes, row by row: those of state().
+  /// Returns the costs [J/m] of state() at all nodes, row by row.
   std::shared_ptr<const std::vector<float>> costs(const TravelTable& states,
                                                   const CostWeights& weights) const;
 
@@ -70,13 +71,14 @@ class CrossSlope {
   /// b), those of a.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// Gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
+  /// Returns the gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
   double climb(const terramech::Gradient& gradient) const noexcept;
-  /// Maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
+  /// Returns the maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
   double steepest(double gradient) const noexcept;
 
  private:
-  // Positions in bins of TravelCurve; `refused` applies at any strength.
+  // Gradients of the three straight climbs (class comment), in bins of TravelCurve; `refused` applies at any
+  // strength.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
     float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
@@ -112,7 +114,7 @@ class CrossSlope {
   std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };
 
-/// Cost per metre on ground with these states and weights, with the rows of `crossing` if not null.
+/// Returns the cost [J/m] of ground with these states and weights, with the rows of `crossing` if not null.
 TravelCurve priced(const TravelTable& states, const CrossSlope* crossing, const CostWeights& weights);
 
 }  // namespace talus::costmap

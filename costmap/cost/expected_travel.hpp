@@ -22,9 +22,9 @@ struct ExpectedCost {
 /// literature). TravelState::risk_per_m covers the risk of permanent immobilisation. The expected cost never
 /// decreases with the standard deviation or the mean, by construction:
 ///   - The tabulated cost is the running maximum over the demand.
-///   - The quadrature is seven-point Gauss-Hermite: pairs of points mean -+ d of equal positive weight. A
-///     pair counts with the maximum of c(mean - d') + c(mean + d') over all d' <= d. For a convex cost, the
-///     maximum is the pair itself; elsewhere, the maximum prevents a lower cost for a greater uncertainty.
+///   - The quadrature is seven-point Gauss-Hermite: pairs of points mean -+ d of equal positive weight. The
+///     value of a pair is the maximum of c(mean - d') + c(mean + d') over all d' <= d. For a convex cost, the
+///     maximum is at d' = d; elsewhere, the maximum prevents a lower cost for a greater uncertainty.
 ///     The maximum is exact, because between the demands at which the slope of the tabulated cost falls the
 ///     sum has no interior maximum.
 /// Immutable and thread-safe.
@@ -37,16 +37,16 @@ class ExpectedTravel {
   double first() const noexcept { return first_; }
   double last() const noexcept { return last_; }
 
-  /// Expected cost for a normally distributed demand with mean <= last(). Demands below `least` count as
-  /// `least`: ground that is stronger than the soil does not propel the rover.
+  /// Expected cost for a normally distributed demand with mean <= last(). Demands below `least` are
+  /// raised to `least`: ground that is stronger than the soil does not propel the rover.
   ExpectedCost at(const Estimate& demand, double least) const noexcept;
 
-  /// Greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0, the sinkage
-  /// at the demand.
+  /// Returns the greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0,
+  /// the sinkage at the demand.
   double sinkage_m(double demand) const noexcept;
 
  private:
-  // Values at equal steps of the demand, linear between steps, constant outside.
+  // A quantity tabulated at equal steps of the demand, linear between steps, constant outside.
   struct Table {
     std::vector<double> values;
     std::vector<double> bends;  // demands at which the slope of the table decreases

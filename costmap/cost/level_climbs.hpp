@@ -13,7 +13,7 @@ double interpolated(const std::vector<double>& values, double at);
 /// Straight climbs under even loads, for finding the climb with the same cost as a two-dimensional slope.
 class LevelClimbs {
  public:
-  /// Uses row 0 (no gradient across); climbs beyond `last` count as `last`.
+  /// Uses row 0 (no gradient across); climbs beyond `last` are reduced to `last`.
   LevelClimbs(const SlopeRow& level, double last);
 
   /// For each state of a row: additional gradient of the straight climb with the same energy and time (>= 0),
@@ -31,12 +31,13 @@ class LevelClimbs {
   std::vector<double> energies_, times_, slips_;
 };
 
-/// Steepest climb without failure, and the gross thrust over load there.
+/// Gradient of the steepest climb without failure, and gross thrust divided by load at the reference slip
+/// [-].
 struct LevelStrength {
   double last, thrust;
 };
 
-/// Strength over load that the ground may lose until a slope fails; <= 0 if the slope fails without a loss. A
+/// Returns the loss of DP/W at which a slope fails; <= 0 if the slope fails without a loss. A
 /// loss of pull adds to the climb, and a loss of side force increases the effective gradient across. `losses`
 /// are the reductions of the steepest climb in rows of gradient across 1/64 apart.
 double strengthToLose(double along, double across, const LevelStrength& level,

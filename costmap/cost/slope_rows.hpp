@@ -36,7 +36,7 @@ class SlopeRows {
   /// this object.
   SlopeRows(const terramech::SlopeEquilibrium& equilibrium, double low, double high, double step);
 
-  /// The first gradient along, in steps.
+  /// Returns the smallest gradient along, in steps.
   int low() const noexcept { return low_; }
 
   SlopeRow solved(double across) const;

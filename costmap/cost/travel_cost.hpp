@@ -43,7 +43,7 @@ class CellCode {
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
   int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
   int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
-  /// The same gradient with another curve index.
+  /// Returns the code with an unchanged gradient and another curve index.
   CellCode withCurve(std::uint8_t curve) const noexcept {
     CellCode code = *this;
     code.bits_ = (bits_ & 0xffffff00U) | curve;
@@ -81,7 +81,7 @@ struct TravelCurve {
 
   /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
   static int bin(double gradient) noexcept;
-  /// Gradient at a node, or at a position between nodes.
+  /// Returns the gradient at a node, or at a position between nodes.
   static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
   /// First row whose gradient is at least |across|.
   static int row(double across) noexcept {
@@ -89,7 +89,8 @@ struct TravelCurve {
     return at.whole + static_cast<int>(at.share > 0.0F);
   }
 
-  /// Node at or before a position in nodes (>= 0), and the fraction of the way to the next node.
+  /// A fractional node index >= 0 as the index of the node at or before it, and the fraction to the next
+  /// node.
   struct Between {
     int whole;
     float share;  ///< [0, 1]
@@ -100,11 +101,11 @@ struct TravelCurve {
     return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
   }
 
-  /// Costs of all rows, and the index of the last row.
+  /// rows(): costs [J/m] of all nodes, row by row, kBins a row. lastRow(): index of the last row.
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 
-  /// Cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
+  /// Returns the cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
   float price(double along, double across) const noexcept {
     constexpr float blocked = std::numeric_limits<float>::infinity();
     const double place = along * kBinsPerUnit + kBins / 2;
@@ -130,14 +131,14 @@ struct TurnCost {
   double time_s = 0.0;    ///< >= 0
 };
 
-/// Cost of a turn of one radian on one kind of ground.
+/// Costs of a turn of one radian on one kind of ground, for the three ways to turn.
 struct TurnCosts {
   TurnCost on_arc;
   TurnCost in_place;
   TurnCost at_vertex;  ///< vertex of a polyline: in place if the rover turns in place, else on an arc
 };
 
-/// One kind of ground: the cost curve for planners and the states behind the costs.
+/// Cost curve of one kind of ground for planners, and the tabulated states from which the costs follow.
 struct GroundCost {
   TravelCurve curve;
   std::shared_ptr<const TravelTable> states;  ///< may be null if details are not needed (tests)
@@ -180,7 +181,8 @@ class TravelCost {
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
   TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty doubt = {});
 
-  /// Cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused motion.
+  /// Returns the cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused
+  /// motion.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
 
   /// State behind costPerMetre(): the cost is finite if and only if refusal is None. Zeros with category
@@ -190,8 +192,8 @@ class TravelCost {
   /// Slip angle, side force and stability margin on the cell.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
-  /// Cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns() has the
-  /// costs by curve.
+  /// Returns the cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns()
+  /// has the costs by curve.
   TurnCost turn(CellCode cell) const noexcept {
     return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnCost{};
   }

@@ -13,8 +13,8 @@ struct TravelPolicy {
   bool allow_unknown = false;
 
   double slope_margin_rad = 5.0 * kDegree;  ///< category limits at tan(slope -+ margin), thesis 3.5: 5 deg
-  double sinkage_threshold = 0.5;  ///< sinkage over radius without effect on the category, thesis 3.5 [-]
-  /// Sinkage over radius above which ground is dangerous [-]; 0: clearance of the rover over wheel radius.
+  double sinkage_threshold = 0.5;           ///< z/r without effect on the category, thesis 3.5 [-]
+  /// z/r above which ground is dangerous [-]; 0: clearance of the rover divided by wheel radius.
   double sinkage_critical = 0.0;
   /// Refuse ground if the probability that the drawbar pull is insufficient exceeds this limit [-].
   double max_immobilisation = 0.5;

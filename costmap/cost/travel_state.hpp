@@ -23,7 +23,7 @@ enum class Refusal : std::uint8_t {
   Tips,       ///< centre of mass beyond the wheel base
 };
 
-/// Text of a reason: "required drawbar pull above the available drawbar pull".
+/// Returns the text of a reason: "required drawbar pull above the available drawbar pull".
 const char* toText(Refusal refusal) noexcept;
 
 /// State of driving over one kind of ground at one gradient: the quantities behind a cost. Per wheel where
@@ -36,7 +36,7 @@ struct TravelState {
   float time_s_per_m = 0.0F;    ///< expectation over the soil uncertainty
   float risk_per_m = 0.0F;      ///< hazard rate of immobilisation: P over d metres = 1 - exp(-risk_per_m d)
   float weak = 0.0F;            ///< probability that the available pull is below the required pull, 0 to 1
-  float pull_margin = 0.0F;     ///< drawbar pull over load at the reference slip minus the required pull [-]
+  float pull_margin = 0.0F;     ///< DP/W at the reference slip minus the required DP/W [-]
   terramech::Category category = terramech::Category::Unknown;  ///< at this gradient along the heading
   Refusal refusal = Refusal::None;
   std::uint8_t class_index = 0;  ///< index of the ground's class in the model

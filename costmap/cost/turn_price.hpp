@@ -7,14 +7,14 @@
 
 namespace talus::costmap {
 
-/// Cost of a turn with weights of energy [-] and time [W].
+/// Returns the cost of a turn [J]: energy * energy_J + time_W * time_s.
 inline TurnCost priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
   return {.cost_J = energy * effort.energy_J + time_W * effort.time_s,
           .energy_J = effort.energy_J,
           .time_s = effort.time_s};
 }
 
-/// The same turns with other weights.
+/// Returns the turns with cost_J recomputed from other weights of energy [-] and time [W].
 inline TurnCosts reweighted(TurnCosts turns, double energy, double time_W) noexcept {
   for (TurnCost* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
     *price = priced({price->energy_J, price->time_s}, energy, time_W);

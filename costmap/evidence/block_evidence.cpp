@@ -16,11 +16,11 @@ namespace kind = reading_kind;
 
 constexpr double kStep = 0.01;
 constexpr double kLowest = -1.28;
-constexpr double kSurest = 0.025;  // standard deviation of the first grade
+constexpr double kSurest = 0.025;  // standard deviation of grade 0 [-]
 constexpr double kModel =
-    0.02;  // of thesis Eq. 3.12 as a model of DP/W, the same for all readings of a place
-constexpr double kSinkageStd = 0.02;    // of one sinkage over radius
-constexpr double kReferenceStd = 0.05;  // of the sample that counts as one
+    0.02;  // error of thesis Eq. 3.12 as a model of DP/W, common to all readings of a place [-]
+constexpr double kSinkageStd = 0.02;    // of one reading of sinkage over radius [-]
+constexpr double kReferenceStd = 0.05;  // of a reading that counts as one sample [-]
 constexpr double kLeastShared = 0.02, kSharedStep = 1.5;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -33,8 +33,8 @@ std::uint8_t stepped(double steps) noexcept {
   return static_cast<std::uint8_t>(std::clamp(steps, 0.0, 255.0));
 }
 
-// Mean of the lower tail of a standard normal that holds the share p, turned positive: tabulated at p = 2^-i,
-// linear in log p between, which is never more.
+// Mean of the lower tail of probability p of a standard normal distribution, with the sign reversed: phi(Phi^-1(p))/p.
+// Tabulated at p = 2^-i and interpolated linearly in log p, which never exceeds the exact value.
 double tailMean(double p) {
   static const std::array<double, 33> table = [] {
     std::array<double, 33> t{};
@@ -49,13 +49,13 @@ double tailMean(double p) {
   return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
-// Readings of one certainty.
+// Readings of one grade of certainty.
 struct Part {
   double count = 0.0;
-  double value = 0.0;  // of the weakest part
+  double value = 0.0;  // weakest value, see summarise()
 };
 
-// `counts` from the weakest on; value(step) is weaker for those before.
+// Sets `part` from `counts`, sorted by step. `sign`: 1 if lower values are weaker, -1 if higher values are weaker.
 template <typename Value>
 void addWeakest(std::span<const ReadingCount> counts, double std, double sign, Value value, Part& part) {
   double all = 0.0, lowest = 0.0, sum = 0.0;
@@ -75,7 +75,7 @@ void addWeakest(std::span<const ReadingCount> counts, double std, double sign, V
 double pullOf(std::uint8_t step) noexcept {
   return kLowest + kStep * step;
 }
-// The lowest step stands for all that is less.
+// Pull of a bound. Step 0 contains all lower pulls and returns -10.
 double mostPullOf(std::uint8_t step) noexcept {
   constexpr double kLeast = -10.0;
   return step == 0 ? kLeast : pullOf(step);
@@ -90,7 +90,7 @@ std::span<const ReadingCount> ofKind(std::span<const ReadingCount> counts, std::
   return {low, high};
 }
 
-// Estimates of one number, each weighed by its certainty.
+// Weighted sum of estimates of one number, weights by inverse variance.
 struct Weighed {
   double weight = 0.0, sum = 0.0;
   void add(const Part& part, double std) noexcept {
@@ -103,7 +103,7 @@ double variance(double weight) noexcept {
   return kModel * kModel + 1.0 / weight;
 }
 
-// The reading of all that leaves least, taken by itself.
+// Keeps `pull` as the weakest pull if its estimate as the only reading, believedAlone(), is below `least`.
 void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEvidence& block,
                  double& least) {
   const double left = believedAlone({.departure = pull - prior.value, .variance = of_variance}, prior.std);
@@ -113,8 +113,8 @@ void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEv
   block.weak_variance = static_cast<float>(of_variance);
 }
 
-// Readings of one certainty that may raise, from the weakest on whatever error they share; `merged` holds them where
-// they are of several kinds.
+// Readings of one grade of certainty that may raise, with any shared error, sorted by step. Returns a view of `counts`,
+// or of `merged` if the readings are of several kinds.
 std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, std::size_t grade,
                                         std::vector<ReadingCount>& merged) {
   merged.clear();
@@ -137,7 +137,7 @@ std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, st
   return merged;
 }
 
-// Of readings that may raise, each weighed by its certainty.
+// Mean shared error of the readings that may raise, weighted by inverse variance.
 double sharedOf(std::span<const ReadingCount> counts) noexcept {
   double weight = 0.0, sum = 0.0;
   for (const ReadingCount& c : counts) {
@@ -149,12 +149,13 @@ double sharedOf(std::span<const ReadingCount> counts) noexcept {
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-// What readings say together, and those of them that may raise.
+// Weighted pulls of the readings that may raise, and of all readings.
 struct Pulls {
   Weighed raising, all;
 };
 
-// Takes the weakest part of each certainty; `least`: what is left where the weakest of all that was taken before stands alone.
+// Adds the weakest pull of each grade of certainty. `least`: lowest estimate of a single pull so far, see
+// keepWeakest().
 Pulls weighPulls(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
                  double& least) {
   Pulls out;
@@ -178,7 +179,8 @@ Pulls weighPulls(std::span<const ReadingCount> counts, const Estimate& prior, Bl
   return out;
 }
 
-// Standard error of the mean of readings that may raise, by their own scatter and the step that they are kept in.
+// Standard error of the mean of the readings that may raise, from their scatter and the quantisation step; infinite for
+// fewer than two readings.
 double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
   double n = 0.0, sum = 0.0, squares = 0.0;
   for (const ReadingCount& c : counts) {
@@ -191,12 +193,12 @@ double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
   return std::sqrt((std::max(squares - sum * sum / n, 0.0) / (n - 1.0) + kStep * kStep) / n);
 }
 
-// By the drive that shows least: as it is where it is known as well as the model knows any place, else beyond what its readings
-// scatter by; beyond that by how much the least of so many sound drives lies lower than the least of two.
+// Limits block.pull by the drive with the least bound, see summarise(): the mean of the drive, plus kBeyond standard
+// errors if these exceed kModel, plus the difference between the least of n and the least of two sound drives.
 void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
                    double& least) {
   constexpr double kBeyond = 2.0;
-  constexpr double kSound = 0.02;  // by which sound drives differ in a block, one standard deviation (ours)
+  constexpr double kSound = 0.02;  // standard deviation between sound drives in one block [-] (ours)
   const auto isOfFirst = [&](const ReadingCount& c) { return c.drive == counts.front().drive; };
   if (counts.empty() || std::ranges::all_of(counts, isOfFirst)) return;
   double raising_drives = 0.0, most = std::numeric_limits<double>::infinity(), of_variance = 0.0;

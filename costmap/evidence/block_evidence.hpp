@@ -7,90 +7,93 @@
 #include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 
-/// What a block of ground has heard, as counts of quantised readings, and what follows from it. Counts have no
-/// order: the same readings in any order are the same evidence, to the bit.
+/// Evidence of one block of ground: counts of quantised readings, and the numbers computed from the counts. Counts have
+/// no order: the same readings in any order give bitwise equal results.
 namespace talus::costmap {
 
-/// How often a block heard one quantised reading of one drive; stops at 65535.
+/// Number of times that a block received one quantised reading of one drive, at most 65535 (saturated).
 struct ReadingCount {
-  std::uint8_t kind = 0;  ///< what it measures and how surely: see kindOf
-  std::uint8_t step = 0;  ///< its value, rounded towards danger
-  std::uint16_t count = 0;
+  std::uint8_t kind = 0;    ///< measured quantity and grade of certainty (reading_kind)
+  std::uint8_t step = 0;    ///< value in steps of 0.01: pullReading(), sinkageReading()
+  std::uint16_t count = 0;  ///< number of readings
   std::uint16_t drive = 0;  ///< WheelObservation::drive
 
   friend bool operator==(const ReadingCount&, const ReadingCount&) = default;
 };
 
-/// Kinds of pull are eight grades of certainty, of standard deviation 0.025 to 0.28: of readings that may only lower the
-/// belief, and, for each of eight grades of the error that all readings share, of those that may raise it. Bounds are
-/// of the block itself: the least of them holds, however many other readings there are.
+/// Kinds of readings. A pull has one of eight grades g of certainty, standard deviation 0.025 * 2^(g/2), 0.025 to 0.28
+/// [-]. Pulls that may raise an estimate have one kind for each pair of a grade of certainty and a grade of the shared
+/// error. Pulls that may only lower an estimate have one kind for each grade of certainty. Bounds apply to the block
+/// itself: the strictest bound applies, whatever the number of other readings.
 namespace reading_kind {
-inline constexpr std::uint8_t kGrades = 8;
-inline constexpr std::uint8_t kSharedGrades = 8;
-inline constexpr std::uint8_t kPull = 0;  ///< grade of certainty, and eight times that of the shared error
-inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< and the seven behind it
-inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;
-inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;
-inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;
-inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;
-inline constexpr std::uint8_t kCount = kSinkage + 4;
+inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
+inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
+inline constexpr std::uint8_t kPull = 0;          ///< plus grade of certainty + 8 x grade of shared error
+inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< plus grade of certainty
+inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;       ///< sinkage that may raise
+inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;          ///< sinkage that may only lower
+inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;           ///< upper bound of the pull
+inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;       ///< lower bound of the sinkage
+inline constexpr std::uint8_t kCount = kSinkage + 4;                  ///< number of kinds
 }  // namespace reading_kind
 
-/// Standard deviation of drawbar pull over load that a grade of the shared error stands for [-]: 0, then 0.02 times 1.5
-/// to the power of 0 to 6.
+/// Standard deviation of drawbar pull over load for a grade of the shared error [-]: 0 for grade 0, 0.02 * 1.5^(grade -
+/// 1) for grades 1 to 7.
 double sharedStd(std::size_t grade) noexcept;
 
-/// The count that a drawbar pull over load goes into: steps of 0.01 from -1.28, of one that may only lower rounded down. `shared_std`: of the
-/// error that it shares with all other readings, >= 0 [-], rounded up; a reading beyond the greatest grade, or of an
-/// error that is not known (NaN), may only lower.
+/// Quantises a drawbar pull over load in steps of 0.01 from -1.28: rounded to nearest if the reading may raise, else
+/// rounded down. `shared_std`: standard deviation of the error common to all readings, >= 0 [-], rounded up to a grade.
+/// A reading whose shared error exceeds the greatest grade or is unknown (NaN) may only lower.
 ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std = 0.0) noexcept;
-/// The same of sinkage over radius: steps of 0.01 from 0, rounded up.
+/// Quantises a sinkage over radius in steps of 0.01 from 0, rounded up.
 ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept;
 
-/// The counts that bounds of a block go into, likewise; of no pull or sinkage, nothing.
+/// Quantises the bounds of a block; empty if neither pull nor sinkage is bounded.
 std::vector<ReadingCount> boundReadings(const GroundBound& bound);
 
-/// What a block's counts come to.
+/// Numbers computed from the counts of one class on one level of a block.
 struct BlockEvidence {
-  static constexpr std::uint16_t kTop = 0xffff;  ///< the level that a map's elevation shows
+  static constexpr std::uint16_t kTop = 0xffff;  ///< level of the top surface
 
-  std::uint16_t level = kTop;       ///< kTop, or the octree's height key of a floor beneath it
-  std::uint8_t terrain_class = 0;   ///< number of the class that it speaks for
-  std::uint8_t place_in_brick = 0;  ///< the store's own
+  std::uint16_t level = kTop;       ///< kTop, or the octree's height key of a floor below the top surface
+  std::uint8_t terrain_class = 0;   ///< number of the terrain class
+  std::uint8_t place_in_brick = 0;  ///< index of the block within its brick, set by EvidenceBricks
   std::uint32_t updated_s = 0;      ///< telemetry time of the newest sample, rounded down [s]
-  std::uint8_t reach = 0;           ///< how far off the place may be, in steps of 0.1 m
-  bool sinkage_raises = false;      ///< whether the sinkage may be believed where it is less than the class's
-  bool lowers = false;              ///< whether some of its readings may only lower
-  float pull = 0.0F;                ///< by readings that may raise: drawbar pull over load [-]; NaN: none
-  float variance = 0.0F;            ///< of that, without the shared error
-  float shared = 0.0F;              ///< of that: standard deviation by the error that all readings share [-]
-  float weak_pull = 0.0F;           ///< of the part of all its readings that makes it weakest [-]; NaN: none
-  float weak_variance = 0.0F;       ///< of that
-  float sinkage = 0.0F;             ///< of its deepest part: sinkage over radius [-]; NaN: none was measured
-  float most_pull = 0.0F;           ///< least bound of its drawbar pull over load [-]; NaN: none
-  float least_sinkage = 0.0F;       ///< greatest bound of its sinkage over radius [-]; NaN: none
+  std::uint8_t reach = 0;           ///< position uncertainty of the place, in steps of 0.1 m
+  bool sinkage_raises = false;      ///< true if a sinkage below that of the class is accepted
+  bool lowers = false;              ///< true if some pull readings may only lower
+  float pull = 0.0F;                ///< DP/W from readings that may raise [-]; NaN: no such reading
+  float variance = 0.0F;            ///< variance of `pull` without the shared error [-]
+  float shared = 0.0F;              ///< standard deviation of `pull` by the shared error [-]
+  float weak_pull = 0.0F;           ///< DP/W of the weakest subset of all readings [-]; NaN: no reading
+  float weak_variance = 0.0F;       ///< variance of `weak_pull` [-]
+  float sinkage = 0.0F;             ///< z/r of the deepest subset of all readings [-]; NaN: not measured
+  float most_pull = 0.0F;           ///< least upper bound of DP/W [-]; NaN: no bound
+  float least_sinkage = 0.0F;       ///< greatest lower bound of z/r [-]; NaN: no bound
 
+  /// Position uncertainty of the place [m].
   double reach_m() const noexcept { return 0.1 * reach; }
 };
 static_assert(sizeof(BlockEvidence) == 44);
 
-/// Works out the numbers from pull to sinkage_raises; `prior`: of its class, place to place.
+/// Computes the fields `sinkage_raises` to `least_sinkage` of `block`. `prior`: drawbar pull over load of the class and
+/// its standard deviation between places [-].
 ///
-/// Readings of one certainty are as weak as their weakest part: the least of m_k + sigma c(k/n), m_k the mean
-/// of the k lowest of n and -sigma c(k/n) what it would be by noise alone (mean of the lower tail of a normal,
-/// c(p) = phi(Phi^-1(p))/p; ours). No number of readings makes the pull surer than the model, 0.02 in DP/W:
-/// what one place says is wrong in one way. Of several drives none makes the place stronger than another shows it:
-/// the sensors of one may be faulty, and which is not known. A drive whose mean is known no better than to within 0.02, by two
-/// standard errors of its own scatter, bounds it by so much more, and of n drives each by 0.02 (c(1/n) - c(1/2)) more, so that the
-/// least of many sound ones is no lower than all of them. The shared error of the pull is the mean of that of its
-/// readings, each weighed by its certainty: no number of readings makes it smaller.
+/// Readings of one grade of certainty give the least value over k of m_k + sigma c(k/n) (ours): m_k is the mean of the
+/// k lowest of n readings, and c(p) = phi(Phi^-1(p))/p is the mean of the lower tail of a normal distribution, by which
+/// noise alone would lower m_k. The variance includes the model error, 0.02 in DP/W, which is common to all readings of
+/// a place. With several drives, `pull` is at most the bound of each drive, because the sensors of any drive may be
+/// faulty. The bound of a drive is its mean, plus two standard errors of its own scatter if these exceed 0.02. With n
+/// drives the least bound is raised by 0.02 (c(1/n) - c(1/2)), the difference to expect between the least of n and the
+/// least of two sound drives. `shared` is the mean shared error of the readings, weighted by inverse variance: more
+/// readings do not reduce `shared`.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 
-/// The drives that have readings among counts, ascending, and the readings of one.
+/// Numbers of the drives among the counts, ascending, without duplicates; and the counts of one drive.
 std::vector<std::uint16_t> drivesOf(std::span<const ReadingCount> counts);
 std::vector<ReadingCount> ofDrive(std::span<const ReadingCount> counts, std::uint16_t drive);
 
-/// Readings behind the pull, each weighed by its certainty: one of standard deviation 0.05 counts one.
+/// Number of pull readings, each weighted by (0.05/std)^2 [-].
 double samples(std::span<const ReadingCount> counts) noexcept;
 
 }  // namespace talus::costmap

@@ -8,31 +8,33 @@
 
 namespace talus::costmap {
 
-/// Blocks of cells that keep evidence together: the largest power of two of cells no wider than a quarter of the
-/// correlation length, on the octree's own lines. A block is named by its south-west cell, which may lie outside
-/// the grid, or by its column and row from the map's south-west. Immutable.
+/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of cells, at
+/// most 256, that does not exceed a quarter of the correlation length, or one cell. Blocks are aligned with the
+/// octree. A block is identified by its south-west cell, which may lie outside the grid, or by its column and row from
+/// the map's south-west. Immutable.
 class BlockGrid {
  public:
   explicit BlockGrid(std::shared_ptr<const GroundSite> site);
 
   int columns() const noexcept { return columns_; }
   int rows() const noexcept { return rows_; }
-  /// Of a block, in cells and in metres.
+  /// Side of a block, in cells and in metres.
   int side() const noexcept { return 1 << shift_; }
   double side_m() const noexcept { return side() * site_->grid().resolution_m; }
-  /// Blocks that a correlation length spans.
+  /// Number of blocks that a correlation length spans, rounded up.
   int reach() const noexcept;
 
   int columnOf(maps::Cell cell) const noexcept { return (cell.column - first_.column) >> shift_; }
   int rowOf(maps::Cell cell) const noexcept { return (cell.row - first_.row) >> shift_; }
-  /// The block of a cell, of a column and row.
+  /// South-west cell of the block that contains a cell, and of the block in a column and row.
   maps::Cell blockOf(maps::Cell cell) const noexcept;
   maps::Cell blockAt(int column, int row) const noexcept {
     return {first_.column + column * side(), first_.row + row * side()};
   }
   maps::Point middleOf(maps::Cell block) const noexcept;
 
-  /// The octree's key of a height, and of the surface in a block: that of its first cell with an elevation.
+  /// Octree height key of an elevation, and of the first cell with an elevation in a block; nothing if the block has no
+  /// elevation.
   std::uint16_t keyOf(float height_m) const noexcept;
   std::optional<std::uint16_t> topKey(maps::Cell block) const noexcept;
 

@@ -11,14 +11,14 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kUnit = 1048576.0;  // of the fixed-point sums
+constexpr double kUnit = 1048576.0;  // fixed-point units per 1
 
 std::int64_t fixed(double value) {
   return static_cast<std::int64_t>(std::llround(value * kUnit));
 }
 
 constexpr double kPullStep = 0.005, kSinkageStep = 0.02;
-constexpr double kSame = 1e-6;  // of a step: what has been rounded stays
+constexpr double kSame = 1e-6;  // tolerance in steps: a rounded number rounds to itself
 
 double below(double value, double step) noexcept {
   return std::floor(value / step + kSame) * step;
@@ -115,15 +115,16 @@ ClassState ClassEvidence::stateInSteps() const noexcept {
   return s;
 }
 
-// Conjugate update of a mean of variance q^2 (B12).
+// Conjugate update of the class mean with prior variance mean_std^2 (B12).
 double ClassEvidence::meanOf(const WeightedSum& sum) const noexcept {
   const double prior = ground_.mean_std * ground_.mean_std;
   return prior * static_cast<double>(sum.departure) / kUnit /
          (prior * static_cast<double>(sum.weight) / kUnit + ground_.pull_std * ground_.pull_std);
 }
 
-// The least mean of those that may raise and any set of drives that may not (B12): a set that has it has all drives weaker
-// than some departure.
+// Least mean over all combinations of the contributions that may raise with any of the lowering drives (B12). The set
+// of drives with the least mean contains all drives below some departure; the drives are therefore added in ascending
+// order.
 double ClassEvidence::leastMean(WeightedSum raising, const ByDrive& lowering) const {
   std::vector<WeightedSum> drives;
   for (const auto& [drive, sum] : lowering) drives.push_back(sum);
@@ -139,14 +140,14 @@ double ClassEvidence::leastMean(WeightedSum raising, const ByDrive& lowering) co
   return least;
 }
 
-// Standard deviation of the class mean by these lessons alone (B12).
+// Posterior standard deviation of the class mean from the given contributions alone (B12).
 double ClassEvidence::deviationOf(const WeightedSum& sum) const noexcept {
   const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(sum.weight) / kUnit /
                          (ground_.pull_std * ground_.pull_std);
   return ground_.mean_std / std::sqrt(1.0 + weighed);
 }
 
-// Each of several drives that may raise bounds the class by its own mean and one deviation. Infinite of fewer than two.
+// Least value of mean plus one standard deviation over the drives that may raise; infinite for fewer than two drives.
 double ClassEvidence::mostByDrives() const noexcept {
   double most = std::numeric_limits<double>::infinity();
   if (pull_by_drive_.size() < 2) return most;
@@ -157,7 +158,7 @@ double ClassEvidence::mostByDrives() const noexcept {
 
 bool ClassEvidence::drivesAgree() const noexcept {
   constexpr double kApart =
-      3.0;  // deviations of the difference; of sound drives 0.3 % of pairs lie further apart
+      3.0;  // standard deviations of the difference; 0.3 % of pairs of sound drives lie further apart
   for (const auto& [one, weak] : pull_by_drive_)
     for (const auto& [other, strong] : pull_by_drive_)
       if (one != 0 && other != 0 &&

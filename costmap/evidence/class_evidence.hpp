@@ -12,44 +12,46 @@
 
 namespace talus::costmap {
 
-/// The soil posterior of a terrain class: how its mean pull departs from the prior's after all evidence.
+/// Posterior of a terrain class: departures of its mean from the prior after all evidence.
 struct ClassPosterior {
   Estimate pull;         ///< departure of drawbar pull over load [-]
-  double own_std = 0.0;  ///< of that, if the readings shared no error [-]
-  double shared = 0.0;   ///< what one standard deviation of the shared error moves the pull by [-]
+  double own_std = 0.0;  ///< standard deviation of `pull` without the shared error [-]
+  double shared = 0.0;   ///< change of `pull` per standard deviation of the shared error [-]
   Estimate sinkage;      ///< departure of sinkage over radius [-]
-  double places = 0.0;   ///< sum of the weights of all lessons, in independent places [-]
+  double places = 0.0;   ///< sum of the weights of all contributions, in independent places [-]
 };
 
-/// What learned ground has of its class.
+/// State of a class, from which estimates of its ground are computed.
 struct ClassState {
-  double pull = 0.0, pull_std = 0.0;   ///< as ClassPosterior::pull [-]
-  double own_std = 0.0, shared = 0.0;  ///< as there [-]
+  double pull = 0.0, pull_std = 0.0;   ///< departure of the mean drawbar pull over load, and its standard
+                                       ///< deviation [-]
+  double own_std = 0.0, shared = 0.0;  ///< as in ClassPosterior [-]
   double sinkage = 0.0;                ///< departure of sinkage over radius [-]
-  bool may_raise = false;  ///< whether enough places may raise that the belief in its ground may rise at all
-  double most_rise = 0.0;  ///< the most by which it may [-]
-  double pull_step = 0.0;  ///< how far `pull` may lie below what it was rounded from [-]
-  double sinkage_step = 0.0;  ///< how far `sinkage` may lie above [-]
+  bool may_raise = false;     ///< true if enough places may raise, so that estimates of the class may rise
+  double most_rise = 0.0;     ///< greatest rise of an estimate [-]
+  double pull_step = 0.0;     ///< rounding step: the exact value of `pull` is higher by at most this [-]
+  double sinkage_step = 0.0;  ///< rounding step: the exact value of `sinkage` is lower by at most this [-]
 
   friend bool operator==(const ClassState&, const ClassState&) = default;
 };
 
-/// Squares of ground about a correlation length wide, of which those are counted that lie as far apart.
+/// Squares of ground one correlation length wide, in four sets by even or odd column and row: squares of one set do not
+/// touch, and count as independent places.
 class IndependentPlaces {
  public:
   using Square = std::pair<int, int>;  ///< column and row
 
-  /// What is known of a square: how far its weakest ground departs from its class, -infinity where nothing may
-  /// raise; nothing where nobody drove.
+  /// Sets the departure of a square's weakest ground from its class; -infinity: no reading in the square may raise;
+  /// nothing: the square has no readings.
   void set(const Square& square, std::optional<float> departure);
 
-  /// Places where somebody drove.
+  /// Greatest number of squares with readings in one set.
   std::size_t driven() const noexcept;
-  /// The departure that so many of them reach or pass; -infinity where there are fewer.
+  /// Greatest departure that at least `places` squares of one set reach; -infinity if no set has so many squares.
   double agreed(std::size_t places) const noexcept;
 
  private:
-  // Squares of one colour, of four, do not touch.
+  // Squares of one of the four sets.
   struct Colour {
     std::map<Square, float> known;
     std::multiset<float> sorted;
@@ -57,20 +59,22 @@ class IndependentPlaces {
   std::array<Colour, 4> colours_;
 };
 
-/// What one block tells of its class.
+/// Contribution of one block to its class.
 struct BlockContribution {
-  double weight = 0.0;            ///< independent places that it stands for [-]
+  double weight = 0.0;            ///< number of independent places that the block represents [-]
   double pull = 0.0;              ///< departure from the prior [-]
-  std::optional<double> sinkage;  ///< likewise; nothing where none was measured
-  bool raises = false;            ///< whether it may raise, and make surer
-  bool sinkage_raises = false;    ///< whether its sinkage may be less than that of the class
-  double shared = 0.0;  ///< standard deviation by the error that it shares with all other lessons [-]
+  std::optional<double> sinkage;  ///< departure from the prior; nothing if not measured
+  bool raises = false;            ///< true if the contribution may raise the mean and reduce its standard
+                                  ///< deviation
+  bool sinkage_raises = false;    ///< true if the sinkage may be below that of the class
+  double shared = 0.0;            ///< standard deviation by the error common to all contributions [-]
   std::uint16_t drive =
-      0;  ///< whose readings alone may raise it, 0: of several; of a lesson that may not raise, its drive
+      0;  ///< drive of all readings that may raise, 0: several drives; if `raises` is false, drive of all
+          ///< readings
 };
 
-/// What all blocks together tell of a class. Exact sums: a lesson can be taken out again, and the order in which
-/// they come does not matter.
+/// Evidence of a class: the sum of the contributions of all blocks. Sums are exact (fixed point): a contribution can be
+/// removed again, and the order of contributions has no effect.
 class ClassEvidence {
  public:
   explicit ClassEvidence(const GroundClass& ground) : ground_(ground) { refresh(); }
@@ -78,30 +82,32 @@ class ClassEvidence {
   void add(const BlockContribution& lesson) { sum(lesson, 1); }
   void remove(const BlockContribution& lesson) { sum(lesson, -1); }
   IndependentPlaces& places() noexcept { return places_; }
-  /// After any change.
+  /// Recomputes the posterior. Required after each change of contributions or places.
   void refresh();
 
-  /// Conjugate normal update of the class mean (prior mean_std, places that scatter by pull_std about it). One
-  /// place moves it by nothing, two by half, three as sum: what one place says it says of itself. It rises, and
-  /// is surer, only where kPlaces places say so, and no higher than each of them. The error that all lessons share
-  /// is one factor b of the regression, y_i = m + c_i b, b standard normal: of their mean, with the variance v of
-  /// what they do not share, the posterior variance is p (v + c^2) / (p + v + c^2), p of the prior, c the mean of c_i.
-  /// Lessons that may not raise count drive by drive: of the means of those that may and of any drives of the others the mean is
-  /// the least (B12), so that a drive that may not raise never lifts it, nor changes its deviation. It is at most, too, what each drive by itself makes of
-  /// it and one of its standard deviations, without the shared error: the sensors of one may be faulty, and which is not known.
+  /// Conjugate normal update of the class mean: prior standard deviation mean_std, places that scatter by pull_std
+  /// (B12). The departure is multiplied by 0 for one independent place, by 0.5 for two, by 1 from three on: a single
+  /// place cannot be distinguished from local variation. The mean rises, and its standard deviation decreases, only if
+  /// kPlaces places may raise, and by at most mostRise(). The error common to all contributions is one factor b of the
+  /// regression, y_i = m + c_i b, b standard normal. With v the variance of the mean without b, p the variance of the
+  /// prior and c the mean of c_i, the posterior variance is p (v + c^2) / (p + v + c^2). Contributions that may not
+  /// raise are summed for each drive. The mean is the least over all combinations of the contributions that may raise
+  /// with any of these drives (B12), so that a drive that may not raise never increases the mean or changes its
+  /// standard deviation. With several drives that may raise, the mean is at most the mean of each drive plus one
+  /// standard deviation without the shared error, because the sensors of any drive may be faulty.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
-  /// What learned ground has of the class, as it is.
+  /// State of the class, not rounded.
   ClassState state() const noexcept;
-  /// The same in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no deviation beyond the prior's:
-  /// it stays what it is while the class moves within a step, and depends on nothing but the class. The greatest rise
-  /// ends on a step of cost curves, which says no less than any rise up to the next.
+  /// State of the class in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no standard deviation
+  /// above the prior's. The rounded state is constant while the class moves within a step, and depends on the class
+  /// alone. `most_rise` is rounded down to a step of the cost curves.
   ClassState stateInSteps() const noexcept;
-  /// Whether enough places may raise that the belief in ground of the class may rise at all.
+  /// True if kPlaces places may raise and the drives agree, so that estimates of the class may rise.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)) && drivesAgree(); }
-  /// Whether no two drives that may raise differ in the class mean by more than 3 standard deviations of the difference.
-  /// Otherwise the sensors of one are faulty, which one is not known, and nothing rises above the class.
+  /// True if no two drives that may raise differ in the class mean by more than 3 standard deviations of the
+  /// difference. Otherwise the sensors of one of the drives are faulty, and no estimate rises above its class.
   bool drivesAgree() const noexcept;
-  /// The most by which it may: what as many places agree on; >= 0.
+  /// Greatest rise of the class [-]: the departure that kPlaces places reach, >= 0; 0 if mayRaise() is false.
   double mostRise() const noexcept;
 
   static constexpr std::size_t kPlaces = 3;
@@ -109,7 +115,7 @@ class ClassEvidence {
  private:
   void sum(const BlockContribution& lesson, std::int64_t sign);
 
-  // Sums over lessons: of their weights, and of weight times departure towards strength.
+  // Sums over contributions, in units of 2^-20: the weights, and weight times departure towards strength.
   struct WeightedSum {
     std::int64_t weight = 0, departure = 0;
     void add(const WeightedSum& other) noexcept;
@@ -123,7 +129,7 @@ class ClassEvidence {
 
   GroundClass ground_;
   std::int64_t shared_ = 0;
-  WeightedSum pull_, sinkage_;  // of lessons that may raise
+  WeightedSum pull_, sinkage_;  // of contributions that may raise
   ByDrive pull_by_drive_, lower_pull_, lower_sinkage_;
   IndependentPlaces places_;
   ClassPosterior posterior_;

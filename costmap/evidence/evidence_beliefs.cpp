@@ -36,7 +36,8 @@ const InferredGround& EvidenceBeliefs::away(int class_index) {
   return known->second;
 }
 
-// Drops all patches when there are many, so that a whole map is computed in little memory.
+// Returns the patch of a block and class, computed on first use. Discards all patches at kMostRemembered, which limits
+// the memory for a whole map.
 EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockLevel& block, int class_index) {
   BlockLevel first = block;
   first.column = block.column / kPatchSide * kPatchSide;

@@ -10,9 +10,9 @@
 
 namespace talus::costmap {
 
-/// Estimates of ground cell by cell: evidence is gathered once a patch of 8x8 blocks and class, an estimate is computed
-/// once a block and class. Depends on the states of the classes and the evidence that can reach the patch alone.
-/// Valid until the field changes. Not thread-safe.
+/// Estimates of ground for each cell. Evidence is collected once for each patch of 8x8 blocks and class; an estimate is
+/// computed once for each block and class. An estimate depends only on the class states and on the evidence that can
+/// reach the patch. Valid until the field changes. Not thread-safe.
 class EvidenceBeliefs {
  public:
   explicit EvidenceBeliefs(const EvidenceField& field,
@@ -21,7 +21,7 @@ class EvidenceBeliefs {
   EvidenceBeliefs(const EvidenceBeliefs&) = delete;
   EvidenceBeliefs& operator=(const EvidenceBeliefs&) = delete;
 
-  /// The top surface of a cell as ground of a class. The reference holds until the next call.
+  /// Estimate for the top surface of a cell as ground of a class. The reference is valid until the next call.
   const InferredGround& at(maps::Cell cell, int class_index);
 
  private:
@@ -37,7 +37,7 @@ class EvidenceBeliefs {
   std::map<Key, std::shared_ptr<Patch>> patches_;
   Key last_key_{0, 0, -1};
   Patch* last_ = nullptr;
-  std::map<int, InferredGround> away_;  // from any evidence, a class each
+  std::map<int, InferredGround> away_;  // estimate of each class where no evidence reaches
 };
 
 }  // namespace talus::costmap

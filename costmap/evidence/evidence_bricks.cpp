@@ -6,10 +6,10 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kShift = 3;  // 8x8 blocks a brick
+constexpr int kShift = 3;  // log2 of the side of a brick in blocks
 constexpr int kMask = (1 << kShift) - 1;
 
-// Order within a brick: place, level, class.
+// Sort key within a brick: place, level, class.
 std::uint32_t keyOf(const BlockLevel& block) noexcept {
   const auto place = static_cast<std::uint32_t>((block.row & kMask) << kShift | (block.column & kMask));
   return place << 24 | static_cast<std::uint32_t>(block.level) << 8 | block.terrain_class;
@@ -23,7 +23,7 @@ bool before(const BlockEvidence& e, std::uint32_t key) noexcept {
   return keyOf(e) < key;
 }
 
-// Doubling would leave half of the memory of a large map unused.
+// Grows the capacity by 1/8: doubling would leave up to half of the memory of a large map unused.
 template <typename T>
 void makeRoom(std::vector<T>& list) {
   if (list.size() == list.capacity()) list.reserve(list.size() + 4 + list.size() / 8);
@@ -84,7 +84,7 @@ std::uint64_t EvidenceBricks::orderOf(const BlockReadings& heard) noexcept {
          static_cast<std::uint64_t>(heard.reading.step) << 16 | heard.reading.drive;
 }
 
-// Where a count stands, or would.
+// Position of a count in the sorted list, or the position at which to insert the count.
 std::vector<EvidenceBricks::BlockReadings>::iterator EvidenceBricks::placeOf(
     std::vector<BlockReadings>& heard, const BlockReadings& one) {
   return std::lower_bound(heard.begin(), heard.end(), orderOf(one),

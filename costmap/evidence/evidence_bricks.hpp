@@ -9,48 +9,51 @@
 
 namespace talus::costmap {
 
-/// A level of a block and a class of ground on it: columns and rows of blocks count from the map's south-west.
+/// A class of ground on one level of a block. Columns and rows of blocks count from the map's south-west.
 struct BlockLevel {
   int column = 0, row = 0;
   std::uint16_t level = BlockEvidence::kTop;
-  std::uint8_t terrain_class = 0;  ///< its number
+  std::uint8_t terrain_class = 0;  ///< number of the class
 };
 
-/// The evidence of a map: bricks of 8x8 blocks, each with a sorted list of those that wheels spoke for and one
-/// of what each of them heard, so that a block costs 44 bytes and 12 for each distinct reading of a drive, and one where
-/// nobody drove less than one. (A leaf of an OctoMap tree costs 64 with its allocation, and its parents as much
-/// again.) Not thread-safe while changed; pointers hold until the next change.
+/// The evidence of a map, in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with evidence and a
+/// sorted list of their readings. A block takes 44 bytes and 12 for each distinct reading of a drive; a block without
+/// evidence takes less than one byte. (A leaf of an OctoMap tree takes 64 bytes with its allocation, and its parents as
+/// much again.) Not thread-safe while changed; pointers are valid until the next change.
 class EvidenceBricks {
  public:
+  /// No evidence on a map of so many columns and rows of blocks.
   EvidenceBricks(int block_columns, int block_rows);
 
-  /// Evidence of a class on a level of a block; null where there is none or the block lies outside.
+  /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the map.
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
-  /// The same for change, made where there is none; the block must lie inside.
+  /// The same evidence for modification, created if absent; the block must lie inside the map.
   BlockEvidence& at(const BlockLevel& block);
-  /// What it heard, kind by kind, values ascending, of each drive by itself; empty where there is none.
+  /// Readings of a block, sorted by kind, value and drive; empty if there are none.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
-  /// Adds so many readings of a kind and value to a block that at() made.
+  /// Adds reading.count readings of one kind, value and drive to a block that at() created; the count saturates at
+  /// 65535.
   void count(const BlockLevel& block, const ReadingCount& reading);
-  /// Takes them off a block that at() made; nothing where there are none. A count that stopped at 65535 stays.
+  /// Removes reading.count readings from a block that at() created; no effect if there are none. A saturated count
+  /// (65535) stays.
   void uncount(const BlockLevel& block, const ReadingCount& reading);
 
   using Visit = std::function<void(const BlockLevel&, const BlockEvidence&)>;
 
-  /// Visits all levels and classes of a block, lowest first and the top last.
+  /// Visits all levels and classes of a block, in ascending order of level; the top surface is last.
   void visitLevels(int column, int row, const Visit& visit) const;
-  /// A rectangle of blocks, both corners included; it may reach outside.
+  /// A rectangle of blocks, both corners included; the rectangle may extend beyond the map.
   struct Box {
     int west, south, east, north;
   };
-  /// Visits the evidence on top within a box, brick by brick.
+  /// Visits the evidence of the top surface within a box, brick by brick.
   void visitTop(const Box& box, const Visit& visit) const;
-  /// Visits all of it, in a fixed order.
+  /// Visits all evidence by ascending row, column, level and class.
   void visitAll(const Visit& visit) const;
 
  private:
   struct BlockReadings {
-    std::uint32_t block = 0;  // as sorted: place, level, class
+    std::uint32_t block = 0;  // sort key: place, level, class
     ReadingCount reading;
   };
   struct Brick {

@@ -12,10 +12,10 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kFarthestReach_m = 25.5;  // as BlockEvidence keeps it
-constexpr double kPlaceStd = 0.06;         // a place is known that is known so well: by some readings
+constexpr double kFarthestReach_m = 25.5;  // greatest value of BlockEvidence::reach
+constexpr double kPlaceStd = 0.06;         // greatest std of DP/W of a block that counts as measured [-]
 
-// The drive of all readings that may raise; 0 where there are several or none.
+// Drive of all readings that may raise; 0 if there are several such drives or none.
 std::uint16_t driveOf(std::span<const ReadingCount> counts) noexcept {
   std::uint16_t drive = 0;
   for (const ReadingCount& c : counts) {
@@ -47,7 +47,7 @@ int EvidenceField::blockCells() const noexcept {
   return store_->blocks.side();
 }
 
-// The block's level of a floor: one that is known within half the headroom, else a new one.
+// Level of a floor in its block: a known level within half the headroom, else a new level.
 BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
   BlockLevel out = store_->topOf(cell, 0);
   out.level = store_->blocks.keyOf(floor.height_m);
@@ -60,9 +60,9 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
   return out;
 }
 
-// One block speaks for as many independent places as its length holds integral scales (2/3 of the correlation
-// length), and for no departure beyond what its class explains: what is more is other ground that no class
-// raster shows.
+// Contribution of a block to its class. The weight is at most the side of the block over the integral scale (2/3 of the
+// correlation length), and at most 1. The departure is limited to kOrdinary standard deviations: a greater departure is
+// other ground, which no class raster shows.
 BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
@@ -87,8 +87,8 @@ BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_
   return lesson;
 }
 
-// One of all readings where some may raise, as weak as each drive shows the block by itself; else one of each drive, so that
-// none makes another's milder.
+// One contribution of all readings if some of them may raise, with the lowest weak pull of any drive; else one
+// contribution for each drive, so that no drive reduces the effect of another.
 std::vector<BlockContribution> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
                                                         int class_index) const {
   std::vector<BlockContribution> lessons;
@@ -117,8 +117,9 @@ Estimate EvidenceField::priorOf(int class_index) const {
   return {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std};
 }
 
-// By how much the weakest block of a square departs from its class, of those that are known or weak beyond their
-// doubt.
+// Least departure of a square's blocks from the class, over blocks that are measured to kPlaceStd or lie below the
+// prior by more than their standard deviation. -infinity if no block is measured to kPlaceStd; nothing if the square
+// has no readings.
 std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Square& square,
                                                    int class_index) const {
   const int side = store_->blocks.reach();
@@ -142,7 +143,8 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   return raises ? static_cast<float>(least) : -std::numeric_limits<float>::infinity();
 }
 
-// Takes readings into a block, and what it then says into the lessons of its class. The cells whose belief that may change.
+// Adds or removes readings of a block and updates the block's contributions to its class. Returns the cells whose
+// estimate may change.
 maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
@@ -165,7 +167,7 @@ maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& hea
   return reached;
 }
 
-// Whether all ground that the wheel may have stood on is of the class.
+// True if all ground within kPoseReach standard deviations of the position is of the class.
 bool EvidenceField::standsOnOneClass(const WheelObservation& observation, int class_index) const {
   const maps::Grid& grid = site_->grid();
   const double reach_m = kPoseReach * observation.pose_std_m;
@@ -211,7 +213,8 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
                    .reach = static_cast<std::uint8_t>(
                        std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
                    .heard = boundReadings(observation.here)};
-  // Of ground a pose error away, which may be what was read, only so much is this ground's.
+  // The reading may be of ground one position error away, which correlates with the ground here by `alike`; the
+  // variance of the class that this correlation does not explain is added.
   Estimate pull = observation.pull;
   const double alike = sparseKernel(observation.pose_std_m, correlation_length_m);
   const bool raises = sure && observation.pull_may_raise;

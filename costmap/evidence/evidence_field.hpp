@@ -14,12 +14,11 @@
 
 namespace talus::costmap {
 
-/// What a file keeps of a block: its south-west cell counted from the map's, its level and class, and all its
-/// readings.
+/// All readings of one class on one level of a block, as a file stores them.
 struct SavedBlock {
   BlockLevel block;
   std::uint32_t updated_s = 0;
-  std::uint8_t reach = 0;  ///< steps of 0.1 m
+  std::uint8_t reach = 0;  ///< position uncertainty of the place, in steps of 0.1 m
   std::vector<ReadingCount> heard;
 };
 
@@ -28,77 +27,79 @@ struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
 
-/// What the wheels measured, by place: blocks of ground, each class of ground in a block with its own evidence, spread
-/// to neighbours of the same class by a Gaussian process over the class mean, and a posterior of each class.
+/// Wheel observations by place. Each class of ground in a block has its own evidence, which a Gaussian process over the
+/// class mean extends to nearby ground of the same class; each class has a posterior.
 ///
-/// A block is the largest power of two of cells no wider than a quarter of the correlation length, on the
-/// octree's own lines, so that a sample's work does not depend on the map's resolution. What was driven
-/// beneath an overhang stays on its floor: it is no evidence of the top surface, and of the first class of
-/// ground only where no raster names classes. Same evidence in any order, same bits. Not thread-safe
-/// while changed.
+/// Blocks (BlockGrid) have a side of a quarter of the correlation length, so that the work for a sample does not depend
+/// on the map's resolution. Evidence from a floor below an overhang belongs to that floor: the evidence does not apply
+/// to the top surface, and contributes to the first class only if no raster contains classes. The same evidence in any
+/// order gives bitwise equal results. Not thread-safe while changed.
 ///
-/// Evidence lowers a belief at once and for all: around each place that is weaker than its class explains, or
-/// that may only lower, no ground is estimated better than that place alone implies. Evidence raises
-/// it, or makes it surer, only where at least three independent places of the class may raise, and by no more
-/// than each of them reaches; until then no belief is better than that of the class away from any evidence.
+/// Evidence lowers an estimate immediately: around each place that is weaker than its class explains, or whose readings
+/// may only lower, no estimate exceeds the value that this place alone implies. Evidence raises an estimate, or reduces
+/// its standard deviation, only if at least three independent places of the class may raise, and by at most the
+/// departure that each of the three places reaches; until then no estimate exceeds that of the class without nearby
+/// evidence.
 class EvidenceField {
  public:
+  /// A field without evidence.
   explicit EvidenceField(std::shared_ptr<const GroundSite> site);
   ~EvidenceField();
   EvidenceField(EvidenceField&&) noexcept;
   EvidenceField& operator=(EvidenceField&&) noexcept;
 
-  /// Takes an observation in and returns the cells whose belief it may change while the classes keep their states: those of
-  /// all patches of blocks that it can reach; nothing when the place is outside the map, has no class, or
-  /// lies in a block that was first driven on ground of another class.
+  /// Adds an observation. Returns the cells whose estimate may change while the class states are constant: all cells of
+  /// the patches of blocks within reach of the observation. Returns nothing if the place is outside the map or has no
+  /// class, or if the observation contains neither an estimate nor a bound.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
-  /// The counts that an observation goes into, and where, while the ground is as it is; nothing where add() has none.
+  /// The block and the readings to which add() would add an observation; nothing where add() returns nothing.
   std::optional<SavedBlock> heardOf(const WheelObservation& observation) const;
-  /// Takes the pulls and sinkages of counts that were added off again; bounds of the place stay. Nothing where the block has
-  /// no evidence.
+  /// Removes added estimates of pull and sinkage; the bounds of the place stay. Returns the cells whose estimate may
+  /// change; nothing if the block has no evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& heard);
 
-  /// What beliefs have of the classes: all that is known of them, or that in steps rounded towards danger
+  /// Class states from which estimates are computed: exact, or in steps rounded towards danger
   /// (ClassEvidence::stateInSteps()), from which a map is published.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
 
-  /// Own evidence, of the cell's class, of the block that holds the cell, on top; null where nobody drove.
+  /// Evidence of the cell's class on the top surface of the block that contains the cell; null if there is none.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
-  /// The same of a floor beneath it.
+  /// Evidence of a floor below the top surface; null if there is none.
   const BlockEvidence* evidence(maps::Cell cell, const Floor& floor) const;
-  /// Readings behind it, each weighed by its certainty [-].
+  /// Number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
   double samplesOf(maps::Cell cell) const;
   double samplesOf(maps::Cell cell, const Floor& floor) const;
-  /// What is believed of the ground of a floor: its own evidence and that of ground level with it.
+  /// Estimate for a floor, from the evidence of the floor and of ground level with the floor.
   GroundBelief floorBelief(maps::Cell cell, const Floor& floor) const;
 
-  /// Evidence of a floor beneath the top, and a cell that has that floor.
+  /// Evidence of a floor below the top surface, and a cell with that floor.
   struct FloorEvidence {
     maps::Cell cell;
     BlockEvidence evidence;
   };
-  /// All of them, in a fixed order.
+  /// Evidence of all floors, in a fixed order.
   std::vector<FloorEvidence> floorEvidence() const;
 
+  /// Posterior of a class, not rounded.
   const ClassPosterior& posterior(int class_index) const;
-  /// Belief of ground of a class away from any evidence.
+  /// Estimate for ground of a class without nearby evidence.
   GroundBelief classBelief(int class_index, Classes classes = Classes::AsKnown) const;
-  /// States of all classes.
+  /// States of all classes, in the order of GroundModel::Parts::classes.
   std::vector<ClassState> states(Classes classes) const;
-  /// Boxes of cells, apart from each other, outside of which all ground is believed to be what its class is.
+  /// Disjoint boxes of cells; ground outside these boxes has the estimate of its class.
   std::vector<maps::CellBox> reached() const;
 
-  static constexpr double kPoseReach = 2.0;  ///< standard deviations of the pose that a bound reaches
+  static constexpr double kPoseReach = 2.0;  ///< reach of a bound in position deviations [-]
 
-  /// Side of a block.
+  /// Side of a block, in cells.
   int blockCells() const noexcept;
 
-  /// All evidence in a fixed order, as a file keeps it, and putting it back into a field of the same site: the cells
-  /// whose belief that may change, as add(); nothing where the site has no such block or class.
+  /// visit() visits all evidence in a fixed order. restore() adds visited evidence to a field of the same site and
+  /// returns the cells whose estimate may change, as add(); nothing if the site has no such block or class.
   void visit(const std::function<void(const SavedBlock&)>& visit) const;
   std::optional<maps::CellBox> restore(const SavedBlock& saved);
 
-  /// What it is made of, for EvidenceBeliefs.
+  /// Data of the field, for EvidenceBeliefs.
   const EvidenceStore& store() const noexcept { return *store_; }
 
  private:

@@ -11,22 +11,22 @@
 
 namespace talus::costmap {
 
-/// The patches of 8x8 blocks that evidence reaches. Estimates are computed patch by patch, from all evidence that can reach
-/// any block of it, so that a changed block changes whole patches. Not thread-safe while changed.
+/// Patches of 8x8 blocks within reach of evidence. Estimates are computed for each patch from all evidence that can
+/// reach any block of the patch, so that a changed block changes whole patches. Not thread-safe while changed.
 class EvidenceReach {
  public:
   static constexpr int kPatchBlocks = 8;
 
   explicit EvidenceReach(std::shared_ptr<const GroundSite> site);
 
-  /// Adds the evidence of a block whose place may be so far off, >= 0. Returns the cells of all patches within its reach:
-  /// the correlation length and that distance.
+  /// Adds the evidence of a block whose position may be wrong by reach_m, >= 0 [m]. Returns the cells of all patches
+  /// within the correlation length plus reach_m of the block.
   maps::CellBox add(const BlockLevel& block, double reach_m);
 
-  /// Boxes of cells, one a patch: outside of them no evidence counts.
+  /// Boxes of cells, one for each patch; evidence has no effect outside these boxes.
   std::vector<maps::CellBox> boxes() const;
 
-  /// The greatest distance by which the place of a block may be off [m].
+  /// Greatest position uncertainty of a block [m].
   double farthest_m() const noexcept { return farthest_m_; }
 
  private:

@@ -12,8 +12,8 @@
 
 namespace talus::costmap {
 
-/// What an EvidenceField is made of: blocks, their readings, what these teach of classes, and how far they count. Not for
-/// users of EvidenceField.
+/// Data of an EvidenceField: blocks, their readings, the evidence of classes, and the patches within reach. Internal to
+/// EvidenceField and the computation of estimates.
 struct EvidenceStore {
   explicit EvidenceStore(std::shared_ptr<const GroundSite> of)
       : site(std::move(of)),
@@ -26,13 +26,13 @@ struct EvidenceStore {
   BlockGrid blocks;
   EvidenceBricks bricks;
   EvidenceReach reach;
-  std::vector<ClassEvidence> lessons;  ///< one a class
+  std::vector<ClassEvidence> lessons;  ///< one for each class
 
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {
     return model().parts().classes[static_cast<std::size_t>(class_index)];
   }
-  /// A class on the top surface of the block that holds a cell.
+  /// The top-surface level, with a class, of the block that contains a cell.
   BlockLevel topOf(maps::Cell cell, int class_index) const noexcept {
     return {blocks.columnOf(cell), blocks.rowOf(cell), BlockEvidence::kTop,
             static_cast<std::uint8_t>(groundClass(class_index).number)};

@@ -7,7 +7,8 @@
 namespace talus::costmap {
 namespace {
 
-// Whether the place of a bound, anywhere in its block and as far off as it may be, lies in the block about `at`.
+// True if the place of a bound, anywhere in its block and within its position uncertainty, may lie in the block around
+// `at`.
 bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
   const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
   const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
@@ -20,7 +21,8 @@ GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexce
                          .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
 }
 
-// Of a weak place as departures from a mean, with the doubt of the class as far as the place leaves it open.
+// Estimate that a weak place implies, from the mean and the departure. The standard deviation of the class mean counts
+// in proportion to the standard deviation that the place leaves.
 GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, const GroundClass& ground,
                   double mean_std) noexcept {
   const double open = std::min(weak.pull.std / ground.pull_std, 1.0);
@@ -28,9 +30,10 @@ GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, const Grou
           .sinkage = {mean.sinkage.value + weak.sinkage.value, weak.sinkage.std}};
 }
 
-// Doubt about the class as a whole counts as far as the place itself is not known, and the error that all readings
-// share as far as their estimate rests on them, be it by the place's own or by its class's. A class mean that was
-// rounded down may leave an estimate higher where the weights of its evidence exceed 1: by no more than is taken off.
+// Estimate from the process. The standard deviation of the class mean counts in proportion to the standard deviation
+// that the process leaves. The shared error counts with the weights of the evidence and of the class mean. If the
+// positive weights sum to more than 1, rounding the class mean down by up to pull_step may raise the estimate by (sum -
+// 1) pull_step, which is subtracted.
 GroundBelief combined(const GroundModel& model, const GroundOfClass& of, const LearnedPlace& learned) {
   const GroundClass& ground = model.parts().classes[static_cast<std::size_t>(of.class_index)];
   const ClassState& state = of.state;
@@ -71,10 +74,11 @@ InferredGround inferredGround(const EvidenceStore& store, const LocalGround& loc
   for (const WeakPlace& place : local.weak)
     if (const auto weak = weakness(place, variation, at)) {
       GroundBelief bound = left(*weak, prior, ground, ground.mean_std);
-      if (!(place.pull < 0.0)) bound.pull = out.pull;  // it only sinks deeper
+      if (!(place.pull < 0.0)) bound.pull = out.pull;  // the place bounds the sinkage only
       out = weaker(out, bound);
     }
-  // Ground that is ordinary for its class says no more than that it is no stronger: it leaves all ground as sure as it was.
+  // A place within the variation of its class limits the mean only: the standard deviation of the estimate is not
+  // increased.
   for (const WeakPlace& place : local.lower)
     if (const auto weak = lowered(place, variation, at)) {
       GroundBelief bound = left(*weak, prior, ground, state.pull_std);

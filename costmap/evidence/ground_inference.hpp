@@ -6,15 +6,15 @@ namespace talus::costmap {
 
 struct EvidenceStore;
 
-/// The estimate of a piece of ground.
+/// Estimate of the ground at a place.
 struct InferredGround {
   GroundBelief ground;
-  bool learned = false;  ///< evidence nearby moved it away from its class
+  bool learned = false;  ///< true if nearby evidence changed the estimate from that of the class
 };
 
-/// The estimate of a place: no better than the class away from evidence until enough places agree, never better than any
-/// single weak place implies, and within the bounds of its block. Equal to classGround() to the bit where no evidence
-/// reaches it.
+/// Estimate of the ground at `at`. Until enough places of the class may raise, the estimate does not exceed that of the
+/// class without evidence; the estimate never exceeds the value that any single weak place implies, and lies within the
+/// bounds of its block. Bitwise equal to classGround() where no evidence reaches `at`.
 InferredGround inferredGround(const EvidenceStore& store, const LocalGround& local, const GroundOfClass& of,
                               const maps::Point& at);
 

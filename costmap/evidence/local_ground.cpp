@@ -12,9 +12,9 @@ namespace {
 constexpr int kPatchBlocks = EvidenceReach::kPatchBlocks;
 constexpr std::size_t kMostNeighbours = 64;
 constexpr double kSteepest =
-    0.6;  // gradient of ground that joins places of one floor: more than rovers drive
+    0.6;  // greatest gradient between places of one floor, above the gradients that rovers drive
 
-// The same as LocalGround, while it is gathered.
+// LocalGround while it is collected.
 struct NearbyEvidence {
   GroundOfClass of;
   std::vector<PlaceEvidence> places{};
@@ -22,8 +22,9 @@ struct NearbyEvidence {
   std::vector<PlaceBound> bounds{};
 };
 
-// What may raise goes into the process; each place that is weaker than its class explains, or that may only lower, is a bound
-// of its own. Ground of other classes counts only as far as it may have been this.
+// Adds the evidence of one block. Pulls that may raise enter the process. Places that are weaker than the class
+// explains, or whose readings may only lower, become separate bounds. Evidence of another class counts only if its
+// position uncertainty may include this ground.
 void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvidence& e,
            NearbyEvidence& nearby) {
   const int own = store.model().classIndex(block.terrain_class);
@@ -66,8 +67,8 @@ void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvide
   nearby.lower.back().pull = below;
 }
 
-// Takes the kMostNeighbours nearest places into the process, those of the patch itself among them. Of the others each that
-// is weaker than its class is kept as a bound.
+// Uses the kMostNeighbours places nearest to `middle`, always including those of the patch. The remaining places become
+// separate bounds.
 LocalGround grounded(const EvidenceStore& store, NearbyEvidence nearby, const maps::Point& middle) {
   std::vector<PlaceEvidence>& places = nearby.places;
   if (places.size() > kMostNeighbours) {
@@ -104,8 +105,8 @@ Variation variationOf(const EvidenceStore& store, int class_index) noexcept {
           .correlation_length_m = store.model().parts().policy.correlation_length_m};
 }
 
-// The process has only what lies within a correlation length; places further off, whose position may be wrong by more, are
-// bounds alone.
+// The process contains only places within a correlation length of the patch. Places beyond, whose position uncertainty
+// reaches the patch, are bounds only.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of) {
   const int reach =
       store.blocks.reach() + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));

@@ -11,40 +11,41 @@ namespace talus::costmap {
 
 struct EvidenceStore;
 
-/// What bounds the ground of a block, whatever else is known of it. NaN: not bounded.
+/// Bounds of the ground in a block, independent of all other evidence. NaN: no bound.
 struct PlaceBound {
-  maps::Point block;           ///< its middle
-  double reach_m = 0.0;        ///< how far off the place may be
-  double most_pull = 0.0;      ///< drawbar pull over load [-]
-  double least_sinkage = 0.0;  ///< sinkage over radius [-]
+  maps::Point block;           ///< centre of the block
+  double reach_m = 0.0;        ///< position uncertainty of the place [m]
+  double most_pull = 0.0;      ///< upper bound of drawbar pull over load [-]
+  double least_sinkage = 0.0;  ///< lower bound of sinkage over radius [-]
 };
 
-/// A class of ground and what is known of it as a whole.
+/// A class of ground and its state.
 struct GroundOfClass {
   int class_index = 0;
   ClassState state{};
 };
 
-/// The evidence that can reach a piece of ground of one class. Immutable.
+/// Evidence within reach of a patch of ground of one class. Immutable.
 struct LocalGround {
-  GaussianProcess process;  ///< of what may raise, as departures from the class's posterior mean
+  GaussianProcess process;  ///< readings that may raise, as departures from the class's posterior mean
   std::vector<WeakPlace> weak,
-      lower;  ///< departures from its prior: weaker than the class explains, and ordinary
+      lower;  ///< departures from the prior: weaker than the class explains, and within its variation
   std::vector<PlaceBound> bounds;
 
   bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
 };
 
-/// The estimate of ground of a class away from any evidence.
+/// Estimate for ground of a class without nearby evidence.
 GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
 
-/// How ground of a class varies over distance.
+/// Spatial variation of ground of a class.
 Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
 
-/// Evidence on the top surface that can reach a patch of blocks, which begins at `patch`.
+/// Evidence on the top surface within reach of a patch of 8x8 blocks; `patch` is its south-west block.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
 
-/// Evidence of ground, on the top surface or not, that one can drive to from a level of a block without climbing.
+/// Evidence of the class on the top surface or a floor that lies level with a level of a block: reachable by gradients
+/// of at most 0.6.
 LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
                             const GroundOfClass& of);
 

@@ -8,7 +8,7 @@
 namespace talus::costmap {
 namespace {
 
-// What no wheel gives: ground pulls no hundred times the load, no wheel sinks a hundred radii.
+// Limits beyond any wheel: pull over load and sinkage over radius of 100.
 constexpr double kGreatestShare = 100.0;
 constexpr double kGreatestPlace_m = 1e9;
 
@@ -35,7 +35,7 @@ std::string fault(const WheelObservation& o) {
        {outside("x_m", o.place.x_m, kGreatestPlace_m), outside("y_m", o.place.y_m, kGreatestPlace_m),
         outside("pose_std_m", o.pose_std_m, kGreatestPlace_m)})
     if (!reason.empty()) return reason;
-  // Infinite where no sinkage was measured.
+  // An infinite standard deviation means that no sinkage was measured.
   if (!(o.pose_std_m >= 0.0) || (!bounds_alone && (!(o.pull.std >= 0.0) || !(o.sinkage.std >= 0.0))))
     return "a standard deviation is below 0 or missing";
   if (o.shared_std < 0.0 || std::isinf(o.shared_std)) return "a standard deviation is below 0 or infinite";

@@ -6,8 +6,9 @@ namespace talus::costmap {
 
 struct WheelObservation;
 
-/// Why no wheel can have given an observation, "pull = inf, must be ..."; empty where one can. |pull|, its standard
-/// deviation and sinkage over radius are within 100, places within 1e9 m.
+/// Reason why an observation is not physically possible, e.g. "pull = inf, must be ..."; empty if the observation is
+/// possible. Limits: |pull|, its standard deviation and |sinkage over radius| <= 100 [-]; coordinates and position
+/// uncertainty <= 1e9 m.
 std::string fault(const WheelObservation& observation);
 
 }  // namespace talus::costmap

@@ -11,7 +11,7 @@
 namespace talus::costmap {
 namespace {
 
-// Most pairs lie too far apart: they cost a comparison.
+// Most pairs are too far apart: they cost one comparison.
 double sparseKernel(const maps::Point& a, const maps::Point& b, double correlation_length_m) noexcept {
   const double x_m = a.x_m - b.x_m, y_m = a.y_m - b.y_m;
   const double squared = x_m * x_m + y_m * y_m;
@@ -19,8 +19,8 @@ double sparseKernel(const maps::Point& a, const maps::Point& b, double correlati
   return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
-// U of A = U^T U in place, row-major upper triangle, with one over its diagonal; A is positive definite by its noise.
-// Here and below the inner loops run along rows, without a sum that the next step waits for.
+// Replaces A by U of A = U^T U: row-major upper triangle with reciprocal diagonal. The noise makes A positive definite.
+// The inner loops here and below run along rows, so that no step waits for a sum.
 void factorise(std::vector<double>& a, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     double* const row = a.data() + j * n;
@@ -35,7 +35,7 @@ void factorise(std::vector<double>& a, std::size_t n) {
   }
 }
 
-// U^T x = b. Zeros in front stay zeros.
+// Solves U^T x = b in place; leading zeros are skipped.
 void solveLower(const std::vector<double>& u, std::span<double> x) {
   const std::size_t n = x.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -46,7 +46,7 @@ void solveLower(const std::vector<double>& u, std::span<double> x) {
   }
 }
 
-// U x = b, by U's transpose.
+// Solves U x = b in place; l is the transpose of U.
 void solveUpper(const std::vector<double>& l, std::span<double> x) {
   for (std::size_t k = x.size(); k-- > 0;) {
     const double* const row = l.data() + k * x.size();
@@ -125,7 +125,7 @@ LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
 
 namespace {
 
-// Squared, in units of the class's variance.
+// Squared amplitude a^2 of believedAlone(), in units of the class's variance.
 double amplitude2(const Departure& reading, double class_std) noexcept {
   const double ordinary = reading.departure / kOrdinary;
   return std::fmax((ordinary * ordinary - reading.variance) / (class_std * class_std), 1.0);
@@ -140,7 +140,7 @@ double believedAlone(const Departure& reading, double class_std) noexcept {
 
 namespace {
 
-// By a process of amplitude a at the place, squared, in units of the class's.
+// Departure that a weak place implies. a2: squared amplitude at the place, in units of the class's variance.
 std::optional<GroundBelief> leftBy(const WeakPlace& weak, double a2, const Variation& variation,
                                    const maps::Point& place) {
   const double off_m = std::hypot(place.x_m - weak.place.x_m, place.y_m - weak.place.y_m) - weak.reach_m;

@@ -8,47 +8,49 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kReferenceSlip = 0.5;
-// How far a departure at one slip misses that at the reference slip, per unit of slip: some, and beyond the reference
-// slip more the further the ground departs from its class (ours).
+// Error of a departure extrapolated to the reference slip, per unit of slip: a constant, and beyond the reference slip
+// a term in proportion to the departure (ours).
 constexpr double kMissPerSlip = 0.06;
 constexpr double kMissPerSlipAndDeparture = 1.2;
-constexpr double kFlatFrom = 0.25;  // further from the reference slip than this both curves are flat
-// By how much soils of a class miss it otherwise than in strength, in its standard deviations, per H(0.5)/H - 1 (ours; of
-// soils drawn from the deviations of mars_crusty, clay, sandy_loam, dry_sand at slip 0.1 to 0.3: 0.2 to 0.6).
+constexpr double kFlatFrom = 0.25;  // slip difference from which the error no longer grows
+// Further error by differences between soils of a class other than strength, in standard deviations of the class, per
+// H(0.5)/H - 1 (ours; for soils drawn from the deviations of mars_crusty, clay, sandy_loam, dry_sand at slip 0.1 to
+// 0.3: 0.2 to 0.6).
 constexpr double kMissPerGrowth = 0.4;
 constexpr double kMostGrowth =
-    3.0;                       // of a departure on its way to the reference slip: beyond it nothing is raised
-constexpr double kFelt = 0.1;  // of the torque at the reference slip: less tells nothing about it
-// Of the class's deviation, for its torque where it stands in for one that is not felt: it is no reading, and the belief
-// holds the class already (ours).
+    3.0;                       // greatest factor from a departure to that at the reference slip; readings
+                               // beyond it raise nothing
+constexpr double kFelt = 0.1;  // least torque, over that at the reference slip, that is extrapolated
+// Factor on the standard deviation of the class if the torque of the class replaces a torque that is not mobilised: the
+// torque of the class is no measurement, and the estimate contains the class already (ours).
 constexpr double kStandIn = 2.0;
-constexpr double kStanding = 0.9;  // slip from which a rover may as well not move (ours)
+constexpr double kStanding = 0.9;  // slip from which a rover may be stationary (ours)
 constexpr double kHeld =
-    0.05;  // side force over load that tells the ground from a turn or a pose's drift (ours)
-constexpr double kRutDoubt = 1.0;  // of what a rut adds: its stiffness is known to a factor (ours)
+    0.05;  // least side force over load that is not due to a turn or a drift of the pose (ours)
+constexpr double kRutDoubt = 1.0;  // relative error of the pull gained in a rut (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
 }
 
-// Whether a reading at a slip of that share of the thrust at the reference slip tells anything about ground there.
+// True if a departure at this share of the thrust at the reference slip is extrapolated to the reference slip.
 bool tells(double share) noexcept {
   return kMostGrowth * share >= 1.0;
 }
 
-// By how much a departure grows on the way to the reference slip from one of which the class has that share of its thrust.
-// Beyond the reference slip less would do for what is weaker; it is kept.
+// Factor from a departure at this share of the thrust to the departure at the reference slip. Beyond the reference slip
+// (share > 1) the factor of a negative departure is 1.
 double growth(double departure, double share) noexcept {
   return tells(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
 }
 
-// What is left of a number that is read with an error when as much as the error explains is taken off.
+// Value without the part that its error explains: v v^2/(v^2 + e^2).
 double beyondError(double value, double error) noexcept {
   const double square = value * value;
   return square > 0.0 ? value * square / (square + error * error) : 0.0;
 }
 
-// Two estimates of one number.
+// Mean of two estimates of one number, weighted by inverse variance.
 Estimate combined(const Estimate& a, const Estimate& b) noexcept {
   const double wa = 1.0 / (a.std * a.std), wb = 1.0 / (b.std * b.std);
   return {(wa * a.value + wb * b.value) / (wa + wb), 1.0 / std::sqrt(wa + wb)};
@@ -66,21 +68,21 @@ double pullFromTorque(double torque_over_load_radius, double sinkage_over_radius
 WheelObserver::WheelObserver(const GroundModel& model, const ReadingNoise& noise)
     : model_(model), noise_(noise) {}
 
-// A reading with what the model expects of it.
+// A reading and the values that the model predicts for the reading.
 struct WheelObserver::Wheel {
   const ClassReading& read;
-  SteadyWheel expected;    // at its slip, fresh or in a rut
+  SteadyWheel expected;    // at the measured slip, on undisturbed ground or in a rut
   SteadyWheel reference;   // at the reference slip, likewise
-  double steepness = 0.0;  // of the expected gradient, for one standard deviation of slip
-  double rut_gain = 0.0;   // how much more it pulls than on fresh ground
-  double share = 1.0;  // of the class's thrust at the reference slip that it has at its own, straight ahead
-  double asked = 0.0;  // pull over load that the slope asks in the wheel's plane
-  double held = 0.0;   // what it asks across the wheel, over load
-  double known = 0.0;  // departure of the ground at the reference slip that is known by other means
-  double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at its slip
+  double steepness = 0.0;  // change of the expected gradient per standard deviation of slip
+  double rut_gain = 0.0;   // pull in a rut minus pull on undisturbed ground, over load
+  double share = 1.0;      // thrust over that at the reference slip, of the class straight ahead
+  double asked = 0.0;      // pull over load that the slope requires in the wheel's plane
+  double held = 0.0;       // side force over load that the slope requires
+  double known = 0.0;      // departure of the ground at the reference slip that is known by other means
+  double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at the measured slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
   double torque_std =
-      0.0;  // of that by the torque there, of which the class's stands in for what is not felt
+      0.0;  // standard deviation of by_torque by the torque, including the torque of the class
 };
 
 WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
@@ -101,8 +103,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
   const SteadyWheel straight =
       turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
-  // By the slip as far as its error does not explain that it is not the class's on that slope: else readings would weigh the
-  // more for their error.
+  // Share at the measured slip. The part of its difference from the class on this slope that the slip error explains is
+  // removed: otherwise a reading would have the more weight, the greater its error.
   if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
     w.share = straight.torque_over_load_radius / thrust;
     if (known(w.asked)) {
@@ -123,8 +125,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   const SteadyWheel& like = w.reference;
   const double class_pull = pullFromTorque(like.torque_over_load_radius, like.sinkage_over_radius);
   const double depth = std::min(z * like.sinkage_over_radius / w.expected.sinkage_over_radius, 0.99);
-  // The torque at the reference slip: as read, as far as it is mobilised, else the class's, which says the
-  // less the more the depth departs from the class.
+  // Torque at the reference slip: extrapolated from the reading if mobilised, combined with the torque of the class,
+  // whose standard deviation increases with the departure of the sinkage from the class.
   const GroundClass& ground = model_.parts().classes[static_cast<std::size_t>(read.class_index)];
   const double deeper = pullFromTorque(like.torque_over_load_radius, depth) - class_pull;
   Estimate torque{like.torque_over_load_radius,
@@ -141,8 +143,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   return w;
 }
 
-// By how much less than the class the ground under a wheel pulls, as its side force says: < 0, or infinite where that
-// says nothing.
+// Departure of the ground under a wheel from its class by the side force, <= 0; infinite if the side force gives no
+// bound.
 double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
   if (!(w.held >= kHeld) || !(w.expected.hold > 0.0)) return std::numeric_limits<double>::infinity();
   const double thrust = w.reference.torque_over_load_radius;
@@ -151,8 +153,9 @@ double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
          thrust;
 }
 
-// Standard deviation of a departure that was taken to the reference slip, of the model and thus the same for all readings
-// at that slip. Where little of the thrust is felt the departure stays as it is read, and misses the rest of the ground's own.
+// Standard deviation of a departure at the reference slip by the model, the same for all readings at one slip. At low
+// slip only a share of the thrust is mobilised. The departure is then not extrapolated; the standard deviation of the
+// share that is not mobilised is added.
 double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) const {
   const double by_slip = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom);
   const double class_std = model_.prior(w.read.class_index).pull.std;
@@ -162,7 +165,7 @@ double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) c
   return std::hypot(by_slip * kMissPerSlip, unfelt * class_std);
 }
 
-// `own`: this wheel against its fellows by torque and sinkage, believed to half of itself.
+// `own`: departure of this wheel from the other wheels by torque and sinkage; its standard deviation is half its value.
 Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) const {
   const double there = all.departure + own;
   const double error = std::hypot(noise_.gradient, noise_.model_pull, std::hypot(0.5 * own, w.steepness));
@@ -171,7 +174,8 @@ Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) 
   return {mean, std::hypot(growth(-1.0, all.share) * error, miss(w, all, mean))};
 }
 
-// Of a rover that all but stands: what is weaker of the balance and torque with sinkage, if that is known.
+// Upper bound for a rover that may be stationary: the lower of the balance and the estimate from torque and sinkage, if
+// known; at most the class.
 Estimate WheelObserver::upperBound(const Wheel& w, const Balance& all) const {
   Estimate most = w.by_torque;
   if (known(all.departure)) {
@@ -198,7 +202,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   const GroundBelief prior = model_.prior(w.read.class_index);
   Estimate seen = w.by_torque;
   double by_class =
-      known(seen.std) ? w.torque_std : 0.0;  // what the class stands in for, in all readings likewise
+      known(seen.std) ? w.torque_std : 0.0;  // error of the class's torque, common to all readings
   if (by_balance) {
     const Estimate slope = bySlope(w, balance, own);
     seen = known(seen.std) ? combined(slope, seen) : slope;
@@ -212,8 +216,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   }
   if (out.bound) seen = upperBound(w, balance);
   if (!known(seen.std)) return std::nullopt;
-  // What says that ground is stronger than its class is the slope: neither torque and sinkage, nor one wheel
-  // against its fellows, goes beyond that.
+  // Only the slope can show that ground is stronger than its class: torque and sinkage, and differences between wheels,
+  // never raise the value above that of the slope.
   if (!known(reading.drawbar_pull_N)) {
     const double less = std::min(own, std::max(-balance.departure, 0.0));
     seen.value = std::min(seen.value, by_balance ? std::max(bySlope(w, balance, less).value, 0.0) : 0.0);

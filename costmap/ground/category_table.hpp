@@ -8,12 +8,12 @@
 
 namespace talus::costmap {
 
-/// Gradient of the straight climb with the same strength reserve as the plane of a cell in a heading; the
-/// gradient along for ground without a soil.
+/// Returns the gradient of the straight climb with the same strength reserve as the plane of a cell in a
+/// heading; the gradient along for ground without a soil.
 double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept;
 
-/// Heading for the category of a cell if no heading is given: straight uphill, or a heading across the slope
-/// whose equivalent climb is steeper by more than 1/32.
+/// Returns the heading for the category of a cell if no heading is given: straight uphill, or a heading
+/// across the slope whose equivalent climb is steeper by more than 1/32.
 Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept;
 
 /// Category of ground in a heading and its probability: `state` is TravelCost::detail(), `climb` is climbAt()

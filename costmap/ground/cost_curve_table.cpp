@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kNumbers = CellCode::kUnknown;
 
-// Ground that no heading may enter, for classes whose number was not requested.
+// Cost that refuses every heading, for classes whose prior was not requested.
 const GroundCost& refused() {
   static const GroundCost ground = [] {
     auto states = std::make_shared<TravelTable>();
@@ -58,7 +58,7 @@ std::uint8_t CostCurveTable::prior(int class_index) {
   return standIn(GroundKind::of(model_->prior(class_index), class_index, class_index, priors_[i], level_));
 }
 
-// Appends a number, or reuses the last class number that is free.
+// Appends a curve index, or takes the highest class index that is free; empty if all are used.
 std::optional<std::uint8_t> CostCurveTable::freeNumber() {
   if (grounds_.size() < kNumbers) {
     grounds_.emplace_back();
@@ -92,8 +92,8 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
   return *number;
 }
 
-// The number of the greatest pull among the known kinds of the same classes that are no better; kBlocked if
-// there is none.
+// Returns the curve index of the known kind with the greatest pull among those of the same classes that are
+// no better in pull, standard deviation and sinkage; kBlocked without such a kind.
 std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
   const GroundKind* best = nullptr;
   std::uint8_t number = CellCode::kBlocked;

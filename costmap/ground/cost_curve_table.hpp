@@ -14,38 +14,42 @@
 
 namespace talus::costmap {
 
-/// Assigns curve numbers (0 to 253) to estimates of ground. Numbers 0 .. classes-1 belong to the priors of
-/// the classes. A prior is refused in every heading until its number is requested, so that only classes that
-/// occur are computed; the first class, the default, is computed at once. A learned estimate is quantised
-/// towards danger (GroundKind) and gets a number at its first occurrence. If no number is left, numbers of
-/// unrequested classes are used; then a known number with no better ground substitutes, and without such a
-/// number the ground is blocked. Exhaustion therefore never reduces a cost. Not thread-safe.
+/// Assigns indices (0 to 253) of cost curves to estimates of the ground. The indices 0 .. classes-1 belong to
+/// the priors of the classes. A prior is refused in every heading until prior() is called for its class, so
+/// that only classes that occur are computed; the first class, the default, is computed by the constructor.
+/// An estimate from telemetry is quantised towards danger (GroundKind) and gets an index at its first
+/// occurrence. If all indices are used:
+///   - the estimate gets the index of a class whose prior was not requested;
+///   - else the index of the strongest known estimate of the same classes that is no better in any quantity;
+///   - else CellCode::kBlocked.
+/// A lack of indices therefore never reduces a cost. Not thread-safe.
 class CostCurveTable {
  public:
   explicit CostCurveTable(std::shared_ptr<const GroundModel> model);
 
-  /// Number of the prior of a class; priorBelief() is the estimate itself.
+  /// Returns the index of the curve of a class's prior; priorBelief() is the estimate itself.
   std::uint8_t prior(int class_index);
   const GroundBelief& priorBelief(int class_index) const {
     return priors_[static_cast<std::size_t>(class_index)];
   }
-  /// Number of ground with a learned estimate. The curve is nowhere below that of the same estimate on
-  /// `other_class`.
+  /// Returns the index of the curve of an estimate from telemetry. The curve is nowhere below the curve of
+  /// the same estimate on `other_class`.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
   }
 
-  /// Number of the curve of `number` with `added_J_per_m` added to its energy. `number` must not be a result
-  /// of dearer(). `step` > 0 identifies the added energy and increases with it. If no number is free, returns
-  /// the number assigned to the next greater step of the same curve, else CellCode::kBlocked.
+  /// Returns the index of the curve with index `number` and `added_J_per_m` added to its energy. `number`
+  /// must not be a result of dearer(). `step` > 0 identifies the added energy and increases with the added
+  /// energy. If no index is free, returns the index assigned to the next greater step of the same curve, else
+  /// CellCode::kBlocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
   /// Whether a substitute was needed since the last restart.
   bool overflowed() const noexcept { return overflowed_; }
-  /// Fraction of the numbers for learned estimates that are in use, 0 to 1.
+  /// Returns the fraction, 0 to 1, of the indices for estimates from telemetry that are in use.
   double used() const noexcept;
-  /// Discards all learned estimates; later estimates are quantised at this level of GroundKind.
+  /// Discards all estimates from telemetry; later estimates are quantised at this level of GroundKind.
   void restart(int level);
   int level() const noexcept { return level_; }
 
@@ -53,12 +57,13 @@ class CostCurveTable {
   /// steps (EvidenceField::Classes::InSteps) are mostly unchanged.
   bool setPrior(int class_index, const GroundBelief& next);
 
-  /// The estimate from which the curve of a number was made.
+  /// Returns the estimate from which the curve with an index was computed.
   const GroundBelief& belief(std::uint8_t number) const { return beliefs_[number]; }
-  /// Category of the ground of a number over the gradient of its plane.
+  /// Returns the categories of the ground with a curve index, tabulated by the gradient of its plane.
   const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
-  /// Cost function of all assigned numbers; the same object until a number is added.
+  /// Returns the cost function with the curves of all assigned indices; the same object until a curve is
+  /// added.
   std::shared_ptr<const TravelCost> cost() const;
 
  private:
@@ -83,8 +88,8 @@ class CostCurveTable {
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
   std::vector<GroundBelief> priors_;  // priors of the classes
-  // Use of a class's number: none, the class, another estimate, or another estimate while the class waits for
-  // its number.
+  // Use of the index of a class: free, by the class, by another estimate, or by another estimate after
+  // prior() was called for the class.
   enum class Slot : std::uint8_t { Free, Own, Lent, Wanted };
   std::vector<Slot> slots_;
   struct Dearer {
@@ -92,7 +97,7 @@ class CostCurveTable {
     double added_J_per_m;
   };
   std::map<GroundKind, std::uint8_t> numbers_;
-  std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // by number and step
+  std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // by curve index and step
   std::map<PriorKey, Worked> worked_;
   mutable std::shared_ptr<const TravelCost> cost_;
 };

@@ -9,7 +9,7 @@ namespace talus::costmap {
 /// Estimate of ground quantised relative to the prior of its class and rounded towards danger, in steps of
 ///   - pull: 0.02, rounded down;
 ///   - standard deviation of the pull: a quarter octave, from 1/64 to 256 of the prior's, rounded up;
-///   - sinkage over radius: 0.1, rounded up.
+///   - sinkage divided by radius: 0.1, rounded up.
 /// At level n, steps are 2^n times as large. An estimate no worse than the prior is rounded to no worse than
 /// the prior, so that little evidence never increases a cost. Rounding twice to equal or increasing levels
 /// equals rounding once. The standard deviation has the finest steps, because the probability of

@@ -29,9 +29,9 @@ double probabilityBelow(const Estimate& value, double bound) {
   return terramech::normalProbability((bound - value.value) / value.std);
 }
 
-constexpr double kLeastThrust = 0.02;  // over load [-]
+constexpr double kLeastThrust = 0.02;  // divided by load [-]
 
-// Pull and gross thrust of a class over load, at the reference slip.
+// Pull and gross thrust of a class, both divided by load, at the reference slip.
 struct Thrust {
   double pull, thrust;
 
@@ -327,7 +327,7 @@ TravelState GroundModel::state(int class_index, const GroundBelief& belief, doub
 
   TravelState state;
   state.slip = static_cast<float>(s.slip);
-  // Stronger ground brakes harder on the same slope; that braking also counts for weaker ground.
+  // The larger braking torque on stronger ground of an equal slope is used for weaker ground, too.
   state.sinkage_m = static_cast<float>(
       std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);

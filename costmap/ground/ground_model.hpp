@@ -22,9 +22,9 @@ struct GroundClass {
   int number = 0;                            ///< number in the terrain-class raster
   terramech::Soil soil;                      ///< mean soil
   std::vector<terramech::Effect> effects{};  ///< effects found in data, beyond a rigid wheel on the soil
-  double pull_std = 0.05;    ///< standard deviation of drawbar pull over load between places of the class [-]
-  double mean_std = 0.05;    ///< standard deviation of the class mean of drawbar pull over load [-]
-  double sinkage_std = 0.1;  ///< standard deviation of sinkage over radius between places [-]
+  double pull_std = 0.05;                    ///< standard deviation of DP/W between places of the class [-]
+  double mean_std = 0.05;                    ///< standard deviation of the class mean of DP/W [-]
+  double sinkage_std = 0.1;                  ///< standard deviation of z/r between places [-]
 };
 
 /// Mobility curve of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve.
@@ -37,8 +37,8 @@ terramech::MobilityReference referenceOf(const GroundClass& ground, const terram
 
 /// Estimated strength of ground, at the reference slip 0.5.
 struct GroundBelief {
-  Estimate pull;     ///< drawbar pull over load [-]
-  Estimate sinkage;  ///< sinkage over wheel radius [-]
+  Estimate pull;     ///< drawbar pull divided by load, DP/W [-]
+  Estimate sinkage;  ///< sinkage divided by wheel radius, z/r [-]
 };
 
 /// State of a driven wheel on fresh ground or in the rut of an equal wheel.
@@ -50,10 +50,10 @@ struct SlippingWheel {
 
 /// Quantities of a wheel in steady motion.
 struct SteadyWheel {
-  double gradient = 0.0;  ///< gradient of the slope, equal to the drawbar pull over load [-]
+  double gradient = 0.0;  ///< gradient of the slope, equal to DP/W [-]
   double sinkage_over_radius = 0.0;
   double torque_over_load_radius = 0.0;
-  double hold = 0.0;  ///< side force against sideways motion over load [-]
+  double hold = 0.0;  ///< side force against sideways motion, divided by load [-]
 };
 
 /// A category and its probability.
@@ -63,9 +63,9 @@ struct RankedCategory {
 };
 
 /// Ground model of one rover on one body: the mobility curve of each class, and the cost of ground for any
-/// estimated strength. At the reference slip, a class has a thrust H (torque over load and radius), a
-/// resistance R and a pull P = H - R, all over load. Ground with an estimated pull P - d drives on a gradient
-/// g as the class does on the gradient
+/// estimated strength. At the reference slip, a class has a thrust H (torque / (load * radius)),
+/// a resistance R and a pull P = H - R, all divided by load. Ground with an estimated pull P - d drives on a
+/// gradient g as the class does on the gradient
 ///   g + d                                  for g <= P - d (up to the reference slip): shift of the curve;
 ///   P + (g - P + d) / f,  f = 1 - d / H    beyond: the ground has the fraction f of the class's thrust
 /// (ours; both are exact at the reference slip. For soils drawn from the deviations of mars_crusty,
@@ -97,7 +97,7 @@ class GroundModel {
   const Parts& parts() const noexcept { return parts_; }
   const terramech::Rover& rover() const noexcept { return parts_.rover; }
 
-  /// Index in parts().classes of a class number; -1 for an undeclared number.
+  /// Returns the index in parts().classes of a class number; -1 for an undeclared number.
   int classIndex(int number) const noexcept;
 
   /// Estimate before any evidence.
@@ -116,7 +116,8 @@ class GroundModel {
   GroundCost ground(int class_index, const GroundBelief& belief) const {
     return ground(class_index, class_index, belief);
   }
-  /// The same for ground of either class: each quantity is the less favourable of both.
+  /// Returns the drive curve and states of ground that may have either class: each quantity is the less
+  /// favourable of the two classes.
   GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
 
   /// Effect of cross slopes on ground of a class.
@@ -125,7 +126,7 @@ class GroundModel {
   /// State at a gradient along the heading (rise over run) without cross slope, as tabulated by ground().
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const;
 
-  /// Cost of one horizontal metre [J]; infinite if refused.
+  /// Returns the cost of one horizontal metre [J]; infinite if refused.
   double cost_J_per_m(const TravelState& state) const noexcept;
 
   /// Category of ground at a gradient along the heading, and its probability under the estimate.
@@ -147,7 +148,7 @@ class GroundModel {
   const ClassGround& groundOf(int class_index) const;
   ClassGround workedOut(const GroundClass& ground) const;
 
-  // Drawbar pull over load below which a slope is dangerous (low), and above which it is safe (high).
+  // DP/W below which a slope is dangerous (low), and above which it is safe (high).
   struct Edges {
     double low, high;
   };
@@ -158,7 +159,7 @@ class GroundModel {
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
   static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept;
-  // Required pulls over load: at most when driven, at least when braked.
+  // Required DP/W: at most when driven, at least when braked.
   struct Demand {
     double driven, braked;
   };

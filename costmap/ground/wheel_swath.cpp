@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kHeadings = 16;  // over 180 degrees: forward and backward stances are equal
 
-// Number of positions of the centre along a side of the cell: spaced at most a quarter of the track.
+// Returns the number of positions of the centre along a side of the cell: spaced at most a quarter of the
+// track.
 int placesAcross(double side_m, double track_m) {
   return std::clamp(static_cast<int>(std::ceil(4.0 * side_m / track_m)), 1, 8) + 1;
 }

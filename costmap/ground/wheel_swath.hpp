@@ -10,11 +10,11 @@
 
 namespace talus::costmap {
 
-/// Strength of the ground under all wheels of a rover whose centre is in a cell. The pull of the whole rover
-/// counts, not the soil at a point.
+/// Computes the drawbar pull over load [-] of a whole rover whose centre is in a cell, from the ground under
+/// all its wheels.
 ///
-/// The wheels of a rigid rover have equal slip, so their pulls add: the pull over load of the rover is the
-/// mean over its wheels, each on the weakest cell within its width. The result is the least mean over all
+/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean of DP/W of
+/// its wheels, each on the weakest cell within its width. The result is the least mean over all
 /// positions of the centre within the cell (edges, corners and pose error included) and over 16 headings,
 /// 11.25 degrees apart, turns in place included; or the pull of the cell's own ground if less. The standard
 /// deviation and the sinkage are the maxima over the cells that a wheel may touch. Immutable.
@@ -23,7 +23,7 @@ class WheelSwath {
   /// For a rover on cells of this size; `pose_error_m` >= 0 widens the positions of the centre.
   WheelSwath(const terramech::Rover& rover, double resolution_m, double pose_error_m);
 
-  /// Greatest column or row offset of the cells that a wheel may touch.
+  /// Returns the greatest column or row offset of the cells that a wheel may touch.
   int reach() const noexcept { return reach_; }
 
   /// Ground of a cell; class_index < 0: outside the map.
@@ -45,8 +45,8 @@ class WheelSwath {
   };
 
   /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,
-  /// the cell itself in the centre. The central cell must have a class; cells outside the map count as the
-  /// central cell.
+  /// the cell itself in the centre. The central cell must have a class; cells without a
+  /// class, such as cells outside the map, get the pull of the central cell.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

@@ -62,7 +62,7 @@ class EvidenceJournal {
   /// or for a number that no wheel can produce.
   std::vector<JournalRow> rows(const std::string& drive) const;
 
-  /// Number of rows.
+  /// Returns the number of rows.
   std::int64_t size() const;
 
  private:

@@ -11,7 +11,7 @@
 /// Access to the rows of the tables `evidence` and `drive` of a journal.
 namespace talus::costmap {
 
-/// Text of a column, byte by byte.
+/// Returns the text of a column, byte by byte.
 std::string journalText(sqlite3_stmt* row, int column);
 
 /// Appends rows to the drive with that number.

@@ -105,7 +105,7 @@ void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) 
   }
 }
 
-// Text of a hazard of a cell, with the name of the layer that causes the hazard.
+// Returns the text of a hazard of a cell, with the name of the layer that causes the hazard.
 std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard hazard) {
   for (const CostLayer& layer : map.surface().costLayers()) {
     const float added = layer.added_J_per_m[cell];

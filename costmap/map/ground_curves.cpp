@@ -12,7 +12,7 @@ constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
 constexpr int kFew = 4;  // cells by which a box may grow in addition to a new cell
 constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 24, kSinkageZero = 64;
 
-// Packs a kind into a non-zero word: drawbar pull over load within 10 of the prior's, sinkage up to 44 radii
+// Packs a kind into a non-zero word: DP/W within 10 of the prior's, sinkage up to 44 radii
 // above.
 std::uint32_t packed(const GroundKind& kind) {
   const auto field = [](int value, int bits) {

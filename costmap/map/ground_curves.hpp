@@ -39,16 +39,18 @@ class GroundCurves {
   /// Takes over the estimates of the classes.
   ClassChange learnClasses(const EvidenceField& field);
   /// Takes over the estimates of the cells of the ranges, with class states in steps. Returns the ranges
-  /// whose numbers may have changed.
+  /// whose curve indices may have changed.
   std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
-  /// Takes over changed terrain classes of the site in a box. Returns the box whose numbers may have changed.
+  /// Takes over changed terrain classes of the site in a box. Returns the box whose curve indices may
+  /// have changed.
   maps::CellBox takeClasses(const maps::CellBox& box);
 
-  /// Ranges whose numbers depend on several kinds of ground, priors of classes possibly included.
+  /// Returns the boxes whose curve indices depend on several kinds of ground, possibly with priors of
+  /// classes.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Discards all numbers after they are exhausted; a higher level has coarser steps. Steps of cost layers
+  /// Discards all curve indices, after none was free; a higher level has coarser steps. Steps of cost layers
   /// become coarser before those of estimates, because estimates decide which ground is drivable.
   void restart(int level) {
     level_ = level;

@@ -11,7 +11,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kFull = 0.75;  // fraction of curve numbers in use above which numbers are reassigned
+constexpr double kFull = 0.75;  // fraction of curve indices in use above which all are reassigned
 
 std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
   const auto across = [](int cells) {
@@ -152,8 +152,8 @@ void MapCosts::publish(const EvidenceField& field, bool whole) {
 }
 
 // Ensures that an incremental version is no cheaper than a complete one. At level 0, each curve depends on
-// its kind alone. At a coarser level with free numbers, a complete computation would use the same or a finer
-// level. In all other cases, all numbers are reassigned.
+// its kind alone. At a coarser level with free curve indices, a complete computation would use the same or a
+// finer level. In all other cases, all indices are reassigned.
 std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox>& changed) {
   std::shared_ptr<const CostGrid> next = rewritten(changed);
   const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
@@ -161,7 +161,7 @@ std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox
   return curves_->table().overflowed() || !room ? renumbered() : next;
 }
 
-// Recomputes all cells at the finest level that leaves free numbers.
+// Recomputes all cells at the finest level that leaves free curve indices.
 std::shared_ptr<const CostGrid> MapCosts::renumbered() {
   for (int level = 0;; ++level) {
     curves_->restart(level);
@@ -188,7 +188,7 @@ CellCode MapCosts::coded(maps::Cell cell, CellCode code) {
   if (found == Hazard::None) return code.withCurve(curves_->number(cell));
   if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
   if (!surface_->model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
-  // The learned soil still applies to cells whose shape cannot be measured.
+  // The estimate from telemetry still applies to cells whose shape cannot be measured.
   return code.withCurve(surface_->classIndex(cell) >= 0 ? curves_->number(cell)
                                                         : curves_->numberOfUnseen(cell));
 }

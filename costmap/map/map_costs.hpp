@@ -17,7 +17,7 @@ class EvidenceField;
 class GroundCurves;
 class PublishedGrid;
 
-/// Number of cells of each category. Cells with a hazard count as dangerous if refused, as unknown if unseen.
+/// Number of cells of each category. Refused cells with a hazard are dangerous, unseen cells are unknown.
 struct CategoryCounts {
   std::size_t safe = 0, marginal = 0, dangerous = 0, unknown = 0;
 };

@@ -56,7 +56,7 @@ class TrailerWriter {
   std::ostream& stream_;
 };
 
-// The last bytes of a map.
+// The last 16 bytes of a map file: "END ", version and checksum.
 struct End {
   std::array<char, 4> tag = kEnd;
   std::uint32_t version = kVersion;

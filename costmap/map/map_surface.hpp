@@ -42,7 +42,7 @@ class MapSurface {
   int classNumber(maps::Cell cell) const noexcept {
     return site_->classes.empty() ? 0 : site_->classes[cell];
   }
-  /// Index of the cell's class in model().parts().classes, or -1.
+  /// Returns the index of the cell's class in model().parts().classes, or -1.
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
   /// Class index of the ground at a height; the first class for a floor beneath the surface.
   int classIndex(maps::Cell cell, double z_m) const noexcept {
@@ -63,7 +63,7 @@ class MapSurface {
   /// Hazards by rocks, keep-out areas and refused places, without the clearance around them; empty if the map
   /// has none.
   const maps::Raster<Hazard>& declared() const noexcept { return declared_; }
-  /// Places declared impassable, in order.
+  /// Returns the places declared impassable, in order.
   const std::vector<RefusedPlace>& refused() const noexcept { return refused_; }
 
   double footprintRadius_m() const noexcept { return options_.footprint_radius_m; }
@@ -98,7 +98,7 @@ class MapSurface {
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:
-  // Code and hazards of a measured cell.
+  // Cell code (gradients and index of the cost curve) and hazards of a measured cell.
   struct Ground {
     CellCode code;
     Hazard hazards;

@@ -23,7 +23,8 @@ std::shared_ptr<MapSurface> surfaceOf(MapLayers layers, std::shared_ptr<const Gr
   return std::make_shared<MapSurface>(std::move(layers), std::move(model), shape);
 }
 
-// Place around the block of an observation: repeated observations of a spinning wheel give the same place.
+// Returns the disc around the block of an observation: repeated observations of a spinning wheel give an
+// equal disc.
 RefusedPlace blockAround(const WheelObservation& observation, const maps::Grid& grid, double side_m) {
   const auto middle = [&](double at, double from) {
     return from + (std::floor((at - from) / side_m) + 0.5) * side_m;

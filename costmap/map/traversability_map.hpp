@@ -44,7 +44,7 @@ class TraversabilityMap {
   const MapSurface& surface() const noexcept { return *surface_; }
   /// Evidence from wheel measurements.
   const EvidenceField& evidence() const noexcept { return field_; }
-  /// Cost grid and categories.
+  /// Returns the cost grid and the categories of the cells.
   const MapCosts& costs() const noexcept { return *costs_; }
 
   const maps::Grid& grid() const noexcept { return surface_->grid(); }
@@ -88,11 +88,11 @@ class TraversabilityMap {
   void refuse(const maps::Point& place, double radius_m);
 
   /// Replaces a window of the ground and publishes the window, with all learned evidence, as one new version.
-  /// Heights, rocks, classes and keep-out areas then count as if the map had been built with them. Only cells
-  /// affected through footprint, clearance or wheel swath are measured again. Evidence is kept with the class
-  /// for which it was learned. Throws std::invalid_argument with place and remedy for a patch of another
-  /// resolution, outside the map, without an observation, or with an invalid value; the map is then
-  /// unchanged.
+  /// The new version equals a map that was built with these heights, rocks, classes and keep-out areas. Only
+  /// cells whose footprint, clearance or wheel swath overlaps the window are measured again. Evidence stays
+  /// assigned to the class for which the evidence was recorded. Throws std::invalid_argument with place and
+  /// remedy for a patch of another resolution, outside the map, without an observation, or with an invalid
+  /// value; the map is then unchanged.
   void patch(const SurfacePatch& patch);
 
   /// The map of a window shifted by `tiles` tiles of 64 cells eastward (columns) and northward (rows). The
@@ -102,8 +102,8 @@ class TraversabilityMap {
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
-  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running planner
-  /// keeps its version. If the numbers of cost curves are exhausted, all cells get new numbers with coarser
+  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running
+  /// planner keeps its version. If no index of a cost curve is free, all cells get new indices with coarser
   /// steps (GroundKind).
   ///
   /// The costs equal those of publishAll() to the bit, for any sequence of changes. A cell depends on its

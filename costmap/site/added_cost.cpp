@@ -29,7 +29,7 @@ const std::array<double, kLast + 1>& values() {
   return all;
 }
 
-// Sum over the layers without infinite costs.
+// Returns the sum over the layers without infinite costs.
 double sumAt(const std::vector<CostLayer>& layers, std::size_t cell) {
   double sum = 0.0;
   for (const CostLayer& layer : layers) {

@@ -67,7 +67,7 @@ struct GroundSite {
   std::vector<CostLayer> costs{};  ///< on the grid of the elevation
 
   const maps::Grid& grid() const noexcept { return elevation.grid(); }
-  /// Index of a cell's class in the model's classes, or -1 for a class without a soil.
+  /// Returns the index of a cell's class in the model's classes, or -1 for a class without a soil.
   int classIndex(maps::Cell cell) const noexcept {
     return classes.empty() ? 0 : model->classIndex(classes[cell]);
   }

@@ -88,8 +88,8 @@ struct Bounds {
   double low, high;
 };
 
-// Text of the first value that is neither NaN nor within a range, with its position and the valid range;
-// nullopt if all are valid.
+// Returns the text of the first value that is neither NaN nor within a range, with its position and the valid
+// range; nullopt if all are valid.
 std::optional<std::string> impossible(const char* layer, const maps::Raster<float>& raster,
                                       const Bounds& range) {
   for (std::size_t i = 0; i < raster.values().size(); ++i) {

@@ -14,7 +14,7 @@ inline constexpr double kHighest_m = 131072.0;
 maps::CellBox placeOf(const SurfacePatch& patch, const GroundSite& site, bool any_height);
 
 /// Throws std::invalid_argument with place and remedy if a layer of the map has an invalid height or rock
-/// abundance: invalid values would count as no hazard or as no data.
+/// abundance: invalid values would be read as no hazard or as no data.
 void requirePossible(const MapLayers& layers);
 
 /// Middle of the range of the heights [m], which keeps all heights inside the octree; 0 without heights.

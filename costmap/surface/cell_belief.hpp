@@ -32,14 +32,14 @@ constexpr bool has(Hazard set, Hazard one) noexcept {
 /// Estimate of one cell: the strength of the ground from the prior of the terrain class and from wheel
 /// evidence, and the category, which is the worst over all headings. Payload of the octree.
 struct CellBelief {
-  float pull_mean = 0.0F;     ///< drawbar pull over load at the reference slip 0.5 [-], posterior mean
+  float pull_mean = 0.0F;     ///< DP/W at the reference slip 0.5 [-], posterior mean
   float pull_std = 0.0F;      ///< standard deviation of pull_mean [-]
-  float sinkage_mean = 0.0F;  ///< sinkage over wheel radius at the reference slip [-], posterior mean
+  float sinkage_mean = 0.0F;  ///< z/r at the reference slip [-], posterior mean
   float sinkage_std = 0.0F;   ///< standard deviation of sinkage_mean [-]
   /// Samples in the cell's block, each weighted by its certainty [-]; 0: no evidence.
   float evidence = 0.0F;
-  float evidence_pull = 0.0F;      ///< drawbar pull over load of the weakest part of the samples [-]
-  float evidence_sinkage = 0.0F;   ///< sinkage over radius of the deepest sample [-]; 0: not measured
+  float evidence_pull = 0.0F;      ///< DP/W of the weakest part of the samples [-]
+  float evidence_sinkage = 0.0F;   ///< z/r of the deepest sample [-]; 0: not measured
   std::uint32_t updated_s = 0;     ///< telemetry time of the newest sample, rounded down [s]
   std::uint8_t terrain_class = 0;  ///< number in the terrain-class raster; 0 without a raster
   std::uint8_t category = 3;       ///< terramech::Category as a number: safe, marginal, dangerous, unknown

@@ -17,7 +17,7 @@ struct HazardLimits {
   double rock_diameter_m = 0.2;   ///< smallest rock that the rover can neither straddle nor climb
   double rock_area_m2 = 1.0;      ///< footprint that must be free of such rocks
   double max_rock_probability = 0.5;  ///< greatest accepted probability of such a rock in the footprint [-]
-  double wheelbase_m = 1.0;           ///< span over which relief counts as a step
+  double wheelbase_m = 1.0;           ///< height differences within this span are steps
   double wheel_diameter_m = 0.0;  ///< greatest distance of heights that form a step; adjacent cells always do
   double inflation_m = 0.0;  ///< clearance of the rover's centre from keep-out, impassable and unseen cells
 
@@ -26,9 +26,9 @@ struct HazardLimits {
   static HazardLimits of(const terramech::Rover& rover);
 };
 
-/// Share of relief that counts as a step: min(1, wheelbase_m / span_m), with span_m the width of the
-/// footprint or the distance of the two cells. Relief over a longer span than the wheelbase is curvature of
-/// the ground rather than an edge, and counts in proportion (ours, not from the literature).
+/// Returns the share of a height difference that is used as a step: min(1, wheelbase_m / span_m). span_m is
+/// the width of the footprint or the distance of the two cells. A height difference across more than the
+/// wheelbase is partly curvature of the ground, not an edge (ours, not from the literature).
 double reliefShare(const HazardLimits& limits, double span_m);
 
 /// Shape of the ground at a cell, from maps::TerrainMetrics.
@@ -64,10 +64,11 @@ inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Haza
 /// Marks all cells as Near that have a point closer than inflation_m to a cell with one of the hazards
 /// `spreading`; if Unknown is one of them, also cells close to the border of the map.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
-/// The same for the cells of a box inside the map, with equal results in the box.
+/// Marks only cells of `box`, which must lie inside the map; the result in the box is that of inflate() on
+/// all cells.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
              const maps::CellBox& box);
-/// Greatest column or row offset between a cell and the cells marked for that cell.
+/// Returns the greatest column or row offset between a cell and the cells marked for that cell.
 int inflationReach(const HazardLimits& limits, double resolution_m);
 
 }  // namespace talus::costmap

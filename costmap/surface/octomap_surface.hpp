@@ -29,7 +29,7 @@ struct OctomapGround {
 OctomapGround octomapGround(const std::string& path,
                             double ceiling_m = std::numeric_limits<double>::infinity());
 
-/// The same from a stream; `name` identifies the stream in messages.
+/// Reads the octree from a stream instead of a file; `name` identifies the stream in messages.
 OctomapGround octomapGround(std::istream& stream, const std::string& name,
                             double ceiling_m = std::numeric_limits<double>::infinity());
 

@@ -10,8 +10,8 @@
 
 namespace talus::costmap {
 
-/// Octree keys of a map's cells: x and y count cells from the centre of the grid, z counts cell heights from
-/// a base elevation. Tree coordinates are map coordinates minus origin().
+/// Octree keys of a map's cells: x and y are cell indices from the centre of the grid; z is the height above
+/// a base elevation in units of the cell size. Tree coordinates are map coordinates minus origin().
 class SurfaceKeys {
  public:
   /// Throws std::invalid_argument for more than 65536 cells on a side, the limit of OctoMap's keys.

@@ -16,7 +16,8 @@ class SurfaceShape {
   /// Throws std::invalid_argument as maps::terrainMetrics().
   explicit SurfaceShape(const maps::FootprintOptions& footprint) : footprint_(footprint) {}
 
-  /// Greatest column or row offset between a cell and the cells whose shape depends on its height.
+  /// Returns the greatest column or row offset between a cell and the cells whose shape depends on its
+  /// height.
   int reach(const maps::Grid& grid) const;
 
   /// Receives a cell of the box, its shape and its hazards by the limits.

@@ -23,7 +23,7 @@ Cube childOf(const Cube& cube, unsigned child) noexcept {
           cube.z + (child & 4U ? half : 0), cube.level - 1};
 }
 
-// Position of a voxel in depth-first order (Morton code).
+// Returns the position of a voxel in depth-first order (Morton code).
 std::uint64_t orderOf(unsigned x, unsigned y, unsigned z) noexcept {
   std::uint64_t order = 0;
   for (unsigned bit = 0; bit < kOctreeDepth; ++bit)

@@ -6,33 +6,33 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kLastSlip = 0.8;  // of the cost curves
-constexpr double kStanding = 0.9;  // from which a wheel may as well not move
-constexpr double kDoubt = 0.05;    // of DP/W by one slip and slope: two standard deviations
-constexpr double kSunk = 0.75;     // of the radius
-constexpr double kBelow = 0.01;    // of DP/W: the step in which evidence is kept
-constexpr double kMost = 10.0;     // of either bound: beyond it nothing changes
+constexpr double kLastSlip = 0.8;  // end of the cost curves
+constexpr double kStanding = 0.9;  // slip from which a wheel may be stationary
+constexpr double kDoubt = 0.05;    // two standard deviations of DP/W from one slip and slope
+constexpr double kSunk = 0.75;     // sinkage over radius
+constexpr double kBelow = 0.01;    // step in which evidence is stored, in DP/W
+constexpr double kMost = 10.0;     // greatest value of either bound; greater values have no further effect
 constexpr double kFarBelow = 2.0;  // standard deviations
 
-// The greater of what the slip sensor and the speeds say; NaN where neither says anything.
+// The greater of the measured slip and the slip from speeds, at most 1; NaN if both are missing.
 double slipOf(const TelemetryReading& reading) noexcept {
   const double most = std::fmax(reading.slip, reading.speed_slip);
   return most > 1.0 ? 1.0 : most;
 }
 
-// Within what the journal takes; NaN stays.
+// Limits a bound to the range of the journal; NaN stays.
 double kept(double most_pull) noexcept {
   return std::isnan(most_pull) ? most_pull : std::clamp(most_pull, -kMost, kMost);
 }
 
 }  // namespace
 
-// DP/W that is dangerous at a gradient, whatever the rounding.
+// DP/W that is dangerous at a gradient, including rounding.
 double DangerWatch::dangerousBelow(double gradient) const noexcept {
   return std::tan(std::atan(gradient) - model_.parts().policy.slope_margin_rad) - kBelow;
 }
 
-// The same for all that the rover may be driven down.
+// DP/W that is dangerous at the steepest descent that the rover may drive.
 double DangerWatch::neverDriven() const noexcept {
   return dangerousBelow(-std::tan(model_.rover().max_pitch_rad));
 }

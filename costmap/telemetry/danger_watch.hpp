@@ -6,32 +6,31 @@
 
 namespace talus::costmap {
 
-/// Slip from which a reading bounds the ground, beyond any that a drive plans [-].
+/// Slip from which a reading bounds the ground, above the slips of any planned drive [-].
 inline constexpr double kDangerSlip = 0.7;
 
-/// Evidence of danger in a wheel's reading, channel by channel. A channel speaks for itself: what the others read,
-/// whether they are missing, not finite or impossible, and what was read before or after takes nothing away. What it
-/// says is a bound of the ground where it was read and of no other. Immutable; keeps a reference to the model.
+/// Bounds of the ground from the reading of one wheel. Each channel of a reading is checked for danger separately:
+/// other channels, whether missing, not finite or impossible, and earlier or later readings do not reduce the bound. A
+/// bound applies only to the ground where the reading was taken. Immutable; keeps a reference to the model.
 ///
-/// slip      from 0.7 on, more than any drive plans, the ground pulls no more than the slope takes at that slip, and
-///           two standard deviations; from
-///           0.8 on, where the cost curves end, it is dangerous on that slope; from 0.9 on the wheel may as well have
-///           stood, and the ground is dangerous in every heading. Above 1 or infinite counts as 1. The speeds of rim
-///           and rover count as slip, if they say more.
-/// sinkage   from the policy's threshold on, that deep at least; from 0.75 r on, where the entry angle leaves what the
-///           pull is computed for, dangerous in every heading (ours)
-/// torque    at the motor's limit: dangerous on that slope
+/// slip     from 0.7 on, DP/W is at most that of the class, plus the slope, minus the gradient that the class climbs
+///          at that slip, plus 0.05 (two standard deviations); from 0.8 on, the end of the cost curves, the ground
+///          is dangerous on that slope; from 0.9 on the wheel may have been stationary, and the ground is dangerous
+///          in every heading. A slip above 1 counts as 1. The slip from rim speed and rover speed is used if greater.
+/// sinkage  from the policy's threshold on, z/r of the ground is at least the measured z/r; from 0.75 on, where the
+///          entry angle leaves the range of the pull equation, the ground is dangerous in every heading (ours)
+/// torque   from the limit of the motor on, the ground is dangerous on that slope
 ///
-/// Where the slope along the heading is not known it is the steepest descent there.
+/// If the slope along the heading is unknown, the steepest descent at the place is used.
 class DangerWatch {
  public:
   explicit DangerWatch(const GroundModel& model) : model_(model) {}
 
-  /// `least_gradient`: the least that the slope along the heading may have been, rise over run.
+  /// Bound from one reading. `least_gradient`: lowest possible slope along the heading, rise over run [-].
   GroundBound hear(int class_index, const TelemetryReading& reading, double least_gradient) const;
 
-  /// Of a reading that is suspected for another reason: its drawbar pull bounds the ground where it lies two standard
-  /// deviations below its class.
+  /// Bound from a reading that is suspected for another reason: its drawbar pull, if two standard deviations below that
+  /// of its class.
   GroundBound hear(int class_index, const WheelObservation& suspected) const;
 
  private:

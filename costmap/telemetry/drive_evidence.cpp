@@ -31,7 +31,7 @@ void processRows(const TelemetryRows& rows, const TraversabilityMap& map, Teleme
   }
 }
 
-// Rows behind those that are known, column by column; what either lacks is empty.
+// Appends rows, column by column; values of a column that one of the two lacks are empty.
 void append(terramech::Telemetry& all, const terramech::Telemetry& part) {
   const std::size_t before = all.size(), after = before + part.size();
   const auto join = [&](auto& to, const auto& from, const auto& none) {
@@ -56,7 +56,7 @@ RowWheel wheelOf(const terramech::Rover& rover) {
   return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
 }
 
-// Of a journal's row: one that does not say so is another's.
+// Whether a row of the journal is of this rover's wheel; false if the row does not contain the wheel.
 bool isOf(const terramech::Rover& rover, const RowWheel& wheel) {
   const RowWheel own = wheelOf(rover);
   const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);
@@ -106,12 +106,12 @@ struct DriveIntake::State {
   IntakeOptions options;
   std::unique_ptr<TelemetryProcessor> processor;
   DriveReport report{};
-  DriveId sum{};                       // of the parts so far
-  std::string id{};                    // by that
-  std::optional<std::uint16_t> tag{};  // of the first part that had a row
-  std::vector<JournalRow> rows{};      // of a part
-  // Of all parts, where they may be settled: what was read, what the map counted of it, which of it bounds a place, and what
-  // rejected rows said.
+  DriveId sum{};                       // of all parts so far
+  std::string id{};                    // text of `sum`
+  std::optional<std::uint16_t> tag{};  // of the first part with a row
+  std::vector<JournalRow> rows{};      // of the present part
+  // Of all parts, only if settles: measurements, readings counted in the map, places with a bound, and rejected rows
+  // that indicate danger.
   using Place = std::tuple<double, double, double>;
   terramech::Telemetry all{};
   std::vector<SavedBlock> counted{};
@@ -165,7 +165,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
   if (journal) rows.push_back(std::move(row));
 }
 
-// Rows that the map holds already tell the sensors' watch alone.
+// Rows that the map contains already are used by the sensor checks only.
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
                              const DriveBeginning& known) {
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
@@ -191,7 +191,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   map.noteDrive(id, before);
 }
 
-// What a drive's first rows taught is forgotten only as far as all rows say it otherwise: bounds stay as they were heard.
+// Replaces the estimates of all rows; bounds of places stay as first added.
 void DriveIntake::State::settle() {
   if (!options.settles)
     throw std::logic_error("DriveIntake: IntakeOptions::settles = false, must be true to settle");
@@ -217,7 +217,7 @@ void DriveIntake::State::settle() {
   if (journal) journal->replace(id, rows);
 }
 
-// Rows that the file's reader left out: what each of their numbers says of danger by itself.
+// Adds the bounds from rows that the file's reader rejected.
 void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std::size_t from) {
   terramech::Telemetry left{.source = telemetry.source, .numbers = telemetry.rejected_numbers};
   if (telemetry.rejected.empty() || !left.find("x_m") || !left.find("y_m") || !left.find("load_N") ||
@@ -281,7 +281,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
     report.repeated = telemetry.size();
     return report;
   }
-  // The first pass: do torque and sinkage have a bias that all ground shares, and which sensors prove sound?
+  // First pass: common bias of torque and sinkage, and verification of the sensors.
   TelemetryProcessor first_pass(map);
   processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
               [](std::size_t, TelemetryProcessor::Result&&) {});

@@ -19,8 +19,8 @@ std::string hexadecimal(const Checksum& sum) {
   return digits.data();
 }
 
-// Calls take(row) for every row, take_rejected(row) for those that the reader left out, where they stood: so a drive has
-// one id however it is divided.
+// Calls take(row) for each row and take_rejected(row) for each rejected row, in the order of the file: the identifier
+// of a drive does not depend on its division into parts.
 template <typename Take, typename TakeRejected>
 void eachRow(const terramech::Telemetry& telemetry, Take&& take, TakeRejected&& take_rejected) {
   std::size_t rejected = 0;
@@ -48,7 +48,7 @@ std::vector<Column> usedOf(const std::vector<terramech::Telemetry::Numbers>& col
   return used;
 }
 
-// A column that is not there is one of missing numbers.
+// A missing column counts as a column of NaN.
 void addNumbers(Checksum& sum, const std::vector<Column>& columns, std::size_t row) {
   for (const Column column : columns) {
     double value = column ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
@@ -61,7 +61,7 @@ void addWord(Checksum& sum, const std::string& word) {
   sum.add(word.c_str(), word.size() + 1);
 }
 
-// Calls added(whether it was rejected) after every row.
+// Calls added(rejected) after each row.
 template <typename Added>
 void addRows(Checksum& sum, const terramech::Telemetry& telemetry, Added&& added) {
   const std::vector<Column> numbers = usedOf(telemetry.numbers),
@@ -76,7 +76,7 @@ void addRows(Checksum& sum, const terramech::Telemetry& telemetry, Added&& added
         added(false);
       },
       [&](std::size_t i) {
-        // A footer or a header in the middle holds no number: nobody learns from it.
+        // A row without any number, such as a footer or a repeated header, has no effect.
         const auto holds = [i](Column column) { return column && !std::isnan((*column)[i]); };
         if (std::ranges::any_of(left_out, holds)) addNumbers(sum, left_out, i);
         added(true);

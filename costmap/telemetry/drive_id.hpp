@@ -10,8 +10,8 @@
 
 namespace talus::costmap {
 
-/// The id of a drive of which rows come part by part: a checksum of what is used of each row, column by column in the order
-/// of their names, as 16 hexadecimal digits. The order of a file's columns and columns that no map learns from do not show.
+/// Identifier of a drive received in parts: a checksum of the used columns of each row, ordered by name, as 16
+/// hexadecimal digits. The order of a file's columns and unused columns have no effect.
 class DriveId {
  public:
   void add(const terramech::Telemetry& telemetry);
@@ -21,16 +21,17 @@ class DriveId {
   Checksum sum_{};
 };
 
-/// What tells drives apart in a map, WheelObservation::drive: of the first row, so that what follows, in a file that grew or in
-/// parts, is of the same drive. Two of some 65 000 drives may share one: they then count as one.
+/// Number of a drive in a map, WheelObservation::drive: a checksum of its first row, so that further rows of a file
+/// that grew, or of further parts, belong to the same drive. Of some 65 000 numbers two drives may have the same; they
+/// then count as one drive.
 std::uint16_t driveTag(const terramech::Telemetry& telemetry);
 
-/// Rows of a drive from its beginning on: those that its file's reader left in, and those that it left out.
+/// Number of rows from the beginning of a drive: accepted and rejected by the file's reader.
 struct DriveBeginning {
   std::size_t rows = 0, rejected = 0;
 };
 
-/// The longest beginning, all rows at most, whose id is among `drives`: what is known of a file that grew since.
+/// The longest beginning of a telemetry whose identifier is among `drives`: the known rows of a file that grew since.
 DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives);
 
 }  // namespace talus::costmap

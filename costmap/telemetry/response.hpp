@@ -8,24 +8,24 @@
 
 namespace talus::costmap {
 
-/// One number against another that it should follow: sums of a linear regression.
+/// Linear regression of one number (effect) on another (cause), from sums.
 class Response {
  public:
-  /// What is not finite is left out.
+  /// Adds a pair; a pair with a number that is not finite is ignored.
   void add(double cause, double effect) noexcept;
 
-  /// What it takes to show that the effect follows.
+  /// Conditions for follows().
   struct Claim {
-    double least = 0.0;      ///< slope of the regression
-    double variation = 0.0;  ///< of the cause, one standard deviation
-    double certain = 4.0;    ///< standard errors of the slope
+    double least = 0.0;      ///< least slope of the regression
+    double variation = 0.0;  ///< least standard deviation of the cause
+    double certain = 4.0;    ///< number of standard errors of the slope
   };
-  /// Whether the effect follows the cause: at least 12 pairs, a cause that varies enough, and a slope of the
-  /// regression that lies so many of its standard errors above the least.
+  /// True if the effect follows the cause: at least 12 pairs, a standard deviation of the cause of at least
+  /// `variation`, and a slope of the regression at least `certain` standard errors above `least`.
   bool follows(const Claim& claim) const noexcept;
-  /// Slope of the regression and its standard error; of fewer than 12 pairs, or a cause that does not vary, not finite.
+  /// Slope of the regression and its standard error; not finite for fewer than 12 pairs or a constant cause.
   terramech::Estimate slope() const noexcept;
-  /// Effect less cause; NaN without any.
+  /// Mean of effect minus cause; NaN without pairs.
   double meanDifference() const noexcept;
   std::size_t size() const noexcept { return count_; }
   double causeVariance() const noexcept;
@@ -37,12 +37,13 @@ class Response {
   double cause_ = 0.0, effect_ = 0.0, causes_ = 0.0, effects_ = 0.0, product_ = 0.0;
 };
 
-/// The same as it grows: as a whole, and of its last pairs.
+/// Regressions of a growing series of pairs: over all pairs, and over the last pairs.
 class ResponseSeries {
  public:
   void add(double cause, double effect);
   const Response& whole() const noexcept { return whole_; }
-  /// Of the last 24 pairs, and of as many before them as it takes until the cause varies by so much.
+  /// Regression of the last 24 pairs, and of earlier pairs until the standard deviation of the cause reaches
+  /// `variation`; at most 240 pairs.
   Response recent(double variation) const;
 
  private:

@@ -6,20 +6,20 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kApart_m = 0.5;             // rows nearer to each other say the same
-constexpr double kGradientVariation = 0.03;  // of the slopes that prove a sensor, one standard deviation
+constexpr double kApart_m = 0.5;             // least distance between rows that count separately
+constexpr double kGradientVariation = 0.03;  // least standard deviation of the gradients
 constexpr double kLevel = 0.08;              // gradient of ground that counts as level
-constexpr std::size_t kLevelRows = 6;        // of it, before the bias of slip is known
-constexpr double kFelt = 0.6;                // share of the thrust that is most of it
-constexpr double kSlipPerGradient = 0.1;     // of the firmest soil
-constexpr double kPerGradient = 0.5;         // of the slope measured, and of the pull by torque
-constexpr double kSlopeScale = 1.15;         // of the rover's slopes over the map's, at most
-constexpr double kSlopeBias = 0.03;          // of the rover's slope against the map's
-constexpr double kSlopeScaleCertain = 2.0;   // standard errors beyond that
-constexpr double kTorqueBias = 0.08;         // of one wheel's share of the pull
-constexpr double kJump_m = 1.5;              // that three deviations of a good pose explain
-constexpr double kFirstStep_m = 3.0;         // that tells how fast the rover is
-constexpr double kFaster = 3.0;              // than the fastest row before
+constexpr std::size_t kLevelRows = 6;        // least number of rows on level ground
+constexpr double kFelt = 0.6;                // share that counts as most of the thrust
+constexpr double kSlipPerGradient = 0.1;     // least slope of slip over gradient, that of the firmest soil
+constexpr double kPerGradient = 0.5;         // least slope of measured gradient and torque pull
+constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's slopes against the map's
+constexpr double kSlopeBias = 0.03;          // greatest mean difference of the rover's slopes and the map's
+constexpr double kSlopeScaleCertain = 2.0;   // standard errors above kSlopeScale
+constexpr double kTorqueBias = 0.08;         // greatest mean difference of one wheel's torque pull
+constexpr double kJump_m = 1.5;              // three standard deviations of a good position
+constexpr double kFirstStep_m = 3.0;         // greatest first step, before the speed is known
+constexpr double kFaster = 3.0;              // factor on the fastest speed so far
 
 bool isOff(const maps::Point& off) noexcept {
   return std::hypot(off.x_m, off.y_m) > kJump_m;
@@ -29,7 +29,7 @@ bool follows(const ResponseSeries& series, double least) {
   return series.whole().follows({.least = least, .variation = kGradientVariation});
 }
 
-// The last rows are few, and slip rises little where a rover goes down: half of what is taken for a proof.
+// The last rows are few, and slip varies little on descents: half of the slope required for verification suffices.
 bool contradicts(const ResponseSeries& series, double least) {
   const Response last = series.recent(kGradientVariation);
   return last.size() >= Response::kEnough &&
@@ -102,9 +102,9 @@ std::size_t SensorProof::wheels(const std::string& run) const {
   return r ? r->wheels.size() : 0;
 }
 
-// Ground counts as stronger by as much as its slope is measured too steep.
+// True if the measured slopes are too steep: the ground would count as stronger in the same proportion.
 bool SensorProof::slopeScaled(const Run& run) const noexcept {
-  // Wheels of a moment have one slope.
+  // The wheels of one moment share one measured slope.
   const double certain = kSlopeScaleCertain * std::sqrt(static_cast<double>(run.wheels.size()));
   const auto scaled = [&](const Response& slope) {
     const Estimate scale = slope.slope();

@@ -12,41 +12,42 @@
 
 namespace talus::costmap {
 
-/// Whether the sensors of a drive have shown, against each other, that they are sound, so that what they say may
-/// raise a belief. Each proof needs something that a sensor which is stuck, biased, displaced or silent does not
-/// give; without it there is none (all limits ours):
+/// Verification of the sensors of a drive against each other: only verified readings may raise an estimate. Each test
+/// requires a property that a stuck, biased, displaced or missing sensor lacks (all limits ours):
 ///
-/// slip        rises with the slope that is climbed; on level ground it may be low, by a bias or by firm ground, and
-///             counts as if it were by a bias; where it steps on the way, either side may be the wrong one
-/// slope       as the rover measured it follows the map's where the rover says it is, is not off it, and is not
-///             steeper: the scale of its regression on the map's lies above 1.15 by no more than two standard errors
-/// torque,     taken together as pull, follow the slope and are not off it
+/// slip        increases with the slope; at least 6 rows are on level ground, and the slip there has no step, because
+///             the slip on either side of a step may be wrong
+/// slope       as measured increases with the map's slope at the rover's position, differs from the map's by at most
+///             0.03 on average, and its scale against the map's exceeds 1.15 by at most two standard errors
+/// torque and  taken together as pull, increase with the slope and differ from it by at most 0.08 on average
 /// sinkage
-/// pose        moves from row to row by no more than it did before; after a jump nothing is proven until it is
-///             back, since either side of the jump may be the wrong one
+/// pose        moves between rows no further than the speed of earlier rows explains; after a jump no sensor is
+///             verified until the position returns, because the position on either side may be wrong
 class SensorProof {
  public:
-  /// What one wheel read, and what is known about its place. NaN = not known.
+  /// Measurements of one wheel, and data of its place. NaN: unknown.
   struct Row {
     std::string run, wheel;
     TelemetryReading reading;
-    double measured_gradient = 0.0;  ///< along the heading, by the rover
-    double map_gradient = 0.0;       ///< the same by the map
-    double class_slip = 0.0;         ///< of ground of the class on the measured gradient
-    double torque_pull = 0.0;        ///< drawbar pull over load by torque and sinkage
-    double share = 0.0;              ///< of its class's thrust at the reference slip, at its slip
-    bool danger = false;             ///< it points to danger: it proves nothing but where the rover is
+    double measured_gradient = 0.0;  ///< slope along the heading, measured by the rover [-]
+    double map_gradient = 0.0;       ///< slope along the heading, from the map [-]
+    double class_slip = 0.0;         ///< slip of the class on the measured gradient [-]
+    double torque_pull = 0.0;        ///< drawbar pull over load from torque and sinkage [-]
+    double share = 0.0;              ///< thrust of the class at the measured slip over that at the
+                                     ///< reference slip [-]
+    bool danger = false;             ///< true if the row indicates danger: the row is then used for the
+                                     ///< position only
   };
 
-  /// By how much it may step on the way [-].
+  /// Least step of slip on level ground that is detected [-].
   static constexpr double kLevelStep = 0.04;
   void take(const Row& row);
 
-  /// Whether the pull that the wheel read may raise a belief: by all rows so far.
+  /// True if the pull of a wheel may raise an estimate, by all rows so far.
   bool pullSound(const std::string& run, const std::string& wheel) const {
     return lack(run, wheel) == Lack::Nothing;
   }
-  /// What keeps it from that, the first of them.
+  /// The first test that fails.
   enum class Lack : std::uint8_t {
     Nothing,
     Pose,
@@ -60,22 +61,22 @@ class SensorProof {
     SlipStep
   };
   Lack lack(const std::string& run, const std::string& wheel) const;
-  /// Of any wheel.
+  /// The first test that fails for any wheel.
   Lack lack() const;
-  /// In words, with what would mend it.
+  /// Text of a failed test, with its remedy.
   static const char* text(Lack lack) noexcept;
-  /// Whether torque and sinkage are proven too.
+  /// True if torque and sinkage are verified too.
   bool torqueSound(const std::string& run, const std::string& wheel) const;
-  /// Whether the last rows contradict what the rows before proved.
+  /// True if the last rows contradict the verification by earlier rows.
   bool doubted(const std::string& run, const std::string& wheel) const;
-  /// Whether the pose, after the rows so far, is off by a jump.
+  /// True if the position, after the rows so far, is displaced by a jump.
   bool displaced(const std::string& run) const;
-  /// Whether it drove at slips at which most of the thrust of its class is felt, so that what it read at little slip was
-  /// not all that it read.
+  /// True if enough rows of the wheel are at slips that mobilise most of the thrust of the class, so that readings at
+  /// low slip are not the only ones.
   bool felt(const std::string& run, const std::string& wheel) const;
-  /// By how much the rover measures slopes that are steeper than the map's, on average.
+  /// Mean of the measured gradient minus the map's gradient in a run [-]; 0 without rows.
   double gradientExcess(const std::string& run) const;
-  /// Wheels that read anything.
+  /// Number of wheels with rows in a run.
   std::size_t wheels(const std::string& run) const;
 
  private:
@@ -98,8 +99,8 @@ class SensorProof {
   static const Wheel* find(const Run& run, const std::string& wheel);
 
   std::map<std::string, Run> runs_;
-  Response slopes_;                               // of all runs: the slope sensor is one
-  std::map<std::string, StepWatch> level_steps_;  // of each wheel, of all runs: its sensor is one
+  Response slopes_;                               // of all runs, which share one slope sensor
+  std::map<std::string, StepWatch> level_steps_;  // of each wheel in all runs, which share its slip sensor
 };
 
 }  // namespace talus::costmap

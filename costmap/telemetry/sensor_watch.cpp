@@ -34,7 +34,7 @@ bool sameNumber(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-// A reading in which nothing is measured exactly, yet nothing moved.
+// Two readings with equal slip, torque and sinkage.
 bool sameReading(const TelemetryReading& a, const TelemetryReading& b) {
   return sameNumber(a.slip, b.slip) && sameNumber(a.torque_Nm, b.torque_Nm) &&
          sameNumber(a.sinkage_m, b.sinkage_m);
@@ -56,8 +56,8 @@ bool SensorWatch::slipsBackwardsUphill(const TelemetryReading& reading) const no
          !(reading.torque_Nm <= 0.0);
 }
 
-// The reading as a whole, or one sensor that used to change from row to row. Counted before the reading is
-// taken in.
+// Reason if the whole reading is stuck, or one sensor that changed in most rows before. Called before the reading is
+// stored.
 std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReading& reading) const {
   if (wheel.last.empty()) return std::nullopt;
   const TelemetryReading& before = wheel.last.back();
@@ -79,7 +79,7 @@ std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReadi
 }
 
 void SensorWatch::countGap(Wheel& wheel, double time_s) {
-  constexpr std::size_t kKnown = 10;  // intervals that tell the usual one
+  constexpr std::size_t kKnown = 10;  // intervals after which the mean interval is used
   const double passed_s = time_s - wheel.time_s;
   if (wheel.time_s < -1e299 || !(passed_s > 0.0)) return;
   if (wheel.intervals >= kKnown && passed_s > limits_.gap * wheel.interval_s) {
@@ -101,7 +101,7 @@ void SensorWatch::countDropout(Wheel& wheel, const TelemetryReading& reading) {
 std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
   std::vector<std::optional<std::string>> reasons;
   for (const Named& named : moment) reasons.push_back(judge(named));
-  // Wheels that are refused for another reason have no say.
+  // A wheel that is rejected for another reason does not prevent that a jump of all other wheels is accepted.
   const auto spikes = std::count(reasons.begin(), reasons.end(), kSpike);
   const bool all_jump = spikes > 1 && std::all_of(reasons.begin(), reasons.end(),
                                                   [](const auto& reason) { return reason.has_value(); });

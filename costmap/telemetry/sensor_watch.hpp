@@ -12,75 +12,75 @@
 
 namespace talus::costmap {
 
-/// When readings are not believed.
+/// Limits beyond which readings are rejected or reported.
 struct SensorLimits {
-  double slip_spike = 0.3;      ///< departure from the median of the last five
-  double torque_spike = 0.3;    ///< of T/(rW), likewise
-  double sinkage_spike = 0.25;  ///< of z/r, likewise
-  std::size_t stuck_rows = 25;  ///< equal readings in a row that a live sensor does not give
-  double lively = 0.8;          ///< share of rows in which a value changed that is not rounded to few steps
-  double slip_excess = 0.05;  ///< mean slip beyond what the soil asks for on these slopes that is spoken of,
-                              ///< where it is also more than its scatter
-  /// Pull by torque and sinkage less pull asked for, on average, that betrays a sensor [-].
+  double slip_spike = 0.3;      ///< difference from the median of the last five readings
+  double torque_spike = 0.3;    ///< of T/(rW), from the median likewise
+  double sinkage_spike = 0.25;  ///< of z/r, from the median likewise
+  std::size_t stuck_rows = 25;  ///< equal readings in a row that a working sensor does not give
+  double lively = 0.8;          ///< least share of rows with a changed value for which equal values count
+                                ///< as stuck
+  double slip_excess = 0.05;    ///< least mean slip above that of the soil on these slopes that is reported,
+                                ///< if it also exceeds its scatter
+  /// Least mean difference of the pull from torque and sinkage and the required pull that counts as a bias [-].
   double bias = 0.04;
-  std::size_t bias_rows = 30;    ///< rows before a bias is spoken of
+  std::size_t bias_rows = 30;    ///< least number of rows for a bias or a slip excess
   double climb = 0.03;           ///< gradient from which a driven wheel cannot slip backwards [-]
-  double backward_slip = -0.03;  ///< slip below which it would
-  double gap = 10.0;             ///< intervals without a row that make a gap in time
+  double backward_slip = -0.03;  ///< slip below which a wheel slips backwards
+  double gap = 10.0;             ///< time without a row, in mean intervals, that counts as a gap
 };
 
-/// Watches the readings of a drive, wheel by wheel, in the order they come. What the data can tell is refused
-/// with a reason: time going backwards, stuck values (of a wheel or of one of its sensors that was lively
-/// before), spikes. A torque offset or a sinkage datum shows as
-/// pull that the slope does not ask for, on all ground alike; torque and sinkage are then left out, which
-/// leaves slip against slope. Odometry that has a driven wheel slip backwards on a climb is refused; any
-/// other slip bias cannot be told from ground that is weaker or firmer than believed by one rover: what all
-/// ground shares is reported as either. Gaps in time and values that are missing now and then are counted.
+/// Checks the readings of a drive, wheel by wheel, in their order. Rejected with a reason: stuck values (of a wheel, or
+/// of one sensor that changed before), spikes, and negative slip of a driven wheel on a climb. A decrease of time is
+/// counted and begins a new series. An offset of torque or sinkage appears as pull that the slope does not require, on
+/// all ground; both channels are then excluded, and slip against slope remains. One rover cannot distinguish
+/// another bias of slip from ground that is weaker or firmer than estimated: a mean excess on all ground is reported
+/// with both explanations. Gaps in time and single missing values are counted.
 class SensorWatch {
  public:
   SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
 
-  /// A wheel's name and what it read.
+  /// Name of a wheel and its reading.
   struct Named {
     std::string wheel;
     TelemetryReading reading;
   };
 
-  /// Why each of the readings of one moment is not believed; nothing where it is. What jumps at all wheels of
-  /// several at once is the rover, slipping, and no spike.
+  /// Reason why each reading of one moment is rejected; nothing if accepted. A jump of all of several wheels at once is
+  /// slip of the rover and no spike.
   std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
-  /// The same of one wheel.
+  /// The same for one wheel.
   std::optional<std::string> refuse(const std::string& wheel, const TelemetryReading& reading) {
     return refuse({{wheel, reading}}).front();
   }
 
-  /// Counts what torque and sinkage say against what the slope asks.
+  /// Counts the pull from torque and sinkage minus the required pull.
   void compare(const WheelObservation& observation);
-  /// Counts by how much a wheel slips more than its soil asks for on the slope.
+  /// Counts the slip of a wheel minus the slip of its soil on the slope.
   void compareSlip(double excess);
-  /// Mean of that difference [-]; nothing before enough rows.
+  /// Mean difference of compare() [-]; nothing before SensorLimits::bias_rows rows.
   std::optional<double> bias() const;
-  /// Whether the difference is more than a sound sensor gives.
+  /// True if the mean difference exceeds that of a working sensor.
   bool biased() const { return bias() && std::abs(*bias()) > limits_.bias; }
 
-  /// Mean slip beyond what the soil asks for, where all ground shares it [-]; nothing where it is little, or
-  /// less than its scatter.
+  /// Mean slip above that of the soil on all ground [-]; nothing if below SensorLimits::slip_excess or below its
+  /// scatter.
   std::optional<double> slipExcess() const;
 
-  /// Whether the time of some wheel's rows decreased.
+  /// True if time decreased in the rows of any wheel.
   bool clockWentBack() const noexcept { return clock_went_back_ > 0; }
 
-  /// What was found, a line each.
+  /// Results of the checks, one line each.
   std::vector<std::string> findings() const;
 
  private:
-  // One sensor of a wheel: how lively it was and how long it has stood still.
+  // One sensor of a wheel: rows, changes of value, and equal values in a row.
   struct Channel {
     std::size_t rows = 0, changes = 0, equal = 0;
   };
   struct Wheel {
     double time_s = -1e300;
-    double interval_s = 0.0;  // between rows, the mean outside gaps
+    double interval_s = 0.0;  // mean interval between rows, without gaps
     std::size_t intervals = 0;
     bool has_torque = false, has_sinkage = false;
     std::deque<TelemetryReading> last;

@@ -9,25 +9,25 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kGradientStep = 0.01;  // of readings that are taken together
+constexpr double kGradientStep = 0.01;  // width of a bin of gradients
 constexpr double kIntegralScale = 2.0 / 3.0;
 
-// Deviations of the sensor's prior.
+// Standard deviations of the prior of the sensor.
 struct SensorPrior {
   double bias, log_scale;
 };
 constexpr SensorPrior kAny{0.1, 0.45}, kSound{0.03, 0.05};
 
 constexpr double kModelError = 0.02, kSlipNoise = 0.015, kGradientNoise = 0.01;
-constexpr double kMostVariance = 1.0;  // of a slip: where the curve is flat it says nothing
+constexpr double kMostVariance = 1.0;  // of a slip, where the curve is flat
 constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
 constexpr std::array<double, 5> kVariations{0.0, 0.35, 0.7, 1.0, 1.4};
 
-// The grid of the posterior.
+// Grid of the posterior.
 constexpr std::size_t kBiases = 101, kScales = 33;
 constexpr int kDepartures = 73;
 constexpr double kMostBias = 0.25, kMostLogScale = 1.6;
-constexpr double kLeastDeparture = -6.0, kMostDeparture = 3.0;  // in mean_std
+constexpr double kLeastDeparture = -6.0, kMostDeparture = 3.0;  // in units of mean_std
 
 constexpr int kSlips = 291;
 constexpr double kLeastSlip = -0.5, kSlipStep = 0.005;
@@ -44,7 +44,7 @@ double slipAt(double i) noexcept {
 
 }  // namespace
 
-// What all wheels of a rover pull on average over slip, and their thrust over that of the class at the reference slip.
+// Mean pull of all wheels of a rover over slip, and their thrust over that of the class at the reference slip.
 struct SlipFit::Curve {
   std::array<double, kSlips> pull{}, share{};
 
@@ -62,7 +62,7 @@ struct SlipFit::Curve {
     }
   }
 
-  // The least slip at which ground of a departure gives the pull of a gradient, searched from `from` on (Eq. 1).
+  // The least slip at which ground of a departure has the pull of a gradient, searched from index `from` on (Eq. 1).
   double slipOn(double gradient, double departure, std::size_t& from) const {
     const auto at = [&](std::size_t i) { return pull[i] + departure * share[i]; };
     while (from + 2 < pull.size() && at(from + 1) < gradient) ++from;
@@ -72,19 +72,19 @@ struct SlipFit::Curve {
   }
 };
 
-// All moments on ground of a class.
+// All moments on ground of one class.
 struct SlipFit::OfClass {
-  // Of one gradient, weighed by the squares that they stand for.
+  // Readings of one bin of gradients, weighted by the number of squares.
   struct Reading {
     const Curve* curve = nullptr;
     double weight = 0.0, gradient = 0.0, slip = 0.0, scatter = 0.0;
     std::array<double, kVariations.size()> variance{};  // of the slip (Eq. 2)
   };
-  // Sums of the posterior over departure and variation, for one bias and scale.
+  // Sums of the posterior over departure and variation, for one pair of bias and scale.
   struct Sums {
     double weight = 0.0, first = 0.0, second = 0.0;
   };
-  // Where departure, variation and scale are given the log-likelihood is -(a b^2 - 2 f b + q)/2 in the bias.
+  // For a given departure, variation and scale, the log-likelihood is -(a b^2 - 2 f b + q)/2 in the bias b.
   struct Parabola {
     double departure, a, f, q;
     std::size_t scale;
@@ -145,7 +145,7 @@ std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
 }
 
 std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<double>& departures) const {
-  constexpr double kNothing = 40.0;  // below the greatest logarithm
+  constexpr double kNothing = 40.0;  // terms so far below the greatest log-likelihood are ignored
   const std::vector<Parabola> all = parabolas(departures);
   double greatest = -std::numeric_limits<double>::infinity();
   for (const Parabola& p : all) greatest = std::max(greatest, p.greatest());
@@ -167,7 +167,7 @@ std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<dou
 
 namespace {
 
-// Weights of each bias and scale, by their priors and by what every class says; their sum is 1.
+// Posterior weight of each pair of bias and scale, from the prior and all classes; the sum is 1.
 template <typename Sums>
 std::vector<double> weighed(const std::vector<std::vector<Sums>>& of_classes, const SensorPrior& prior) {
   std::vector<double> weights(kBiases * kScales);
@@ -183,7 +183,7 @@ std::vector<double> weighed(const std::vector<std::vector<Sums>>& of_classes, co
   return weights;
 }
 
-// Mean and deviation of the departure.
+// Mean and standard deviation of the departure.
 template <typename Sums>
 Estimate departureBy(const std::vector<double>& weights, const std::vector<Sums>& of_class) {
   double mean = 0.0, second = 0.0;

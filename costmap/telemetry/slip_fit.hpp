@@ -13,34 +13,36 @@
 
 namespace talus::costmap {
 
-/// What the slips of one drive say of their sensor and of the ground of each class, together.
+/// Joint posterior of the slip sensor and the ground of each class, from the slips of one drive.
 struct SlipPosterior {
-  double slip_bias = 0.0;   ///< b: what the sensor reads of a wheel that does not slip [-]
-  double slip_scale = 1.0;  ///< s: by which it multiplies slip, 0.2 to 1 [-]
-  /// By class: departure of drawbar pull over load at the reference slip from the class, on average of the drive, and what is
-  /// left open of it by the sensor; an infinite deviation where the drive tells nothing [-].
+  double slip_bias = 0.0;   ///< b: offset, the reading of a wheel without slip [-]
+  double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
+  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and its standard
+  /// deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
-  /// By class: the same departure with its deviation after the prior, and that of a sound sensor: b normal, 0.03, -ln s half normal,
-  /// 0.05 [-].
+  /// By class: the same departure with its posterior standard deviation; and for a sound sensor: b normal, 0.03, -ln s
+  /// half normal, 0.05 [-].
   std::vector<Estimate> learned, if_sound;
-  /// By class: how much less than the departure a decision counts on, >= 0: of ground that is stronger than its class, one standard
-  /// deviation of the posterior, down to the class [-].
+  /// By class: amount subtracted from the departure for decisions, >= 0: for ground stronger than its class one
+  /// posterior standard deviation, at most the departure [-].
   std::vector<double> caution;
 };
 
-/// Bayes estimate of the slip sensor of a drive and of the strength of its ground from slip over slope. Of a class whose wheels
-/// pull P(i) at slip i, with the thrust H(i), ground that departs by d at the reference slip pulls
+/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For wheels on
+/// ground of a class that pull P(i) at slip i, with thrust H(i), ground that departs by d at the reference slip pulls
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)
-/// p the class's deviation from place to place and t the share of it that this ground has, m the error of the model, n that of
-/// the slip, o that of the slope. Strength, bias and scale change slip over slope in different ways: b everywhere alike, s in
-/// proportion, d most where the slope takes most of the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half
-/// normal, 0.45; t of five values, equal. The scale is 1 at most: soil with a greater shear modulus makes more slip, as a sensor of a scale
-/// above 1 would, and is weaker; of such a drive the ground counts as weak. The departure is its posterior mean, bias and scale are
-/// the means where the departures are these, so that slips corrected by them are those of that ground; the deviation is that of the
-/// likelihood alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, since the class has its prior already.
-/// A square of two thirds of the correlation length counts as one reading, however often it is driven (all numbers ours).
+/// with p the standard deviation of the class between places, t the share of it in this ground, m the error of the
+/// model, n that of the slip, o that of the slope. Strength, bias and scale change slip over slope differently: b by a
+/// constant, s in proportion to slip, d most where the slope requires most of the thrust. Priors: d normal with the
+/// class's mean_std; b normal, 0.1; -ln s half normal, 0.45; t uniform over five values. The scale is at most 1: a
+/// sensor with a scale above 1 and soil with a greater shear modulus, which is weaker, give the same increase of slip;
+/// the ground of such a drive counts as weak. The departure is its posterior mean. Bias and scale are the means at
+/// these departures, so that slips corrected by both are consistent with the ground. The standard deviation c of the
+/// departure is that of the likelihood alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the
+/// class contains its prior already. A square of side 2/3 of the correlation length counts as one reading, however
+/// often driven (all numbers ours).
 class SlipFit {
  public:
   explicit SlipFit(const GroundModel& model) : model_(model) {}
@@ -49,22 +51,22 @@ class SlipFit {
   struct Moment {
     std::string run;
     int class_index = 0;
-    int rutted = 0, wheels = 0;  ///< of which so many are in ruts
+    int rutted = 0, wheels = 0;  ///< wheels in a rut, and all wheels
     maps::Point place;
     double gradient = 0.0;  ///< along the heading, rise over run
     double slip = 0.0;      ///< mean of the wheels
   };
-  /// What is not finite is left out.
+  /// Adds a moment; a moment with a number that is not finite is ignored.
   void take(const Moment& moment);
 
-  /// The estimate by all moments so far. `excess`: by how much the slopes of a run are measured too steep.
+  /// Estimate from all moments so far. `excess`: mean excess of the measured slopes of a run over the map's [-].
   std::shared_ptr<const SlipPosterior> fitted(
       const std::function<double(const std::string& run)>& excess) const;
 
   std::size_t moments() const noexcept { return moments_; }
 
  private:
-  // Class, rutted, wheels, run, square and gradient of moments that are taken together.
+  // Moments that are summed: class, rutted, wheels, run, column and row of the square, step of the gradient.
   using Key = std::tuple<int, int, int, std::string, int, int, int>;
   struct Sum {
     double count = 0.0, gradient = 0.0, slip = 0.0;

@@ -6,8 +6,9 @@
 namespace talus::costmap {
 namespace {
 
-constexpr std::size_t kOnEitherSide = 3;   // places on either side
-constexpr double kLeastScatter = 0.2;      // of a place, in the least step: more than any few of them show
+constexpr std::size_t kOnEitherSide = 3;  // least number of places on either side
+constexpr double kLeastScatter =
+    0.2;  // least scatter of a place over `least_`: few places show less by chance
 constexpr std::size_t kMostPlaces = 1000;  // places
 
 }  // namespace

@@ -5,20 +5,20 @@
 
 namespace talus::costmap {
 
-/// Whether a number that scatters about a constant has stepped to another constant on the way: the greatest difference of two
-/// means over all places of the step, against the scatter on both sides of it (ours).
+/// Detects a step between two constants in a number with scatter: the greatest difference of two means over all
+/// positions of the step, relative to the scatter on both sides (ours).
 class StepWatch {
  public:
-  /// `least`: the smallest step that matters, > 0.
+  /// `least`: smallest step that is reported, > 0, in the unit of the values.
   explicit StepWatch(double least) : least_(least) {}
 
-  /// What is not finite is left out.
+  /// Adds a value; a value that is not finite is ignored.
   void add(double value);
-  /// From where on to the end it differs, less what it was before; 0 where it has not stepped: fewer than three places of
-  /// kRows values on either side, less than the least, or less than kCertain standard errors.
+  /// Mean after the step minus mean before; 0 without a step: fewer than three places of kRows values on either side, a
+  /// difference below `least`, or below kCertain standard errors.
   double step() const noexcept { return step_; }
 
-  static constexpr std::size_t kRows = 10;  ///< values of one place, which share their error
+  static constexpr std::size_t kRows = 10;  ///< values averaged to one place, which share their error
   static constexpr double kCertain = 6.0;   ///< standard errors
 
  private:

@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastTold =
-    2.0;  // of the class's deviation: a drive that leaves more open raises nothing (ours)
-constexpr std::size_t kFirstFit = 32;  // moments
-constexpr double kCrabbing = 0.1;      // slip angle from which a wheel does not go straight ahead [rad]
+    2.0;  // of the class's mean_std: a drive with a greater standard deviation raises nothing (ours)
+constexpr std::size_t kFirstFit = 32;  // moments before the first fit
+constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 constexpr double kSlipOfResistance =
-    0.03;  // on level ground, that ground may make which resists more than its class (ours)
+    0.03;  // slip on level ground that ground with more resistance than its class may cause (ours)
 constexpr double kLittleSlip =
-    0.5;  // of the class's deviation: what a reading at little slip leaves open (ours)
+    0.5;  // of the class's standard deviation: shared error of a reading at low slip (ours)
 
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
@@ -37,7 +37,7 @@ WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& her
   return boundAlone(out);
 }
 
-// Torque and sinkage that are not proven make nothing stronger than slip and slope do.
+// Unverified torque and sinkage never raise the value above that from slip and slope.
 void weakerBySlope(WheelObservation& seen) {
   if (std::isfinite(seen.from_torque) && seen.by_slope.value < seen.pull.value) seen.pull = seen.by_slope;
 }
@@ -120,14 +120,14 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Ground of no class is refused, however it compares with one: the first stands for it.
+// Ground without a class is refused for any danger; the first class replaces the missing class.
 std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const TelemetryReading& reading,
                                                                  double least_gradient) const {
   const GroundBound here = danger_.hear(0, reading, least_gradient);
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Of a reading by itself; where it is suspected also by what it would say of the pull.
+// Bound of one reading; for a suspected reading also from its estimated pull.
 GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
   GroundBound here = danger_.hear(read.class_index, read.reading, least_gradient);
   if (!suspected) return here;
@@ -138,7 +138,7 @@ GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gra
   return here;
 }
 
-// slipOfClasses() of the wheels of a moment, which mostly stand on one slope.
+// Caches slipOfClasses() for the wheels of a moment, which mostly have one slope.
 struct TelemetryProcessor::SlipOfClasses {
   const TelemetryProcessor& processor;
   const std::vector<ClassReading>& together;
@@ -153,8 +153,8 @@ struct TelemetryProcessor::SlipOfClasses {
   }
 };
 
-// Of sound wheels together; where torque and sinkage are off, without them. What points to danger is no measure of a
-// sensor.
+// Observations of accepted wheels together; without torque and sinkage if biased. Readings that indicate danger are not
+// used to check sensors.
 std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
                                                                           const DriveVerdict& verdict) {
   auto whole = observer_.observe(sound.read);
@@ -170,7 +170,7 @@ std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const 
   return observer_.observe(without);
 }
 
-// Moments whose wheels stand on one class and go straight ahead.
+// Adds a moment to the fit if all wheels are on one class, travel straight ahead and indicate no danger.
 void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
   if (sound.read.empty() || std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end())
     return;
@@ -189,7 +189,7 @@ void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
   fit_.take(moment);
 }
 
-// Where the drive is not known as a whole: again each time that it has grown by a quarter.
+// Repeats the fit each time that the number of moments has grown by a quarter, if the whole drive is not known.
 void TelemetryProcessor::refit() {
   if (fit_.moments() < std::max(next_fit_, kFirstFit)) return;
   fitted_ = fitted();
@@ -252,7 +252,8 @@ std::string TelemetryProcessor::whyNoneRaises() const {
                                               "the only one of the file; give them all, and time_s";
 }
 
-// By the sensor of the drive, and about the strength of its ground.
+// Replaces the observations by those of the corrected slips, relative to the mean strength of the drive, and marks
+// those that may raise.
 void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
                                std::vector<std::optional<WheelObservation>>& seen) const {
   const SlipPosterior& drive = verdict.drive ? *verdict.drive : *fitted_;
@@ -279,7 +280,7 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
     if (!torque_sound && fitted[i]->by_slope.value < one.pull.value) one.pull = fitted[i]->by_slope;
     one.pull.value -= drive.caution[static_cast<std::size_t>(read[i].class_index)];
     one.shared_std = fitted[i]->shared_std;
-    // At little slip nothing is raised by a drive that never felt most of the thrust.
+    // A reading at low slip raises only if the drive has mobilised most of the thrust.
     if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
       one.shared_std = kLittleSlip * map_.model().prior(read[i].class_index).pull.std;
     one.shared_std = std::hypot(one.shared_std, of_drive.std);
@@ -288,8 +289,8 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
   }
 }
 
-// Slip, the same of all wheels, at which fresh or rutted ground of their classes gives the pull of a gradient;
-// NaN where none does.
+// Slip, equal for all wheels, at which ground of their classes, undisturbed or in a rut, gives the pull of a gradient;
+// NaN if there is none in -0.5 to 0.8.
 double TelemetryProcessor::slipOfClasses(const std::vector<ClassReading>& together, double gradient) const {
   const auto pull = [&](double slip) {
     double load_N = 0.0, sum = 0.0;

@@ -14,33 +14,33 @@
 
 namespace talus::costmap {
 
-/// What a drive is judged by: its own rows so far, or those of a first pass.
+/// Verification of the sensors of a drive, from its rows so far or from a first pass.
 struct DriveVerdict {
-  bool without_torque = false;  ///< torque and sinkage are off: they count only where they point to danger
-  const SensorProof* proof = nullptr;  ///< null: nothing may raise a belief
-  /// Its slip sensor and its ground; null: as the processor knows them by the rows so far.
+  bool without_torque = false;  ///< true if torque and sinkage are biased: both then only indicate danger
+  const SensorProof* proof = nullptr;  ///< null: no reading may raise an estimate
+  /// Slip sensor and ground of the drive; null: the processor's own estimate from the rows so far.
   std::shared_ptr<const SlipPosterior> drive{};
 };
 
-/// What is left of an observation when nothing but the bound of its place is believed.
+/// The observation without its estimates: only the bound of its place.
 WheelObservation boundAlone(const WheelObservation& observation);
 
-/// Puts the moments of a drive through watch, observer and proof, one after the other. Keeps a reference to the map.
+/// Processes the moments of a drive in order: sensor checks, observation, verification. Keeps a reference to the map.
 ///
-/// A bound is kept, an estimate is earned. Each channel of each reading is first heard for danger by itself
-/// (DangerWatch): that bounds the place where it was read, whatever else is held against the reading, and proves no
-/// sensor. A reading that is suspected says nothing more.
+/// Each channel of each reading is first checked for danger separately (DangerWatch): a danger bounds the place of the
+/// reading, even if the reading is rejected, and verifies no sensor. A suspected reading has no other effect.
 ///
-/// A moment may raise a belief only where each of its wheels, all of the rover's or the only one of the
-/// file, is proven sound. Its slips are then read by the sensor of the drive as SlipFit has it, as far as that makes them greater, its
-/// slopes relative to the map's, and the wheels are held against ground of the strength that the drive has on average. It raises
-/// nothing by a wheel of another radius, width or load than the rover's, nor by one that then slips 0.7, nor by a drawbar pull that nothing else confirms, nor where torque and
-/// sinkage are off.
+/// A moment may raise an estimate only if each of its wheels, all wheels of the rover or the only wheel of the file, is
+/// verified. The offset and scale of SlipFit then correct its slips, an excess of measured slopes over the map's is
+/// subtracted, and the wheels are compared with ground of the mean strength of the drive. A moment raises nothing if a
+/// wheel has another radius, width or load than the rover's, if the corrected slip is 0.7 or more, if a drawbar pull
+/// was measured that no other channel confirms, or if torque and sinkage are biased.
 class TelemetryProcessor {
  public:
   explicit TelemetryProcessor(const TraversabilityMap& map);
 
-  /// Of one wheel: why it is not believed, or only as a bound of its place, and what it says if it is.
+  /// Result for one wheel: the observation, if any, and the reason of a rejection; a rejected reading may leave the
+  /// bound of its place.
   struct Result {
     TelemetryReading reading;
     std::string reason{};
@@ -50,22 +50,22 @@ class TelemetryProcessor {
   /// Results of the rows of a moment, in their order.
   std::vector<Result> process(const TelemetryRows& rows, const Moment& moment, const DriveVerdict& verdict);
 
-  /// What a row that is no reading bounds; nothing where it does not, or has no place.
+  /// Bound from a row that the file's reader rejected; nothing without danger or without a place.
   std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
 
-  /// By all rows so far; soFar() leaves the slip sensor to what is known at each row.
+  /// Verification by all rows so far; in soFar() the slip sensor is that known at each row.
   DriveVerdict verdict() const;
   DriveVerdict soFar() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
-  /// Where no row may raise an estimate: what keeps the drive from it, and what would mend it; empty where other findings say so.
+  /// Why no row may raise an estimate, and the remedy; empty if other findings contain the reason.
   std::string whyNoneRaises() const;
-  /// Rows whose loads were computed.
+  /// Number of rows whose loads were computed from the load transfer.
   std::size_t transferred() const noexcept { return transferred_; }
-  /// Rows of another wheel than the rover's, or under another weight.
+  /// Number of rows of another wheel than the rover's, or with another load.
   std::size_t others() const noexcept { return others_; }
 
  private:
-  // Wheels of a moment that nothing is held against, their rows, and whether they point to danger.
+  // Accepted wheels of a moment, their rows, and whether they indicate danger.
   struct Sound {
     std::vector<ClassReading> read;
     std::vector<std::size_t> row;
@@ -93,8 +93,8 @@ class TelemetryProcessor {
   SensorWatch watch_;
   SensorProof proof_;
   SlipFit fit_;
-  std::shared_ptr<const SlipPosterior> fitted_;  // by some of the moments so far
-  std::size_t next_fit_ = 0;                     // moments from which it is worked out again
+  std::shared_ptr<const SlipPosterior> fitted_;  // from some of the moments so far
+  std::size_t next_fit_ = 0;                     // number of moments at which the fit is repeated
   WheelObserver observer_;
   std::size_t read_ = 0, transferred_ = 0, others_ = 0;
 };

@@ -12,14 +12,14 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kSameLoad = 0.01;       // of the load: less is the same number
-constexpr double kSameWheel = 0.01;      // of its radius or width
-constexpr double kSameWeight = 0.25;     // of the weight on wheels: a slope of 25 degrees takes a tenth of it
-constexpr double kLevelGradient = 0.03;  // less moves no load worth speaking of
+constexpr double kSameLoad = 0.01;       // relative difference below which loads are equal
+constexpr double kSameWheel = 0.01;      // relative difference below which wheel sizes are equal
+constexpr double kSameWeight = 0.25;     // of the total load; a slope of 25 degrees takes a tenth
+constexpr double kLevelGradient = 0.03;  // gradient below which load transfer is neglected
 constexpr double kQuarterTurn = 1.5707963267948966;
-constexpr double kTurning_mps = 0.005;  // rim speed of a wheel that turns
+constexpr double kTurning_mps = 0.005;  // least rim speed of a turning wheel
 constexpr double kVertical_rad = 1.57;
-constexpr double kWorstPose_m = 1000.0;  // a position that is known no better is not one
+constexpr double kWorstPose_m = 1000.0;  // limit of the position uncertainty
 
 double slipOf(double speed_mps, double rim_speed_mps) noexcept {
   return std::abs(rim_speed_mps) > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps
@@ -108,7 +108,7 @@ double TelemetryRows::measuredGradient(std::size_t i) const {
   return std::tan(value(slope_, i));
 }
 
-// Of the top surface: that of a floor beneath it is not known.
+// Gradient of the top surface; NaN on a floor below the top surface.
 double TelemetryRows::mapGradient(const TelemetryReading& r, double direction_rad) const {
   const auto cell = map_.grid().cellAt(r.place);
   if (!cell || std::isnan(direction_rad) || map_.surface().floorAt(*cell, r.z_m))
@@ -132,7 +132,7 @@ double TelemetryRows::steepestDescent(std::size_t i) const {
   return std::fmin(measured, -std::hypot(code.dzDx(), code.dzDy()));
 }
 
-// NaN where it is none: beyond vertical the tangent says anything.
+// Measured gradient; NaN if missing or beyond vertical, where the tangent is meaningless.
 double TelemetryRows::measuredSlope(std::size_t i) const {
   const double slope_rad = value(slope_, i);
   return std::abs(slope_rad) < kVertical_rad ? std::tan(slope_rad) : std::numeric_limits<double>::quiet_NaN();
@@ -144,7 +144,7 @@ std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
   for (std::size_t first = 0; first < size();) {
     std::size_t end = first + 1;
     while (!alone(first) && end < size() && value(time_, end) == value(time_, first)) ++end;
-    // The second row of a wheel belongs to a moment of its own.
+    // The second row of a wheel at one time begins another moment.
     std::map<std::pair<std::string, std::string>, std::size_t> read;
     std::map<std::tuple<std::string, std::size_t, std::string>, std::size_t> sorted;
     for (std::size_t i = first; i < end; ++i) sorted[{run(i), read[{run(i), wheel(i)}]++, wheel(i)}] = i;

@@ -12,38 +12,40 @@
 
 namespace talus::costmap {
 
-/// The columns that TelemetryRows reads, sorted by name.
+/// Names of the columns that TelemetryRows reads, sorted.
 std::span<const std::string_view> usedNumberColumns() noexcept;
 std::span<const std::string_view> usedWordColumns() noexcept;
 
-/// The columns of a telemetry file as readings on a map. Keeps references to both.
+/// The columns of a telemetry file as readings on a map. Keeps references to file and map.
 class TelemetryRows {
  public:
-  /// `pose_std_m`: of rows that do not say it. Throws InputError when x_m, y_m, load_N or slip is missing.
+  /// `pose_std_m`: position uncertainty of rows without a value [m]. Throws InputError if x_m, y_m, load_N or slip is
+  /// missing.
   TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map, double pose_std_m);
 
   std::size_t size() const noexcept { return x_.size(); }
 
-  /// The slope is the row's own, slope_rad along the heading and roll_rad across it; without it the map's.
+  /// Slopes are those of the row, slope_rad along the heading and roll_rad across; if missing, those of the map.
   TelemetryReading reading(std::size_t i) const;
   double heading(std::size_t i) const { return value(heading_, i); }
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
-  /// Wheel and run together name a series in time.
+  /// Name of a series in time: run and wheel.
   std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
-  /// Whether the row's wheel is that of the map's rover, as far as its columns wheel_radius_m and wheel_width_m say.
+  /// True if the row's wheel is that of the map's rover, or its columns wheel_radius_m and wheel_width_m are missing.
   bool ofRover(std::size_t i) const;
-  /// Along the heading, as the rover measured it and as the map has it; NaN = not known.
+  /// Gradient along the heading, as measured by the rover and from the map; NaN: unknown.
   double measuredGradient(std::size_t i) const;
   double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
-  /// The least that the slope along the heading may have been: of what was measured and what the map has, or the
-  /// map's steepest descent where the heading is not known.
+  /// Lowest possible gradient along the heading: the lower of the measured gradient and the map's, or steepestDescent()
+  /// if both are unknown.
   double leastGradient(std::size_t i) const;
-  /// The same of a row whose other numbers are not to be trusted: the map's steepest descent, or less where measured.
+  /// Lowest possible gradient of a row whose heading is unreliable: the map's steepest descent, or the measured
+  /// gradient if lower.
   double steepestDescent(std::size_t i) const;
 
-  /// All rows by moment: those of different wheels that were read at one time of one run. Neither the order of the
-  /// moments' rows in the file nor that of runs that were read together shows, beyond the rows' numbers.
+  /// All rows by moment: rows of different wheels at one time of one run. Neither the order of rows within a moment nor
+  /// the order of runs read together has an effect, except on the row numbers.
   std::vector<std::vector<std::size_t>> byMoment() const;
 
  private:
@@ -59,21 +61,21 @@ class TelemetryRows {
   const std::vector<std::string>*wheel_, *run_;
 };
 
-/// The readings of one moment, with the loads that the slope gives them where the file has all wheels carry
-/// the same: such a column is the weight's even share and not a measurement.
+/// The readings of one moment. If all wheels on a slope have the same load, the column contains the even share of the
+/// weight and no measurement: the loads are then computed from the slope.
 struct Moment {
   std::vector<std::size_t> rows;
-  std::vector<TelemetryReading> readings;  ///< of each of them
-  bool transferred = false;                ///< whether the loads are computed
+  std::vector<TelemetryReading> readings;  ///< of each row
+  bool transferred = false;                ///< true if the loads are computed
 };
 
-/// Whether a number of a wheel is that of another, or not known.
+/// True if `value` equals the rover's within 1 % or is NaN.
 bool sameOrUnknown(double value, double of_rover) noexcept;
 
-/// Whether the wheels of a moment carry what the rover has them carry, on average, within a quarter.
+/// True if the mean load of the wheels is that of the rover's wheels within a quarter.
 bool carriesRover(const std::vector<TelemetryReading>& readings, const terramech::Rover& rover) noexcept;
 
-/// The moment of some rows, one a wheel.
+/// The moment of some rows, one row per wheel.
 Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

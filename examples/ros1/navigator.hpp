@@ -28,7 +28,7 @@ struct Settings {
   int width = 400, height = 400;  ///< size of the map in cells
   double resolution_m = 0.5;      ///< side of a cell
   Place south_west{};             ///< outer corner of the map
-  bool allow_unknown = false;     ///< unobserved ground counts as level ground of the soil
+  bool allow_unknown = false;     ///< true: unobserved ground is planned as level ground of the soil
   double percentile = 1.0;        ///< percentile of the points of a cell by height; 1: the highest
   int least_points = 1;           ///< cells with fewer points stay unobserved
   std::string planner = "field";  ///< "field", "hybrid", ...

@@ -41,7 +41,7 @@ class CancelWatch {
     bool end = true;
     try {
       end = wanted();
-    } catch (const std::exception&) {  // a failing function counts as cancelled
+    } catch (const std::exception&) {  // `end` stays true: the planning is cancelled
     }
     if (end) stop_.request_stop();
     return end;

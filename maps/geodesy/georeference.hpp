@@ -39,10 +39,12 @@ class Georeference {
 
   const CoordinateSystem& system() const noexcept;
 
-  /// Map coordinates [m] of a position; NaN outside the range of the projection.
+  /// Returns the map coordinates [m] of a latitude and longitude [rad]; NaN outside the range of the
+  /// projection.
   Point forward(GeoPoint place) const;
 
-  /// Position of map coordinates, longitude in [-pi, pi]; NaN outside the range of the projection.
+  /// Returns latitude and longitude [rad] of map coordinates [m], longitude in [-pi, pi]; NaN outside the
+  /// range of the projection.
   GeoPoint reverse(Point point) const;
 
   /// Geodesic distance [m] on the ellipsoid between two map points.

@@ -56,7 +56,7 @@ struct Grid {
     return c.column >= 0 && c.row >= 0 && c.column < width && c.row < height;
   }
 
-  /// Index of the cell in a row-major array. The cell must lie inside the grid.
+  /// Returns the index of the cell in a row-major array. The cell must lie inside the grid.
   std::size_t index(Cell c) const noexcept {
     return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(c.column);

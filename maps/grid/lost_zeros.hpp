@@ -22,14 +22,15 @@ struct LostCells {
 };
 
 /// Finds connected regions of zeros that are lost data: a lost disk block leaves zero bytes in a file of
-/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0 to
-/// the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
+/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0
+/// to the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
 /// exceeds three times the largest of these three steps. A region is lost if more than half of its border
 /// steps are abrupt.
 ///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.
 ///   - A border step to level cells (a wall on a plain), or to cells that are unknown beyond the first, is
 ///     not abrupt.
-///   - A border step to an unknown cell is not counted. A region without counted steps (a level map) is ground.
+///   - Border steps to unknown cells are left out. A region without any other border step (a level map) is
+///     not lost.
 /// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
 /// byte range: every row of the region spans the full width of the region; only its first row may begin later
 /// and only its last row may end earlier.

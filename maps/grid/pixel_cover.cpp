@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace {
 
-constexpr double kTouch = 1e-3;  // smallest overlap that counts [cells]
+constexpr double kTouch = 1e-3;  // smaller overlaps are ignored [cells]
 
 using Corners = std::array<Point, 4>;
 

@@ -18,7 +18,7 @@ class PixelCover {
   /// with a NaN value or a non-finite corner.
   void add(const std::array<Point, 4>& corners, float value);
 
-  /// Maximum of each cell; NaN for cells without a pixel.
+  /// Returns the maximum of each cell; NaN for cells without a pixel.
   Raster<float>& values() noexcept { return values_; }
 
  private:

@@ -104,8 +104,8 @@ bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
   return false;
 }
 
-/// One row of cells: the winding at the cell centres and the cells that an edge touches. Only the cells from the first to the
-/// last edge of the row are visited.
+/// One row of cells: the winding at the cell centres and the cells that an edge touches. Only the cells from
+/// the first to the last edge of the row are visited.
 class RowCover {
  public:
   explicit RowCover(int width) : crossings_(static_cast<std::size_t>(width)), touched_(crossings_.size()) {}
@@ -132,8 +132,8 @@ class RowCover {
     }
   }
 
-  /// Sets the covered cells of the row, clears its edges, and returns whether any cell is covered. A cell that no outer edge
-  /// touches lies entirely inside or outside the outer ring, so its centre decides.
+  /// Sets the covered cells of the row, clears its edges, and returns whether any cell is covered. A cell
+  /// that no outer edge touches lies entirely inside or outside the outer ring, so its centre decides.
   bool close(std::uint8_t* cells) {
     Inside inside;
     bool any = false;
@@ -165,8 +165,8 @@ class RowCover {
   std::size_t first_ = crossings_.size(), end_ = 0;  // cells between are visited
 };
 
-/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in its first row, or in none if
-/// they end below it.
+/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in its first
+/// row, or in none if they end below it.
 class EdgesByRow {
  public:
   EdgesByRow(const std::vector<Edge>& edges, int rows) : ends_(static_cast<std::size_t>(rows) + 1, 0) {
@@ -185,7 +185,7 @@ class EdgesByRow {
     return std::span(edges_).subspan(first, ends_[at] - first);
   }
 
-  /// The first row in which an edge begins; the height of the grid if there is no edge.
+  /// Returns the index of the first row in which an edge begins; the height of the grid if there is no edge.
   int firstRow() const {
     return static_cast<int>(std::ranges::find_if(ends_, [](std::size_t end) { return end > 0; }) -
                             ends_.begin());

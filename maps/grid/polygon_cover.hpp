@@ -10,8 +10,9 @@ namespace talus::maps {
 /// Vertices [m] in map coordinates; the last vertex is joined to the first.
 using Ring = std::vector<Point>;
 
-/// The area with a non-zero winding number of the outer ring (a ring drawn twice, or crossing itself, counts
-/// once), minus the area that lies inside an odd number of holes. An island inside a hole therefore remains.
+/// The area with a non-zero winding number of the outer ring, minus the area that lies inside an odd number
+/// of holes. A ring drawn twice therefore covers the same area as a ring drawn once, and an island inside a
+/// hole remains.
 struct Polygon {
   Ring outer;
   std::vector<Ring> holes;

@@ -87,7 +87,8 @@ std::vector<std::string> names(const std::string& text, const std::string& path,
   return out;
 }
 
-// Position after white space and comments of a PDS3 or ISIS label.
+// Returns the index in `text` of the first character at or after `at` that is neither white space nor part of
+// a comment of a PDS3 or ISIS label.
 std::size_t skipBlanks(const std::string& text, std::size_t at) {
   while (at < text.size()) {
     if (std::isspace(static_cast<unsigned char>(text[at])) != 0)

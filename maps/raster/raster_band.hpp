@@ -46,8 +46,8 @@ struct PixelBox {
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
 
-/// Cells of a box that were overwritten by zeros, found by LostZeros within the box. `nodata` is the no-data
-/// value of the band; `zero_is_ordinary` as for LostZeros. @throws InputError
+/// Returns the cells of a box that were overwritten by zeros, found by LostZeros within the box. `nodata` is
+/// the no-data value of the band; `zero_is_ordinary` as for LostZeros. @throws InputError
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
                     const std::string& where, bool zero_is_ordinary = false);
 

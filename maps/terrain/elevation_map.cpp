@@ -19,8 +19,8 @@ std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point)
 std::optional<double> elevationAt(const Grid& grid, Point point,
                                   const std::function<float(Cell)>& elevation_m) {
   if (!grid.cellAt(point)) return std::nullopt;
-  // Position in cells from the centre of cell (0, 0). The half cell along the border has the elevation of the
-  // border cells.
+  // Column and row of the point [cells] from the centre of cell (0, 0), clamped: within half a cell of the
+  // border, the elevation is that of the border cells.
   const double column =
       std::clamp((point.x_m - grid.south_west.x_m) / grid.resolution_m - 0.5, 0.0, grid.width - 1.0);
   const double row =

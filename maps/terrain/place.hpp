@@ -30,10 +30,10 @@ struct Window {
 /// number. @throws InputError that quotes the text
 Window parseWindow(std::string_view text);
 
-/// Text of the bounds of a grid: "spans x 0 to 136 m, y 0 to 157 m".
+/// Returns the text of the bounds of a grid: "spans x 0 to 136 m, y 0 to 157 m".
 std::string extent(const Grid& grid);
 
-/// Text of a position: "x 12.5 m, y 30.1 m", with a CRS also latitude and longitude in degrees.
+/// Returns the text of a position: "x 12.5 m, y 30.1 m", with a CRS also latitude and longitude in degrees.
 std::string describe(Point point, const ElevationMap& map);
 
 }  // namespace talus::maps

@@ -7,8 +7,8 @@
 namespace talus::maps {
 namespace {
 
-// The same source serves every processor: GCC maps the lanes to the registers of the target. Each lane is
-// rounded separately, without contraction or reordering, so the bits are equal.
+// GCC compiles the lanes for the registers of the target processor. Each lane is rounded separately, without
+// contraction or reordering, so that results are bitwise equal on all processors.
 using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline void load(Lanes& to, const float* from) {

@@ -9,7 +9,7 @@
 namespace talus::maps {
 namespace {
 
-// The same source serves every processor, as in plane_kernel.cpp.
+// GCC compiles the vector type for the target's registers, as in plane_kernel.cpp.
 using StepLanes = float __attribute__((vector_size(kStepLanes * sizeof(float))));
 
 [[gnu::always_inline]] inline void loadStep(StepLanes& to, const float* from) {
@@ -96,7 +96,8 @@ struct Clean {
   return {2 * span, width - 2 * span};
 }
 
-// Maximum over the half width `to` on either side, given the maximum over the smaller half width `from`.
+// Returns the maximum over the half width `to` on either side, given the maximum over the smaller half width
+// `from`.
 [[gnu::always_inline]] inline void widen(const float* steps, float* wide, int from, int to, int width) {
   for (int column = 0; column < width; column += kStepLanes) {
     StepLanes best;

@@ -11,7 +11,7 @@ struct StepReach {
   /// anywhere in its cell.
   static StepReach of(double radius_cells, int span_cells);
 
-  /// Greatest column or row offset of the cells that the step of a cell depends on.
+  /// Returns the greatest column or row offset of the cells that the step of a cell depends on.
   int cells() const noexcept { return static_cast<int>(half_widths.size()) - 1 + 2 * span; }
 
   std::vector<int> half_widths;  ///< half widths of the disc's rows, from the centre northwards [cells]

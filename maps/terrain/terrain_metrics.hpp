@@ -35,7 +35,7 @@ struct TerrainMetrics {
   float aspect_rad(Cell c) const;
 };
 
-/// Upper bound of the column or row offset of the cells that the metrics of a cell depend on.
+/// Returns an upper bound of the column or row offset of the cells that the metrics of a cell depend on.
 int metricsReach(const FootprintOptions& options, double resolution_m);
 
 /// Computes the metrics of all cells of a raster (NaN for no data); the cost per cell is proportional to the

@@ -43,8 +43,8 @@ bool breached(const BenchmarkCase& asked, const Plan& found) {
           !violations(*asked.map, found.drive, asked.kinematics.turning_radius_m).empty());
 }
 
-// Smallest distance [cells] of points on the route, half a cell apart, to a cell without a drive curve; at
-// most 10.
+// Returns the smallest distance [cells] of points on the route, half a cell apart, to a cell without a drive
+// curve; at most 10.
 double clearance_cells(const costmap::CostGrid& map, const std::vector<maps::Point>& points) {
   constexpr int kReach = 10;
   const maps::Grid& grid = map.grid();

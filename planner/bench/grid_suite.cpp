@@ -18,7 +18,7 @@ namespace {
 using maps::Cell;
 using Walls = maps::Raster<std::uint8_t>;  // 1: blocked
 
-// Position in units of half a cell: cell centres are odd, corners even.
+// Coordinates in units of half a cell: odd at cell centres, even at corners.
 struct Place {
   int x = 0, y = 0;
 };
@@ -114,8 +114,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// Places random blocks until their areas sum to a fifth of the map. Overlaps and areas beyond the map's
-// border are counted.
+// Places random blocks until their areas sum to a fifth of the map. The sum
+// includes overlaps and areas beyond the map's border.
 Walls blocks(const maps::Grid& grid, Random& random) {
   Walls walls(grid);
   const int largest = std::max(2, grid.width / 6);

@@ -14,8 +14,8 @@ namespace talus::planner {
 /// `pairs` cases of each. Throws std::invalid_argument unless side >= 16 and pairs > 0.
 std::vector<BenchmarkCase> gridCases(int side, int pairs, std::uint64_t seed);
 
-/// Length [m] of the shortest path between the centres of two open cells of a map of blocked and open cells;
-/// infinite if there is none.
+/// Returns the length [m] of the shortest path between the centres of two open cells of a map of blocked and
+/// open cells; infinite if there is none.
 double shortestAroundWalls_m(const costmap::CostGrid& map, maps::Cell from, maps::Cell to);
 
 }  // namespace talus::planner

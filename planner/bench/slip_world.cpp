@@ -118,7 +118,8 @@ double upperTail(double z) {
   return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-// Mean of the mixture over its largest values, whose probability is `tail` (conditional value at risk).
+// Returns the mean of the mixture over its largest values, whose probability is `tail` (conditional value at
+// risk).
 double tailMean(const std::vector<Part>& parts, double tail) {
   const auto above = [&](double q) {
     double sum = 0.0;

@@ -17,7 +17,7 @@ struct SlipTerrain {
   double offset = 0.0;     ///< slip on level ground, 0 to 0.1 [-]
   double noise = 0.05;     ///< standard deviation of a cell's slip from the curve, 0.05 to 0.2 [-]
 
-  /// Mean slip [-] on a gradient (rise over run) along the heading.
+  /// Returns the mean slip [-] on a gradient (rise over run) along the heading.
   double slip(double gradient) const noexcept;
 };
 
@@ -36,7 +36,7 @@ struct SlipWorldOptions {
 /// W times the time) at a rim speed of 0.1 m/s reduced by slip; headings with a planned slip of 1 or more are
 /// blocked. The planned slip is either that of the classified terrain, or the conditional value at risk of
 /// the mixture of the terrains that the cell may have [rockafellar_uryasev_2000]. No classifier is trained:
-/// its errors are drawn at random, and the planner knows the error rate.
+/// its errors are drawn at random, and the error rate is given to the planner.
 struct SlipWorld {
   std::vector<SlipTerrain> terrains;
   maps::Raster<std::uint8_t> truth;  ///< true terrain of each cell

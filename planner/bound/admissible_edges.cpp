@@ -41,8 +41,8 @@ DirectionCosts convex(DirectionCosts prices) noexcept {
   return prices;
 }
 
-// Costs of one row of cells, from column -1 to column `width`. Cells outside the map and cells without an
-// allowed heading have infinite costs.
+// Fills `cells` with the costs of one cell side in eight headings, for the cells of `row` from column -1 to
+// column `width`. Cells outside the map and cells without an allowed heading have infinite costs.
 void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, int row,
                std::vector<DirectionCosts>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -54,8 +54,8 @@ void fillCells(const costmap::CostGrid& map, DirectionalLowerBounds& headings, i
   }
 }
 
-// Costs of the eight steps into a corner. `below` and `above` point to the western of the two cells on either
-// side.
+// Returns the costs of the eight steps into a corner of cells. `below` and `above` point to the western of
+// the two cells south and north of the corner.
 DirectionCosts stepsInto(const DirectionCosts* below, const DirectionCosts* above) noexcept {
   constexpr float root = 1.4142135F;
   DirectionCosts into{};

@@ -9,7 +9,7 @@
 namespace talus::planner {
 
 /// Triangular mesh of a grid: each cell is divided into four triangles, each between two neighbouring corners
-/// and the cell's centre. Node numbers: first the corners, row by row from the south-west, then the cell
+/// and the cell's centre. Node indices: first the corners, row by row from the south-west, then the cell
 /// centres.
 class CellMesh {
  public:
@@ -18,11 +18,12 @@ class CellMesh {
         width_(static_cast<std::size_t>(grid.width)),
         corners_((width_ + 1) * (static_cast<std::size_t>(grid.height) + 1)) {}
 
-  /// Node numbers of a cell: corners counter-clockwise from the south-west corner, then the centre.
+  /// Node indices of a cell: corners counter-clockwise from the south-west corner, then the centre.
   using Nodes = std::array<std::uint32_t, 5>;
   static constexpr std::size_t kMiddle = 4;
 
-  /// Index of the corner after corner k. Triangle k of a cell lies between corners k, next(k) and the centre.
+  /// Returns the index of the corner after corner k. Triangle k of a cell lies between corners k, next(k) and
+  /// the centre.
   static constexpr std::size_t next(std::size_t k) noexcept { return (k + 1) % 4; }
 
   std::size_t nodes() const noexcept { return corners_ + grid_.size(); }

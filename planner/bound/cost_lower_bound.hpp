@@ -22,13 +22,13 @@ class CostLowerBounds {
  public:
   explicit CostLowerBounds(const costmap::TravelCost& cost);
 
-  /// Lower bound for an allowed cell, valid for every heading.
+  /// Returns a lower bound of the cost of an allowed cell that is valid for every heading.
   CostLowerBound of(costmap::CellCode cell) const noexcept;
 
-  /// Highest lower bound with zero tilt.
+  /// Returns the highest lower bound with tilt_J_per_m = 0.
   CostLowerBound level(costmap::CellCode cell) const noexcept;
 
-  /// Number of drive curves.
+  /// Returns the number of drive curves.
   std::size_t curves() const noexcept { return lines_.size(); }
 
  private:

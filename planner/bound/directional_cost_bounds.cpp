@@ -223,8 +223,9 @@ void DirectionalCostBounds::forEachPart(const Direction& climb, Each each) const
   for (const Piece& piece : pieces_) whole(piece, turned(piece.from, 1.0), turned(piece.to, 1.0));
 }
 
-// Cost along each heading. A refused heading has the largest value for which the gauge, linear between the
-// refused heading and its allowed neighbour, stays below the cost of all allowed directions between the two.
+// Returns the cost along each heading. A refused heading has the largest value for which the gauge, linear
+// between the refused heading and its allowed neighbour, stays below the cost of all allowed directions
+// between the two.
 DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const Direction& climb) const {
   Gauge gauge, most;
   most.fill(kInfinity);
@@ -259,7 +260,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const
   return gauge;
 }
 
-// Largest excess of the gauge over the cost, by sector.
+// Returns the largest excess of the gauge over the cost, by sector.
 DirectionalCostBounds::Gauge DirectionalCostBounds::lackOf(const Gauge& gauge, const Direction& climb) const {
   Gauge lack{};
   const double scale = 1.0 / std::sin(kSector);

@@ -29,9 +29,9 @@ double priceAt(const TravelCurve& curve, int bin, int row = 0) noexcept {
                                             : kInfinity;
 }
 
-// Lower bound of cost - tilt * gradient over all gradients along in [from, to] and gradients across >=
-// `across`. The cost is linear between nodes, so its minimum lies at a node; costs never decrease from row to
-// row.
+// Returns a lower bound of cost - tilt * gradient over all gradients along in [from, to] and gradients
+// across >= `across`. The cost is linear between nodes, so its minimum lies at a node; costs never decrease
+// from row to row.
 double leastIn(const TravelCurve& curve, double tilt, double from, double to, double across) noexcept {
   double least = kInfinity;
   const int row = std::min(static_cast<int>(across * TravelCurve::kRowsPerUnit), curve.lastRow());
@@ -41,7 +41,7 @@ double leastIn(const TravelCurve& curve, double tilt, double from, double to, do
   return least;
 }
 
-// Gradient along grid heading k.
+// Returns the gradient along grid heading k.
 double along(double dz_dx, double dz_dy, std::size_t k) noexcept {
   const double scale = k % 2 == 0 ? 1.0 : kDiagonal;
   return scale * (dz_dx * kStep[k].column + dz_dy * kStep[k].row);
@@ -92,9 +92,9 @@ double roomAt(std::size_t k, const ByDirection& limit, const std::array<double, 
   return std::max(0.0, most - before[k]);
 }
 
-// Costs of the eight headings for which the gauge is below the limit of every direction. Each round raises
-// each cost by half of its allowed increase: two neighbouring headings share a limit, and half each stays
-// within the limit.
+// Returns the costs of the eight headings for which the gauge is below the limit of every direction. Each
+// round raises each cost by half of its allowed increase. Two neighbouring headings share a limit, so that
+// the two halves together stay within the limit.
 std::array<double, 8> raised(const ByDirection& limit) noexcept {
   std::array<double, 8> prices{};
   prices.fill(std::max(0.0, kOctagon * *std::ranges::min_element(limit)));

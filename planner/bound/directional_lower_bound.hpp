@@ -31,7 +31,8 @@ class DirectionalLowerBounds {
 
   explicit DirectionalLowerBounds(const costmap::TravelCost& cost);
 
-  /// Costs for a cell with a drive curve; infinite if no heading is allowed.
+  /// Returns the lower bounds of a cell with a drive curve along the eight headings; infinite if no heading
+  /// is allowed.
   DirectionCosts of(costmap::CellCode cell);
 
  private:

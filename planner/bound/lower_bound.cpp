@@ -26,8 +26,8 @@ std::vector<maps::Cell> cornersWithin(const maps::Grid& grid, maps::Point place,
   return found;
 }
 
-// Lower bound on a uniform map whose limit for each heading is the lowest of all cells; on a uniform map the
-// optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
+// Returns the lower bound [J] on a uniform map whose limit for each heading is the lowest of all cells; on a
+// uniform map the optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
 double planeBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
                     double enough_J) {
   constexpr int kHeadings = DirectionalCostBounds::kHeadings;
@@ -36,8 +36,8 @@ double planeBound_J(const costmap::CostGrid& map, const Segment& places, double 
   DirectionalCostBounds of(map.cost());
   DirectionalCostBounds::Limits limits, least;
   least.fill(std::numeric_limits<float>::infinity());
-  // Cost per metre of the direction `way`, composed of two headings; infinite if the headings do not enclose
-  // `way`.
+  // Returns the cost [J/m] of the direction `way`, composed of the headings i and j; infinite if `way` does
+  // not lie between them.
   const auto price = [&](int i, int j) {
     const costmap::Direction a = DirectionalCostBounds::heading(i), b = DirectionalCostBounds::heading(j);
     const double det = a.x * b.y - a.y * b.x, p = way.x * b.y - way.y * b.x, q = a.x * way.y - a.y * way.x;

@@ -13,7 +13,7 @@
 namespace talus::planner {
 
 /// Heading costs of the map's cells, computed on first request. Each cell with an allowed heading has a slot
-/// number, which also indexes other data of the cell. Not thread-safe.
+/// index, by which other data of the cell are stored, too. Not thread-safe.
 class MeshCosts {
  public:
   explicit MeshCosts(std::shared_ptr<const costmap::CostGrid> map);

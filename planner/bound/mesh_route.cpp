@@ -53,7 +53,7 @@ class Descent {
     double value = 0.0, through = 0.0;
   };
 
-  // Position rounded to 1/50 of a cell side.
+  // Column and row coordinate of a point, in units of 1/50 of a cell side, rounded.
   using Key = std::pair<long, long>;
   static Key keyOf(Point at) noexcept { return {std::lround(50.0 * at.x_m), std::lround(50.0 * at.y_m)}; }
 

@@ -9,7 +9,7 @@ namespace {
 // 2^kUnits queue units = cost of half a cell side at the lowest cost per metre.
 constexpr unsigned kUnits = 4;
 constexpr std::uint64_t kReach = std::uint64_t{1} << 20;  // largest spread of queued keys [units]
-// Nodes of a triangle; the cell's centre is the third.
+// Indices of a triangle's nodes: two corners, then the cell's centre.
 constexpr std::size_t kFirst = 0, kSecond = 1, kThird = 2;
 
 }  // namespace

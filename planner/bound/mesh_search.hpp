@@ -32,7 +32,7 @@ class MeshSearch {
 
   float at(std::uint32_t node) const noexcept { return values_[node]; }
   bool expanded(std::uint32_t node) const noexcept { return expanded_[node] < kFar; }
-  /// Value [J] of queue key 0. Nodes with lower values are taken in any order.
+  /// Sets the value [J] of queue key 0. Nodes with lower values are expanded in any order.
   void startAt(double base_J) noexcept { base_J_ = base_J; }
   /// Lowers a node to `value`. Returns false, without a change, if the reduction is below 1e-3 queue units.
   bool lower(std::uint32_t node, float value);

@@ -8,14 +8,14 @@
 
 namespace talus::planner {
 
-/// Lower bound [J] of the cost of any motion from the first place to within tolerance_m of the second:
-/// distance times the lowest cost per metre of all drive curves. Reads no cell.
+/// Returns a lower bound [J] of the cost of any motion from the first place to within tolerance_m of the
+/// second: distance times the lowest cost per metre of all drive curves. Reads no cell.
 double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
 
-/// Lower bound [J] with the lowest cost per metre of the reachable cells, never below straightBound_J()
-/// unless known_J is. `known_J` is the cost of a known route, infinite if none is known; the result never
-/// exceeds known_J. On uniform ground the bound proves the straight line optimal. When stopped, returns the
-/// bound found so far.
+/// Returns a lower bound [J] with the lowest cost per metre of the reachable cells, never below
+/// straightBound_J() unless known_J is. `known_J` is the cost of a known route, infinite if none is known;
+/// the result never exceeds known_J. On uniform ground the bound proves the straight line optimal. When
+/// stopped, returns the bound found so far.
 ///
 /// Derivation (ours, not from the literature). Let D be the distance and S >= 2 D. A route that leaves the
 /// ellipse of points whose distances to both places sum to S drives at least (S - D) / 2 from the first place

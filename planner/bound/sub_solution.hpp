@@ -14,9 +14,9 @@ namespace talus::planner {
 
 /// Subsolution of the Hamilton-Jacobi equation of the drive cost: a function over the nodes of a CellMesh,
 /// linear on each triangle, that approximates the cost to the goal from below. Along every heading the
-/// function changes per metre by at most the DirectionalCostBounds of the cell. No route between two places, of any
-/// shape, then costs less than the difference of the function's values. provenBy() verifies the resulting
-/// bound.
+/// function changes per metre by at most the DirectionalCostBounds of the cell. No route between two places,
+/// of any shape, then costs less than the difference of the function's values. provenBy() verifies the
+/// resulting bound.
 ///
 /// Method (ours, not from the literature). A search from the goal gives each node the lowest value that the
 /// adjacent triangles allow, over the headings from the node to the opposite side. At some nodes the function
@@ -48,7 +48,8 @@ class SubSolution {
   float at(std::uint32_t node) const noexcept { return to_goal_.at(node); }
   /// True for an expanded node. The solution consists of the triangles with an inner node.
   bool inner(std::uint32_t node) const noexcept { return to_goal_.expanded(node); }
-  /// Costs of a cell; null for cells not searched and cells without an allowed heading.
+  /// Returns the cost lower bounds by heading of a cell; null for cells not searched and cells without an
+  /// allowed heading.
   const TriangleCosts* pricesOf(maps::Cell cell) const noexcept;
 
   /// Near-optimal route from start to goal over all headings, without turn costs; see meshRoute().

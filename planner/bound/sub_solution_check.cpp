@@ -16,8 +16,8 @@ double value(const SubSolution& u, std::uint32_t node) noexcept {
   return static_cast<double>(u.at(node));
 }
 
-// Largest ratio, in one cell, of the solution's fall over a side's length along a heading to the heading's
-// limit.
+// Returns the largest ratio, in one cell, of the solution's fall over a side's length along a heading to the
+// heading's limit.
 double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const TriangleCosts& limits) noexcept {
   static constexpr std::array<std::array<double, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   double worst = 0.0;
@@ -40,7 +40,7 @@ double worstIn(const SubSolution& u, const CellMesh::Nodes& nodes, const Triangl
   return worst;
 }
 
-// Value of the solution at a place; empty outside the solution.
+// Returns the value [J] of the solution at a place, linear on each triangle; empty outside the solution.
 std::optional<double> valueAt(const SubSolution& u, Point place) {
   const maps::Grid& grid = u.mesh().grid();
   const auto cell = grid.cellAt(place);

@@ -51,7 +51,7 @@ const Fan<kQuarter + 1>& middleFan() noexcept {
   return fan;
 }
 
-// Index offset from headings out of a node to headings into the node.
+// Returns the offset of heading indices: 0 for motions from the node, half a turn for motions to the node.
 constexpr std::size_t turnOf(TriangleCosts::Way way) noexcept {
   return way == TriangleCosts::Way::FromNode ? 0 : kHeadingCount / 2;
 }

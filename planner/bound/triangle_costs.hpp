@@ -10,8 +10,9 @@
 
 namespace talus::planner {
 
-/// Lower bounds of the cost of one cell side by heading, and the resulting limits for a function that is
-/// linear on each triangle of the cell (CellMesh). Triangles are numbered by their first corner.
+/// Lower bounds [J] of the cost of a motion as long as one cell side, by heading, and the resulting limits
+/// for a function that is linear on each triangle of the cell (CellMesh). Triangles are numbered by their
+/// first corner.
 struct TriangleCosts {
   static constexpr std::size_t kStored = DirectionalCostBounds::kHeadings + 12;
   std::array<float, kStored> prices;  ///< by heading; the first 12 are repeated at the end
@@ -20,14 +21,14 @@ struct TriangleCosts {
 
   TriangleCosts(const DirectionalCostBounds::Limits& limits, double side_m) noexcept;
 
-  /// Values of a triangle's nodes.
+  /// Values [J] of the linear function at the three nodes of a triangle.
   struct Values {
     float first, second, middle;
   };
 
-  /// Largest value that one node may have for given values of the other two: the minimum, over the motions
-  /// between the node and the opposite side (ends included), of the value on the side plus the motion's cost.
-  /// Motions lead from the node to the side, or with Way::ToNode from the side to the node.
+  /// Returns the largest value that one node may have for given values of the other two: the minimum, over
+  /// the motions between the node and the opposite side (ends included), of the value on the side plus the
+  /// motion's cost. Motions lead from the node to the side, or with Way::ToNode from the side to the node.
   float first(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float second(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;
   float middle(std::size_t triangle, const Values& values, Way way = Way::FromNode) const noexcept;

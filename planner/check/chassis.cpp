@@ -67,8 +67,8 @@ Chassis::Plane Chassis::planeUnder(const Pose& pose) const {
   return {pose.place, std::isfinite(east) ? east : 0.0, std::isfinite(north) ? north : 0.0};
 }
 
-// Smallest and largest height of the bilinear surface above a plane over a square. On each patch between four
-// cell centres, both extremes lie at corners of the intersection of the square and the patch.
+// Returns the smallest and largest height of the bilinear surface above a plane over a square. On each patch
+// between four cell centres, both extremes lie at corners of the intersection of the square and the patch.
 std::optional<Bounds> Chassis::above(const Plane& plane, Point middle, double reach_m) const {
   const maps::Grid& grid = elevation_m_.grid();
   const auto inCells = [&](double metres, double corner) {
@@ -170,8 +170,8 @@ Stance Chassis::rockerBogie(const Heights& z) const {
   return stance;
 }
 
-// Lower bound of the height of the belly's sections above the ground below them. `under(x, y)` returns a
-// lower bound of the height of the contact plane at a point of the body.
+// Returns a lower bound of the height of the belly's sections above the ground below them. `under(x, y)`
+// returns a lower bound of the height of the contact plane at a point of the body.
 template <typename Under>
 std::optional<double> Chassis::clearance(const Place& place, const Tilt& tilt, Under under) const {
   const double length_m = rover_.wheelbase_m / kBellyParts, width_m = rover_.track_m / kBellyParts;

@@ -9,7 +9,7 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
-/// Bounds of the attitude and clearance of a rover along a motion.
+/// Checks pitch, roll and ground clearance of a rover along a motion, by lower and upper bounds.
 namespace talus::planner {
 
 /// Connection of the wheels to the body.
@@ -28,7 +28,7 @@ struct Bounds {
   double high = 0.0;
 };
 
-/// Bounds of a rover standing at a pose.
+/// Lower and upper bounds of pitch and roll, and lower bound of the clearance, of a rover at a pose.
 struct Stance {
   Bounds pitch_rad;          ///< of the body's long axis, nose up > 0
   Bounds roll_rad;           ///< of the body's cross axis, left side up > 0
@@ -55,15 +55,15 @@ class Chassis {
     double turn_m = 0.0;   ///< >= 0
   };
 
-  /// Bounds of pitch, roll and clearance over all poses within the slack; empty if the ground under the rover
-  /// is not known.
+  /// Returns the bounds of pitch, roll and clearance over all poses within the slack; empty if the ground
+  /// under the rover is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
-  /// Bounds at the pose itself.
+  /// Returns the bounds at the pose itself, without slack.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }
 
   /// Reason why the rover may not stand at the pose; empty if allowed.
   std::string_view refusal(const Pose& pose, const Slack& slack) const;
-  /// Reason for the pose itself.
+  /// Returns the reason at the pose itself, without slack; empty if allowed.
   std::string_view refusal(const Pose& pose) const { return refusal(pose, {0.0, 0.0}); }
 
   /// Violations along a drive, including arcs and turns in place, and along a polyline with turns in place at

@@ -17,7 +17,7 @@ std::vector<Violation> along(const Chassis& chassis, const Plan& plan) {
   return plan.drive.legs.empty() ? chassis.violations(plan.points) : chassis.violations(plan.drive);
 }
 
-// Heading of the route at the place.
+// Returns the heading of the route at the place.
 double headingAt(const Plan& plan, maps::Point place) {
   double nearest_m = INFINITY, heading = 0.0;
   for (std::size_t i = 1; i < plan.points.size(); ++i) {

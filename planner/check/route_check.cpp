@@ -18,7 +18,7 @@ using costmap::Direction;
 using maps::Cell;
 using maps::Point;
 
-// Points closer to a corner or side than this share of a cell are on it.
+// A point closer to a corner or side than this share of a cell is treated as a point on the corner or side.
 constexpr double kOn = 1e-6;
 // Largest spacing of the headings checked along an arc.
 constexpr double kApart_rad = 0.01;

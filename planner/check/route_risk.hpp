@@ -50,8 +50,9 @@ struct RouteRisk {
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
                               const ProgressMonitor& watch = {});
 
-/// Upper bound of riskAlong() for any correlation of the soil: the sum of the stretches' own risks, at most 1.
-/// Deterministic, without random draws. Throws std::invalid_argument if an option is out of range.
+/// Returns an upper bound of riskAlong() for any correlation of the soil: the sum of the stretches' own
+/// risks, at most 1. Deterministic, without random draws. Throws std::invalid_argument if an option is out of
+/// range.
 std::vector<double> riskBoundAlong(const Route& route, const RouteRiskOptions& options);
 
 /// Risk of the whole route as in riskAlong(), and the tail of its reserve: the conditional value at risk

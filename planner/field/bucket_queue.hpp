@@ -17,10 +17,10 @@ class BucketQueue {
   BucketQueue(unsigned shift, std::uint64_t reach)
       : shift_(shift), ring_(std::bit_ceil((reach >> shift) + 2)) {}
 
-  /// Bucket number of a key.
+  /// Returns the index of the bucket of a key.
   std::uint64_t bucketOf(std::uint64_t key) const noexcept { return key >> shift_; }
 
-  /// Number of the current bucket.
+  /// Returns the index of the current bucket.
   std::uint64_t current() const noexcept { return current_; }
 
   std::uint64_t queued() const noexcept { return queued_; }

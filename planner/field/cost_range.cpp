@@ -13,8 +13,8 @@ CostRange costRange(const costmap::TravelCost& cost) {
     for (int i = 0; i < (curve.lastRow() + 1) * kBins; ++i) {
       const auto value = static_cast<double>(curve.rows()[i]);
       const double gradient = costmap::TravelCurve::gradient(i % kBins);
-      // The node just beyond the limit counts, too: gradients between it and the last node within the limit
-      // use its cost.
+      // The node just beyond the limit is included, because costs between the last node within the limit and
+      // that node are interpolated.
       if (!std::isfinite(value) || std::abs(gradient) >= cost.limits().max_along + 1.0 / 256) continue;
       range.least_J_per_m = std::min(range.least_J_per_m, value);
       range.most_J_per_m = std::max(range.most_J_per_m, value);

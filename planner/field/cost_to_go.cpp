@@ -41,7 +41,7 @@ struct ImprovedByScalar {
 };
 
 #if defined(__x86_64__)
-// The same eight comparisons with AVX2.
+// Compares the eight neighbours as above, with AVX2.
 struct ImprovedByVector {
   __attribute__((target("avx2"))) static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
                                                      std::ptrdiff_t stride) noexcept {

@@ -48,15 +48,15 @@ class CostToGo {
   /// again when needed. For a single start, PatchedField needs less work.
   void repair(CellBox changed);
 
-  /// Cost from the cell's centre to a goal's centre in units; kUnreached if there is no path. Final for
-  /// settled cells.
+  /// Returns the cost from the cell's centre to a goal's centre in units; kUnreached if there is no path.
+  /// Final for settled cells.
   std::uint32_t units(maps::Cell cell) const noexcept { return distance_[edges_->padded().index(cell)]; }
 
-  /// The same cost in joules; empty if there is no path.
+  /// Returns units() in joules; empty if there is no path.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
 
-  /// Lower bound of the minimum cost from a padded index in units, whether settled or not; kUnreached if no
-  /// path exists.
+  /// Returns a lower bound of the minimum cost from a padded index in units, whether settled or not;
+  /// kUnreached if no path exists.
   std::uint32_t atLeast(std::size_t index) const noexcept {
     const std::uint64_t front = current_ << shift_;
     return distance_[index] < front || queued_ == 0 ? distance_[index] : static_cast<std::uint32_t>(front);
@@ -68,10 +68,11 @@ class CostToGo {
   /// Goals of the field. A cell may occur more than once.
   const std::vector<Goal>& goals() const noexcept { return goals_; }
 
-  /// Cells of the cheapest path from a settled cell to a goal, both included; empty if there is no path.
+  /// Returns the cells of the cheapest path from a settled cell to a goal, both included; empty if there is
+  /// no path.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
-  /// Number of settled cells.
+  /// Returns the number of settled cells.
   std::uint64_t settled() const noexcept { return settled_; }
 
   const EdgeLayer& edges() const noexcept { return *edges_; }

@@ -5,8 +5,9 @@
 
 namespace talus::planner {
 
-// Smallest distance of any cell with a changed step. The paths of nearer cells contain no changed step,
-// neither before nor after the change, because the last cell with a changed step leaves by an unchanged step.
+// Returns the smallest distance of any cell with a changed step. The paths of nearer cells contain no changed
+// step, neither before nor after the change, because the last cell with a changed step leaves by an unchanged
+// step.
 std::uint32_t CostToGo::leastTouched(CellBox changed) const noexcept {
   const PaddedGrid& padded = edges_->padded();
   const CellBox box = grown(changed, 1, padded);

@@ -37,8 +37,8 @@ std::uint16_t inUnits(float cost_J_per_m, double units_per_J_per_m) {
   return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(EdgeUnits::kDearest)));
 }
 
-// Largest number of gradient steps within the limit. A diagonal's gradient stays below the limit by more than
-// the rounding error, so that a step allowed on the grid is also allowed as an exact segment.
+// Returns the largest number of gradient steps within the limit. A diagonal's gradient stays below the limit
+// by more than the rounding error, so that a step allowed on the grid is also allowed as an exact segment.
 int stepsWithin(double limit, double per_step) {
   const int most = 2 * 2048;
   const double clear = per_step == 1.0 ? limit : limit - 1e-9;

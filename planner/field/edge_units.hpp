@@ -14,9 +14,9 @@ namespace talus::planner {
 
 /// Costs of half steps, from a cell's centre to its edge or corner, for all eight headings, as integer
 /// multiples of an energy unit, so that sums do not depend on their order. An edge is the sum of two half
-/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kDearest are
-/// stored as kDearest. Interpolation weights are rounded to 1/128, so a half step differs from the exact cost
-/// by at most one unit plus 1/256 of the difference of neighbouring nodes.
+/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kDearest
+/// are stored as kDearest. Interpolation weights are rounded to 1/128, so a half step differs from the exact
+/// cost by at most one unit plus 1/256 of the difference of neighbouring nodes.
 class EdgeUnits {
  public:
   static constexpr std::uint16_t kBlocked = 0xffff;
@@ -34,7 +34,7 @@ class EdgeUnits {
   /// Joules per unit.
   double unit_J() const noexcept { return unit_J_; }
 
-  /// Lower bound of every allowed edge in units; >= 1.
+  /// Returns a lower bound of every allowed edge in units; >= 1.
   std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
 
   /// Returns true if these units assign the same cost to every cell that the older units cover (curves were
@@ -52,7 +52,7 @@ class EdgeUnits {
 
   // Interpolation weights in 1/kShares. A coordinate between two nodes never has a weight of 0 or kShares.
   static constexpr int kShareBits = 7, kShares = 1 << kShareBits;
-  // Position of a gradient among the nodes: the lower 32 bits are an offset into pairs_, the upper two 16-bit
+  // Fractional node index of a gradient: the lower 32 bits are an offset into pairs_, the upper two 16-bit
   // fields are the weights of the next bin and the next row. A gradient beyond the limit has the highest bit
   // of its weight set. Positions along and across are added.
   using Place = std::uint64_t;
@@ -64,7 +64,7 @@ class EdgeUnits {
   Places places(const costmap::TravelCost::Limits& limits, double per_step, int shift) const;
   int width() const noexcept { return 2 * reach_ + 2; }
 
-  // Positions along and across of the headings from east to north-west.
+  // Returns the fractional node indices along and across of the headings from east to north-west.
   std::array<Place, 4> placesOf(costmap::CellCode cell) const noexcept {
     const int x = cell.stepsX(), y = cell.stepsY();
     const Place* straight_along = straight_.along.data() + straight_.middle;

@@ -22,7 +22,7 @@ struct PaddedGrid {
   maps::Cell cell(std::size_t index) const noexcept {
     return {static_cast<int>(index % stride()) - 1, static_cast<int>(index / stride()) - 1};
   }
-  /// Index offset of the neighbour in a heading.
+  /// Returns the difference between the padded indices of the neighbour in a heading and of the cell.
   std::ptrdiff_t offset(int heading) const noexcept {
     const maps::Cell step = kStep[static_cast<std::size_t>(heading)];
     return static_cast<std::ptrdiff_t>(step.row) * static_cast<std::ptrdiff_t>(stride()) + step.column;

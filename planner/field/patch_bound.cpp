@@ -10,8 +10,8 @@ namespace {
 
 using maps::Cell;
 
-// Lower bounds of the cost of a path that leaves the box at one rim cell and enters at another. One array for
-// each quantity, because to() compares an improved rim cell with all rim cells.
+// Computes lower bounds [units] of the cost of a path that leaves the box at one rim cell and enters the box
+// at another. Each quantity has its own array, because to() compares an improved rim cell with all rim cells.
 class RimDetours {
  public:
   RimDetours(std::size_t cells, std::uint32_t cheapest) : cheapest_(cheapest) {
@@ -95,7 +95,7 @@ void PatchBound::settleInwards(const std::vector<RimCell>& rim) {
                     EdgeLayer::kBlocked);
   constexpr std::uint32_t kInner = CostToGo::kUnreached;
   std::vector<std::uint32_t> on_rim(inside_.size(), kInner);  // index of the rim cell; kInner inside
-  // Cost at which a cell was taken last: each queued cost is processed once.
+  // Cost [units] at which each cell was last processed, so that no queued cost is processed twice.
   std::vector<std::uint32_t> taken(inside_.size(), CostToGo::kUnreached);
   RimDetours excursions(rim.size(), edges.units().cheapestEdge());
   const auto reach = [&](Cell c, std::uint32_t units) {

@@ -26,7 +26,7 @@ class PatchBound {
   /// False if the change connects cells that had no path before; no bound exists then.
   bool holds() const noexcept { return holds_; }
 
-  /// Lower bound in units, by padded index; kUnreached if no path exists.
+  /// Returns a lower bound in units, by padded index; kUnreached if no path exists.
   std::uint32_t operator()(std::size_t index) const noexcept;
 
  private:

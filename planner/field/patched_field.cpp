@@ -18,7 +18,8 @@ namespace {
 // [units] Links have costs in joules; rounding may change the order of paths whose costs differ by this much.
 constexpr std::uint32_t kSlack = 1;
 
-// Costs of cells from the start. Memory pages are allocated only when written.
+// Cost from the start [units] by cell index; the largest uint32 until set. Memory pages are allocated only
+// when written.
 class SparseCosts {
  public:
   explicit SparseCosts(std::size_t cells)
@@ -51,8 +52,8 @@ class ForwardSearch {
   PatchedField::Outcome run(const std::vector<GridLink>& links, std::uint64_t most_cells,
                             const StopCheck& stop);
 
-  /// Cost to the goal [units] by padded index, for each cell on a path from start to goal that costs at most
-  /// kSlack more than the best path.
+  /// Returns the cost to the goal [units] by padded index, for each cell on a path from start to goal that
+  /// costs at most kSlack more than the best path.
   std::unordered_map<std::uint32_t, std::uint32_t> bestWays() const;
 
  private:

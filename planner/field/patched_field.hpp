@@ -26,10 +26,10 @@ class PatchedField {
   /// cells would be processed.
   Outcome settle(const std::vector<GridLink>& links, std::uint64_t most_cells, const StopCheck& stop = {});
 
-  /// As CostToGo::cost_J(), for links on cheapest paths; empty for other cells.
+  /// Returns CostToGo::cost_J() [J] for the cell of a link on a cheapest path; empty for other cells.
   std::optional<double> cost_J(maps::Cell cell) const;
 
-  /// As CostToGo::path(), from the link on the cheapest path.
+  /// Returns CostToGo::path() from the cell of a link on the cheapest path.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
  private:

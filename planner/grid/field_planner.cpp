@@ -165,7 +165,7 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
                         .cells_to_goal = to_goal.cells(),
                         .last = found.last,
                         .first = stage.to};
-    // Reach counts both sets as connected; tryLifting() tests the connection with a route in many headings.
+    // Reach joins both sets by cell adjacency alone; tryLifting() tests for a route in many headings.
     const auto opens = [&](const costmap::CostGrid& lifted) {
       const MotionCost free(std::shared_ptr<const costmap::CostGrid>(std::shared_ptr<const void>(), &lifted));
       return !manyHeadingsRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();

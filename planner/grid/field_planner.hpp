@@ -63,7 +63,8 @@ class FieldPlanner {
   static constexpr std::size_t kPointCells = 250'000;           // largest map searched over points of cells
   static constexpr double kProven = 1e-3;  // smallest relative gap for which other corridors are searched
   static constexpr double kLarge = 0.05;   // smallest relative gap for which points of cells are searched
-  // Cost limit of the point search relative to the best route, before its vertices are settled.
+  // Cost limit of the point search as a multiple of the best route's cost; the search does not settle
+  // vertices.
   static constexpr double kSettled = 1.05;
 
   Refiner refine_;

@@ -33,7 +33,8 @@ struct Leg {
   std::vector<Crossed> cells;
 };
 
-// Positions on the leg are in cells from the first centre.
+// Returns the straight leg to the centre of the cell at `offset`. Coordinates on the leg are in cells from
+// the centre of the first cell.
 Leg legTo(Cell offset) {
   const double dx = offset.column, dy = offset.row, length = std::hypot(dx, dy);
   Leg leg{offset, {dx / length, dy / length}, {}};

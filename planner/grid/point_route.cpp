@@ -23,8 +23,9 @@ using costmap::CellCode;
 using maps::Cell;
 using maps::Point;
 
-// Points per side, and per row and column inside a cell. kCoarse above kFineCells cells, kFinest up to
-// kTinyCells, kFine between; if kFine finds no route on a map of up to kFinestCells, kFinest is tried.
+// Number of points on each side of a cell, and in each row and column of points inside a cell. kCoarse above
+// kFineCells cells, kFinest up to kTinyCells, kFine between; if kFine finds no route on a map of up to
+// kFinestCells, kFinest is tried.
 struct Fineness {
   int side, inner;
 };
@@ -150,8 +151,8 @@ class PointSearch {
     return {grid_.south_west.x_m + (cell.column + spot.x) * grid_.resolution_m,
             grid_.south_west.y_m + (cell.row + spot.y) * grid_.resolution_m};
   }
-  // Cell of a node and index of its point in spots_. A point on a side belongs to two cells; the cell returned
-  // is the cell east or north of the side.
+  // Returns the cell of a node and the index of the node's point in spots_. A point on a side belongs to two
+  // cells; the cell east or north of the side is returned.
   std::pair<Cell, std::size_t> whereIs(std::uint32_t node) const {
     if (node >= inner_) {
       const auto k = static_cast<int>(node - inner_), per = inner_points_;

@@ -22,8 +22,8 @@ class TubePlanner {
   explicit TubePlanner(const TubeOptions& tube = {}, const RefineOptions& refine = {})
       : options_(tube), coarse_(roughly()), refine_(refine) {}
 
-  /// As FieldPlanner::plan(), but with a straight-line lower bound. Throws std::invalid_argument if the
-  /// problem has no map.
+  /// Returns the plan as FieldPlanner::plan() does, with a straight-line lower bound of the cost. Throws
+  /// std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
   /// Guide from start to goal: the route on a coarse map. Empty if the coarse map has no traversable cell
@@ -34,7 +34,7 @@ class TubePlanner {
   /// Returns NoneFound if the tube contains no route.
   Plan planAlong(const Problem& problem, const Polyline& guide);
 
-  /// Cells per side of a pooled cell.
+  /// Number of cells along each side of a pooled cell.
   static constexpr int kFactor = 8;
 
  private:

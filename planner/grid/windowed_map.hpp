@@ -52,7 +52,7 @@ class WindowedMap {
 
   /// Grid of the whole map.
   const maps::Grid& grid() const noexcept { return parts_.grid; }
-  /// Number of cells built at full resolution so far, counted in whole tiles.
+  /// Returns the number of cells built at full resolution so far, counted in whole tiles.
   std::size_t cellsBuilt() const noexcept;
 
  private:

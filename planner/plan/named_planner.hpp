@@ -17,8 +17,8 @@ namespace talus::planner {
 /// one object per thread; objects may share a map.
 class NamedPlanner {
  public:
-  /// Name as for samplingSettings(): a name of planner_names.hpp; OMPL's planners also accept options, as in
-  /// "NAME:cold:range=20". Throws std::invalid_argument for an invalid name.
+  /// Accepts the names of samplingSettings(): a name of planner_names.hpp; OMPL's planners also accept
+  /// options, as in "NAME:cold:range=20". Throws std::invalid_argument for an invalid name.
   explicit NamedPlanner(const std::string& name = {});
 
   /// Returns true if the planner honours headings and a turning radius.

@@ -21,7 +21,7 @@ class RoutePlanner {
   explicit RoutePlanner(const std::string& planner = {});
   explicit RoutePlanner(PluginPlanner plugin) : planner_(std::move(plugin)) {}
 
-  /// Name of the planner for reports.
+  /// Returns the name of the planner for reports.
   const std::string& name() const noexcept;
 
   /// Capabilities of the own planner. A plugin refuses unsupported fields in its own process.

@@ -54,7 +54,7 @@ void limitMemory(std::uint64_t memory) {
   if (limits.memory > 0) limitMemory(limits.memory);
   try {
     sendAll(pipe, work());
-  } catch (...) {  // an exception counts as Died
+  } catch (...) {  // the parent then reports Died
     _exit(1);
   }
   _exit(0);

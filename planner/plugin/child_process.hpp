@@ -31,8 +31,8 @@ struct ChildAnswer {
 
 /// Runs work in a child process and returns its result; crashes, aborts and endless loops are reported as
 /// results. The child is killed if the parent is killed. Output of the child is redirected to standard error.
-/// Must be called while the program has no other threads. An exception in the work counts as Died. Throws
-/// std::runtime_error if no process can be created.
+/// Must be called while the program has no other threads. An exception in the work gives the result Died.
+/// Throws std::runtime_error if no process can be created.
 ChildAnswer inChild(const std::function<std::string()>& work, const ChildLimits& limits,
                     const ProgressMonitor& watch = {});
 

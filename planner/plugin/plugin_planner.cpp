@@ -133,7 +133,7 @@ bool near(Point a, Point b, double reach_m) {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m) <= reach_m + kSamePlace_m;
 }
 
-// Index of the goal at which a route ends; -1: none.
+// Returns the index of the goal at which a route ends; -1: none.
 int goalOf(const Problem& problem, Point end) {
   if (near(end, problem.goal, problem.goal_tolerance_m)) return 0;
   for (std::size_t i = 0; i < problem.other_goals.size(); ++i)
@@ -157,7 +157,7 @@ std::string text(Point p) {
 // Compares the headings of the polyline, regardless of the headings stated by the plugin, with the requested
 // headings and the turning radius; no check for a rover that turns in place. Chords represent arcs: each
 // heading may deviate by half of the chord's change of heading, for chords of up to 0.4 of the radius; the
-// rest of a longer chord counts as straight.
+// rest of a longer chord is treated as straight.
 std::string motionAgainst(const Problem& problem, const std::vector<Point>& points) {
   const double radius_m = problem.kinematics.turning_radius_m;
   if (!(radius_m > 0.0) || points.size() < 2) return {};

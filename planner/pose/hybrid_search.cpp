@@ -31,7 +31,7 @@ struct Node {
   float cost = 0.0F;
   const MotionSet::Motion* motion = nullptr;  // motion that led to the node; null at the start
   std::uint32_t parent = kNone;
-  std::int16_t heading = 0;   // heading number
+  std::int16_t heading = 0;   // index of the heading
   std::int8_t direction = 0;  // direction of travel: +1 forward, -1 reverse, 0 not moved yet
   bool stands = false;        // the motion that led to the node has passed the check
 };

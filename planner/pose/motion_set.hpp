@@ -16,7 +16,7 @@ class MotionSet {
   struct Options {
     int headings = 72;
     double step_cells = 1.5;  ///< length of a motion
-    double offset_rad = 0.0;  ///< heading number 0
+    double offset_rad = 0.0;  ///< heading of index 0
   };
 
   /// Stretch of a motion, priced by the cell at its centre.
@@ -30,7 +30,7 @@ class MotionSet {
   struct Motion {
     PosePath::Leg leg;
     double dx_m = 0.0, dy_m = 0.0;  ///< end relative to the pose
-    int heading = 0;                ///< heading number at the end
+    int heading = 0;                ///< index of the heading at the end
     int direction = 0;              ///< +1 forward, -1 reverse, 0 in place
     double turn_rad = 0.0;          ///< sum of all changes of heading, >= 0
     std::vector<Stretch> stretches{};

@@ -27,7 +27,7 @@ bool goesOn(const PosePath::Leg& leg, const PosePath::Leg& next) noexcept {
          leg.arc.curvature_1_m == next.arc.curvature_1_m;
 }
 
-// The same drive with consecutive legs of equal curvature merged.
+// Returns the drive with consecutive legs of equal curvature merged.
 Legs joined(const Legs& legs) {
   Legs long_legs;
   for (const auto& leg : legs)

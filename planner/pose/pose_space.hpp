@@ -9,7 +9,7 @@
 namespace talus::planner {
 
 /// OMPL state space of position and heading over a map, connected by the rover's shortest curves:
-/// Reeds-Shepp, Dubins, or turns in place. The distance is the length of the curve; a turn in place counts
+/// Reeds-Shepp, Dubins, or turns in place. The distance is the length of the curve; a turn in place adds
 /// half a cell per radian. OMPL 1.5.2's own Dubins space aborts the process for long paths (dubins.hpp).
 /// Immutable except for OMPL's setup.
 class PoseSpace : public ompl::base::SE2StateSpace {

@@ -64,8 +64,8 @@ class Turning {
     return std::abs(by) > kNoTurn_rad ? cost_({at, from_rad}, PosePath::Leg{{}, by}) : 0.0;
   }
 
-  // Points of a route lie on cell sides, and a leg between two of them may leave the route, so the turns at
-  // its ends must be checked.
+  // Points of a route lie on cell sides, and a leg between two of them may leave the route, so
+  // the turns at its ends must be checked.
   bool mayTurnAtEnds(std::size_t from, std::size_t to) const {
     const Segment leg{points_[from], points_[to]};
     return (from == 0 || cost_.motion().turnAllowed(leg, leg.from)) &&

@@ -31,10 +31,10 @@ maps::Raster<float> floatsOf(const pybind11::object& array, const std::string& n
 maps::Raster<std::uint8_t> bytesOf(const pybind11::object& array, const std::string& name,
                                    const maps::Grid& grid);
 
-/// Places from float64 or float32 of shape (n, 2); must be finite.
+/// Returns the places from float64 or float32 of shape (n, 2); must be finite.
 std::vector<maps::Point> pointsOf(const pybind11::object& array, const std::string& name);
 
-/// Points of a cloud from float64 or float32 of shape (n, 3), any values.
+/// Returns the points of a cloud from float64 or float32 of shape (n, 3), any values.
 std::vector<maps::CloudPoint> cloudOf(const pybind11::object& array, const std::string& name);
 
 /// Read-only view of numbers at the given strides [bytes] in memory of `owner`.

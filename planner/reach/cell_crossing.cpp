@@ -19,7 +19,7 @@ bool inside(InCell p) noexcept {
   return p.x >= kInside && p.x <= 1.0 - kInside && p.y >= kInside && p.y <= 1.0 - kInside;
 }
 
-// Share of a unit step that stays inside a cell with a margin.
+// Returns the share of a unit step that stays inside a cell with a margin.
 double stepInside(InCell from, InCell step) noexcept {
   const auto room = [](double at, double by) {
     return by > 0.0 ? (1.0 - at) / by : by < 0.0 ? -at / by : 1.0;

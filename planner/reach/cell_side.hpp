@@ -30,7 +30,7 @@ constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
           cell.row + kRows[static_cast<std::size_t>(side)]};
 }
 
-/// Heading of the outward normal of a side.
+/// Returns the heading of the outward normal of a side.
 constexpr double outwards_rad(int side) noexcept {
   constexpr std::array<double, 4> kHeadings{std::numbers::pi, 0.0, 1.5 * std::numbers::pi,
                                             0.5 * std::numbers::pi};
@@ -63,7 +63,7 @@ inline maps::Point onMap(const maps::Grid& grid, maps::Cell cell, InCell p) noex
           grid.south_west.y_m + (cell.row + p.y) * grid.resolution_m};
 }
 
-/// Place at position `at`, 0 to 1, on a side.
+/// Returns the place at position `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
   return side == Side::West    ? InCell{0.0, at}
          : side == Side::East  ? InCell{1.0, at}
@@ -158,7 +158,7 @@ class HeadingCone {
     return std::min(dot(normal, a), dot(normal, b));
   }
 
-  // Positions p on a side with sign * (normal . p) >= least - slack for both normals.
+  // Returns the positions p on a side with sign * (normal . p) >= least - slack for both normals.
   SideRange clipped(int side, double slack, std::array<double, 2> least, double sign) const noexcept {
     SideRange range{0.0, 1.0};
     if (everywhere_) return range;

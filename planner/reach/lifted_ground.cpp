@@ -86,8 +86,8 @@ TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   return curve;
 }
 
-// Gradient at which the slope requires the complete pull that the soil provides at the limit; unlimited if
-// the cost has no states.
+// Returns the gradient at which the slope requires the complete pull that the soil provides at the limit;
+// unlimited if the cost has no states.
 double soilHoldsTo(const TravelCost& cost, std::size_t curve) {
   if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
   const auto at = static_cast<std::size_t>(std::clamp(

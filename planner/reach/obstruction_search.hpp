@@ -26,7 +26,7 @@ using OpensOn = std::function<bool(const costmap::CostGrid& map)>;
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop = {});
 
-/// One line: number of cells, closest cells, and the constraint to change.
+/// Returns one line: number of cells, closest cells, and the constraint to change.
 std::string text(const Obstruction& obstruction, const Segment& places);
 
 inline constexpr std::size_t kTriedCells = 4'000'000;

@@ -18,7 +18,7 @@ namespace talus::planner {
 /// |d - minmod(a, b)| (maps/terrain/step_height.hpp). The pair is an edge if its step exceeds the step of
 /// every pair that the map does not refuse. An edge is Sheer if d exceeds a and b, in the direction of d, by
 /// more than half of the step; otherwise the edge is of kind Slope if one of the three rises is a refused
-/// gradient. A refused cell has the kind of its nearest edge, counted over refused cells.
+/// gradient. A refused cell has the kind of the edge with the fewest king's moves over refused cells.
 class StepEdges {
  public:
   enum class Kind : std::uint8_t { None, Sheer, Slope };
@@ -31,8 +31,8 @@ class StepEdges {
 
   Kind at(maps::Cell cell) const noexcept { return kinds_[map_.grid().index(cell)]; }
 
-  /// Code of a cell with the gradient of the ground without sheer steps: medians of the rises between
-  /// neighbouring cells in the surrounding 5 x 5 cells.
+  /// Returns the code of a cell with the gradient of the ground without sheer steps: medians of the rises
+  /// between neighbouring cells in the surrounding 5 x 5 cells.
   costmap::CellCode settled(maps::Cell cell) const;
 
  private:

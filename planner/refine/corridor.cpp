@@ -9,7 +9,7 @@ namespace {
 using maps::Cell;
 using maps::Point;
 
-// Cells along a path, sampled at steps of less than a cell.
+// Returns the cells along a path, sampled at steps of less than a cell.
 std::vector<Cell> cellsOf(const maps::Grid& grid, const std::vector<Point>& along) {
   std::vector<Cell> on;
   const auto add = [&](double x, double y) {

@@ -17,7 +17,7 @@ using maps::Point;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = Corridor::kNone;
 
-// Bucket queue of numbers ordered by labels; within a bucket in order of insertion.
+// Bucket queue of node indices ordered by labels; within a bucket in order of insertion.
 class LabelQueue {
  public:
   // `reach` is the largest difference of labels queued at the same time.
@@ -39,8 +39,8 @@ class LabelQueue {
     return bucketOf(label) == bucketOf(other) && bucketOf(label) > current_;
   }
 
-  // Calls take(number) for every queued number, including those queued by take(). Entries whose current
-  // label(number) belongs to another bucket are skipped.
+  // Calls take(node) for every queued node index, including those queued by take(). Entries whose current
+  // label(node) belongs to another bucket are skipped.
   template <typename Label, typename Take>
   void run(Label label, Take take) {
     for (std::size_t taken = 0; taken < entries_.size(); ++current_) {
@@ -88,7 +88,8 @@ class EdgePointSearch {
   EdgePath run(const Segment& ends, double below_J);
 
  private:
-  // Point on an edge of a local cell, its place, and the cost of the first or last motion to the point.
+  // A point on the edge of a cell of the corridor: index of its node, cells on both sides, map coordinates,
+  // and cost [J per metre of cell size] of the first or last motion of the route, which ends at the point.
   struct EdgePoint {
     std::uint32_t node;
     std::size_t cell, beyond;
@@ -163,7 +164,8 @@ EdgePath::Turn EdgePointSearch::turnAt(std::uint32_t node) const noexcept {
   return {c.column + in.x, c.row + in.y, vertical};
 }
 
-// Cost of the first or last motion; infinite if the cell beyond the edge does not allow the heading.
+// Returns the cost [J] of the first or last motion divided by the cell size [m]; infinite if the cell beyond
+// the edge does not allow the heading.
 float EdgePointSearch::priceOfEnd(const Segment& motion, const EdgePoint& turn) const noexcept {
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);

@@ -41,8 +41,8 @@ __attribute__((target("avx2"))) inline __m128i lanes(__m256d mask) noexcept {
   return _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(mask), evens));
 }
 
-// TravelCurve::between(): the previous node, whether the coordinate differs from the node (-1), and the weight
-// of the next node.
+// TravelCurve::between(): the previous node, whether the coordinate differs from the node (-1), and the
+// weight of the next node.
 struct Betweens {
   __m128i whole, off;
   __m128 share;
@@ -59,8 +59,8 @@ struct Prices {
   __m128 here, next;
 };
 
-// Costs at four nodes and at their next nodes; if a coordinate lies on its node, the next node is the node
-// itself.
+// Returns the costs `prices` at four node indices `at` and at the indices after them. Lanes without a set
+// sign bit in `off` have their coordinate on the node and get the cost of the node twice.
 __attribute__((target("avx2"))) inline Prices pairsAt(const float* prices, __m128i at, __m128i off) noexcept {
   alignas(16) std::array<std::int32_t, 4> lane;
   _mm_store_si128(reinterpret_cast<__m128i*>(lane.data()), at);

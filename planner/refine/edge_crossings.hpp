@@ -17,7 +17,7 @@ struct EdgeSpot {
   double y = 0.0;
 };
 
-/// Point number k of `points` on a side.
+/// Returns the point with index k, 0 to points - 1, of the `points` points on a side.
 EdgeSpot edgeSpot(int side, int k, int points) noexcept;
 
 /// All straight motions across a cell from a point of its edge to the points of the other three sides, and
@@ -33,17 +33,17 @@ class EdgeCrossings {
 
   EdgeCrossings(const costmap::TravelCost& cost, int points, Kernels kernels = Kernels::Best);
 
-  /// Points per side.
+  /// Returns the number of points per side.
   int points() const noexcept { return points_; }
 
-  /// Motions from one point.
+  /// Returns the number of motions from one point.
   int count() const noexcept { return 3 * points_; }
 
   /// End points of the motions from a point of a side, in the order of prices().
   const End* ends(int side, int k) const noexcept { return &ends_[first(side, k)]; }
 
-  /// Writes to `paid` the cost of each motion from a point of a side plus `here`; infinite if the heading is not
-  /// allowed. `paid` needs space for count() values rounded up to a multiple of kVector.
+  /// Writes to `paid` the cost of each motion from a point of a side plus `here`; infinite if the heading is
+  /// not allowed. `paid` needs space for count() values rounded up to a multiple of kVector.
   void prices(int side, int k, costmap::CellCode cell, float here, float* paid) const noexcept;
 
   static constexpr int kVector = 4;

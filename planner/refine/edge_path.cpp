@@ -18,7 +18,7 @@ constexpr double kEnd = 2.0;  // [cells] a step that leaves the ends of a path o
 
 using Turn = EdgePath::Turn;
 
-// Positions to which a turn may move; the first is its present position.
+// Points to which a turn may move; the first of `places` is the present point of the turn.
 struct Choice {
   std::array<Turn, kPlaces> places;
   std::array<double, kPlaces> best{};

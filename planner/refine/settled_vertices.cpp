@@ -16,7 +16,8 @@ constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // relative to the 
 // Smallest gain relative to the local cost; smaller gains are rounding.
 constexpr double kLeastGain = 1e-9;
 
-// Cost of the part of the route that depends on vertex i: its legs and the turns at both ends of them.
+// Returns the cost [J] of the legs from vertex i - 2 to vertex i + 2, turns between them included. All costs
+// that depend on the place of vertex i are among them.
 double around_J(const MotionCost& cost, const Polyline& points, std::size_t i) {
   const std::size_t first = i > 1 ? i - 2 : 0, last = std::min(i + 2, points.size() - 1);
   return cost.along({points.begin() + static_cast<std::ptrdiff_t>(first),

@@ -6,8 +6,8 @@
 
 namespace talus::planner {
 
-/// Cells that intersect a closed disc around a place; cells are closed. A place on a side has two cells, on a
-/// corner four.
+/// Returns the cells that intersect a closed disc around a place; cells are closed. A place on a side has two
+/// cells, on a corner four.
 std::vector<maps::Cell> cellsWithin(const maps::Grid& grid, maps::Point place, double radius_m);
 
 }  // namespace talus::planner

@@ -25,7 +25,7 @@ class HeadingCost {
         x_(x),
         y_(y) {}
 
-  /// Cost per horizontal metre [J/m]; infinite if not permitted.
+  /// Returns the cost per horizontal metre [J/m]; infinite if not permitted.
   float operator()(costmap::CellCode cell) const noexcept {
     if (cell.curve() >= curve_count_) return kBlocked;
     const double along = cell.stepsX() * x_ + cell.stepsY() * y_;

@@ -52,9 +52,9 @@ std::vector<double> limitsAcross(const costmap::TravelCost& cost, const TravelCu
   return limits;
 }
 
-// Least gradient at which some combination of gradients along and across is refused. A refused node refuses
-// all combinations within the distance of one node; the limits and the end of the table refuse all
-// combinations beyond them.
+// Returns the least gradient at which some combination of gradients along and across is refused. A refused
+// node refuses all combinations within the distance of one node; the limits and the end of the table refuse
+// all combinations beyond them.
 double gentlest(const costmap::TravelCost& cost, const TravelCurve& curve) {
   constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
   double least = std::min({cost.limits().max_along, cost.limits().max_across,

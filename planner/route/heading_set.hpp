@@ -42,8 +42,8 @@ class HeadingSet {
   /// Intersection of two sets.
   HeadingSet shared(const HeadingSet& other) const;
 
-  /// Heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc, or in the
-  /// middle of a narrower arc. The set must not be empty.
+  /// Returns the heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc,
+  /// or in the middle of a narrower arc. The set must not be empty.
   double nearest(double heading_rad, double inside_rad) const noexcept;
 
   /// The opposite headings.
@@ -55,7 +55,7 @@ class HeadingSet {
   std::pmr::vector<HeadingArc> arcs_;
 };
 
-/// Cache of allowedHeadings() by cell code. Cells of curve number `free`, if given, permit every heading.
+/// Cache of allowedHeadings() by cell code. Cells of curve index `free`, if given, permit every heading.
 /// Large maps have millions of codes; their sets are allocated in an arena, which is freed at once. Not
 /// thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
@@ -90,8 +90,8 @@ class HeadingSets {
   };
 
  private:
-  // Code and set of a recent cell, since neighbouring cells are requested repeatedly. Sets in sets_ keep
-  // their address.
+  // Cell code and heading set of a recent request, because neighbouring cells are requested repeatedly. Sets
+  // in sets_ keep their address.
   struct Recent {
     std::uint32_t bits = 0;
     const HeadingSet* set = nullptr;

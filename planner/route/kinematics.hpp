@@ -27,7 +27,7 @@ struct Kinematics {
   TurnCost cusp{};                          ///< change between forward and reverse
   TurnCost stop{};                          ///< per turn in place: stop, steer the wheels, restart
 
-  /// Cost of turning on ground of a drive curve.
+  /// Returns the costs of one radian of turning on ground with a curve index.
   const TurnCosts& turnsOn(std::uint8_t curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }

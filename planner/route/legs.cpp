@@ -17,7 +17,7 @@ std::string ofTheWhole(std::string reason, std::size_t leg, std::size_t legs) {
   return reason;
 }
 
-// Cost of the turn at a via point.
+// Returns the cost [J] of the turn from the last leg of `a` to the first leg of `b`, at a via point.
 double turnBetween(const Problem& problem, const Polyline& a, const Polyline& b) {
   if (!problem.map || a.size() < 2 || b.size() < 2) return 0.0;
   return MotionCost(problem.map)

@@ -95,8 +95,8 @@ class Walk {
   const HeadingCost& cost_;
 };
 
-// Cost of a segment on the line between two columns (or rows): that of the more expensive side. On the border
-// of the map only one side exists.
+// Returns the cost of a segment on the line between two columns (or rows): that of the more expensive side.
+// On the border of the map only one side exists.
 double alongEdge(const maps::Grid& grid, const Walk& walk, InCells from, InCells delta,
                  double length) noexcept {
   const bool vertical = std::abs(delta.x) <= kTouch;

@@ -28,19 +28,19 @@ class MotionCost {
  public:
   explicit MotionCost(std::shared_ptr<const costmap::CostGrid> map);
 
-  /// Cost of the motion [J], >= 0; infinite if not allowed; zero for a motion of zero length on an allowed
-  /// cell.
+  /// Returns the cost of the motion [J], >= 0; infinite if not allowed; zero for a motion of zero length on
+  /// an allowed cell.
   double operator()(const Segment& motion) const noexcept;
 
-  /// Cost of a polyline [J], including turns between legs; infinite if any part is not allowed; zero for
-  /// fewer than two points.
+  /// Returns the cost of a polyline [J], including turns between legs; infinite if any part is not allowed;
+  /// zero for fewer than two points.
   double along(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Sum of the costs of a polyline's legs [J], without turns.
+  /// Returns the sum of the costs of a polyline's legs [J], without turns.
   double ofLegs(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Cost [J] of turning at a place from one heading to another by the smaller angle, TravelCost::turn() per
-  /// radian; infinite if the rover tips in a heading in between. Free outside the map.
+  /// Returns the cost [J] of turning at a place from one heading to another by the smaller angle,
+  /// TravelCost::turn() per radian; infinite if the rover tips in a heading in between. Free outside the map.
   double turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept;
 
   /// Returns true if a polyline may turn at an end of this motion: on an edge or a corner, every cell at the

@@ -13,11 +13,11 @@ using Polyline = std::vector<maps::Point>;
 /// The polyline with each leg divided into equal parts of at most longest_m > 0.
 Polyline subdivided(const Polyline& points, double longest_m);
 
-/// Length of the polyline [m].
+/// Returns the length of the polyline [m].
 double length_m(const Polyline& points) noexcept;
 
 /// Cuts the polyline at remaining lengths offset_m, offset_m + piece_m, offset_m + 2 piece_m, ... The lengths
-/// are counted from the end, so that changes near the start do not move later cuts. Pieces are in order from
+/// are measured from the end, so that changes near the start do not move later cuts. Pieces are in order from
 /// start to end; each begins at the end of the previous piece. A first piece shorter than piece_m / 2 is
 /// joined to the second piece. Returns at least one piece. piece_m > 0; 0 < offset_m <= piece_m.
 std::vector<Polyline> cutFromEnd(const Polyline& points, double piece_m, double offset_m);

@@ -32,10 +32,10 @@ class PoseCost {
  public:
   PoseCost(const MotionCost& cost, const Kinematics& kinematics);
 
-  /// Cost of one leg from a pose [J]; infinite if any part is not allowed.
+  /// Returns the cost of one leg from a pose [J]; infinite if any part is not allowed.
   double operator()(const Pose& from, const PosePath::Leg& leg) const noexcept;
 
-  /// Cost of a drive including cusps [J]; infinite if any part is not allowed.
+  /// Returns the cost of a drive including cusps [J]; infinite if any part is not allowed.
   double operator()(const PosePath& path) const noexcept;
 
   /// Shortest path between two poses: ShortestCurves, or for a rover that turns in place: turn, drive
@@ -66,10 +66,10 @@ std::vector<Pose> sampled(const PosePath& path, double step_m);
 /// Poses between which PoseCost uses straight segments: ends of straight legs, chords of arcs.
 std::vector<Pose> chords(const PosePath& path, const costmap::CostGrid& map);
 
-/// Number of cusps and turns, and curvature, of a drive.
+/// Returns the number of cusps and turns, and curvature, of a drive.
 RouteShape shape(const PosePath& path) noexcept;
 
-/// Length in the map plane [m].
+/// Returns the length in the map plane [m].
 double length_m(const PosePath& path) noexcept;
 
 }  // namespace talus::planner

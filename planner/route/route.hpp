@@ -26,8 +26,8 @@ enum class RouteStatus {
   Cancelled,     ///< the caller requested a stop
 };
 
-/// Name of the status in files and JSON: "found", "no_route", "none_found", "start_invalid", "goal_invalid",
-/// "timed_out", "cancelled".
+/// Returns the name of the status in files and JSON: "found", "no_route", "none_found", "start_invalid",
+/// "goal_invalid", "timed_out", "cancelled".
 std::string_view name(RouteStatus status) noexcept;
 
 /// A constraint that can block all routes.
@@ -41,11 +41,12 @@ enum class Constraint {
   Slope,    ///< limits of the rover and soil together; neither alone suffices
 };
 
-/// Name of a constraint in files and JSON: "pitch", "roll", "soil", "hazard", "unknown", "rim", "slope".
+/// Returns the name of a constraint in files and JSON: "pitch", "roll", "soil", "hazard", "unknown", "rim",
+/// "slope".
 const char* name(Constraint constraint) noexcept;
 
-/// Name of a hazard in files and JSON: "keep_out" (or refused by a layer), "impassable_class", "rocks",
-/// "step", "roughness", otherwise "".
+/// Returns the name of a hazard in files and JSON: "keep_out" (or refused by a layer), "impassable_class",
+/// "rocks", "step", "roughness", otherwise "".
 const char* name(costmap::Hazard hazard) noexcept;
 
 /// Cause why no heading may enter a cell: costmap::MapSurface::hazards() of the map from which the costs were

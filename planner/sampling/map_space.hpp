@@ -15,7 +15,7 @@ class MapSpace : public ompl::base::RealVectorStateSpace {
 
   const maps::Grid& grid() const noexcept { return grid_; }
 
-  /// Place of a state of this space.
+  /// Returns the map coordinates [m] of a state of this space.
   static maps::Point place(const ompl::base::State* state) noexcept {
     const double* values = state->as<StateType>()->values;
     return {values[0], values[1]};

@@ -18,7 +18,7 @@ inline constexpr double kBlockedMotionCost_J = 1e15;
 /// ascent and descent differ. For states of MapSpace.
 class TravelObjective : public ompl::base::OptimizationObjective {
  public:
-  /// Cost, region and seed of the objective.
+  /// Cost function, sampled region and seed of the objective.
   struct Parts {
     std::shared_ptr<const MeteredCost> cost;
     std::shared_ptr<const ImprovableRegion> region;

@@ -12,7 +12,7 @@ struct Tyre {
   Wheel wheel;                   ///< undeflected; grousers are ignored
   double inflation_Pa = 0.0;     ///< p_i >= 0
   double carcass_Pa = 0.0;       ///< p_c >= 0, carcass stiffness as an equivalent pressure; p_i + p_c > 0
-  double hysteresis = 0.0;       ///< flexing resistance over load [-], >= 0
+  double hysteresis = 0.0;       ///< flexing resistance divided by load [-], >= 0
   double friction = 0.7;         ///< friction coefficient mu of the tread on rigid ground [-], >= 0
   double tread_stiffness = 1e8;  ///< shear stress per displacement of the tread [Pa/m], > 0
 };

@@ -87,8 +87,8 @@ WheelContact Bound::contact(const WheelState& state) const {
   contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {
     if (!applies(*e.effect, state)) continue;
-    // The sinkage is not solved yet: sinkage_m counts as 0 here. Effects that change the contact must not
-    // depend on it.
+    // The sinkage is not solved yet, so 0 is passed as sinkage_m. Effects that change the contact must not
+    // depend on the sinkage.
     const double x = covariateOf(*e.effect, state, 0.0);
     if (!std::isfinite(x)) continue;
     if (!e.form) {

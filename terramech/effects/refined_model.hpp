@@ -106,7 +106,7 @@ struct SoilParameter {
 /// Returns all soil parameters that a fit may change.
 const std::vector<SoilParameter>& soilParameters();
 
-/// Value of a fitted parameter, and its assignment.
+/// Returns or sets the value of a fitted parameter.
 double value(const RefinedModel& model, const FittedParameter& parameter);
 void setValue(RefinedModel& model, const FittedParameter& parameter, double value);
 

@@ -9,7 +9,7 @@
 #include <talus/terramech/estimate/reading_errors.hpp>
 #include <talus/terramech/numerics/estimate.hpp>
 
-/// Drawbar pull over load, DP/W [-], from readings of load, torque, sinkage (and slip), without soil
+/// Drawbar pull divided by load, DP/W [-], from readings of load, torque, sinkage (and slip), without soil
 /// parameters (thesis chapter 3). rms error over thesis Table 2.1, noise-free: Eqs. 3.6 and 3.15 0.013, Eq.
 /// 3.21 0.028, ours 0.002. Every function throws std::invalid_argument unless load_N > 0; functions that use
 /// theta_1 also unless 0 <= sinkage_m < 2 r.

@@ -70,7 +70,7 @@ SoilQuadratic withPrior(const SoilObjective& objective, SoilQuadratic q) {
   return q;
 }
 
-// Minimum of a quadratic in the box of the prior, by coordinate descent.
+// Returns the minimum of a quadratic in the box of the prior, by coordinate descent.
 SoilVector lowest(const SoilObjective& objective, const SoilQuadratic& q) {
   constexpr int kMostSweeps = 10000;
   SoilVector y = q.at;
@@ -136,8 +136,8 @@ SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReadi
   return here;
 }
 
-// Mean of the truncated Gaussian approximation of a class' posterior. If the bounds of the class cut the
-// likelihood, the mean is far from the mode.
+// Returns the mean of the truncated Gaussian approximation of a class' posterior. If the bounds of the class
+// cut the likelihood, the mean is far from the mode.
 SoilVector middle(const SoilObjective& objective, const SoilQuadratic& likelihood) {
   constexpr int kDraws = 64;
   const TruncatedGaussian allowed = proposal(objective.soilClass(), likelihood);

@@ -33,7 +33,7 @@ struct PullForecastOptions {
 };
 
 /// Returns the pull at the reference slip and at the slip of maximum pull, by solving the equilibrium of the
-/// wheel on soils drawn from the posterior. A soil that cannot carry the load counts as DP/W = 0 and z/r = 1.
+/// wheel on soils drawn from the posterior. A soil that cannot carry the load has DP/W = 0 and z/r = 1.
 /// Throws std::invalid_argument for options outside their range.
 PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
                           const PullForecastOptions& options);

@@ -57,8 +57,9 @@ class SoilObjective {
   SoilQuadratic expand(const SoilVector& y, std::span<const WheelReading> samples,
                        const SoilQuadratic& before) const;
 
-  /// As expand(), with the gradient of the full cost. Gauss-Newton neglects the gradient of the
-  /// normalisation, which is small for a few samples and adds up over many. Six times the cost of expand().
+  /// Returns the expansion of expand() with the gradient of the full cost. The Gauss-Newton gradient neglects
+  /// the gradient of the normalisation, which is small for a few samples and grows with their number. Takes
+  /// six times as long as expand().
   SoilQuadratic expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
                             const SoilQuadratic& before) const;
 

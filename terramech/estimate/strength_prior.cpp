@@ -10,8 +10,8 @@
 namespace talus::terramech {
 namespace {
 
-// Lower bounds of the variances: a line through readings without scatter would have none. 1 Pa for c, 1e-4
-// for tan(phi), as standard deviations.
+// Smallest variances of c and tan(phi), the squares of 1 Pa and 1e-4: a line through readings without scatter
+// would have variances of 0.
 const Eigen::Vector2d kLeastVariance(1.0, 1e-8);
 
 struct Component {

@@ -21,7 +21,7 @@ struct SuffixUnit {
   Kind kind;
 };
 
-// Units that also occur with an SI prefix. A load in kilograms counts as a force.
+// Units that also occur with an SI prefix. A load in kilograms is converted to a force.
 constexpr SuffixUnit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"g", Kind::Force},
                                 {"Nm", Kind::Torque}, {"N_m", Kind::Torque},  {"s", Kind::Time},
                                 {"rad", Kind::Angle}, {"Pa", Kind::Pressure}, {"mps", Kind::Speed},

@@ -51,8 +51,8 @@ constexpr Rule kRules[] = {
     {"shear_modulus_m", [](double x) { return x >= 1e-9 && x <= 1e3; }, "in [1e-9, 1000]"},
 };
 
-// Smaller magnitudes are rounding errors of 0, for example of tan(0), and count as 0; plausible() has the
-// same limit.
+// Smaller magnitudes are rounding errors of 0, for example of tan(0), and are replaced by 0; plausible() uses
+// the same limit.
 constexpr double kDust = 1e-15;
 
 std::string shown(double value) {

@@ -36,8 +36,8 @@ struct WheelRowOptions {
   double deepest = 2.0;    ///< rows with z/r at or above this value are rejected, (0, 2]
 };
 
-/// Largest slip angle [rad] of a wheel that counts as straight: torque and sinkage of sandy_loam under mer
-/// then differ by less than 3 % from those at angle 0.
+/// Largest slip angle [rad] at which a wheel is treated as straight: up to this angle, torque and sinkage of
+/// sandy_loam under mer differ by less than 3 % from those at angle 0.
 inline constexpr double kStraightUpTo_rad = 0.1;
 
 /// Moves rows with a side force but without the slip angle at which it was measured to `rejected`, because

@@ -11,7 +11,7 @@ namespace talus::terramech {
 /// Options of a mobility curve.
 struct MobilityOptions {
   double reference_slip = 0.5;  ///< slip at which traversability is assessed, (0, 1) (thesis 3.5)
-  double max_slip = 0.8;        ///< higher slip counts as immobilised and not steerable, (0, 1] (ours)
+  double max_slip = 0.8;        ///< above this slip the wheel is immobilised and not steerable, (0, 1] (ours)
   int first_pass = 1;  ///< pass of the first axle over its track, >= 1; 2: in the rut of an equal wheel
   int axles = 1;       ///< number of axles in one track, >= 1; axle k is at pass first_pass + k - 1
 };

@@ -61,7 +61,7 @@ class SlopeEquilibrium::Solver {
     double slip = 0.0, angle_rad = 0.0, difference = 0.0;
   };
 
-  /// Residuals of the force balance along and across, over the normal force, and of the yaw moment over
+  /// Residuals of the force balance along and across, divided by the normal force, and of the yaw moment over
   /// normal force and half wheelbase; derivatives by the unknowns at constant loads.
   struct Balance {
     Eigen::Vector3d rest = Eigen::Vector3d::Zero();
@@ -153,7 +153,7 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
     by_angle.y -= force.x;
     const Planar at = stance_.position_m(k), centre = stance_.centre_m();
     const double x = at.x - centre.x, y = at.y - centre.y;
-    // Position of the wheel from the centre of mass, along and across the direction of travel.
+    // Vector from the centre of mass to the wheel, along and across the direction of travel [lever lengths].
     const Planar arm{lever * (x * c + y * s), lever * (y * c - x * s)};
     const double angle_by_difference = crabs   ? -0.5 * at.x / stance_.position_m(0).x
                                        : skids ? 0.0
@@ -303,7 +303,7 @@ SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept
     const double rolling = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
     const bool sunk = rolling > kSunk || rolling * rover_.wheel.radius_m >= rover_.clearance_m;
     state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // body angle unknown
-    // Even loads would hold the rover: the larger demand counts as the failing one.
+    // If even loads would hold the rover, the failure is that of the larger component of the gradient.
     const bool lacks_pull = !scanned.pulls || (scanned.found && std::abs(gradient.across) <= gradient.along);
     state.grip = sunk                                 ? SlopeFailure::Sinks
                  : lacks_pull && gradient.along > 0.0 ? SlopeFailure::CannotPull

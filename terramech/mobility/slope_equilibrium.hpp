@@ -25,9 +25,10 @@ Planar demandOf(const Gradient& gradient) noexcept;
 
 /// Options of an equilibrium.
 struct SlopeOptions {
-  double max_slip = 0.8;  ///< higher slip counts as immobilised, (0, 1], as MobilityOptions (ours)
+  double max_slip = 0.8;  ///< above this slip: immobilised; (0, 1], as MobilityOptions::max_slip (ours)
   double max_slip_angle_rad =
-      /// Larger angle counts as sliding, (0, 1.04]; wheel model compared with data up to 45 deg (ours).
+      /// Above this slip angle: sliding; (0, 1.04]. The wheel model was compared with data up to 45 deg
+      /// (ours).
       0.7854;
 };
 

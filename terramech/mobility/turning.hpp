@@ -9,8 +9,8 @@ namespace talus::terramech {
 /// Ground properties for a turn.
 struct TurningGround {
   double lateral_resistance =
-      0.6;                    ///< lateral force over load of a wheel dragged sideways [-]; tan(phi) in soil
-  double bulldozing_N = 0.0;  ///< additional bulldozing force on each wheel dragged sideways, >= 0
+      0.6;  ///< lateral force divided by load of a wheel dragged sideways [-]; tan(phi) in soil
+  double bulldozing_N = 0.0;     ///< additional bulldozing force on each wheel dragged sideways, >= 0
   double rolling_J_per_m = 0.0;  ///< rolling energy of the whole rover on level ground
 };
 

@@ -10,7 +10,7 @@
 
 namespace talus::terramech {
 
-/// Forces on a wheel over its load, and sinkage over its radius [-].
+/// Forces on a wheel divided by its load, and sinkage divided by its radius [-].
 enum WheelChannel {
   kPullRatio,
   kSideRatio,

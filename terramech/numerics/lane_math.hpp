@@ -34,13 +34,13 @@ TALUS_LANES T pick(Mask condition, T a, T b) {
   return condition ? a : b;
 }
 
-/// The same number in each lane.
+/// Returns a vector with `value` in each lane.
 template <class T>
 TALUS_LANES T spread(double value) {
   return T{} + value;
 }
 
-/// e^x for x <= 700, relative error below 2e-12; x below -700 counts as -700. x = k ln 2 + f, e^f by a
+/// Returns e^max(x, -700) for x <= 700, with a relative error below 2e-12: x = k ln 2 + f, and e^f is a
 /// Chebyshev polynomial.
 template <class T>
 TALUS_LANES T exponential(T x) {

@@ -38,7 +38,7 @@ struct PressureSinkage {
 
 /// Fits k of each plate size and the common n by least squares of ln(sigma) with weights sigma^2 (wong_1980):
 ///     minimise sum sigma^2 (ln sigma - ln k_b - n ln z)^2
-/// k_c and k_phi follow from a line of k over 1/b. Recursive: memory grows with the number of plate sizes
+/// k_c and k_phi follow from a line of k against 1/b. Recursive: memory grows with the number of plate sizes
 /// only.
 class PressureSinkageFit {
  public:
@@ -63,7 +63,7 @@ class PressureSinkageFit {
   std::size_t count_ = 0;
 };
 
-/// Sets k_c and k_phi of a fit by a line of k over 1/b through its plates, or `refused`.
+/// Sets k_c and k_phi of a fit by a line of k against 1/b through its plates, or `refused`.
 void separateModuli(PressureSinkage& fit);
 
 /// Random-effects model of a quantity over trials: common mean, effect of the trial, and error.

@@ -1,6 +1,6 @@
-// What pricing the gradient across is worth on a real map: routes between random pairs by a planner that knows
-// slopes along the heading only, judged by the map that knows both, and the routes on that map. One row a pair;
-// with a folder the routes as CSV for `talus score DEM --path`.
+// Benefit of costs for cross slopes on a real map: routes between random pairs by a planner with
+// longitudinal slopes only, judged on the map with both, beside the routes planned on that map. One row for
+// each pair; with a folder the routes are written as CSV for `talus score DEM --path`.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -43,7 +43,7 @@ Route planned(const TraversabilityMap& map, maps::Point start, maps::Point goal)
   return field->plan(request);
 }
 
-// Shares of a route's length that a map refuses: for the side force, for the pull, for anything.
+// Shares of a route's length that a map refuses: by side force, by pull, in total.
 struct Refused {
   double side = 0.0, pull = 0.0, any = 0.0;
 };

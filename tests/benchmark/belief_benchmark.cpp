@@ -1,5 +1,5 @@
-// What a map of beliefs costs: one sample with all its effects published, a patch of changed cells, and
-// memory, whatever the size of the map.
+// Cost of a map's updates for several map sizes: one sample until publication, a patch of changed cells, and
+// memory.
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -37,7 +37,7 @@ costmap::WheelObservation seen(const maps::Point& place, double pull) {
           .sinkage_may_raise = true};
 }
 
-// Six wheels at 100 Hz along a line, as a rover samples: learned and published one by one.
+// Samples of six wheels at 100 Hz along a line, each learned and published separately.
 void sample(benchmark::State& state) {
   const auto map = mapOf(static_cast<int>(state.range(0)));
   std::mt19937_64 random(1);
@@ -51,7 +51,7 @@ void sample(benchmark::State& state) {
 }
 BENCHMARK(sample)->Arg(1000)->Arg(2000)->Arg(4000)->Unit(benchmark::kMicrosecond);
 
-// The same where every sample lies on ground that no wheel has seen: the worst case.
+// The worst case, in which every sample lies on ground without evidence.
 void sampleOnNewGround(benchmark::State& state) {
   const auto map = mapOf(static_cast<int>(state.range(0)));
   std::mt19937_64 random(1);
@@ -66,7 +66,7 @@ void sampleOnNewGround(benchmark::State& state) {
 }
 BENCHMARK(sampleOnNewGround)->Arg(1000)->Arg(4000)->Iterations(3000)->Unit(benchmark::kMicrosecond);
 
-// 200x200 cells change; how long until a new plan sees them.
+// Time from a change of 200x200 cells to a new plan.
 void patch(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
   auto map = mapOf(side);

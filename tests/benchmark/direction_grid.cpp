@@ -1,5 +1,6 @@
-// A planner plugin for comparisons: Dijkstra over the middles of cells with edges in 80 directions, every edge priced by the
-// exact cost of motions. Slow and plain on purpose; it shares no search with the planners that it is compared with.
+// A planner plugin for comparisons: Dijkstra over the cell centres with edges in 80 directions, each with
+// the exact cost of its motion. Simple and slow; it shares no search code with the planners under
+// comparison.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -17,7 +18,7 @@ namespace direction_grid {
 using talus::maps::Cell;
 using talus::maps::Point;
 
-// Steps without a common divisor of up to so many columns and rows: 80 directions.
+// Steps of up to this many columns and rows without a common divisor: 80 directions.
 constexpr int kReach = 5;
 
 std::vector<Cell> steps() {
@@ -42,7 +43,7 @@ class Search {
     std::size_t last = kNone;
     for (const Cell cell : near(start)) open(grid_.index(cell), kNone, cost_({start, grid_.centre(cell)}));
     const std::vector<Cell> all = steps();
-    std::vector<double> rest(grid_.size(), -1.0);  // to the goal from the middles near it
+    std::vector<double> rest(grid_.size(), -1.0);  // from centres near the goal to the goal
     for (const Cell cell : near(goal_)) rest[grid_.index(cell)] = cost_({grid_.centre(cell), goal_});
     while (!queue_.empty() && -queue_.top().first < best) {
       const auto [spent, index] = queue_.top();

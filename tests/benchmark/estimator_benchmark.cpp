@@ -1,5 +1,5 @@
-// Time a sample of the recursive estimators: 10 us for the linear ones, 1 ms for the full one (goals). What
-// is timed is one sample in and the estimate out.
+// Time per sample of the recursive estimators; goals: 10 us for the linear ones, 1 ms for the full one.
+// Measures adding one sample and computing the estimate.
 #include <benchmark/benchmark.h>
 
 #include <talus/terramech/estimate/soil_filter.hpp>

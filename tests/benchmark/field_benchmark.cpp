@@ -1,5 +1,5 @@
-// The field planner by its parts, on rolling ground with blocked cells. Ratios within one run are what to
-// compare.
+// The steps of the field planner on undulating ground with blocked cells. Only ratios within one run are
+// comparable.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -37,7 +37,7 @@ std::shared_ptr<const costmap::TravelCost> driveCost() {
       curves[k].cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
           (1.0 + static_cast<double>(k)) * (10.0 + 100.0 * std::fmax(g, 0.0) + 400.0 * g * g));
     }
-    // Crossing a slope costs 2 % more a row of 1/64.
+    // Crossing a slope costs 2 % more for each row of 1/64.
     auto rows = std::make_shared<std::vector<float>>();
     for (int row = 0; row <= 20; ++row)
       for (const float level : curves[k].cost_J_per_m)
@@ -136,7 +136,7 @@ void anotherStart(benchmark::State& state) {
   }
 }
 
-// The map with one soil changed in 200x200 cells at a share of the way.
+// The map with one soil changed in 200x200 cells around a point.
 MapPointer patched(const MapPointer& map, maps::Point middle) {
   auto content = map->content();
   const int columns = map->tileColumns();
@@ -159,7 +159,7 @@ MapPointer patched(const MapPointer& map, maps::Point middle) {
   return std::make_shared<costmap::CostGrid>(content);
 }
 
-// A patch ahead of the rover, at a tenth of the way in percent, there and away again.
+// A patch ahead of the rover, at a tenth of the route in percent, applied and removed in turn.
 void replan(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   auto problem = across(map);
@@ -180,9 +180,10 @@ double cpu_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// New heights in a window of 200 x 200 cells at a share of the way in percent: from the patch to the route, on a map
-// of two soils that nobody drove on. `patch_ms`: what the map takes of it. Every second window brings back heights that the
-// planner's field is still right for; `there_ms`: the mean of the others, which is what new ground costs.
+// New heights in a window of 200 x 200 cells at a share of the route in percent: time from the patch to the
+// route, on a map of two soils without evidence. `patch_ms`: the map's share of the time. Every second
+// window restores heights for which the planner's field is still valid; `there_ms`: the mean of the other
+// windows, the cost of new ground.
 void heightsToRoute(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
   const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
@@ -226,7 +227,7 @@ void heightsToRoute(benchmark::State& state) {
   state.counters["patch_ms"] = patching_ms / static_cast<double>(state.iterations());
 }
 
-// A path of a thousand points, held against the map with a quantile of the belief.
+// A path of a thousand points, checked against the map at a quantile of the estimate.
 void monitor(benchmark::State& state) {
   costmap::MapLayers layers;
   layers.elevation.elevation_m =
@@ -258,7 +259,7 @@ void refinement(benchmark::State& state) {
   state.counters["grid_over_refined"] = cost.along(route) / refined_J;
 }
 
-// Through a tube on a map that was pooled already, and how much dearer than by the whole field.
+// Planning in a tube on a pooled map, and the excess of the route's cost over that of the full field.
 void tube(benchmark::State& state) {
   auto problem = across(rollingGround(static_cast<int>(state.range(0))));
   problem.threads = static_cast<int>(state.range(1));
@@ -272,7 +273,8 @@ void tube(benchmark::State& state) {
   state.counters["above_whole_percent"] = 100.0 * (cost_J / FieldPlanner().plan(problem).cost_J - 1.0);
 }
 
-// Routes between corners and sides, refined as planned and by a search twice as fine and three times as wide.
+// Routes between corners and sides, refined with the default options and with a search twice as fine and
+// three times as wide.
 void againstFinest(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const MotionCost cost(map);
@@ -301,8 +303,8 @@ void againstFinest(benchmark::State& state) {
   state.counters["worst_percent"] = gaps.back();
 }
 
-// A plan with its proof, cancelled at forty moments: the longest that its thread still works, in its own
-// time.
+// A plan with its proof, cancelled at forty moments: the longest CPU time that its thread continues after
+// the request.
 void cancelling(benchmark::State& state) {
   auto problem = across(rollingGround(static_cast<int>(state.range(0))));
   problem.prove = true;
@@ -335,8 +337,8 @@ void cancelling(benchmark::State& state) {
       source.request_stop();
       const double heard_ms = cpu_ms(its_time);
       worker.join();
-      // Where this thread had to wait for its turn while it asked, nobody knows when it asked; and the clock
-      // of a thread that had ended before reads nothing.
+      // A sample counts only if this thread did not wait while it made the request, because the time of the
+      // request is otherwise unknown; the clock of a thread that has ended returns nothing.
       if (asked_ms > 0.0 && heard_ms - asked_ms < kAsking_ms)
         worst_ms = std::max(worst_ms, end_ms - asked_ms), ++samples;
     }

@@ -1,5 +1,6 @@
-// What a map learns of ground that is weaker or stronger than its class, from drives whose slip sensor is sound or not: rover mer, class
-// mars_crusty, 96 x 96 m of waves that grow steeper, four lines, uniform ground, no torque. One row for each truth.
+// Strength that a map learns on ground weaker or stronger than its class, from drives with and without slip
+// bias: rover mer, class mars_crusty, 96 x 96 m of steepening waves, four lines, uniform ground, no torque.
+// One row for each truth.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -89,7 +90,7 @@ terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& trut
   return out;
 }
 
-// Cells allowed straight up that the truth holds, and that it does not.
+// Numbers of cells allowed uphill that the true soil supports, and that it does not.
 std::pair<int, int> allowed(const TraversabilityMap& map, const GroundModel& truth) {
   std::pair<int, int> cells{0, 0};
   for (int row = 0; row < kSide; ++row)

@@ -1,6 +1,6 @@
-// Drives that keep a turning radius: from a cost grid to a checked drive, field included, on generated sites
-// of 150 k cells with soils and slopes, Reeds-Shepp at 72 headings. One thread; CPU time of one run is what
-// to compare.
+// Drives with a turning radius: CPU time from a cost grid to a checked drive, field included, on generated
+// sites of 150 k cells with soils and slopes, Reeds-Shepp curves at 72 headings. One thread; only times of
+// one run are comparable.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -45,7 +45,7 @@ MapPointer site(maps::SiteKind kind) {
       .published();
 }
 
-// Starts and goals at least half the map apart, headings drawn.
+// Starts and goals at least half the map apart, with random headings.
 std::vector<PoseProblem> problemsOn(const MapPointer& map, int count) {
   std::mt19937_64 random(5);
   const auto unit = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };

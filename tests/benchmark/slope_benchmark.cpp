@@ -2,7 +2,7 @@
 
 #include <talus/terramech/mobility/slope_table.hpp>
 
-/// Equilibria of a rover on inclined planes, and a ground's whole table.
+/// Time of rover equilibria on inclined planes, and of a ground's whole table.
 namespace talus::terramech {
 namespace {
 

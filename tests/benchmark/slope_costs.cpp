@@ -1,6 +1,7 @@
-// Energy, slip and refusals of the cost table on planes against SlopeEquilibrium: slope_costs, a row for each rover and soil of the
-// library. Every degree of heading on planes 0.017 of gradient apart, as far as pitch and roll go; energies where more than 0.03
-// of pull and side force is left.
+// Energy, slip and refusals of the cost table on planes against SlopeEquilibrium: slope_costs prints a row
+// for each rover and soil of the library. Evaluates every degree of heading on planes 0.017 of gradient
+// apart, within the limits of pitch and roll; energies only with a reserve of pull and side force above
+// 0.03.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Slope, roughness and step of 4 M cells, from the file to the layers, beside GDAL's own on the same file in
-// the same run.
+// Slope, roughness and step of 4 M cells, from the file to the layers, beside GDAL on the same file in the
+// same run.
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -32,7 +32,7 @@ const ElevationMap& site() {
   return map;
 }
 
-// Compressed as Talus writes it, and plain.
+// The elevation file, compressed as Talus writes it, or uncompressed.
 std::string file(bool compressed) {
   const std::string path =
       (std::filesystem::temp_directory_path() / (compressed ? "talus_4m.tif" : "talus_4m_plain.tif"))
@@ -54,9 +54,9 @@ void countCells(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * std::int64_t{kSide} * kSide);
 }
 
-// Footprint radius in cells, threads.
+// Arguments: footprint radius in cells, threads.
 void metrics(benchmark::State& state) {
-  site();  // made before the clock runs
+  site();  // made before the timing starts
   const FootprintOptions options{.radius_m = static_cast<double>(state.range(0)),
                                  .threads = static_cast<int>(state.range(1))};
   for (auto _ : state) benchmark::DoNotOptimize(terrainMetrics(site().elevation_m, options));
@@ -86,7 +86,8 @@ void readAlone(benchmark::State& state) {
 }
 BENCHMARK(readAlone)->ArgName("compressed")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// What gdaldem does: slope, terrain ruggedness and roughness, each to a plain file in memory.
+// The equivalent in gdaldem: slope, terrain ruggedness and roughness, each to an uncompressed file in
+// memory.
 void gdaldem(benchmark::State& state) {
   const std::string path = file(state.range(0) != 0);
   for (auto _ : state)

@@ -12,7 +12,7 @@
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 
 // Wheel equilibria per second over the soils of thesis Table 2.1 (wheel r = b = 0.1 m, 60 to 100 N, slip 0.2
-// to 0.8), and the worst difference from double-exponential quadrature to 1e-12 on the same cases (z
+// to 0.8), and the largest difference from double-exponential quadrature to 1e-12 on the same cases (z
 // relative, DP over the load).
 namespace {
 
@@ -44,7 +44,7 @@ std::vector<WheelCase> tableCases(std::size_t count) {
   return cases;
 }
 
-/// What a careful user would write: C.4 to C.10 by a quadrature of a library, in the angle, and a bracketed
+/// A straightforward implementation: C.4 to C.10 by a library's quadrature over the angle, and a bracketed
 /// root search.
 template <class Quadrature>
 class ByLibrary {
@@ -95,7 +95,7 @@ struct GaussKronrod {
   }
 };
 
-/// Double exponential, which the end points' powers of n do not disturb.
+/// Double-exponential quadrature, which is insensitive to the powers of n at the end points.
 struct TanhSinh {
   template <class Function>
   double operator()(const Function& f, double a, double b) const {
@@ -104,7 +104,7 @@ struct TanhSinh {
   mutable boost::math::quadrature::tanh_sinh<double> rule{12};
 };
 
-/// Worst difference of the first 100 cases from the tightest quadrature.
+/// Largest difference of the first 100 cases from the most accurate quadrature.
 double worstError(const std::vector<WheelCase>& cases, const std::vector<WheelForces>& forces) {
   double worst = 0.0;
   const TanhSinh truth;

@@ -18,7 +18,7 @@ TEST(Checksum, EmptyInputMatchesXxh3) {
   EXPECT_EQ(Checksum().value(), 0x2d06800538d394c2ULL);
 }
 
-// Property: how the bytes are divided does not matter, and a value may be asked for in between.
+// Property: the checksum is independent of the division of the bytes, also if value() is called in between.
 TEST(Checksum, ChecksumIsIndependentOfDivision) {
   std::string bytes;
   for (int i = 0; i < 1000; ++i) bytes += static_cast<char>(i * 31);
@@ -32,7 +32,8 @@ TEST(Checksum, ChecksumIsIndependentOfDivision) {
   }
 }
 
-// Property: every flipped bit shows, at all lengths for which the algorithm has a branch of its own.
+// Property: every flipped bit changes the checksum, at all lengths for which the algorithm has a separate
+// branch.
 TEST(Checksum, EveryFlippedBitChangesTheChecksum) {
   for (const std::size_t size : {1U, 3U, 8U, 16U, 128U, 240U, 300U}) {
     const std::string bytes(size, 'a');

@@ -100,7 +100,7 @@ TEST(OutputFile, PermissionsAreKept) {
   EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-// What an end by a signal does last.
+// Removal of unfinished files, as called when a signal ends the process.
 TEST(OutputFile, UnfinishedFilesAreRemovedOnRequest) {
   const Folder folder;
   writeFile(folder / "whole", "x");

@@ -17,7 +17,7 @@ TEST(ParallelFor, EachIndexIsCalledOnceForAnyThreadCount) {
 }
 
 TEST(ParallelFor, ExceptionIsRethrownAndStopsTheLoop) {
-  // Property: on whichever thread it happens, and nothing new is begun after it.
+  // Property: an exception on any thread is rethrown, and no new call begins after it.
   for (int threads : {1, 2, 7}) {
     std::atomic<int> calls{0};
     const auto loop = [&] {

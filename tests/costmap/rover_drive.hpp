@@ -27,7 +27,7 @@ inline std::shared_ptr<const GroundModel> groundOf(const terramech::Soil& first,
       .policy = {}});
 }
 
-/// Waves as high: of 1.5 m slopes up to 17 degrees, some of them too steep for weak sand.
+/// Waves of the given height: 1.5 m yields slopes up to 17 degrees, some too steep for weak sand.
 inline MapLayers hills(double height_m = 1.5) {
   MapLayers layers;
   const maps::Grid grid{.width = kRoverSide, .height = kRoverSide, .resolution_m = 1.0, .south_west = {}};
@@ -40,7 +40,7 @@ inline MapLayers hills(double height_m = 1.5) {
   return layers;
 }
 
-/// A map of the hills that takes them for a soil.
+/// A map of the hills with the given soil as its only class.
 inline TraversabilityMap mapOf(const terramech::Soil& soil, int wheels, double height_m = 1.5) {
   return TraversabilityMap(hills(height_m), groundOf(soil, wheels), {});
 }
@@ -52,7 +52,7 @@ struct Drive {
 };
 enum Column { kTime, kX, kY, kHeading, kSlope, kSlip, kLoad, kTorque, kSinkage, kPass };
 
-/// `felt`: whether torque and sinkage are columns of the file.
+/// Converts a drive to telemetry. `felt`: whether torque and sinkage are columns of the file.
 inline terramech::Telemetry tableOf(const Drive& drive, bool felt = true) {
   terramech::Telemetry out;
   out.source = "rover.csv";
@@ -68,8 +68,8 @@ inline terramech::Telemetry tableOf(const Drive& drive, bool felt = true) {
   return out;
 }
 
-/// Along lines of the map, to and fro, on one soil: all wheels slip alike, so that together they pull what the slope
-// takes, as far as the soil can.
+/// A drive back and forth along lines of the map, on one soil. All wheels have the same slip; their mean
+/// pull equals the demand of the slope as far as the soil allows.
 inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil, unsigned seed,
                        const std::vector<double>& lines_m = {8.5, 33.5, 58.5}) {
   const terramech::Rover& rover = map.model().rover();
@@ -109,7 +109,7 @@ inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil
   return out;
 }
 
-/// Sand that does not hold the steeper slopes, and some that holds less.
+/// Sand that is too weak for the steeper slopes; weakerSand() is weaker still.
 inline terramech::Soil weakSand() {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa = 300.0;

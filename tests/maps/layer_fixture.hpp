@@ -14,7 +14,7 @@ inline ElevationMap map(const TemporaryFolder& folder) {
   return readElevation(write({.rows = drawn({"1234", "2345", "3456"})}, folder / "dem.tif"));
 }
 
-/// Classes as drawn, north on top; a dot is no class.
+/// The classes as a drawing, north on top; a dot for no class.
 inline std::string drawing(const Raster<std::uint8_t>& classes) {
   std::string out;
   for (int row = classes.grid().height - 1; row >= 0; --row) {

@@ -18,7 +18,7 @@
 
 namespace talus::maps {
 
-/// A folder of its own for each test, gone afterwards.
+/// A separate folder for each test, removed at its end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -40,7 +40,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Keeps GDAL from printing.
+/// Suppresses GDAL's messages.
 struct GdalQuiet {
   GdalQuiet() { CPLPushErrorHandler(CPLQuietErrorHandler); }
   GdalQuiet(const GdalQuiet&) = delete;
@@ -50,7 +50,7 @@ struct GdalQuiet {
 
 /// A small raster file. Rows run from north to south, as drawn.
 struct RasterFile {
-  std::vector<std::vector<double>> rows{};  ///< of band 1
+  std::vector<std::vector<double>> rows{};  ///< values of band 1
   std::string driver = "GTiff";
   std::string crs = "EPSG:32610";  ///< empty: none
   std::optional<std::array<double, 6>> transform = std::array<double, 6>{500000, 10, 0, 5000000, 0, -10};
@@ -59,7 +59,7 @@ struct RasterFile {
   double scale = 1.0;
   double offset = 0.0;
   std::string unit{};
-  std::vector<std::string> names{};  ///< one a band; band n holds band 1 plus 1000 (n - 1)
+  std::vector<std::string> names{};  ///< one for each band; band n is band 1 plus 1000 (n - 1)
 };
 
 inline std::string write(const RasterFile& file, const std::string& path) {
@@ -116,7 +116,7 @@ inline const std::vector<std::vector<double>> kHill = drawn({"1234",  //
                                                              "4567",  //
                                                              "5678"});
 
-/// The line that a call throws as InputError, or what it did instead.
+/// The message of the InputError that a call throws, or a description of another outcome.
 template <typename Call>
 std::string refusal(const Call& call) {
   try {

@@ -44,7 +44,7 @@ inline MapPointer changed(const MapPointer& map, CellBox box, Change change, Bel
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, map->content().cost));
 }
 
-/// A field before a patch of the map changed, its edge layer already updated, and the field found anew.
+/// The field before a patch of the map changed, its updated edge layer, and the recomputed field.
 struct Trial {
   std::shared_ptr<EdgeLayer> edges;
   CostToGo before;

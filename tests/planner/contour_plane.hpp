@@ -6,8 +6,8 @@
 
 namespace talus::planner::testing {
 
-/// A plane of 40 x 40 cells of a metre, steeper than may be climbed or descended, whose contour runs on a heading; only
-/// headings near it are allowed.
+/// A plane of 40 x 40 cells of one metre, too steep to climb or descend, whose contour line has the given
+/// heading; only headings near the contour are allowed.
 inline std::shared_ptr<const costmap::CostGrid> contourPlane(double contour_rad, double gradient = 0.42) {
   maps::Raster<costmap::CellCode> cells({.width = 40, .height = 40, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = -gradient * std::sin(contour_rad),

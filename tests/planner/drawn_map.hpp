@@ -13,8 +13,8 @@
 
 namespace talus::planner::testing {
 
-/// Cost of a metre in the tests: 10 J on the flat, more uphill than it gives back downhill, times a factor;
-/// refused beyond a gradient along the heading.
+/// Cost of a metre in the tests: 10 J on level ground, more uphill than the reduction downhill, times a
+/// factor; refused beyond a gradient along the heading.
 struct Ground {
   double factor = 1.0;
   double steepest = 0.3;
@@ -31,8 +31,8 @@ inline costmap::TravelCurve curve(const Ground& ground) {
   return made;
 }
 
-/// Curve k costs k + 1 times curve 0.
-/// The curve where crossing a slope costs `dearer` of itself more a row, and is refused beyond some rows.
+/// Adds a cross slope to a curve: each row of cross slope adds `dearer` times the curve, and rows above
+/// `rows` are refused.
 inline costmap::TravelCurve crossed(costmap::TravelCurve curve, double dearer, int rows) {
   auto all = std::make_shared<std::vector<float>>();
   for (int row = 0; row <= rows + 1; ++row)
@@ -43,7 +43,8 @@ inline costmap::TravelCurve crossed(costmap::TravelCurve curve, double dearer, i
   return curve;
 }
 
-/// Curve 0 is crossed for nothing, the others cost more the steeper they are crossed.
+/// Five curves: curve k costs k + 1 times curve 0; crossing a slope adds no cost on curve 0 and an
+/// increasing cost on the others.
 inline std::shared_ptr<const costmap::TravelCost> driveCost(costmap::TravelCost::Limits limits = {}) {
   std::vector<costmap::TravelCurve> curves;
   for (int k = 0; k < 5; ++k) {
@@ -53,9 +54,8 @@ inline std::shared_ptr<const costmap::TravelCost> driveCost(costmap::TravelCost:
   return std::make_shared<costmap::TravelCost>(limits, curves);
 }
 
-/// A map as drawn, north on top, cells of a metre, south-west corner at 0,0:
-/// '.' or a digit: flat ground of that curve; '#' blocked; '?' unknown; '^' 'v' '<' '>' climbs at 0.2 that
-/// way.
+/// A map from a drawing, north on top, cells of one metre, south-west corner at 0,0. '.' or a digit: level
+/// ground of that curve; '#' blocked; '?' unknown; '^' 'v' '<' '>': rises at 0.2 in that direction.
 inline std::shared_ptr<const costmap::CostGrid> drawn(const std::vector<std::string>& rows) {
   const maps::Grid grid{.width = static_cast<int>(rows[0].size()),
                         .height = static_cast<int>(rows.size()),
@@ -78,7 +78,8 @@ inline std::shared_ptr<const costmap::CostGrid> drawn(const std::vector<std::str
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, driveCost()));
 }
 
-/// A plane of a gradient on which every metre costs 10 J and every radian turned at a vertex so much, of a rover that stands so.
+/// A plane on which a metre costs 10 J and a radian of turning at a vertex turn_J, for a rover with the
+/// given stance.
 inline std::shared_ptr<const costmap::CostGrid> plane(
     int side, costmap::Direction gradient, double turn_J,
     std::shared_ptr<const terramech::RoverStance> stance = {}) {
@@ -95,7 +96,7 @@ inline std::shared_ptr<const costmap::CostGrid> plane(
           std::vector{ground})));
 }
 
-/// The same map where a radian at a vertex costs so much.
+/// The same map with a cost of turn_J per radian at a vertex.
 inline std::shared_ptr<const costmap::CostGrid> withTurns(const std::shared_ptr<const costmap::CostGrid>& map,
                                                           double turn_J) {
   std::vector<costmap::GroundCost> grounds;
@@ -108,7 +109,7 @@ inline std::shared_ptr<const costmap::CostGrid> withTurns(const std::shared_ptr<
   return std::make_shared<const costmap::CostGrid>(std::move(content));
 }
 
-/// What a random map is made of.
+/// Parameters of a random map.
 struct RandomGround {
   int width = 20;
   int height = 20;

@@ -2,8 +2,8 @@
 
 #include <unistd.h>
 
-// A library that never ends being loaded or, by TALUS_WHEN, unloaded. It tells by a byte to the descriptor that the
-// environment names, if it does.
+// A library whose loading or, by TALUS_WHEN, unloading never ends. The library writes a byte to the
+// descriptor that the environment variable TALUS_ENDLESS_PLUGIN names, if any.
 __attribute__((TALUS_WHEN)) static void waitForEver() {
   if (const char* descriptor = std::getenv("TALUS_ENDLESS_PLUGIN"))
     if (write(std::atoi(descriptor), "w", 1) != 1) return;

@@ -9,7 +9,7 @@
 
 namespace talus::planner::testing {
 
-/// Curves of many shapes: bends, jumps and holes, not only valleys.
+/// Curves of many shapes, with bends, jumps and gaps.
 inline std::shared_ptr<const costmap::TravelCost> jaggedCost() {
   std::mt19937 random(7);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };

@@ -13,7 +13,7 @@
 
 namespace talus::planner::testing {
 
-/// A map as OMPL sees it: space, validity, objective and the question of a way between two places.
+/// A map as an OMPL problem: space, validity, objective, start and goal.
 struct OmplGround {
   std::shared_ptr<const MeteredCost> cost;
   std::shared_ptr<const ImprovableRegion> region;

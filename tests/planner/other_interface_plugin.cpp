@@ -1,7 +1,6 @@
 #include <boost/dll/alias.hpp>
 
-// A plugin of a later interface, as a program of today may meet it. What it exports beyond the version must
-// not be touched.
+// A plugin of a later interface version. The program must not use any symbol other than the version.
 namespace other_interface {
 extern const int version;
 const int version = 99;

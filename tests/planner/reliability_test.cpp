@@ -1,5 +1,6 @@
-// Of the cells that a map says are of a category with probability p, which share is: worlds drawn from ranges
-// that the planner does not know, driven on line, against the categories of their true soils.
+// Calibration of the map's categories: the share of cells that have a category stated with probability p.
+// Worlds are drawn from ranges unknown to the planner, driven with online updates, and compared with the
+// categories of their true soils.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +14,7 @@ namespace reliability_test {
 
 using terramech::Category;
 
-// Rolling ground with slopes up to 19 degrees, taken for sand.
+// Undulating ground with slopes up to 19 degrees, classified as sand.
 costmap::TraversabilityMap hills() {
   costmap::MapLayers layers;
   layers.elevation.elevation_m =
@@ -39,7 +40,8 @@ class Table {
         std::printf("%-10s said %.3f, were %.3f of %.0f\n", what, bin.said / bin.count, bin.were / bin.count,
                     bin.count);
   }
-  // By how much a bin of at least so many cells promises more than it holds.
+  // The largest excess of the stated probability over the observed share, over bins of at least `least`
+  // cells.
   double worstBoast(double least) const {
     double worst = 0.0;
     for (const Bin& bin : bins_)
@@ -88,9 +90,10 @@ TEST(Reliability, CategoryProbabilitiesAreNotOptimistic) {
   tables[0].print("safe");
   tables[1].print("marginal");
   tables[2].print("dangerous");
-  // Property: no more is promised than holds: ground is no worse than is said. That it is better is no broken
-  // promise, and happens by design: estimates are rounded towards danger, soil is judged under the worst standing of the
-  // wheels. Cells of one world are alike, so that 60 worlds tell a share to about 0.05.
+  // Property: the stated probability exceeds the observed share by at most 0.05. A higher share is no error
+  // and occurs by design: estimates are rounded conservatively, and soil is judged for the least favourable
+  // position of the wheels. Cells of one world are correlated, so that 60 worlds estimate a share to about
+  // 0.05.
   EXPECT_LT(tables[0].worstBoast(500.0), 0.05);
   EXPECT_LT(tables[1].worstBoast(500.0), 0.05);
 }

@@ -1,5 +1,5 @@
-// Planned risk against Monte-Carlo: rovers driven over ground whose pull is drawn, alike nearby, from the
-// same uncertainty that the planner knows.
+// Planned risk against Monte-Carlo simulation: rovers drive over ground with spatially correlated pull,
+// drawn from the uncertainty that the planner uses.
 #include <cmath>
 #include <map>
 #include <random>
@@ -22,16 +22,16 @@ namespace risk_worlds_test {
 
 constexpr double kCorrelation_m = 5.0;
 
-// Swells of a wheel's worth of doubt: gradients up to where the pull that the soil gives at most is two to
-// three deviations above what is asked. Whoever is stuck is held for good.
+// Undulating ground with gradients up to two to three standard deviations below the largest pull of the
+// soil. Entrapment is certain on ground that is too weak.
 struct RiskyGround {
   std::shared_ptr<const costmap::CostGrid> map;
   std::shared_ptr<const terramech::SlopeEquilibrium> rover;
   double thrust = 0.0;  // gross thrust over load
   terramech::MobilityReference reference;
   double most_pull = 0.0;  // mean of the pull over load at the strongest slip
-  double pull_std = 0.0;   // of place and class together
-  double shared = 0.0;     // share of its square that is the class's
+  double pull_std = 0.0;   // standard deviation of place and class together
+  double shared = 0.0;     // share of the class in the variance
 };
 
 RiskyGround riskyGround(double steepest) {
@@ -56,7 +56,7 @@ RiskyGround riskyGround(double steepest) {
   for (int row = 0; row < 40; ++row)
     for (int column = 0; column < 60; ++column) {
       const double swell = 0.5 + 0.5 * std::sin(0.5 * column) * std::cos(0.2 * row);
-      // Steep in the south, gentle in the north: what costs least is not what is safest.
+      // Steep in the south, gentle in the north, so that the cheapest route is not the safest.
       const double share = swell * (1.0 - 0.4 * row / 40.0);
       cells[{column, row}] =
           costmap::CellCode({.dz_dx = (ground.most_pull - steepest * ground.pull_std) * share, .curve = 0});
@@ -70,8 +70,8 @@ RiskyGround riskyGround(double steepest) {
   return ground;
 }
 
-// The strength that the ground may lose until the rover holds the slope no more, by halving on the equilibrium
-// itself: what is lost adds to the climb, and the same share of the thrust is lost of the side force.
+// Largest loss of strength for which the rover holds the slope, by bisection on the equilibrium: the lost
+// pull is added to the climb, and the side force loses the same share as the thrust.
 double strengthToLose(const RiskyGround& ground, const terramech::Gradient& slope) {
   double holds = -0.5, fails = 0.95 * ground.thrust;
   for (int halving = 0; halving < 14; ++halving) {
@@ -82,8 +82,8 @@ double strengthToLose(const RiskyGround& ground, const terramech::Gradient& slop
   return holds;
 }
 
-// What a place gives at its strongest slip whose pull at the reference slip departs by so many deviations: its share of the
-// class's thrust against the same resistance; stronger places have no more reserve than the class.
+// Largest pull of a place whose pull at the reference slip departs by a number of standard deviations: its
+// share of the class's thrust less the same resistance. A stronger place has the reserve of the class.
 double pullAtMost(const RiskyGround& ground, double deviations) {
   const double pull = ground.reference.drawbar_pull_over_load + deviations * ground.pull_std,
                thrust = ground.reference.torque_over_load_radius,
@@ -93,7 +93,8 @@ double pullAtMost(const RiskyGround& ground, double deviations) {
                      : ground.most_pull + deviations * ground.pull_std;
 }
 
-// By how many deviations a place may be weaker than the class until a climb is out of its reach.
+// Number of standard deviations by which a place may be weaker than the class before a climb becomes
+// infeasible.
 double deviationsToLose(const RiskyGround& ground, double climb) {
   double holds = 8.0, fails = -8.0;
   for (int halving = 0; halving < 40; ++halving) {
@@ -103,9 +104,9 @@ double deviationsToLose(const RiskyGround& ground, double climb) {
   return -holds;
 }
 
-// Share of worlds in which the pull of some cell of the route falls short of the gradient. A cell has one
-// pull; the pulls of two cells have the class's departure in common, and what they depart from it is correlated
-// exponentially by the distance of their middles.
+// Share of worlds in which the pull of some cell of the route is below the gradient. Each cell has one pull.
+// The departure of the class is common to all cells; the remaining departures are correlated exponentially
+// with the distance of the cell centres.
 double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& route, int worlds) {
   const maps::Grid& grid = ground.map->grid();
   std::map<std::pair<int, int>, double> lost_across;
@@ -122,7 +123,7 @@ double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& rou
     const auto [crossing, unseen] = lost_across.try_emplace(
         {static_cast<int>(std::lround(gradient * 256)), static_cast<int>(std::ceil(across * 64 - 1e-9))},
         0.0);
-    // What crossing takes of the reserve; rows and bins as the cost is tabulated.
+    // Reserve lost to the cross slope; rows and bins as in the cost table.
     if (unseen)
       crossing->second =
           strengthToLose(ground, {crossing->first.first / 256.0, 0.0}) -
@@ -166,7 +167,7 @@ Problem acrossSwells(const RiskyGround& ground) {
   return {.map = ground.map, .start = {2.5, 4.5}, .goal = {57.5, 6.5}, .prove = false};
 }
 
-// Half the width of the interval that a share of so many worlds lies in but for 1 in 1000.
+// Half the width of the 99.9 % interval of a share estimated from `worlds` worlds.
 double spread(double share, int worlds) {
   return 3.3 * std::sqrt(share * (1.0 - share) / worlds);
 }
@@ -182,9 +183,9 @@ TEST(RiskWorlds, PlannedRiskEqualsTheShareOfImmobilisedRovers) {
     options.worlds = 20000;
     const RouteRisk risk = routeRisk(route, options);
     const double stuck = stuckShare(ground, plan.points, 20000);
-    // A cell that is only clipped counts less along the route than in the plane: an eighth at most.
+    // A cell that is only cut at a corner counts less along the route than in the plane: an eighth at most.
     EXPECT_NEAR(risk.immobilisation, stuck, stuck / 8 + spread(stuck, 10000)) << steepest;
-    // What is printed is the same, from 400 worlds.
+    // The printed risk, from 400 worlds, agrees within sampling error.
     RouteRiskOptions printed = options;
     printed.worlds = 400;
     EXPECT_NEAR(route.vertices.back().immobilisation_risk, risk.immobilisation,
@@ -193,8 +194,8 @@ TEST(RiskWorlds, PlannedRiskEqualsTheShareOfImmobilisedRovers) {
   }
 }
 
-// Property: under a chance constraint the share of rovers stuck keeps the limit, where without one it does
-// not.
+// Property: with a chance constraint the share of immobilised rovers is below the limit, and without it
+// above.
 TEST(RiskWorlds, ChanceConstraintIsMetInSimulatedWorlds) {
   constexpr double kLimit = 0.03;
   constexpr int kWorlds = 10000;

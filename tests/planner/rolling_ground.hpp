@@ -12,7 +12,7 @@ inline constexpr double kCell_m = 2.0;
 inline const maps::Grid kWhole{
     .width = 700, .height = 500, .resolution_m = kCell_m, .south_west = {100.0, -50.0}};
 
-/// Rolling ground, the same at any place whatever window it is sampled in.
+/// Elevation of undulating ground, independent of the sampled window.
 inline float height(maps::Point p) {
   return static_cast<float>(4.0 * std::sin(p.x_m / 60.0) * std::cos(p.y_m / 45.0));
 }
@@ -55,7 +55,7 @@ inline maps::Grid gridOf(const MapBox& box) {
           .south_west = box.low};
 }
 
-/// The whole map in windows, over an overview in cells five times as large; counts the boxes built.
+/// The whole map in windows, with an overview in cells five times as large; counts the boxes that are built.
 inline WindowedMap windows(int& asked) {
   maps::Grid coarse = kWhole;
   coarse.width /= 5, coarse.height /= 5, coarse.resolution_m *= 5;

@@ -6,7 +6,7 @@
 
 namespace talus::planner::testing {
 
-/// The cost of the tests where only gradients along the heading within a band are allowed.
+/// The test cost in which only gradients along the heading within a band are allowed.
 inline std::shared_ptr<const costmap::TravelCost> onlyAlong(double least, double most) {
   costmap::TravelCurve allowed = curve({});
   for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
@@ -17,7 +17,8 @@ inline std::shared_ptr<const costmap::TravelCost> onlyAlong(double least, double
   return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{allowed});
 }
 
-/// Nine by nine cells of a metre that fall southwards on the whole and may be driven down only: every cell has a cone.
+/// Nine by nine cells of one metre that fall southwards overall and may only be driven down: every cell has
+/// a cone of headings.
 inline std::shared_ptr<const costmap::CostGrid> randomDescent(unsigned seed) {
   std::mt19937 random(seed);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
@@ -31,8 +32,8 @@ inline std::shared_ptr<const costmap::CostGrid> randomDescent(unsigned seed) {
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, onlyAlong(-1.0, -1.0 / 512.0)));
 }
 
-/// Nine by nine cells of a metre, a rough plane of gradient 0.3, where the gradient along the heading must lie in a band: two
-/// narrow arcs of headings, on both sides of the fall line.
+/// Nine by nine cells of one metre, a rough plane of gradient 0.3. The gradient along the heading must lie
+/// in a band: two narrow arcs of headings, one on each side of the fall line.
 inline std::shared_ptr<const costmap::CostGrid> randomBand(unsigned seed, double least, double most) {
   std::mt19937 random(seed);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };

@@ -17,7 +17,7 @@ double rho(Place a, Place b) {
   return (2.0 + std::cos(turn)) / 3.0 * (1.0 - d) + std::sin(turn) / (2.0 * std::numbers::pi);
 }
 
-// Thesis Eq. 3.12; NaN without torque or sinkage.
+// DP/W of a wheel by thesis Eq. 3.12 from its torque and sinkage. NaN if torque or sinkage is missing.
 double pullBySinkage(const JournalRow& row, const Rover& rover) {
   const double depth = row.sinkage_m / rover.wheel_radius_m;
   if (!(depth > 0.0 && depth < 1.0)) return std::nan("");
@@ -30,8 +30,8 @@ double pullBySinkage(const JournalRow& row, const Rover& rover) {
 struct Seen {
   const JournalRow* row;
   int class_number;
-  double expected;   // DP/N of its class at its slip
-  double steepness;  // of that over a slip of 0.03
+  double expected;   // DP/N of the class at the row's slip
+  double steepness;  // change of `expected` over a slip of 0.03
   double by_sinkage;
 };
 

@@ -8,41 +8,45 @@
 
 namespace safety {
 
-/// By how much ground is believed to pull more than its class: departure of DP/W [-].
+/// Estimated departure of the ground's DP/W from the mean of its class [-].
 struct Departure {
   double mean = 0.0;
-  double deviation = 0.0;  ///< of the ground here, class and place together
-  double learned = 0.0;    ///< deviation that the evidence explains; 0 where none is near
+  double deviation = 0.0;  ///< standard deviation at the place: class and place effects together
+  double learned = 0.0;    ///< standard deviation explained by the evidence; 0 without evidence nearby
 };
 
-/// What a fair reader may believe of the ground after the journal, by plain formulas.
+/// Estimate of the ground after the journal, computed by plain formulas independent of Talus.
 ///
-/// A reading. A steady rover on a gradient g pulls g of its load; the curve of the class says what it would
-/// pull at the slip that it has. What all wheels of a moment miss together, sum N (g - DP_class(i)) / sum N,
-/// is the departure of the ground under them; how they share it follows from torque and sinkage of each
-/// (thesis Eq. 3.12: DP/W = -tan(t1/2) + [sin(t1/4)/(t1/4)]^2 / cos(t1/2) T/(rW)). Its deviation is that of
-/// slope (0.01), slip (0.03 times the curve's slope), model (0.02), half of what the wheels differ, and of
-/// carrying it from the slip to the reference slip. A wheel that spun without a gradient says what torque and
-/// sinkage say (0.08). Rows that Talus refused count, too, when they speak for danger.
+/// Reading: a steady rover on a gradient g needs a pull of g times its load. The class curve gives the pull
+/// DP_class(i) at the observed slip. The common residual of all wheels of a moment, sum N (g - DP_class(i))
+/// / sum N, is the departure of the ground under the wheels. Torque and sinkage of each wheel distribute the
+/// departure over the wheels (thesis Eq. 3.12: DP/W = -tan(t1/2) + [sin(t1/4)/(t1/4)]^2 / cos(t1/2) T/(rW)).
+/// The standard deviation of a reading combines slope (0.01), slip (0.03 times the slope of the curve),
+/// model (0.02), half of the difference between the wheels, and the transfer from the observed slip to the
+/// reference slip. For a wheel that spun without a known gradient, torque and sinkage alone give the
+/// departure (standard deviation 0.08). Rows that Talus rejected count as well if they indicate danger.
 ///
-/// A place: the square of 1.25 m with all its readings, weighed by their deviations; its own is not below
-/// 0.022, the model's error and that of ground inside a square, however many rows it has.
+/// Place: a square of 1.25 m with all its readings, weighted by their standard deviations. The standard
+/// deviation of a place is at least 0.022 however many rows it has: model error and variation of the ground
+/// inside a square.
 ///
-/// Ground: the Gaussian process over all places of a class, none left out: variance = class_deviation^2 +
-/// place_deviation^2 rho(d) with rho Melkumyan and Ramos' sparse kernel of range 5 m, solved as one dense
-/// system. Ground is believed stronger than its class only where three places of the class were driven.
+/// Ground: the Gaussian process over all places of a class, without approximation: variance =
+/// class_deviation^2 + place_deviation^2 rho(d), rho being Melkumyan and Ramos' sparse kernel of range 5 m,
+/// solved as one dense system. The estimate exceeds the class mean only if at least three places of the
+/// class were driven.
 class Belief {
  public:
   Belief(const Site& site, const std::vector<JournalRow>& rows);
 
-  /// Of ground of a class at a place.
+  /// Departure of ground of a class at a place.
   Departure at(int class_number, Place p) const;
-  /// How much deeper than its class's wheels sink there, by the square's own readings; 1 where it has none.
+  /// Ratio of observed sinkage to the sinkage of the class, from the readings of the square at p [-]; 1
+  /// without readings.
   double deeper(int class_number, Place p) const;
-  /// Places with evidence of a class.
+  /// Number of places of a class with evidence.
   std::size_t places(int class_number) const;
 
-  /// Covariance of the departures at places of one class after the evidence, row-major.
+  /// Posterior covariance of the departures at places of one class, row-major.
   std::vector<double> covariance(int class_number, const std::vector<Place>& at) const;
 
   static constexpr double kRange_m = 5.0;
@@ -58,7 +62,7 @@ class Belief {
   struct Process {
     double class_variance = 0.0, place_variance = 0.0;
     std::vector<Square> squares;
-    std::vector<double> factor;  // Cholesky, row-major
+    std::vector<double> factor;  // Cholesky factor, row-major
     std::vector<double> solved;  // K^-1 y
     std::vector<double> towards(Place p) const;
     std::vector<double> halfSolved(std::vector<double> k) const;

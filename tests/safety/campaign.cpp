@@ -11,7 +11,8 @@
 namespace safety {
 namespace {
 
-// number;kind;rover;learned;planner;exit;length;risk;drawn risk;cause,x,y,heading,amount|...
+// Format of a line: number;kind;rover;learned;planner;exit;length;risk;drawn
+// risk;cause,x,y,heading,amount|...
 std::string line(const Result& r) {
   std::ostringstream out;
   out.precision(9);
@@ -30,7 +31,7 @@ std::vector<std::string> cut(const std::string& text, char at) {
   return parts;
 }
 
-// Nothing for a line that was cut off when the campaign was stopped.
+// Returns nullopt for a line that is incomplete because the campaign was stopped.
 std::optional<Result> parsed(const std::string& text) {
   auto parts = cut(text, ';');
   if (parts.size() == 9 && text.back() == ';') parts.emplace_back();
@@ -55,9 +56,10 @@ std::optional<Result> parsed(const std::string& text) {
   return r;
 }
 
-constexpr int kWeakWorlds = 20;  // fewer tell nothing of a risk
+constexpr int kWeakWorlds = 20;  // fewer worlds do not allow an estimate of the risk
 
-// The printed risk may be half of the drawn one, its error taken off; amount: by how many times it is less.
+// The printed risk may be lower than the drawn risk, less three standard errors, by a factor of 2. The
+// amount of the violation is the ratio of drawn to printed risk.
 std::optional<Violation> understatedRisk(const DrawnRisk& drawn, const Route& route) {
   constexpr double kFactor = 2.0, kErrors = 3.0;
   const double least = (drawn.immobilisation - kErrors * drawn.standard_error) / kFactor;

@@ -1,5 +1,5 @@
-// safety_campaign PROGRAM LIBRARY FOLDER COUNT [FIRST]: judges routes, keeps what is done, prints a table. Exit 1: a violation, or an errand that
-// was not judged.
+// safety_campaign PROGRAM LIBRARY FOLDER COUNT [FIRST]: judges routes, keeps finished results, prints a
+// table. Exit code 1: a violation was found, or an errand was not judged.
 #include <cstdlib>
 #include <iostream>
 #include <string>

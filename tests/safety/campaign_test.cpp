@@ -1,4 +1,4 @@
-// Errands in every test run; ./dev safety judges thousands.
+// A small campaign for every test run; ./dev safety judges thousands of errands.
 #include "campaign.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of one test, gone afterwards.
+// Folder of one test, removed at its end.
 class Folder {
  public:
   explicit Folder(const char* name)
@@ -39,7 +39,7 @@ void expectSound(const std::vector<Result>& results) {
       << table(results) << "again: safety_campaign PROGRAM LIBRARY FOLDER 1 NUMBER";
 }
 
-// In four parts, which run beside each other.
+// The campaign is split into four tests that can run in parallel.
 class SafetyCampaign : public testing::TestWithParam<int> {};
 
 TEST_P(SafetyCampaign, RoutesPassTheIndependentSafetyCheck) {
@@ -52,7 +52,7 @@ TEST_P(SafetyCampaign, RoutesPassTheIndependentSafetyCheck) {
   expectSound(results);
   const auto routes =
       std::count_if(results.begin(), results.end(), [](const Result& r) { return r.exit == 0; });
-  EXPECT_GT(routes, 15);  // enough to judge; the other errands have no route on these sites
+  EXPECT_GT(routes, 15);  // enough routes to judge; the other errands have no route on these sites
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, SafetyCampaign, testing::Range(1, 4));
@@ -62,7 +62,7 @@ TEST(SafetyCampaignFile, InterruptedCampaignResumes) {
   const std::string file = (folder.path() / "results.csv").string();
   const auto fail = [](const std::string& text) { ADD_FAILURE() << text; };
   Campaign(placesIn(folder), file).run(0, 3, fail);
-  // Stopped in the middle of a line.
+  // The file ends in the middle of a line, as after an interruption.
   std::ofstream(file, std::ios::app) << "\n3;rocks;mer;0;RRT";
   Campaign again(placesIn(folder), file);
   ASSERT_EQ(again.results().size(), 3U);
@@ -71,7 +71,7 @@ TEST(SafetyCampaignFile, InterruptedCampaignResumes) {
   EXPECT_EQ(again.missing(0, 5), 0U);
   const auto results = again.results();
   ASSERT_EQ(results.size(), 5U);
-  // Property: the same errands whether stopped or not.
+  // Property: a resumed campaign judges the same errands as an uninterrupted campaign.
   Campaign whole(placesIn(folder), (folder.path() / "whole.csv").string());
   whole.run(0, 2, fail);
   const auto straight = whole.results();
@@ -83,7 +83,7 @@ TEST(SafetyCampaignFile, InterruptedCampaignResumes) {
     EXPECT_EQ(one.rover, other.rover);
     EXPECT_EQ(one.learned, other.learned);
   }
-  // The one whose route does not depend on what the clock allows.
+  // The result of the field planner is compared in full, because its route does not depend on a time limit.
   ASSERT_EQ(results[0].planner, "field");
   EXPECT_EQ(straight[0].exit, results[0].exit);
   EXPECT_EQ(straight[0].length_m, results[0].length_m);

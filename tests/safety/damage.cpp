@@ -21,7 +21,7 @@ std::vector<std::string> cut(const std::string& text, char at) {
   return parts;
 }
 
-// number;file;damage;exit;cause|cause|;complaint|
+// Format of a line: number;file;damage;exit;cause|cause|;complaint|
 std::string line(const DamageResult& r) {
   std::ostringstream out;
   out << r.number << ';' << r.file << ';' << r.damage << ';' << r.exit << ';';

@@ -15,25 +15,27 @@
 
 namespace safety {
 
-/// Files that are damaged: elevation and classes in several formats, rocks, areas to keep out of, telemetry, journal, map, model, route, and
-/// the arrays of heights and classes that a program in C puts into a map.
+/// Names of the files that are damaged: elevation and classes in several formats, rocks, keep-out areas,
+/// telemetry, journal, map, model, route, and the arrays of heights and classes that a C program patches
+/// into a map.
 const std::vector<std::string>& damagedFiles();
 
-/// The bytes of a file with a part removed, cut off, or overwritten by zeros, by other bytes, by a single byte or by another part of
-/// the file, and what was done in a word or two. Parts are a byte, a few, a sector of 512 or a page of 4096 bytes.
+/// Returns the damaged bytes of a file and a short description of the damage. A part of the file is removed,
+/// truncated, or overwritten by zeros, random bytes, one repeated byte or another part of the file. A part
+/// is one byte, a few bytes, a sector of 512 bytes or a page of 4096 bytes.
 std::pair<std::string, std::string> damaged(const std::string& bytes, std::mt19937_64& random);
 
-/// What came of one damaged file.
+/// Result for one damaged file.
 struct DamageResult {
   std::uint64_t number = 0;
   std::string file, damage;
-  int exit = 0;                     ///< of the last call: 0 a route, 1 none, 2 refused; 128 a signal
-  std::vector<std::string> causes;  ///< by which a route is less safe than on the whole file
-  std::string complaint;            ///< what a call printed that is no line of the program's
+  int exit = 0;  ///< exit code of the last call: 0 route, 1 no route, 2 refused; 128 + signal
+  std::vector<std::string> causes;  ///< causes by which a route is less safe than on the undamaged file
+  std::string complaint;            ///< output of a call that is not a regular message of the program
 };
 
-/// Damaged files by number: number / kPerSite is the site. Results are appended to a file as they come; numbers that it holds are left
-/// out, so that a campaign that was stopped goes on.
+/// Tries damaged files by number; number / kPerSite is the site. Results are appended to a file. Numbers
+/// already in the file are skipped, so that a stopped campaign can be resumed.
 class DamageCampaign {
  public:
   static constexpr std::uint64_t kPerSite = 100;
@@ -50,7 +52,7 @@ class DamageCampaign {
   std::string results_;
 };
 
-/// Files and damages, refused, with a route and without, and each cause with its first number.
+/// Table of files and damages: refused, with and without a route, and each cause with its first number.
 std::string table(const std::vector<DamageResult>& results);
 
 }  // namespace safety

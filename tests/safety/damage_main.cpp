@@ -1,5 +1,6 @@
-// damage_campaign PROGRAM LIBRARY FOLDER COUNT [FIRST]: routes over damaged files, judged on the whole ones. Keeps what is done, prints a
-// table. Exit 1: a route less safe than on the whole file, a crash, or a file that was not judged.
+// damage_campaign PROGRAM LIBRARY FOLDER COUNT [FIRST]: plans routes over damaged files and judges them on
+// the undamaged files. Keeps finished results and prints a table. Exit code 1: a route less safe than on the
+// undamaged file, a crash, or a file that was not judged.
 #include <cstdlib>
 #include <iostream>
 #include <string>

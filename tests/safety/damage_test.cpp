@@ -1,4 +1,4 @@
-// Damaged files in every test run; ./dev damage tries thousands.
+// A small number of damaged files for every test run; ./dev damage tries thousands.
 #include "damage.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class DamageFolder {
   fs::path path_;
 };
 
-// In two parts, which run beside each other.
+// The campaign is split into two tests that can run in parallel.
 class DamagedFiles : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(DamagedFiles, RoutesOnDamagedFilesAreNoLessSafe) {
@@ -66,11 +66,11 @@ TEST(Damage, DamageIsReproducibleAndCoversEveryKind) {
   EXPECT_EQ(kinds, (std::set<std::string>{"removed", "cut", "zeroed", "one", "random", "moved"}));
 }
 
-// The checker sees what the program would have to miss: a route over the whole site's obstacle is charged.
+// Property: the checker reports a route that crosses an obstacle of the undamaged site.
 TEST(Damage, UnsafeRouteIsDetected) {
   const DamageFolder folder;
   DamagedSite site(folder.places(), 1);
-  // The line goes straight across the site, through what is closed and steep there.
+  // The line crosses the whole site, including obstacles and steep ground.
   const Raster dem = readRaster(site.folder() / "dem.asc");
   std::string line;
   for (int k = 0; k <= 40; ++k) {

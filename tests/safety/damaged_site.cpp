@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sites with areas to keep out of and with drives.
+// Numbers of the sites that have keep-out areas and drives.
 std::uint64_t siteNumber(std::uint64_t n) {
   constexpr std::uint64_t kOfTwelve[] = {1, 7, 10};
   return 12 * (n / 3) + kOfTwelve[n % 3];
@@ -42,7 +42,7 @@ void convert(const fs::path& from, const fs::path& to, const char* driver, const
   GDALClose(source);
 }
 
-// Few rocks, and fields of many.
+// A raster of rock heights: few rocks, and dense fields of rocks.
 Raster rocksOn(const Raster& elevation) {
   Raster rocks = elevation;
   for (std::size_t i = 0; i < rocks.values.size(); ++i) {
@@ -61,7 +61,8 @@ model: wong-reece
 effects: [{name: bulldozing, parameters: [0.15]}]
 )";
 
-// The line of a file that a score is made of; its stations need no more.
+// Reads the vertices of a route file; the checker derives the stations of a planned line from the vertices
+// alone.
 std::optional<Route> lineOf(const fs::path& path) {
   const auto document = nlohmann::json::parse(content(path), nullptr, false);
   Route route;
@@ -132,7 +133,8 @@ DamagedSite::DamagedSite(const Places& places, std::uint64_t number)
   call("plan " + ground("dem.asc", "classes.asc") + errand(0) + " -o route.geojson", complaint);
 }
 
-// A map whose middle nobody has seen yet, and the heights and classes of that window, from the south-west on.
+// Writes a map without data in its middle, and the heights and classes of that window, rows from south to
+// north.
 void DamagedSite::writeUnseen() {
   Raster heights = ground_.site.elevation_m, classes = *ground_.site.classes;
   const Cell corner{heights.width / 8, heights.height / 8};
@@ -192,7 +194,8 @@ int DamagedSite::run(const std::string& words, std::string& complaint) const {
   return exit;
 }
 
-// A cause that every belief charges the route with: what a lost row would have shown is not charged, nor what the whole file proves.
+// Adds each cause that all beliefs report for the route. A cause that depends on a lost row of the journal
+// is not reported, nor a cause that only the undamaged file shows.
 void DamagedSite::judgeOn(const std::string& file, const std::vector<const Belief*>& beliefs,
                           DamageResult& result) const {
   const auto route = lineOf(folder() / file);
@@ -241,7 +244,8 @@ void DamagedSite::plan(const std::string& file, std::size_t pair, DamageResult& 
     judgeOn("damaged/route.geojson", {prior_.get()}, result);
 }
 
-// Telemetry and journal go into the map without them; the map is planned on as it is.
+// Damaged telemetry or a damaged journal is used to update the base map; a damaged map is planned on
+// directly.
 void DamagedSite::planLearned(const std::string& file, std::size_t pair, DamageResult& result) const {
   std::string map = "damaged/learned.ot";
   if (file != "learned.ot") {
@@ -264,7 +268,7 @@ void DamagedSite::score(const std::string& file, DamageResult& result) const {
   if (result.exit == 0) judgeOn("damaged/" + file, {prior_.get()}, result);
 }
 
-// A program in C opens the map whose middle is unseen, and puts both arrays into it.
+// A C program opens the map without data in its middle and patches both arrays into the map.
 void DamagedSite::patch(const std::string& file, std::size_t pair, DamageResult& result) const {
   const auto part = [&](const std::string& name) { return (file == name ? "damaged/" : "") + name; };
   const auto& [start, goal] = ground_.pairs[pair];
@@ -296,7 +300,7 @@ DamageResult DamagedSite::tried(const std::string& file, const std::string& byte
     planLearned(file, pair, result);
   else
     plan(file, pair, result);
-  // What the map has for a height where its file was damaged.
+  // Heights of the route come from the damaged file, so that the cause "height" does not count.
   std::erase(result.causes, "height");
   return result;
 }

@@ -11,16 +11,17 @@
 
 namespace safety {
 
-/// A site with every file that a damaged one can stand in for, and what routes over it are judged by.
+/// A site with every file that can be damaged, and the undamaged data by which its routes are judged.
 class DamagedSite {
  public:
-  /// Site number n. Throws std::runtime_error where the program fails.
+  /// Makes site number n. Throws std::runtime_error if the program fails.
   DamagedSite(const Places& places, std::uint64_t number);
 
-  /// The file of that name in folder(), whole; empty where the site has none, as without a drive.
+  /// Content of the undamaged file of that name in folder(); empty if the site has no such file, for example
+  /// no drive.
   std::string whole(const std::string& file) const;
 
-  /// Puts bytes in the place of the file, plans, and judges the route on what is whole.
+  /// Replaces the file by the given bytes, plans a route, and judges the route on the undamaged files.
   DamageResult tried(const std::string& file, const std::string& bytes, std::size_t pair);
 
   const std::filesystem::path& folder() const { return ground_.folder; }
@@ -42,7 +43,7 @@ class DamagedSite {
 
   Places places_;
   ProvingGround ground_;
-  std::string window_;  ///< what a program in C sees later: west, south, width, height, resolution
+  std::string window_;  ///< window patched in by the C program: west, south, width, height, resolution
   std::vector<JournalRow> none_;
   std::unique_ptr<Belief> prior_, learned_;
 };

@@ -6,7 +6,7 @@
 namespace safety {
 namespace {
 
-// The bytes of plain numbers, as a key.
+// Appends the bytes of a trivially copyable value to a cache key.
 template <typename T>
 void append(std::string& key, const T& value) {
   const auto* bytes = reinterpret_cast<const char*>(&value);

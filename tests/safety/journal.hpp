@@ -7,7 +7,7 @@
 
 namespace safety {
 
-/// What a wheel read, as EVIDENCE.db keeps it; NaN where it read nothing.
+/// One row of the evidence journal (EVIDENCE.db): readings of one wheel; NaN for a missing reading.
 struct JournalRow {
   std::string source;
   bool accepted = false;
@@ -21,7 +21,7 @@ struct JournalRow {
   int pass = 1;
 };
 
-/// Every row in order. Throws std::runtime_error.
+/// Reads all rows in order. Throws std::runtime_error.
 std::vector<JournalRow> readJournal(const std::string& path);
 
 }  // namespace safety

@@ -10,7 +10,7 @@
 namespace safety {
 namespace {
 
-constexpr double kMargin_rad = 5.0 * std::numbers::pi / 180.0;  // of the categories (thesis 3.5)
+constexpr double kMargin_rad = 5.0 * std::numbers::pi / 180.0;  // margin of the categories (thesis 3.5)
 constexpr double kSlipStep = 0.02;
 
 Place shifted(const Station& at, double ahead_m, double left_m) {
@@ -20,7 +20,7 @@ Place shifted(const Station& at, double ahead_m, double left_m) {
 
 }  // namespace
 
-// The worst of each cause.
+// Keeps the worst violation of each cause.
 class Judge::Findings {
  public:
   void add(const char* cause, const Station& at, double amount) {
@@ -60,11 +60,11 @@ void Judge::ground(const Station& at, Findings& findings) const {
       "pitch", at,
       std::abs(along) - std::tan(site_.rover.max_pitch_rad) - allowance_.gradient - allowance_.curve);
   findings.add("roll", at, std::abs(across) - std::tan(site_.rover.max_roll_rad) - allowance_.gradient);
-  // Where cells are larger than the rover, relief counts in proportion (docs/limits.md).
+  // The limit of relief grows in proportion for cells larger than the rover (docs/limits.md).
   const double footprint_m = 2.0 * std::max(site_.footprint_m(), site_.elevation_m.cell_m);
   const double larger = std::max(footprint_m / site_.rover.wheelbase_m, 1.0);
   findings.add("relief", at, plane.relief_m - (1.0 + 1e-3) * larger * site_.rover.clearance_m);
-  // Steps between cells that lie further apart than the wheels do, too.
+  // The limit of a step grows in proportion for cells further apart than the wheels.
   const double step_m =
       stepUnder(site_.elevation_m, *cell,
                 {.radius_m = site_.footprint_m(), .wheel_m = 2.0 * site_.rover.wheel_radius_m});
@@ -74,7 +74,7 @@ void Judge::ground(const Station& at, Findings& findings) const {
   if (!at.turning) equilibrium(at, {along, across}, findings);
 }
 
-// The rover's whole width, at its middle and at both axles.
+// Checks the whole width of the rover at its centre and at both axles.
 void Judge::width(const Station& at, Findings& findings) const {
   if (refused(at.place)) return findings.add("centre on refused ground", at, 1.0);
   const double half_m = 0.5 * (site_.rover.track_m + site_.rover.wheel_width_m) - allowance_.clear_m;
@@ -102,7 +102,7 @@ std::optional<std::vector<Judge::Wheel>> Judge::wheels(const Station& at, const 
       Wheel w{.place = shifted(at, ahead_m, left_m)};
       const auto number = site_.classAt(w.place);
       if (!number) return std::nullopt;
-      // Weight moves downhill by the height of the centre of mass.
+      // Load transfer: the load moves downhill in proportion to the height of the centre of mass.
       const double across = std::copysign(needed.across, gradient.across);
       w.share = even - height_m * (needed.along * ahead_m / ahead2 + across * left_m / left2);
       w.share = std::max(w.share, 0.1 * even);
@@ -139,8 +139,9 @@ double Judge::mostPull(const std::vector<Wheel>& wheels, double most_slip) {
 
 namespace {
 
-// Forces of all wheels turned uphill by an angle: a wheel's pull P and side force F give P cos - F sin along the way and
-// P sin + F cos across it. Ground that is weaker by d resists the way by d more, and has the share d / thrust of F less.
+// Sum of the forces of all wheels, turned uphill by one angle. A wheel with pull P and side force F
+// contributes P cos - F sin along the heading and P sin + F cos across. Ground weaker by d reduces the force
+// along the heading by d and F by the share d / thrust.
 Judge::Planar forces(const std::vector<Judge::Wheel>& wheels, double slip, std::size_t angle, double weaker) {
   const double c = std::cos(PullCurve::angle_rad(angle)), s = std::sin(PullCurve::angle_rad(angle));
   Judge::Planar sum;
@@ -157,13 +158,13 @@ Judge::Planar forces(const std::vector<Judge::Wheel>& wheels, double slip, std::
   return {sum.along / load, sum.across / load};
 }
 
-// The least slip at an angle that gives the demand along, and the force across there.
+// The least slip at which an angle meets the demand along the heading, and the force across at that slip.
 struct AtAngle {
   double slip = 0.0, across = 0.0;
 };
 std::optional<AtAngle> atAngle(const std::vector<Judge::Wheel>& wheels, std::size_t angle, double along,
                                const std::pair<double, double>& most_slip_and_weaker) {
-  constexpr double kStep = 0.05;  // the curves are straight in between
+  constexpr double kStep = 0.05;  // the curves are linear between these slips
   const auto [most_slip, weaker] = most_slip_and_weaker;
   Judge::Planar last = forces(wheels, -1.0, angle, weaker);
   if (last.along >= along) return AtAngle{-1.0, last.across};
@@ -225,7 +226,7 @@ void Judge::equilibrium(const Station& at, const Planar& gradient, Findings& fin
   if (held.holds) motors(at, *stand, held, findings);
 }
 
-// What a state that holds takes of each wheel.
+// Checks torque and sinkage of each wheel in the state of equilibrium.
 void Judge::motors(const Station& at, const std::vector<Wheel>& stand, const Hold& held,
                    Findings& findings) const {
   const double load_N = site_.rover.wheelLoad_N(), radius_m = site_.rover.wheel_radius_m;
@@ -244,7 +245,8 @@ void Judge::motors(const Station& at, const std::vector<Wheel>& stand, const Hol
   }
 }
 
-// That both read the same ground: the height that the route has in the middle of a cell's neighbourhood.
+// Checks that the route and the DEM agree: the height of a vertex lies within the heights of the
+// neighbouring cells.
 void Judge::heights(const Route& route, Findings& findings) const {
   for (std::size_t i = 0; i < route.vertices.size(); ++i) {
     const auto cell = site_.elevation_m.cellAt(route.vertices[i]);

@@ -11,29 +11,31 @@
 
 namespace safety {
 
-/// By how much Talus may be off through what it states to round (DESIGN: "where bits run out"). Less is
-/// charged to nobody; more is a defect.
+/// Largest deviation that follows from the stated rounding of Talus (DESIGN: "where bits run out"). A
+/// deviation within the allowance is not reported; a larger deviation is a defect.
 struct Allowance {
-  double gradient = 0.001;  ///< of a plane: half a step of 1/1024 in each direction, and float
-  double curve = 0.002;     ///< of a gradient along the heading: half a bin of 1/256
-  double pull = 0.013;      ///< of DP/W: half a step of 0.02 of a learned belief, and PullCurve's own 0.003
-  double side = 0.015;      ///< of F/N: what the table of a wheel is off by (docs/slopes.md)
-  double belief = 0.5;      ///< of what the evidence explains: two fair readings of it differ
-  double torque = 0.03;     ///< of a torque
-  double clear_m = 0.005;   ///< of a distance to what must not be touched
+  double gradient =
+      0.001;               ///< of the gradient of a plane: half a step of 1/1024 in each direction, and float
+  double curve = 0.002;    ///< of the gradient along the heading: half a bin of 1/256
+  double pull = 0.013;     ///< of DP/W: half a step of 0.02 of a stored estimate, and 0.003 of PullCurve
+  double side = 0.015;     ///< of F/N: error of the wheel table (docs/slopes.md)
+  double belief = 0.5;     ///< share of the explained deviation: two sound estimates may differ by it
+  double torque = 0.03;    ///< of a torque, relative
+  double clear_m = 0.005;  ///< of a distance to an obstacle or keep-out area
 };
 
-/// A place on a route that must not be driven so.
+/// A place on a route that violates a limit, in the heading of the route.
 struct Violation {
-  std::string cause;  ///< a word or two, for the table
+  std::string cause;  ///< short name of the cause, for the table
   Place place;
   double heading_rad = 0.0;
-  double amount = 0.0;  ///< beyond the allowance, in the unit of the cause
+  double amount = 0.0;  ///< excess over the allowance, in the unit of the cause
 };
 
-/// Judges every station of a route: outside, unknown, obstacle, keep-out under centre, wheels and the whole
-/// width; pitch and roll of the plane; relief; the equilibrium of all wheels (pull, category, torque, sinkage,
-/// braking), along the slope and across it; height. One violation a cause, the worst.
+/// Judges every station of a route: outside the map, unknown, obstacle, keep-out area under the centre, the
+/// wheels and the whole width; pitch and roll of the plane; relief; equilibrium of all wheels along and
+/// across the slope (pull, category, torque, sinkage, braking); height. Reports the worst violation of each
+/// cause.
 class Judge {
  public:
   Judge(const Site& site, const Belief& belief, const Allowance& allowance = {})
@@ -41,45 +43,48 @@ class Judge {
 
   std::vector<Violation> judge(const Route& route) const;
 
-  /// Along a heading and to its left: of the ground rise over run, of forces those over the load normal to it.
+  /// Components along a heading and to its left. Gradients are rise over run; forces are divided by the
+  /// normal load.
   struct Planar {
     double along = 0.0;
     double across = 0.0;
   };
 
-  /// A wheel of a rover that stands somewhere.
+  /// A wheel of a rover at a pose.
   struct Wheel {
     Place place;
-    double share = 0.0;   ///< of the weight normal to the slope
-    double thrust = 1.0;  ///< T/(N r) at the reference slip: what ground that is weaker has less of
+    double share = 0.0;   ///< share of the weight normal to the slope
+    double thrust = 1.0;  ///< T/(N r) at the reference slip, reduced on weaker ground
     const PullCurve* curve = nullptr;
     Departure departure{};
     double deeper = 1.0;
   };
-  /// All wheels at a pose on a gradient; nothing where one has no ground with a soil under it.
+  /// All wheels at a pose on a gradient; nullopt if a wheel has no ground with a soil under it.
   std::optional<std::vector<Wheel>> wheels(const Station& at, const Planar& gradient) const;
 
-  /// What wheels must give on a gradient, over the load normal to it: the weight along the way, t = (1, 0, a)/sqrt(1 + a^2),
-  /// and across it, n x t with n = (-a, -c, 1)/sqrt(1 + a^2 + c^2), over its part along n. Across: its size.
+  /// Forces that the wheels must provide on a gradient, over the normal load. With the heading t = (1, 0,
+  /// a)/sqrt(1 + a^2) and the normal n = (-a, -c, 1)/sqrt(1 + a^2 + c^2), the weight component along t and
+  /// the size of the component along n x t are each divided by the component along n.
   static Planar demand(const Planar& gradient);
 
-  /// How wheels hold a demand, all turned uphill by one slip angle and slipping alike; the yaw moment is left out.
+  /// Equilibrium of all wheels at one common slip and one common slip angle uphill; the yaw moment is
+  /// neglected.
   struct Hold {
     double most_across =
         -1.0;  ///< that any angle holds at the least slip that gives the demand along; -1: none gives it
     bool holds = false;
-    double slip = 0.0;   ///< at the least angle that holds
-    double angle = 0.0;  ///< that angle's place among PullCurve's nodes
+    double slip = 0.0;   ///< slip at the least angle in equilibrium
+    double angle = 0.0;  ///< that angle, as an index among PullCurve's nodes
   };
-  /// On ground that is weaker by some DP/W than believed.
+  /// Equilibrium on ground whose DP/W is lower than the estimate by `weaker`.
   static Hold hold(const std::vector<Wheel>& wheels, const Planar& demand, double most_slip,
                    double weaker = 0.0);
-  /// By how much weaker the ground may be until nothing holds; within [-1, 1].
+  /// Largest reduction of DP/W for which an equilibrium exists; within [-1, 1].
   static double reserve(const std::vector<Wheel>& wheels, const Planar& demand, double most_slip);
 
-  /// Drawbar pull over load of all wheels at a slip.
+  /// Drawbar pull over load of all wheels at a slip [-].
   static double pull(const std::vector<Wheel>& wheels, double slip);
-  /// The most of it at slips up to the greatest that counts as driving.
+  /// Largest drawbar pull over load at slips up to most_slip [-].
   static double mostPull(const std::vector<Wheel>& wheels, double most_slip = PullCurve::kMostSlip);
 
  private:

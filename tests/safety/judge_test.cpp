@@ -1,4 +1,4 @@
-// The judge must see: each test plants one fault in a site that is otherwise sound.
+// Each test puts one fault into an otherwise sound site and checks that the judge reports the fault.
 #include "judge.hpp"
 
 #include <cmath>
@@ -22,7 +22,7 @@ const Rover kMer{.mass_kg = 176,
                  .max_roll_rad = 0.436,
                  .max_torque_Nm = 45};
 
-// Its greatest pull up to slip 0.8 is 0.26 of this rover's load, 0.148 at slip 0.5.
+// A loam whose greatest pull up to slip 0.8 is 0.26 of this rover's load, and 0.148 at slip 0.5.
 SoilPrior loam() {
   return {.mean = {.cohesion_Pa = 7445,
                    .friction_angle_rad = 0.4398,
@@ -37,7 +37,7 @@ SoilPrior dust() {
                    .shear_modulus_m = 0.015}};
 }
 
-// 20 m by 20 m, rising eastwards, of class 1.
+// A site of 20 m by 20 m and class 1 that rises eastwards.
 Site plain(double gradient = 0.0) {
   Site site{.rover = kMer};
   site.elevation_m = {.width = 40, .height = 40, .cell_m = 0.5, .values = {}};
@@ -74,7 +74,7 @@ std::set<std::string> causes(const Site& site, const Route& route, const std::ve
   return found;
 }
 
-// Six wheels read at one moment: slip on a gradient.
+// Journal rows of six wheels at one moment, with a slip on a gradient.
 std::vector<JournalRow> moment(Place middle, double slip, double gradient, double time_s) {
   std::vector<JournalRow> rows;
   for (int w = 0; w < 6; ++w)
@@ -108,10 +108,10 @@ const Route kNorth = line({10.1, 5}, {10.1, 15});
 TEST(SafetyJudge, CrossSlopeBeyondTheSideForceIsAFault) {
   EXPECT_EQ(causes(plain(0.2), kNorth), Causes{});
   EXPECT_EQ(causes(plain(0.4), kNorth), Causes{"side force"});
-  // Property: neither side and neither way is easier.
+  // Property: the side-force limit is the same for both sides and both directions of travel.
   EXPECT_EQ(causes(plain(-0.4), kNorth), Causes{"side force"});
   EXPECT_EQ(causes(plain(0.4), line({10.1, 15}, {10.1, 5})), Causes{"side force"});
-  // Ground that was seen to be weaker holds less.
+  // Property: a slope is refused if evidence shows that the ground is weaker.
   std::vector<JournalRow> rows;
   for (int k = 0; k < 4; ++k)
     for (const JournalRow& row : moment({10.0, 10.1}, 0.5, 0.0, k)) rows.push_back(row);
@@ -120,12 +120,12 @@ TEST(SafetyJudge, CrossSlopeBeyondTheSideForceIsAFault) {
   EXPECT_TRUE(causes(plain(steep), kNorth, rows).contains("side force"));
 }
 
-// Closed form: the weight on a plane in three dimensions, part by part.
+// Closed form: the components of the weight on an inclined plane in three dimensions.
 TEST(SafetyJudge, DemandEqualsTheWeightComponentsOnThePlane) {
   for (const double a : {-0.4, 0.0, 0.3})
     for (const double c : {-0.5, 0.0, 0.2}) {
       const double t = std::sqrt(1 + a * a), n = std::sqrt(1 + a * a + c * c);
-      // t = (1, 0, a)/|t|, n = (-a, -c, 1)/|n|, n x t: its z is c/(|n| |t|).
+      // With t = (1, 0, a)/|t| and n = (-a, -c, 1)/|n|, the z component of n x t is c/(|n| |t|).
       const double along = a / t, normal = 1 / n, across = std::abs(c) / (n * t);
       const Judge::Planar needed = Judge::demand({a, c});
       EXPECT_NEAR(needed.along, along / normal, 1e-12);
@@ -133,7 +133,8 @@ TEST(SafetyJudge, DemandEqualsTheWeightComponentsOnThePlane) {
     }
 }
 
-// Property: what holds gives the demand, and ground that is weaker by its reserve just does.
+// Property: a state in equilibrium meets the demand, and ground weaker by the reserve is just in
+// equilibrium.
 TEST(SafetyJudge, ReserveIsTheTolerablePullDeficit) {
   const Site site = plain();
   const Belief belief(site, {});
@@ -163,7 +164,7 @@ TEST(SafetyJudge, NoDataAndLeavingTheMapAreFaults) {
 
 TEST(SafetyJudge, RoverWidthIsChecked) {
   Site site = plain();
-  // The line runs at y = 10.1; these cells begin 0.4 m to its left, the outer wheels reach 0.61 m.
+  // The line runs at y = 10.1. These cells begin 0.4 m to its left; the outer wheels reach 0.61 m.
   setCells(site.classes.value(), {20, 21}, {20, 21}, 9.0);
   EXPECT_EQ(causes(site, kEast), (Causes{"wheel on refused ground", "width over refused ground"}));
   EXPECT_EQ(causes(site, line({5, 9.85}, {15, 9.85})), Causes{});
@@ -176,7 +177,7 @@ TEST(SafetyJudge, KeepOutAreaIsAFault) {
 }
 
 TEST(SafetyJudge, TrapUnderHalfTheWheelsReducesPull) {
-  // Dust under the left wheels alone, on a slope that loam climbs and dust does not.
+  // Dust lies under the left wheels alone, on a slope that is traversable on loam and not on dust.
   Site site = plain(0.17);
   setCells(site.classes.value(), {0, 21}, {39, 39}, 2.0);
   EXPECT_EQ(causes(plain(0.17), kEast), Causes{});
@@ -189,7 +190,8 @@ TEST(SafetyJudge, EdgeUnderTheRoverIsAFault) {
   EXPECT_TRUE(causes(site, kEast).contains("relief"));
 }
 
-// Of a sheer edge of 0.32 m, above the clearance of 0.3 m, the plane under the rover leaves less than the limit.
+// Property: the judge reports a vertical step of 0.32 m, above the clearance of 0.3 m, although the residual
+// from the plane under the rover is below the relief limit.
 TEST(SafetyJudge, VerticalStepHiddenByThePlaneIsAFault) {
   Site site = plain();
   site.rover.clearance_m = 0.3;
@@ -200,13 +202,13 @@ TEST(SafetyJudge, VerticalStepHiddenByThePlaneIsAFault) {
 }
 
 TEST(SafetyJudge, EvidenceOfWeakGroundIsAFault) {
-  // Wheels that slipped 0.5 on the flat, where loam pulls 0.15: it was so much weaker there.
+  // Wheels slipped 0.5 on level ground, where loam pulls 0.15: the ground was weaker by that amount.
   std::vector<JournalRow> rows;
   for (int k = 0; k < 4; ++k)
     for (const JournalRow& row : moment({10.0, 10.1}, 0.5, 0.0, k)) rows.push_back(row);
   EXPECT_EQ(causes(plain(0.18), kEast), Causes{});
   EXPECT_TRUE(causes(plain(0.18), kEast, rows).contains("pull"));
-  // Refused rows that speak for danger count as well.
+  // Property: rejected rows that indicate danger count as well.
   for (JournalRow& row : rows) row.accepted = false;
   EXPECT_TRUE(causes(plain(0.18), kEast, rows).contains("pull"));
 }
@@ -227,26 +229,28 @@ TEST(SafetyBelief, SinglePlacePosteriorMatchesClosedForm) {
   const Site site = plain();
   const auto rows = moment({10.0, 10.0}, 0.5, 0.0, 1.0);
   std::vector<JournalRow> one(rows.begin(), rows.begin() + 1);
-  one[0].place = {10.625, 10.625};  // the middle of a square
+  one[0].place = {10.625, 10.625};  // the centre of a square
   const Departure here = Belief(site, one).at(1, one[0].place);
   const double prior = 0.05 * 0.05 + 0.05 * 0.05;
   const double seen = -site.kinds.at(1)->fresh.pull(0.5);
   const double slope = 0.5 * (site.kinds.at(1)->fresh.pull(0.53) - site.kinds.at(1)->fresh.pull(0.47));
   const double variance = 0.01 * 0.01 + 0.02 * 0.02 + slope * slope + 0.022 * 0.022;
-  // Closed form: two Gaussians in one dimension.
+  // Closed form: product of two Gaussians in one dimension.
   EXPECT_NEAR(here.mean, seen * prior / (prior + variance), 1e-9);
   EXPECT_NEAR(here.deviation, std::sqrt(prior * variance / (prior + variance)), 1e-9);
 }
 
 TEST(SafetyRisk, RiskIsBetweenIndependentAndFullyCorrelatedBounds) {
-  // A slope 0.05 less than the pull, under a class that is unsure by 0.05 as a whole and by 0.05 from place to place.
+  // The gradient is 0.05 below the pull. The class has a standard deviation of 0.05 as a whole and 0.05
+  // between places.
   const Site site = plain(0.21);
   const double reserve =
       Judge::mostPull(*Judge(site, Belief(site, {})).wheels({{10, 10.1}, 0, 0, false}, {0.21, 0.0}), 1.0) -
       0.21;
   ASSERT_GT(reserve, 0.0);
   const DrawnRisk risk = drawnRisk(site, Belief(site, {}), kEast, {.worlds = 20000, .entrapment = 1.0});
-  // Closed form: at least as likely as one place, at most as the ten metres' 11 stations together.
+  // Closed form: the risk is at least that of one place and at most the sum over the 11 stations of the ten
+  // metres.
   const double one = 0.5 * std::erfc(reserve / std::hypot(0.05, 0.05) / std::sqrt(2.0));
   EXPECT_GT(risk.immobilisation, one);
   EXPECT_LT(risk.immobilisation, 11.0 * one);

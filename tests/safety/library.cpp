@@ -30,7 +30,7 @@ struct Number {
   bool stated = false;
 };
 
-// A key under any of its units: a number, or {mean, std}.
+// Reads a key with any of its unit suffixes: a number, or {mean, std}.
 Number number(const YAML::Node& node, const std::string& stem) {
   for (const auto& [unit, factor] : kUnits) {
     const YAML::Node value = node[stem + unit];

@@ -7,7 +7,7 @@
 
 namespace safety {
 
-/// A rover as its YAML file has it, in SI units.
+/// A rover as in its YAML file, in SI units.
 struct Rover {
   double mass_kg = 0.0;
   double gravity_m_s2 = 9.80665;
@@ -25,7 +25,7 @@ struct Rover {
   double wheelLoad_N() const { return mass_kg * gravity_m_s2 / wheels; }
 };
 
-/// A soil with the standard deviations that its file states; 0 where it states none.
+/// A soil with the standard deviations of its file; 0 for a parameter without one.
 struct SoilPrior {
   Soil mean;
   Soil deviation{.sinkage_exponent = 0.0,
@@ -37,13 +37,14 @@ struct SoilPrior {
                  .side_bulldozing = 0.0};
 };
 
-/// Folder with soils/ and rovers/ of the library.
+/// The library's folder, which contains soils/ and rovers/.
 struct Library {
   std::string folder;
 
   Rover rover(const std::string& name) const;
   SoilPrior soil(const std::string& name) const;
-  /// Class number of the raster to soil: names of the library or mappings. Throws std::runtime_error.
+  /// Maps each class number of the raster to a soil, given as a library name or a mapping. Throws
+  /// std::runtime_error.
   std::map<int, SoilPrior> classes(const std::string& path) const;
 };
 

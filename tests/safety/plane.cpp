@@ -12,7 +12,7 @@ struct Height {
   double x_m, y_m, z_m;
 };
 
-// All cells of the disc count in `whole`, those with data are returned.
+// Returns the heights of the disc's cells with data; `whole` counts all cells of the disc.
 std::vector<Height> heightsUnder(const Raster& elevation_m, Cell cell, double radius_m, int& whole) {
   const double side = elevation_m.cell_m;
   const double reach_m = std::max(radius_m, std::sqrt(2.0) * side) * (1.0 + 1e-9);
@@ -31,7 +31,7 @@ std::vector<Height> heightsUnder(const Raster& elevation_m, Cell cell, double ra
 
 using Equations = std::array<std::array<double, 4>, 3>;
 
-// Gauss with the largest pivot; false where the heights stand in a line.
+// Gaussian elimination with pivoting; false if the heights lie on a line.
 bool solve(Equations& a) {
   for (std::size_t k = 0; k < 3; ++k) {
     std::size_t best = k;

@@ -21,7 +21,7 @@ TEST(SafetyPlane, FittedPlaneIsRecovered) {
   for (const Cell cell : {Cell{8, 8}, Cell{0, 0}, Cell{19, 3}}) {
     const Plane plane = planeUnder(z, cell, 0.8);
     ASSERT_TRUE(plane.known);
-    // Closed form: the plane itself, at the map's corner too.
+    // Closed form: the fit returns the given plane, also at a corner of the map.
     EXPECT_NEAR(plane.east, 0.21, 1e-9);
     EXPECT_NEAR(plane.north, -0.13, 1e-9);
     EXPECT_NEAR(plane.relief_m, 0.0, 1e-9);
@@ -30,7 +30,7 @@ TEST(SafetyPlane, FittedPlaneIsRecovered) {
 
 TEST(SafetyPlane, StepLeavesItsResidualRelief) {
   const Raster z = made([](double x, double) { return x > 104.0 ? 1.0 : 0.0; });
-  // Closed form: over 3x3 cells, heights 0, 0, 1 leave 1/6, -1/3, 1/6 of the step.
+  // Closed form: over 3x3 cells, heights 0, 0, 1 have residuals 1/6, -1/3, 1/6 of the step.
   const Plane plane = planeUnder(z, {7, 8}, 0.1);
   EXPECT_NEAR(plane.east, 1.0, 1e-9);
   EXPECT_NEAR(plane.relief_m, 0.5, 1e-9);

@@ -17,7 +17,7 @@ using Random = std::mt19937_64;
 
 constexpr double kTrapShare = 0.06;
 
-// Half of the drawn sites' ground is weak: routes must find their way between.
+// Half of the drawn sites' ground is weak, so that routes must avoid the weak areas.
 constexpr const char* kDrawnSoils = R"(terrain_classes:
   1: dry_sand
   2: bedrock
@@ -61,7 +61,7 @@ std::string text(Place p) {
   return text(p.x_m) + "," + text(p.y_m);
 }
 
-// Waves and a hill, with holes in the data; classes in stripes and blobs whose edges cut through cells' paths.
+// Draws waves and a hill, with holes in the data. Classes form stripes and patches whose edges cross cells.
 void draw(Random& random, const fs::path& folder) {
   const int side = 64;
   const double cell_m = any(random, std::vector{0.3, 0.5, 1.0});
@@ -91,7 +91,7 @@ void draw(Random& random, const fs::path& folder) {
   write(folder / "soils.yaml", kDrawnSoils);
 }
 
-// A square of a real map, in metres of its own, with drawn classes.
+// Cuts a square from a real map, in local coordinates, and draws its classes.
 void cut(Random& random, const Places& places, const fs::path& folder) {
   const std::string file = kRealMaps[random() % std::size(kRealMaps)];
   const Raster whole = readRaster(places.maps + "/" + file);
@@ -109,7 +109,7 @@ void cut(Random& random, const Places& places, const fs::path& folder) {
   write(folder / "soils.yaml", "terrain_classes:\n  1: mars_crusty\n  3: mars_drift\n");
 }
 
-// Triangles in map metres.
+// Adds three triangular keep-out areas in map coordinates.
 void fence(Random& random, ProvingGround& ground) {
   const double side_m = ground.site.elevation_m.cell_m * ground.site.elevation_m.width;
   std::string features;
@@ -161,7 +161,7 @@ Place somewhere(const ProvingGround& ground, Random& random) {
   }
 }
 
-// What drives across the site read, put into the map; a drive that cannot start teaches nothing.
+// Updates the map with the telemetry of two drives across the site. A drive that cannot start is skipped.
 void teach(const Places& places, ProvingGround& ground, Random& random) {
   write(ground.folder / "truth.yaml", kTruth);
   for (int drive = 0; drive < 2; ++drive) {

@@ -12,50 +12,50 @@
 
 namespace safety {
 
-/// Where the campaign finds what it needs.
+/// Paths that the campaign needs.
 struct Places {
-  std::string program;           ///< talus
+  std::string program;           ///< path of the program talus
   std::string library;           ///< folder with soils/ and rovers/
-  std::string maps;              ///< folder of real maps; empty: generated and drawn sites alone
-  std::filesystem::path folder;  ///< for the files of sites and routes
+  std::string maps;              ///< folder of real maps; empty: generated and drawn sites only
+  std::filesystem::path folder;  ///< folder for the files of sites and routes
 };
 
-/// What a site is made of, by its number alone.
+/// Kind of a site, determined by its number.
 enum class SiteKind { Rocks, Dunes, Craters, Drawn, Real };
 
-/// A site on disk: DEM, classes, soils, keep-out areas, a map with or without what drives taught it.
+/// A site on disk: DEM, classes, soils, keep-out areas, and a map with or without updates from drives.
 struct ProvingGround {
   std::uint64_t number = 0;
   SiteKind kind = SiteKind::Rocks;
   std::string rover;
-  bool learned = false;  ///< telemetry of two drives was put in
+  bool learned = false;  ///< whether the map is updated with the telemetry of two drives
   std::filesystem::path folder;
   Site site;
   std::vector<JournalRow> journal;
-  std::vector<std::pair<Place, Place>> pairs;  ///< start and goal of its errands
+  std::vector<std::pair<Place, Place>> pairs;  ///< start and goal of the site's errands
 };
 
-/// Makes site number n: the same files for the same number, program and maps. Throws std::runtime_error where
-/// the program fails.
+/// Makes site number n. The files depend only on the number, the program and the maps. Throws
+/// std::runtime_error if the program fails.
 ProvingGround provingGround(const Places& places, std::uint64_t number);
 
-/// Planners in the order of a site's routes.
+/// Names of the planners in the order of a site's routes.
 const std::vector<std::string>& planners();
 
-/// Two places that a route is sought between.
+/// A planning task: start, goal and planner.
 struct Errand {
   Place start, goal;
   std::string planner;
 };
 
-/// Pairs of places of a site: each the first of six draws between which the field planner finds a route, or
-/// the last of them.
+/// Number of start-goal pairs of a site. Each pair is the first of six draws for which the field planner
+/// finds a route, or else the last draw.
 inline constexpr std::size_t kPairs = 2;
 
-/// Errand number k of a site: all planners, then the next pair of places.
+/// Errand number k of a site: all planners for the first pair, then for the next pair.
 Errand errand(const ProvingGround& ground, std::uint64_t k);
 
-/// A call of the program in a folder, its output kept in log.txt there.
+/// A call of the program in a folder; the output is kept in log.txt of that folder.
 struct Call {
   std::string words;
   int run(const Places& places, const std::filesystem::path& folder) const;

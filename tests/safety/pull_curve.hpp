@@ -8,34 +8,34 @@
 
 namespace safety {
 
-/// Drawbar pull over load of one wheel of a rover on one soil over slip, by drive(): exact at slips 0.05 apart
-/// and at two loads, linear between (within 0.002 of the model; that is part of the allowance). At each of some slip
-/// angles, with the side force.
+/// Drawbar pull over load of one wheel of a rover on one soil as a function of slip, computed by drive().
+/// Exact at slips 0.05 apart and at two loads, linear between (error at most 0.002, part of the allowance).
+/// Tabulated with the side force at each of several slip angles.
 class PullCurve {
  public:
   PullCurve(const Soil& soil, const Rover& rover);
 
-  /// Slip angles in degrees; beyond 45 the model is not to be trusted (docs/slopes.md).
+  /// Slip angles in degrees; the model is not valid beyond 45 (docs/slopes.md).
   static constexpr std::array<double, 12> kAngles_deg{0, 1, 2, 4, 6, 9, 13, 18, 24, 31, 38, 45};
   static double angle_rad(std::size_t node);
 
-  /// DP/N [-] at a slip in [-1, 1] and a share of the load on the flat in [0.3, 1.5].
+  /// DP/N [-] at a slip in [-1, 1] and a load over the load on level ground in [0.3, 1.5].
   double pull(double slip, double load_share = 1.0, std::size_t angle = 0) const;
-  /// F/N there, towards the side that the wheel is turned to.
+  /// F/N [-], positive towards the side to which the wheel is turned.
   double side(double slip, double load_share, std::size_t angle) const;
-  /// z/r there.
+  /// z/r [-].
   double sinkage(double slip, double load_share = 1.0, std::size_t angle = 0) const;
-  /// T/(N r) there.
+  /// T/(N r) [-].
   double torque(double slip, double load_share = 1.0, std::size_t angle = 0) const;
 
-  static constexpr double kReferenceSlip = 0.5;  ///< that categories are judged at (thesis 3.5)
-  static constexpr double kMostSlip = 0.8;       ///< more counts as stuck
+  static constexpr double kReferenceSlip = 0.5;  ///< slip at which categories are judged (thesis 3.5)
+  static constexpr double kMostSlip = 0.8;       ///< a higher slip counts as immobilised
 
  private:
   struct Row {
     double pull = 0.0, sinkage = 1.0, torque = 0.0, side = 0.0;
   };
-  // How a wheel is used: slip, share of the load, node of the angle.
+  // State of a wheel: slip, load share, node of the angle.
   struct Use {
     double slip, load_share;
     std::size_t angle;
@@ -45,8 +45,8 @@ class PullCurve {
   std::array<std::vector<Row>, kAngles_deg.size()> light_, heavy_;
 };
 
-/// The class's share of doubt: what the stated deviations make of DP/W at the reference slip, to first order
-/// and independent; 0.05 where none is stated (docs/limits.md).
+/// Standard deviation of the class's DP/W at the reference slip, propagated to first order from the stated,
+/// independent standard deviations of the soil; 0.05 if none is stated (docs/limits.md).
 double classDeviation(const SoilPrior& prior, const Rover& rover);
 
 }  // namespace safety

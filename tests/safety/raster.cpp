@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNoData = -99999.0;
 
-// Rows of a file run from north to south.
+// Reverses the order of the rows, because the rows of a file run from north to south.
 void turnOver(Raster& raster) {
   const auto width = static_cast<std::ptrdiff_t>(raster.width);
   for (std::ptrdiff_t low = 0, high = raster.height - 1; low < high; ++low, --high)

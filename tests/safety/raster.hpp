@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// A checker of routes that shares nothing with Talus: it reads files and has its own formulas (README.md).
+/// A checker of routes that shares no code with Talus: it reads files and uses its own formulas (README.md).
 namespace safety {
 
 /// A place on the map: x east, y north [m].
@@ -20,7 +20,7 @@ struct Cell {
   int row = 0;
 };
 
-/// One band of a raster, rows from south to north; NaN where it holds no data.
+/// One band of a raster, rows from south to north; NaN for cells without data.
 struct Raster {
   int width = 0;
   int height = 0;
@@ -40,13 +40,13 @@ struct Raster {
   }
 };
 
-/// Reads the first band of a file whose rows run along the axes. Throws std::runtime_error.
+/// Reads the first band of a file with axis-aligned rows. Throws std::runtime_error.
 Raster readRaster(const std::string& path);
 
-/// Writes an ESRI ASCII grid, NaN as its no-data value.
+/// Writes an ESRI ASCII grid; NaN is written as the no-data value.
 void writeAscii(const Raster& raster, const std::string& path);
 
-/// The part of a raster from a cell on, in metres of its own.
+/// Returns the part of a raster that begins at a cell, in local coordinates.
 Raster part(const Raster& raster, Cell south_west, int width, int height);
 
 }  // namespace safety

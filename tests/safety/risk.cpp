@@ -9,14 +9,15 @@ namespace safety {
 namespace {
 
 constexpr std::size_t kMostStations = 150;
-// Ground holds a rover that it does not pull at any slip; a route is refused from PullCurve::kMostSlip on.
+// The ground immobilises a rover if no slip up to 1 gives enough pull; a route is refused from
+// PullCurve::kMostSlip on.
 constexpr double kStrongestSlip = 1.0;
 
-// A stretch of the route.
+// One section of the route.
 struct Stretch {
   Station at;
   int class_number = 0;
-  double reserve = 0.0;  // by how much the ground may be weaker than the mean belief until nothing holds
+  double reserve = 0.0;  // largest reduction of DP/W below the mean estimate for which an equilibrium exists
   double metres = 0.0;
 };
 
@@ -35,7 +36,7 @@ std::vector<Stretch> stretches(const Site& site, const Belief& belief, const Rou
     const double c = std::cos(at.heading_rad), s = std::sin(at.heading_rad);
     const Judge::Planar gradient{plane.east * c + plane.north * s, plane.north * c - plane.east * s};
     const auto wheels = judge.wheels(at, gradient);
-    // A stretch is no longer than what is left of the route.
+    // The last section ends with the route.
     const double metres = std::min(apart_m, route.length_m() - at.along_m);
     if (wheels && metres > 0.0)
       found.push_back(
@@ -44,7 +45,8 @@ std::vector<Stretch> stretches(const Site& site, const Belief& belief, const Rou
   return found;
 }
 
-// Lower factor of a covariance in place; what rounding takes below zero is zero.
+// Computes the lower Cholesky factor of a covariance in place; pivots below zero from rounding are set to
+// zero.
 void factorise(std::vector<double>& a, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
@@ -57,7 +59,7 @@ void factorise(std::vector<double>& a, std::size_t n) {
     }
 }
 
-// Ground of one class: which stretches, and the factor of their departures.
+// Sections on ground of one class, and the Cholesky factor of the covariance of their departures.
 struct Ground {
   std::vector<std::size_t> stretches;
   std::vector<double> factor;

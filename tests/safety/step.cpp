@@ -11,14 +11,14 @@ double heightAt(const Raster& z, Cell cell) {
   return z.holds(cell) ? z.at(cell) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// A gentlest slope that both sides have a part in.
+// The smaller of two slopes of equal sign; 0 for slopes of opposite sign.
 double through(double side, double other) {
   if (side > 0.0 && other > 0.0) return std::min(side, other);
   if (side < 0.0 && other < 0.0) return std::max(side, other);
   return 0.0;
 }
 
-// From a cell outwards by an offset: the rise over it, less what goes on through from behind to beyond.
+// The rise from a cell to the neighbour at an offset, less the slope common to the cells behind and beyond.
 double stepFrom(const Raster& z, Cell from, Cell by) {
   const auto height = [&](int times) {
     return heightAt(z, {from.column + times * by.column, from.row + times * by.row});

@@ -40,7 +40,7 @@ TEST(SafetyStep, NextToNoDataTheOppositeSlopeIsUsed) {
   EXPECT_NEAR(stepUnder(z, {8, 8}, {.radius_m = 0.0, .wheel_m = 0.2}), 0.0, 1e-9);
   for (int row = 0; row < z.height; ++row)
     z.values[static_cast<std::size_t>(row * z.width + 6)] = std::numeric_limits<double>::quiet_NaN();
-  // Closed form: two cells between holes, 0.2 m apart in height, and nothing known of the slope.
+  // Closed form: two cells between holes differ by 0.2 m in height; the slope of the sides is unknown.
   EXPECT_NEAR(stepUnder(z, {8, 8}, {.radius_m = 0.0, .wheel_m = 0.2}), 0.2, 1e-9);
 }
 

@@ -22,12 +22,13 @@ double largest(const Forces& f) {
                    std::fmax(std::abs(f.pull), std::abs(f.torque)));
 }
 
-// How far the rim goes over the soil while it turns by one radian, over its radius; locked wheels nearly without end.
+// Path of the rim over the soil per radian of rotation, over the radius; the value of a locked wheel is
+// bounded by 1e6.
 double travelOf(double slip) {
   return slip >= 0.0 ? 1.0 - slip : 1.0 / std::fmax(1.0 + slip, 1e-6);
 }
 
-// What sliding sideways adds to the sinkage exponent.
+// Increase of the sinkage exponent through sliding sideways.
 double digging(const Soil& soil, const LoadedWheel& wheel) {
   const double q = travelOf(wheel.slip), across = q * std::tan(wheel.slip_angle_rad);
   const double sliding = std::hypot(1.0 - q, across) / std::fmax(1.0, std::hypot(q, across));
@@ -46,7 +47,8 @@ class Contact {
         exponent_(soil.sinkage_exponent + (wheel.slip_angle_rad > 0.0 ? digging(soil, wheel) : 0.0)),
         sideways_(wheel.radius_m * travelOf(wheel.slip) * std::tan(wheel.slip_angle_rad)) {}
 
-  // In newtons, torque over r. The square root's end at the entry is taken out by t = t1 - s^2.
+  // Forces [N]; torque is divided by r. The substitution t = t1 - s^2 removes the square-root singularity at
+  // the entry.
   Forces forces() const {
     const auto rear = [this](double t) { return at(t); };
     const auto front = [this](double s) { return 2.0 * s * at(entry_ - s * s); };
@@ -54,7 +56,7 @@ class Contact {
            (integral(rear, 0.0, peak_) + integral(front, 0.0, std::sqrt(entry_ - peak_)));
   }
 
-  // Of the soil beside the wheel [N]: Hegedus' blade at each place of the chord, by the midpoint rule.
+  // Force of the soil beside the wheel [N]: Hegedus' blade at each point of the chord, by the midpoint rule.
   double pushed_N() const {
     constexpr int kParts = 200;
     const double phi = soil_.friction_angle_rad, x = 0.25 * std::numbers::pi - 0.5 * phi;
@@ -107,7 +109,7 @@ class Contact {
     Forces at_low, at_middle, at_high, sum;
   };
 
-  // Of a piece: at an angle judged by hundredths, so that many angles take no longer than one.
+  // Tolerance of the quadrature of one piece; coarser at a slip angle, to limit the time of many angles.
   double close() const { return wheel_.slip_angle_rad > 0.0 ? 1e-5 : 1e-7; }
 
   template <typename F>
@@ -128,8 +130,8 @@ class Contact {
   double entry_, peak_, modulus_, exponent_, sideways_;
 };
 
-// Entry angle that carries the load, between the two: log W is all but straight over log t1, so that the false
-// position with halved ends (Illinois) is there in a few steps.
+// Entry angle in [low, high] that carries the load. log W is nearly linear in log t1, so that the Illinois
+// variant of the false position method converges in a few steps.
 double entryFor(const Soil& soil, const LoadedWheel& wheel, double low, double high) {
   const auto excess = [&](double log_entry) {
     return std::log(std::fmax(Contact(soil, wheel, std::exp(log_entry)).forces().load, 1e-12) / wheel.load_N);
@@ -139,7 +141,7 @@ double entryFor(const Soil& soil, const LoadedWheel& wheel, double low, double h
   for (int step = 0; step < 100 && b - a > 1e-12; ++step) {
     const double c = (a * at_b - b * at_a) / (at_b - at_a), at_c = excess(c);
     if (std::abs(at_c) < (wheel.slip_angle_rad > 0.0 ? 1e-7 : 1e-9)) return std::exp(c);
-    // The end that stays twice in a row counts half.
+    // Illinois rule: the value at an end that is retained twice in a row is halved.
     if (at_c < 0.0) {
       a = c, at_a = at_c;
       if (last < 0) at_b *= 0.5;

@@ -26,8 +26,8 @@ TEST(SafetyWheel, ForcesMatchTheReferenceCases) {
         soil.shear_modulus_m >> soil.c1 >> soil.c2 >> wheel.radius_m >> wheel.width_m >> wheel.load_N >>
         wheel.slip >> sinkage_m >> entry >> torque_Nm >> pull_N;
     const WheelAnswer a = drive(soil, wheel);
-    // Closed form: equilibria.csv by independent quadrature, to 1e-8; Simpson's rule stops at 1e-7 of each
-    // piece.
+    // Closed form: equilibria.csv by independent quadrature, accurate to 1e-8; the adaptive Simpson rule
+    // stops at 1e-7 of each piece.
     EXPECT_NEAR(a.sinkage_m, sinkage_m, 1e-6 * wheel.radius_m) << line;
     EXPECT_NEAR(a.torque_Nm, torque_Nm, 1e-5 * wheel.load_N * wheel.radius_m) << line;
     EXPECT_NEAR(a.drawbar_pull_N, pull_N, 1e-5 * wheel.load_N) << line;
@@ -48,14 +48,14 @@ TEST(SafetyWheel, InterpolatedCurveMatchesTheModel) {
     for (const double share : {0.8, 1.0}) {
       const LoadedWheel wheel{rover.wheel_radius_m, rover.wheel_width_m, share * rover.wheelLoad_N(), slip};
       const WheelAnswer a = drive(sand, wheel);
-      // Property: part of the allowance of 0.013 in DP/W (judge.hpp).
+      // Property: the interpolation error is part of the allowance of 0.013 in DP/W (judge.hpp).
       EXPECT_NEAR(curve.pull(slip, share), a.drawbar_pull_N / wheel.load_N, 0.003) << slip << ' ' << share;
       EXPECT_NEAR(curve.sinkage(slip, share), a.sinkage_m / wheel.radius_m, 0.003) << slip << ' ' << share;
     }
 }
 
-// Property: no angle is the straight wheel, and the rim drags the soil against the way: pull, side force and torque
-// stay within what the shear strength carries.
+// Property: a slip angle of 0 gives the straight wheel, and the shear stress opposes the sliding: pull, side
+// force and torque are bounded by the shear strength.
 TEST(SafetyWheel, SlipAngleForcesAreContinuousAtZeroAndMonotone) {
   const Soil sand{.cohesion_Pa = 1040,
                   .friction_angle_rad = 0.4887,

@@ -13,7 +13,7 @@ inline bool installed(const std::string& program) {
   return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
 }
 
-/// Whether every test has to run here: the environment says CI=true.
+/// Whether skipping is forbidden: the environment contains CI=true.
 inline bool runsEveryTest() {
   const char* ci = std::getenv("CI");
   return ci != nullptr && std::string_view(ci) == "true";
@@ -21,8 +21,8 @@ inline bool runsEveryTest() {
 
 }  // namespace talus::test
 
-/// What a test needs and not every machine has. Without it the test is skipped, in CI it fails; both say
-/// what is missing.
+/// Requires something that not every machine has. If it is missing, the test is skipped, or fails in CI; the
+/// message states what is missing.
 #define TALUS_REQUIRE(available, missing)                                                             \
   if (!(available)) {                                                                                 \
     if (::talus::test::runsEveryTest()) GTEST_FAIL() << (missing) << "; CI=true asks for every test"; \

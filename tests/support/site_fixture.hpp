@@ -7,7 +7,7 @@
 
 namespace talus::costmap {
 
-/// A 90 kg class four-wheeler on Mars, for tests.
+/// A four-wheeled rover of 60 kg on Mars, for tests.
 inline terramech::Rover testRover() {
   return {.name = "test rover",
           .mass_kg = 60.0,
@@ -23,7 +23,7 @@ inline terramech::Rover testRover() {
           .hotel_power_W = 15.0};
 }
 
-/// A sand that carries it well.
+/// A sand that carries the test rover well.
 inline terramech::Soil testSand() {
   return {.name = "test sand",
           .cohesion_Pa = 800.0,
@@ -34,7 +34,7 @@ inline terramech::Soil testSand() {
           .shear_modulus_m = 0.015};
 }
 
-/// The same, weak and soft.
+/// A weaker and softer sand.
 inline terramech::Soil testDust() {
   terramech::Soil soil = testSand();
   soil.name = "test dust";

@@ -11,9 +11,9 @@
 
 namespace talus::costmap {
 
-/// A site drawn in characters, north on top, one cell of a metre each:
-///   1 2 3 ... terrain class   ? no elevation   # keep-out     on a plane that rises by `rise` per metre
-///   eastwards.
+/// A site from a drawing, north on top, one cell of one metre for each character, on a plane that rises by
+/// `rise` per metre eastwards:
+///   1 2 3 ... terrain class   ? no elevation   # keep-out
 inline MapLayers drawn(const std::vector<std::string>& rows, double rise = 0.0) {
   const maps::Grid grid{.width = static_cast<int>(rows[0].size()),
                         .height = static_cast<int>(rows.size()),

@@ -1,7 +1,8 @@
-// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan|renamed].
-// Prints a line a world and the rates that matter; with scan, of the plain scan (plain_scan.hpp) by column alone; with renamed, whether other
-// names of columns change the answer. Development seeds are 1 to 9999; 100000 and above are for
-// judging, reported once.
+// Blind trials of residual tracing: blind_trials FIRST_SEED COUNT
+// [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign]
+// [scan|renamed]. Prints one line for each world and the rates. With scan, the plain scan (plain_scan.hpp)
+// is judged, by column alone; with renamed, whether other column names change the result. Seeds 1 to 9999
+// are for development; seeds from 100000 on are for judging and are reported once.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -57,7 +58,7 @@ double rms(const std::vector<double>& v) {
   return std::sqrt(s / static_cast<double>(v.size()));
 }
 
-/// Hidden effects with their column among these, and whether a column is of none.
+/// Number of hidden effects whose column is named, and whether a column without an effect is named.
 struct Named {
   int found = 0;
   bool extra = false;
@@ -76,7 +77,7 @@ Named named(const blind::World& world, const std::vector<std::string>& columns) 
   return n;
 }
 
-/// What a trace names, own columns by their number.
+/// Names that a trace returns; the world's own columns are replaced by their number.
 std::string answerWith(blind::World world, const std::vector<std::string>& names) {
   const std::vector<std::string> own{"temperature_C", "dust_index", "battery_V"};
   for (std::string& column : world.columns)

@@ -18,13 +18,13 @@ struct Integral {
 Integral integrate(const Wheel& m, double slip, double entry) {
   const double peak = std::clamp(m.c1 + m.c2 * slip, 0.05, 0.95) * entry;
   const double exit = -std::acos(1.0 - m.kappa * (1.0 - std::cos(entry)));
-  constexpr int kSteps = 200;  // half of them either side of the peak
+  constexpr int kSteps = 200;  // half of the steps on either side of the peak
   Integral sum;
   for (int i = 0; i < kSteps; ++i) {
     const bool rear = i < kSteps / 2;
     const double v = (2.0 * (rear ? i : i - kSteps / 2) + 1.0) / kSteps;
     const double u =
-        rear ? v * v * v : 1.0 - (1.0 - v) * (1.0 - v) * (1.0 - v);  // fine where the stress begins
+        rear ? v * v * v : 1.0 - (1.0 - v) * (1.0 - v) * (1.0 - v);  // finer near the ends of the contact
     const double dv = 3.0 * (rear ? v * v : (1.0 - v) * (1.0 - v));
     const double a = rear ? exit + (peak - exit) * u : peak + (entry - peak) * u;
     const double front = a >= peak ? a : entry - (a - exit) / (peak - exit) * (entry - peak);
@@ -100,7 +100,7 @@ Answer truth(const World& world, const Conditions& at) {
   if (dig != 1.0) {
     const double z = std::min(0.9 * m.r, dig * m.r * (1.0 - std::cos(entry)));
     entry = std::acos(1.0 - z / m.r);
-    for (int i = 0; i < 40; ++i) {  // softer ground until it carries the load there
+    for (int i = 0; i < 40; ++i) {  // bisection on the soil's stiffness until the contact carries the load
       const double w = integrate(m, slip, entry).w;
       m.k *= std::pow(load / w, 0.9);
     }

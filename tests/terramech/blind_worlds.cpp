@@ -59,19 +59,19 @@ Hidden draw(const std::vector<Kind>& kinds, Random& random) {
   return {k.kind, k.family, k.covariates, k.channels, random.uniform(k.low, k.high)};
 }
 
-/// How a campaign was laid out.
+/// Design of a campaign.
 struct Design {
   int count = 100;
   bool levels = false;
-  double one_slip = -1.0;   ///< >= 0: all rows have it
-  bool tied_speed = false;  ///< the travel speed is fixed, so that the rim's follows the slip
+  double one_slip = -1.0;   ///< >= 0: slip of all rows
+  bool tied_speed = false;  ///< the travel speed is fixed, so that the rim speed follows from the slip
   bool both_speeds = false;
-  int rows_a_run = 0;       ///< > 0: runs
-  double run_offset = 0.0;  ///< of DP/W and z/r, normal from run to run
-  int idle_columns = 0;     ///< that mean nothing
+  int rows_a_run = 0;       ///< > 0: rows in a run
+  double run_offset = 0.0;  ///< standard deviation of the offset of a run in DP/W and z/r
+  int idle_columns = 0;     ///< number of columns without an effect
   bool heavy_tails = false;
   bool campaign = false;
-  double absolute = 0.0;  ///< part of the noise that does not grow with the reading, of DP/W and T/(rW)
+  double absolute = 0.0;  ///< part of the noise of DP/W and T/(rW) that is independent of the reading
 };
 
 Design plainDesign(Random& random) {
@@ -124,7 +124,7 @@ Conditions conditions(Random& random, int row, const Design& design) {
   return c;
 }
 
-/// Conditions of a row in a run whose wheel, load, speed, pass and slope are set.
+/// Conditions of a row in a run with given wheel, load, speed, pass and slope.
 Conditions within(Conditions run, const Conditions& row) {
   for (const auto own : {&Conditions::slip, &Conditions::time, &Conditions::temperature, &Conditions::dust,
                          &Conditions::battery})
@@ -135,12 +135,12 @@ Conditions within(Conditions run, const Conditions& row) {
 
 double shock(Random& random, const Design& design) {
   if (!design.heavy_tails) return random.normal();
-  double chi2 = 0.0;  // Student's t of five degrees, brought to unit variance
+  double chi2 = 0.0;  // Student's t with five degrees of freedom, scaled to unit variance
   for (int k = 0; k < 5; ++k) chi2 += std::pow(random.normal(), 2);
   return random.normal() / std::sqrt(chi2 / 5.0) * std::sqrt(3.0 / 5.0);
 }
 
-/// Offsets that the rows of one run share.
+/// Offsets common to the rows of one run.
 struct RunOffset {
   double pull = 0.0, sinkage = 0.0;
 };
@@ -152,7 +152,7 @@ std::vector<double> measure(const World& world, const Design& design, const Cond
     return design.absolute > 0.0 ? relative + unit * design.absolute * shock(random, design) : relative;
   };
   const double slip = std::clamp(c.slip * (1.0 + world.noise * shock(random, design)), -1.0, 1.0);
-  // Slip is had from the two speeds: with both in the table, the one over ground errs with it.
+  // Slip is computed from the two speeds; if both are columns, the speed over ground has the same error.
   const double speed = design.both_speeds ? c.rim * (1.0 - slip) : c.speed;
   return {slip,
           c.load * (1.0 + world.noise * shock(random, design)),
@@ -172,7 +172,7 @@ std::vector<double> measure(const World& world, const Design& design, const Cond
           c.width};
 }
 
-/// Whether a campaign could show an effect at all.
+/// Whether the design of a campaign allows an effect to be identified.
 bool shows(const Hidden& h, const Design& design) {
   const auto on = [&](const char* column) {
     return std::find(h.covariates.begin(), h.covariates.end(), column) != h.covariates.end();
@@ -180,7 +180,7 @@ bool shows(const Hidden& h, const Design& design) {
   return !(design.one_slip >= 0.0 && on("slip")) && !(design.tied_speed && on("speed_mps"));
 }
 
-/// Columns without meaning: white, wandering or stepping.
+/// Adds columns without an effect: white noise, random walks or steps.
 void addIdleColumns(const Design& design, std::vector<std::string>& columns,
                     std::vector<std::vector<double>>& rows, Random& random) {
   for (int k = 0; k < design.idle_columns; ++k) {
@@ -196,7 +196,7 @@ void addIdleColumns(const Design& design, std::vector<std::string>& columns,
   }
 }
 
-/// A column that goes with that of each effect.
+/// Adds for each effect a column correlated with the effect's own column.
 void addTied(World& w, Random& random) {
   for (std::size_t h = 0; h < w.hidden.size(); ++h) {
     const std::string& own = w.hidden[h].covariates.front();
@@ -244,7 +244,7 @@ World makeWorld(const WorldPlan& plan) {
   if (plan.sites) w.hidden = {{"another_soil", "empirical", {"site"}, {kPull, kSink, kTorque}, 0.8}};
   for (Hidden& h : w.hidden)
     while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
-  if (design.tied_speed)  // nobody can tell these apart
+  if (design.tied_speed)  // the two columns cannot be distinguished
     for (Hidden& h : w.hidden)
       if (std::find(h.covariates.begin(), h.covariates.end(), "slip") != h.covariates.end())
         h.covariates.push_back("rim_speed_mps");
@@ -280,7 +280,7 @@ World makeWorld(const WorldPlan& plan) {
     const Conditions c = conditions(random, row, held);
     const Answer a = truth(w, c);
     w.held.push_back(measure(w, design, c, a, {}, random));
-    // The floor: the true model fed with the measured slip and load.
+    // The noise floor: residual of the true model at the measured slip and load.
     Conditions seen = c;
     seen.slip = w.held.back()[0];
     seen.load = w.held.back()[1];
@@ -288,7 +288,7 @@ World makeWorld(const WorldPlan& plan) {
     w.floor_pull.push_back((w.held.back()[4] - best.pull) / seen.load);
     w.floor_z.push_back((w.held.back()[3] - best.z) / c.radius);
   }
-  if (!plan.wide && !plan.campaign) {  // the rim's speed follows from speed and slip
+  if (!plan.wide && !plan.campaign) {  // the rim speed follows from speed and slip
     const auto at = std::find(w.columns.begin(), w.columns.end(), "rim_speed_mps") - w.columns.begin();
     w.columns.erase(w.columns.begin() + at);
     for (auto* rows : {&w.rows, &w.held})

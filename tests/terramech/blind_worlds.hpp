@@ -7,35 +7,36 @@
 #include <string>
 #include <vector>
 
-/// Wheel data from made-up worlds with effects that nobody declares, and a judge of what a tracer says of
-/// them. Independent of the library on purpose: own stress integrals (plain midpoint rule, bisection), own
-/// formulas, own random numbers; neither includes anything of it.
+/// Wheel data from synthetic worlds with hidden effects, and a judge of the result of a trace. Independent
+/// of the library: own stress integrals (midpoint rule, bisection), own formulas and own random numbers;
+/// neither side includes the other.
 namespace talus::blind {
 
-/// A true soil, SI.
+/// True parameters of a soil, in SI units.
 struct Ground {
   double cohesion, phi, n, k, shear_k, c1, c2, density;
 };
 
 /// One hidden effect.
 struct Hidden {
-  std::string kind;    ///< "slip_sinkage_ding", ..., or "form:..." for forms that no library holds
-  std::string family;  ///< that a library form belongs to; "empirical" for other forms
-  std::vector<std::string> covariates;  ///< columns that a right answer may name
-  std::vector<std::string> channels;    ///< scaled channels that a right answer may name
-  double size = 0.0;                    ///< the main number of the effect
+  std::string kind;    ///< "slip_sinkage_ding", ..., or "form:..." for forms outside the library
+  std::string family;  ///< family of the library form; "empirical" for other forms
+  std::vector<std::string> covariates;  ///< columns accepted as a correct result
+  std::vector<std::string> channels;    ///< scaled channels accepted as a correct result
+  double size = 0.0;                    ///< main parameter of the effect
 };
 
-/// A table with answers, and the truth behind it.
+/// A table of measurements, and the true effects behind it.
 struct World {
   std::uint64_t seed = 0;
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;  ///< training rows, noisy
-  std::vector<std::vector<double>> held;  ///< rows of conditions that training has too, noisy
+  std::vector<std::vector<double>>
+      held;  ///< held-out rows under conditions that also occur in training, noisy
   std::vector<double> floor_pull,
       floor_z;                    ///< noise-free truth less measured of held rows: what nobody can predict
   std::vector<int> run;           ///< number of the run of each training row; empty: there are no runs
-  std::vector<std::string> site;  ///< of each training row; empty: they are not recorded
+  std::vector<std::string> site;  ///< site of each training row; empty: not recorded
   std::vector<Hidden> hidden;
   Ground ground{};
   double noise = 0.03;
@@ -44,7 +45,7 @@ struct World {
   std::string yaml() const;  ///< the base soil, without effects
 };
 
-/// An independent random source, the same everywhere.
+/// A random source whose numbers are the same on every platform.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed * 0x9E3779B97F4A7C15ULL + 77) {}
@@ -60,36 +61,36 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// What to make.
+/// Specification of a world.
 struct WorldPlan {
   std::uint64_t seed = 1;
   int effects = 1;      ///< 0, 1 or 2
-  bool library = true;  ///< forms that the literature names, or others
-  /// 12 to 25 runs whose wheel, load, speed, pass and slope are fixed within the run; in place of wide
+  bool library = true;  ///< forms of the library, or other forms
+  /// 12 to 25 runs with fixed wheel, load, speed, pass and slope; replaces `wide`
   bool campaign = false;
   bool wide =
       false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
               ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise
-  double scatter = 0.0;  ///< standard deviation by which tan phi and c differ from run to run, relative
-  /// What nobody can tell: "tied", the column of each effect goes with another; "few", eight rows; "patch", the last third
-  /// of the runs on another soil, not recorded.
+  double scatter = 0.0;  ///< relative standard deviation of tan phi and c between runs
+  /// Cases that cannot be resolved: "tied", the column of each effect is correlated with another; "few",
+  /// eight rows; "patch", the last third of the runs is on another soil, not recorded.
   std::string untold{};
-  bool product = false;  ///< in place of other effects: a product of two columns
+  bool product = false;  ///< instead of other effects: a product of two columns
   bool sites =
       false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths
 };
 World makeWorld(const WorldPlan& plan);
 
-/// What a tracer said, reduced to words.
+/// One result of a trace: effect, covariate and channel.
 struct Claim {
   std::string name, covariate, channel;
 };
 
-/// Points of one world.
+/// Score of one world.
 struct Marks {
   int hidden = 0, claimed = 0;
-  int located = 0;  ///< hidden effects with covariate and channel right
-  int family = 0;   ///< hidden effects with their family named too (curves: called empirical)
+  int located = 0;  ///< hidden effects with correct covariate and channel
+  int family = 0;   ///< hidden effects with correct family as well (curves: "empirical")
 };
 Marks judge(const World& world, const std::vector<Claim>& claims);
 

@@ -58,7 +58,7 @@ inline WheelState straightOn(double slip) {
   return s;
 }
 
-/// A contact with round numbers, for the forms alone.
+/// A contact with round numbers for tests of single forms.
 inline WheelContact plainContact() {
   WheelContact c;
   c.load_N = 100.0;
@@ -72,7 +72,7 @@ inline WheelContact plainContact() {
   return c;
 }
 
-/// What a form alone makes of plainContact() at a value of its covariate.
+/// plainContact() after a form has acted at a value of its covariate.
 inline WheelContact acted(const char* name, std::vector<double> parameters, double x,
                           const WheelState& s = {}) {
   WheelContact c = plainContact();
@@ -80,7 +80,7 @@ inline WheelContact acted(const char* name, std::vector<double> parameters, doub
   return c;
 }
 
-/// What a form alone makes of a reading.
+/// A reading after a form has changed it.
 inline Reading readWith(const char* name, std::vector<double> parameters, double x, const WheelState& s,
                         const WheelContact& c, Reading reading) {
   findEffect(name)->read({parameters.data(), s, x}, c, reading);

@@ -1,4 +1,4 @@
-// What the thesis prints wrong, each shown by quadrature or by its own equations. The list in words:
+// Printing errors of the thesis, each shown by quadrature or by the thesis' own equations. The list is in
 // docs/validation.md.
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,8 @@ TEST(Errata, Equation23OffsetTerm) {
 }
 
 TEST(Errata, Equation29FollowsFromTheCorrectedFormOnly) {
-  // M1 of 2.10 as printed, from W and T of stresses with tau_offset: with the corrected 2.3 the identity 2.9
-  // holds.
+  // M1 of Eq. 2.10 as printed, from W and T of stresses with tau_offset; with the corrected Eq. 2.3 the
+  // identity 2.9 holds.
   const Wheel wheel = kThesisWheel;
   const double z = sinkage_m(wheel, kTheta1), c = 4000.0, t = 0.5, sigma_m = 18000.0, k = 0.02;
   WheelSample s{.load_N = 0.0, .torque_Nm = 0.0, .sinkage_m = z, .slip = 0.5};
@@ -55,7 +55,7 @@ TEST(Errata, Equation29FollowsFromTheCorrectedFormOnly) {
 }
 
 TEST(Errata, EntryAngleIsAnArccosine) {
-  // z/r = 1/2 is 60 degrees (the thesis says so itself after Eq. 3.12); arctan(1 - z/r) would be 27 degrees.
+  // z/r = 1/2 is 60 degrees (as the thesis states after Eq. 3.12); arctan(1 - z/r) would be 27 degrees.
   EXPECT_NEAR(entryAngle_rad(kThesisWheel, 0.05), std::acos(0.5), 1e-15);
   EXPECT_GT(std::abs(std::atan(0.5) - std::acos(0.5)), 0.5);
 }

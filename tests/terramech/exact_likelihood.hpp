@@ -6,22 +6,22 @@
 #include <talus/terramech/contact/contact_response.hpp>
 #include <talus/terramech/estimate/thesis_runs.hpp>
 
-/// The likelihood of soil_posterior.hpp by quadrature instead of by linearisation. For tests.
+/// The likelihood of soil_posterior.hpp by quadrature instead of linearisation, for tests.
 namespace talus::terramech {
 
 inline double gaussian(double away, double std) {
   return std::exp(-0.5 * away * away / (std * std)) / std;
 }
 
-/// p(readings of one sample | soil) up to a factor, its true sinkage and slip integrated out: every error a
-/// share `noise` of the true value, flat in log W and in slip. Gauss-Hermite, weight exp(-x^2/2)/sqrt(2 pi),
-/// the inner seven of nine points (Abramowitz and Stegun 25.10 scaled).
+/// p(readings of one sample | soil) up to a factor, integrated over true sinkage and slip. Every error is
+/// the share `noise` of the true value; the priors are flat in log W and in slip. Gauss-Hermite quadrature
+/// with weight exp(-x^2/2)/sqrt(2 pi), the inner seven of nine points (Abramowitz and Stegun 25.10 scaled).
 inline double exactLikelihood(const ContactSoil& soil, const WheelSample& read, double noise) {
   constexpr double kNode[] = {0.0, 1.023255663789133, 2.076847978677830, 3.205429002856470};
   constexpr double kShare[] = {0.4063492063492063, 0.2440975028949394, 0.0499164067652179,
                                0.0027891413212318};
   const auto load = [&](double z) { return contactForces(soil, kThesisWheel, {z, read.slip})[kLoad]; };
-  // Reading given truth, over the density that the nodes are drawn with.
+  // Density of the reading given the truth, over the density of the quadrature nodes.
   const auto against = [&](double truth, double reading) {
     return gaussian(truth - reading, noise * truth) / gaussian(truth - reading, noise * reading);
   };

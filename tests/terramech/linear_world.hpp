@@ -6,8 +6,8 @@
 #include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/wheel_sample.hpp>
 
-/// A world whose stresses really are those of the linear-offset method: its estimators must be exact there.
-/// For tests.
+/// A world with exactly the stresses that the linear-offset method assumes, where its estimators must be
+/// exact. For tests.
 namespace talus::terramech {
 
 struct LinearWorld {
@@ -15,11 +15,11 @@ struct LinearWorld {
   double tan_friction = 0.5;
   double shear_modulus_m = 0.02;
   double sigma_m_Pa = 20000.0;
-  bool offset = true;  ///< false: Iagnemma's world, no shear at the bottom
+  bool offset = true;  ///< false: Iagnemma's assumption, no shear at the bottom
 };
 
-/// Load and torque from stresses written out as Eq. 2.1, integrated by the midpoint rule (1e-7), not by our
-/// closed forms.
+/// Load and torque from the stresses of Eq. 2.1 by the midpoint rule (1e-7), independent of the closed forms
+/// under test.
 inline WheelSample sampleOf(const Wheel& wheel, const LinearWorld& world, WheelSample at) {
   const double theta_1 = entryAngle_rad(wheel, at.sinkage_m);
   const double h = 0.5 * theta_1;
@@ -40,7 +40,7 @@ inline WheelSample sampleOf(const Wheel& wheel, const LinearWorld& world, WheelS
   return at;
 }
 
-/// Ten samples of slip 0.2 to 0.8 whose peak stress varies, as a load change would make it.
+/// Ten samples of slip 0.2 to 0.8 with varying peak stress, as under a varying load.
 inline std::vector<WheelSample> linearSamples(const Wheel& wheel, LinearWorld world) {
   std::vector<WheelSample> samples;
   for (int k = 0; k < 10; ++k) {

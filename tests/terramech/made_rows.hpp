@@ -10,7 +10,7 @@
 
 namespace talus::terramech {
 
-/// A sand that is no one's.
+/// A synthetic sand.
 inline Soil madeSand() {
   return {.name = "sand",
           .cohesion_Pa = 800.0,
@@ -21,7 +21,7 @@ inline Soil madeSand() {
           .shear_modulus_m = 0.016};
 }
 
-/// Rows of made-up telemetry, a number a column.
+/// Rows of synthetic telemetry, one number for each column.
 class MadeRows {
  public:
   explicit MadeRows(std::vector<std::string> columns) {
@@ -34,7 +34,7 @@ class MadeRows {
     telemetry_.lines.push_back(labels_.size() + 1);
   }
 
-  /// As telemetry; the labels as a text column of that name, unless it is empty.
+  /// Converts to telemetry; the labels become a text column of the given name, unless the name is empty.
   Telemetry telemetry(const std::string& column = "") const {
     Telemetry t = telemetry_;
     t.source = "made";
@@ -53,7 +53,7 @@ inline const std::vector<std::string>& wheelColumns() {
   return all;
 }
 
-/// What a wheel of 0.1 x 0.1 m reads on a soil, with a normal relative error on each reading.
+/// Readings of a wheel of 0.1 x 0.1 m on a soil, with a normal relative error on each reading.
 inline std::vector<double> wheelRow(const Soil& soil, double load_N, double slip, double noise,
                                     std::mt19937_64& random) {
   std::normal_distribution<double> error(1.0, noise > 0.0 ? noise : 1e-12);
@@ -68,7 +68,7 @@ inline std::vector<double> wheelRow(const Soil& soil, double load_N, double slip
           0.1};
 }
 
-/// Readings of a torque that is off by 0.8 Nm and a pull that is off by 0.05 W.
+/// Readings with a torque offset of 0.8 Nm and a pull offset of 0.05 W.
 inline Telemetry twoFaults(const Soil& soil) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(8);

@@ -26,7 +26,7 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   return normal.ldlt().solve(x.transpose() * y);
 }
 
-/// Squared errors of each row told by the other folds.
+/// Squared error of each row, predicted from the other folds.
 Eigen::VectorXd heldOut(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const std::vector<int>& fold) {
   Eigen::VectorXd errors(y.size());
   for (const int f : std::set<int>(fold.begin(), fold.end())) {
@@ -39,7 +39,7 @@ Eigen::VectorXd heldOut(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, cons
   return errors;
 }
 
-/// A line, a spline, and a mean of each level where there are few.
+/// Candidate shapes: a line, a spline, and a mean of each level if the levels are few.
 std::vector<Eigen::MatrixXd> shapes(const Eigen::VectorXd& x) {
   std::vector<Eigen::MatrixXd> all;
   for (const int most : {2, 4})

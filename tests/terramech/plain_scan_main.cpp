@@ -1,4 +1,4 @@
-// The plain scan on a table: plain_scan T.csv BASE.yaml. Prints a column a line.
+// Applies the plain scan to a table: plain_scan T.csv BASE.yaml. Prints one column a line.
 #include <cstdio>
 
 #include <talus/terramech/io/model_file.hpp>

@@ -8,7 +8,7 @@
 
 namespace talus::terramech::test {
 
-/// A file of that content in the temporary folder, removed at the end of its scope.
+/// A file with the given content in the temporary folder, removed at the end of its scope.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& content, const std::string& suffix = ".csv")

@@ -14,10 +14,10 @@ struct Sampled {
   std::array<double, 2> interval_95{};  ///< lower and upper end
 };
 
-/// Share of worlds with Wilson's interval (wilson_1927); NaN if `all` is 0.
+/// Returns the share of worlds with Wilson's interval (wilson_1927); NaN if `all` is 0.
 Sampled share(std::size_t hits, std::size_t all);
 
-/// Mean with the normal interval of its standard error; NaN if there are no values.
+/// Returns the mean with the normal interval of its standard error; NaN if there are no values.
 Sampled mean(const std::vector<double>& values);
 
 /// Outcomes of the drives of several worlds.

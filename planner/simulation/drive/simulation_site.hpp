@@ -36,7 +36,7 @@ struct WorldResult {
   std::size_t categories_changed = 0;  ///< cells whose category differs after the drive
 };
 
-/// Range of world numbers for one soil knowledge.
+/// Range of world indices for one soil knowledge.
 struct WorldRange {
   SoilKnowledge belief = SoilKnowledge::OnLine;  ///< soil knowledge of the planner
   std::size_t first = 0;                         ///< number of the first world
@@ -61,18 +61,18 @@ class SimulationSite {
   /// Keeps a reference to the map.
   SimulationSite(const costmap::TraversabilityMap& map, Parts parts);
 
-  /// Simulates world number i with the given soil knowledge; the result depends on nothing else.
+  /// Simulates the world of index i with the given soil knowledge; the result depends on nothing else.
   WorldResult world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch = {}) const;
 
   /// Results of worlds first to first + count - 1 in order, independent of their division into ranges. Fewer
   /// when stopped.
   std::vector<WorldResult> worlds(const WorldRange& range, const ProgressMonitor& watch = {}) const;
 
-  /// The true soils of world number i.
+  /// Returns the true soils of the world of index i.
   TrueWorld trueWorld(std::size_t i) const;
   /// The planner's map before the drive.
   costmap::TraversabilityMap believed(SoilKnowledge belief, const TrueWorld& world) const;
-  /// Options of the traverse simulation in world number i.
+  /// Returns the options of the traverse simulation in the world of index i.
   SimulationOptions options(SoilKnowledge belief, std::size_t i) const;
 
  private:

@@ -17,7 +17,7 @@ double medianOf(std::deque<double> values) {
 
 }  // namespace
 
-// Excess sinkage over the wheel radius, minus the wheel's own datum (the median of earlier excesses).
+// Excess sinkage divided by the wheel radius, minus the wheel's own datum (the median of earlier excesses).
 double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::TelemetryReading& reading,
                                  const WheelExpectation& expected) {
   if (std::isnan(reading.sinkage_m) || reading.pass > 1) return 0.0;

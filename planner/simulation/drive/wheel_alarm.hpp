@@ -22,7 +22,7 @@ struct AlarmLimits {
 struct WheelExpectation {
   double slip = 0.0;                 ///< [-]
   double sinkage_over_radius = 0.0;  ///< [-]
-  double slip_angle_rad = 0.0;       ///< magnitude; NaN (not known) counts as 0
+  double slip_angle_rad = 0.0;       ///< magnitude; NaN (not known) is read as 0
 };
 
 /// Compares the wheels' readings, including noise and faults, with the map's expectations. Half of the wheels

@@ -7,8 +7,8 @@
 
 namespace talus::planner {
 
-/// Tracks of wheels, in squares as wide as a wheel. A square counts as a rut after the rover has moved on by
-/// more than two squares or turned back, so a wheel does not follow itself.
+/// Tracks of wheels, in squares as wide as a wheel. A square becomes a rut after the rover has moved on by
+/// more than two squares or has turned back, so that a wheel does not drive in the rut that it is making.
 class Ruts {
  public:
   /// The width of the squares is the wheel width [m], > 0.
@@ -20,7 +20,7 @@ class Ruts {
   void moved(double distance_m) noexcept { odometer_m_ += distance_m; }
   /// The rover reversed its direction: all squares behind it are ruts at once.
   void turnBack() noexcept { odometer_m_ += 3.0 * square_m_; }
-  /// Number of earlier wheel passes at a place.
+  /// Returns the number of earlier wheel passes at a place.
   int passes(const maps::Point& place) const;
 
  private:

@@ -81,7 +81,7 @@ class SimulatedSensors {
   /// Readings of the wheels, including noise and faults.
   WheelMeasurements look(const TrueWorld::Step& step, const Moment& moment);
 
-  /// Number of the wheel with the fault.
+  /// Returns the index of the wheel with the fault.
   std::size_t faultyWheel() const noexcept { return faulty_wheel_; }
 
  private:

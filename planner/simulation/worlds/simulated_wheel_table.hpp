@@ -15,10 +15,10 @@ class SimulatedWheelTable {
  public:
   /// Normalised forces and sinkage.
   struct Row {
-    double pull = 0.0;     ///< drawbar pull over load [-]
-    double torque = 0.0;   ///< torque over load and radius [-]
-    double sinkage = 0.0;  ///< sinkage over radius [-]
-    double hold = 0.0;     ///< side force against the wheel's lateral motion, over load [-]
+    double pull = 0.0;     ///< drawbar pull divided by load [-]
+    double torque = 0.0;   ///< torque / (load * radius) [-]
+    double sinkage = 0.0;  ///< sinkage divided by radius [-]
+    double hold = 0.0;     ///< side force against the wheel's lateral motion, divided by load [-]
   };
 
   static constexpr std::size_t kRows = 81;   ///< number of slips

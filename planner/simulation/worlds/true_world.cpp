@@ -32,7 +32,7 @@ struct LoadedTable {
   double share;  // share of the rover's weight
 };
 
-// Required force over the normal force; `across` is a magnitude.
+// Required force divided by the normal force; `across` is a magnitude.
 struct RequiredForce {
   double along, across;
 };
@@ -86,7 +86,7 @@ std::optional<Steady> steady(const std::vector<LoadedTable>& wheels, double alon
   return std::nullopt;
 }
 
-// Smallest slip angle at which the wheels hold the rover, interpolated between two sheets with an
+// Returns the smallest slip angle at which the wheels hold the rover, interpolated between two sheets with an
 // equilibrium.
 Balance balanced(const std::vector<LoadedTable>& wheels, const RequiredForce& demand) {
   std::optional<Steady> before;

@@ -76,11 +76,11 @@ class TrueWorld {
 
   /// Steady state of the rover for a motion.
   Step drive(const Motion& motion) const;
-  /// Energy and time to turn from heading `from` to the heading of `to` at its place
+  /// Returns the energy and time to turn from heading `from` to the heading of `to` at its place
   /// (terramech::turnEfforts()), on the soil under the rover's centre; zero if `from` is (0, 0).
   terramech::TurnEffort turn(const costmap::Direction& from, const Motion& to) const;
 
-  /// Index in soils() of the soil at a place; patches are extended by `margin_m`.
+  /// Returns the index in soils() of the soil at a place; patches are extended by `margin_m`.
   std::size_t soilAt(const maps::Point& place, double margin_m = 0.0) const noexcept;
   /// Returns true if the place lies in a patch.
   bool inPatch(const maps::Point& place) const noexcept { return soilAt(place) >= classes_; }

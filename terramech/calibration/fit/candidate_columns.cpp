@@ -6,10 +6,10 @@
 namespace talus::terramech {
 namespace {
 
-/// Steps of a parameter without a prior are vague: this many of its scale.
+/// Standard deviation of the step of a parameter without a prior, in units of its scale.
 constexpr double kVague = 100.0;
 
-/// What curves' values are believed to be beforehand, as in a fit: priorOf().
+/// Prior standard deviation of a curve's values, as in priorOf().
 constexpr double kCurveStd = 0.3;
 
 Eigen::VectorXd change(const RefinedModel& moved, const ModelOnRows& at) {
@@ -24,8 +24,8 @@ Eigen::VectorXd whole(const Trial& trial, Eigen::VectorXd column) {
   return column.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
-/// Whether a form with this first parameter acts in one sense only: from 0 up, or at a depth. Of a factor, which is 1 where
-/// nothing acts, either sense is within its bounds.
+/// True if a form whose first parameter is `first` acts in one direction only: values from 0 up, or a depth. A factor,
+/// which is 1 without effect, may act in both directions.
 bool isOneSided(const EffectParameter& first) {
   const bool is_factor = first.low > 0.0 && first.low < 1.0 && first.high > 1.0;
   return first.low >= 0.0 && !is_factor;
@@ -57,12 +57,12 @@ bool applies(const Effect& effect, const WheelState& state) {
   return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
 }
 
-/// Columns of one curve, whitened.
+/// Whitened columns of one curve.
 Eigen::MatrixXd curveColumns(const Effect& curve, const ModelOnRows& at) {
   Eigen::MatrixXd basis = splineBasis(covariateValues(at.trial, curve.covariate, at.sinkage_m), curve.knots);
   for (int row = 0; row < at.trial.rows(); ++row)
     if (!applies(curve, at.trial.states[static_cast<std::size_t>(row)])) basis.row(row).setZero();
-  // All knots of a curve through the soil act through one number, so that one derivative gives every column.
+  // All knots of a curve through the soil act through one number; one derivative therefore gives every column.
   Eigen::MatrixXd by_value = Eigen::MatrixXd::Zero(at.trial.rows(), kChannels);
   if (curve.name == "empirical") {
     for (int row = 0; row < at.trial.rows(); ++row)
@@ -122,7 +122,7 @@ LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whi
     linear.columns.col(k) *= scale;
     const auto prior = priorOf(fitted, plan, static_cast<std::size_t>(k));
     if (!prior) continue;
-    // value() of log_stiffness is 0 and its prior a step from here.
+    // value() of log_stiffness is 0, and its prior is a step from the model's current value.
     linear.prior.mean[k] = (prior->value - value(fitted, p)) / scale;
     linear.prior.precision[k] = scale * scale / (prior->std * prior->std);  // (T26)
   }

@@ -27,8 +27,8 @@ Extent extentOf(const Eigen::VectorXd& x) {
   return v.empty() ? Extent{0.0, 1.0, 0.5} : Extent{v.front(), v.back(), v[v.size() / 2]};
 }
 
-/// The rim's speed where it is the ground's in other units, at one level of slip: nothing can tell them
-/// apart, and the rate forms are of the ground's.
+/// True for a rim speed that is proportional to the speed over ground (one level of slip): the two speeds cannot be
+/// distinguished, and the rate forms use the speed over ground.
 bool isTwin(const Trial& trial, const std::string& column) {
   if (column != "rim_speed_mps") return false;
   double n = 0.0, mean = 0.0, square = 0.0;
@@ -79,7 +79,7 @@ class Collector {
     all_.push_back(std::move(candidate));
   }
 
-  /// Several forms as one explanation, at their typical sizes.
+  /// Adds several forms as one candidate, at their typical sizes.
   void addTogether(const std::vector<const char*>& names) {
     const std::size_t first = all_.size();
     for (const char* name : names) {
@@ -96,7 +96,7 @@ class Collector {
     all_.push_back(std::move(whole));
   }
 
-  /// The last one again, for each group of each text column alone.
+  /// Repeats the last candidate for each single group of each text column.
   void repeatByGroup() {
     const Candidate whole = all_.back();
     for (const std::string& column : trial_.groupings) {
@@ -168,7 +168,7 @@ void drift(Collector& to, const EffectForm& form) {
       for (double phase : {0.0, 1.57})
         to.add(form, "heading_rad",
                {{"start", 0.0}, {"span", 2.0 * std::numbers::pi}, {"period", period}, {"phase", phase}});
-  // Time may change a soil or a sensor in any of these ways, whatever a column of one's own holds in proportion.
+  // Time may change a soil or a sensor by any of these forms; an additional column acts in proportion.
   for (const std::string& column : to.covariates()) {
     if (column != "time_s" && !(isOwnColumn(column) && form.parameters.size() == 3)) continue;
     const Extent x = to.extent(column);
@@ -183,10 +183,10 @@ void drift(Collector& to, const EffectForm& form) {
   }
 }
 
-/// Nothing by itself: these go with forms that dig or slide.
+/// No candidate: these forms are added only together with forms that dig or slide.
 void onlyTogether(Collector&, const EffectForm&) {}
 
-/// Only rows of a braked wheel can tell.
+/// Only rows of a braked wheel determine this form.
 void skid(Collector& to, const EffectForm& form) {
   if (to.extent("slip").low < -0.02) to.add(form, form.covariate);
 }
@@ -209,8 +209,7 @@ Rule ruleOf(const EffectForm& form) {
   return always;
 }
 
-/// What happens at once to a wheel that is dragged or slides sideways; one without the others explains
-/// little.
+/// Forms that act at once on a wheel that is dragged or slides sideways; each form alone explains little.
 void together(Collector& to) {
   const bool braked = to.extent("slip").low < -0.02, sideways = to.varies("slip_angle_rad");
   if (!braked && !sideways) return;
@@ -248,7 +247,7 @@ Effect flatCurve(const char* name, const std::string& covariate, Channel channel
   return curve;
 }
 
-/// A curve in each channel alone, and through stiffness and strength.
+/// A curve in each measured channel alone, and curves through stiffness and through strength.
 std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
                              const std::vector<double>& knots) {
   std::vector<Effect> all;
@@ -267,7 +266,7 @@ void addCurves(const Trial& trial, const std::string& covariate, const std::vect
     all.push_back({{std::move(curve)}, "empirical", static_cast<int>(knots.size())});
 }
 
-/// Of the rows, values of a run that are equal counted once: what is fixed in runs has as many as there are runs.
+/// Number of distinct values, equal values of a run counted once: a column constant within runs has one value per run.
 std::size_t independentValues(const Trial& trial, const Eigen::VectorXd& x) {
   std::set<std::pair<int, double>> values;
   for (Eigen::Index row = 0; row < x.size(); ++row)
@@ -275,8 +274,8 @@ std::size_t independentValues(const Trial& trial, const Eigen::VectorXd& x) {
   return values.size();
 }
 
-/// Where a step may lie: up to nine gaps between values, at even shares of the rows, each the widest within a
-/// twentieth of them.
+/// Positions of a step: up to nine gaps between values, at even shares of the rows, each the widest gap within a
+/// twentieth of the rows.
 std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
   const std::vector<double> v = finite(x);
   const int rows = static_cast<int>(v.size());
@@ -313,10 +312,10 @@ void addGroups(const Trial& trial, const std::string& column, std::vector<Candid
   }
 }
 
-/// Lines over products of a column of one's own with another, or with what a run sets.
+/// Lines over products of an additional column with another additional column, or with slip, load or speed.
 void addProducts(const Trial& trial, std::vector<Candidate>& all) {
   constexpr std::size_t kMostOwn =
-      6;  // of more, whose pairs would outnumber all other candidates, none with each other
+      6;  // with more additional columns their pairs would outnumber all other candidates: no pairs
   std::vector<std::string> own, set;
   for (const std::string& column : trial.covariates)
     if (isOwnColumn(column) && !isProduct(column)) own.push_back(column);

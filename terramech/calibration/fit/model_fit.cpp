@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Standard deviations that a soil is believed to have when nobody states it, own units.
+/// Prior means and standard deviations of soils in general, in the units of the parameters.
 const std::map<std::string, Estimate>& vagueSoil() {
   static const std::map<std::string, Estimate> prior{{"cohesion_Pa", {1500.0, 2000.0}},
                                                      {"friction_angle_rad", {0.55, 0.12}},
@@ -34,13 +34,14 @@ double modulusOf(const Soil& soil) {
   return soil.cohesive_modulus + soil.frictional_modulus;
 }
 
-/// The stress peak (c1 + c2 i) theta_1 stays in the contact at every slip in [-1, 1]: a soil that no other call takes is no fit.
+/// Limits c2 so that the stress peak (c1 + c2 i) theta_1 stays inside the contact at every slip in [-1, 1]; other
+/// functions reject a soil without this property.
 void keepPeakInside(Soil& soil) {
   const double room = std::max(0.0, std::min(soil.c1, 1.0 - soil.c1));
   soil.c2 = std::clamp(soil.c2, -room, room);
 }
 
-/// A point of the search: the model, its whitened residuals and how far priors are left.
+/// A point of the search: the model, its whitened residuals and its departure from the priors.
 class FitPoint {
  public:
   FitPoint(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
@@ -78,7 +79,7 @@ class FitPoint {
     }
   }
 
-  /// Moves by scaled steps, clamped to the bounds, if that lowers the cost.
+  /// Moves by scaled steps, limited to the bounds, if the step lowers the cost.
   bool tryStep(const Eigen::VectorXd& step) {
     RefinedModel moved = model_;
     double stiffness = log_stiffness_;
@@ -108,8 +109,8 @@ class FitPoint {
     return s;
   }
 
-  /// The step that solves the damped normal equations while parameters that stand at a bound and would leave
-  /// it stay: clamping them afterwards would make the others move for something that does not happen.
+  /// The step that solves the damped normal equations, with step 0 for parameters that are at a bound and would leave
+  /// it: limiting these parameters afterwards would leave the steps of the others wrong.
   Eigen::VectorXd stepInside(Eigen::MatrixXd damped, Eigen::VectorXd gradient) const {
     for (Eigen::Index held = 0; held <= gradient.size(); ++held) {
       const Eigen::VectorXd step = damped.ldlt().solve(gradient);
@@ -141,7 +142,7 @@ class FitPoint {
     return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale;
   }
 
-  // As where the search began: a step of log_stiffness counts from there.
+  // Priors relative to the start of the search, from which a step of log_stiffness counts.
   std::optional<Estimate> priorOf(Eigen::Index k) const { return prior_[static_cast<std::size_t>(k)]; }
 
   bool leavesBound(Eigen::Index k, double step) const {
@@ -183,7 +184,7 @@ class FitPoint {
 
 std::optional<Estimate> priorOf(const RefinedModel& model, const FitPlan& plan, std::size_t k) {
   const FittedParameter& p = plan.free[k];
-  // A knot without rows near it would be anything.
+  // The prior keeps a knot without nearby rows finite.
   if (p.effect >= 0 && model.effects[static_cast<std::size_t>(p.effect)].empirical())
     return Estimate{0.0, 0.3};
   if (p.effect >= 0 && p.index > 0) return {};
@@ -275,7 +276,7 @@ Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
     SolvedContacts beside = solved;
     j.col(static_cast<Eigen::Index>(k)) = scale((predictRows(moved, trial, beside) - here) / h);
   }
-  // A missing channel has no derivative either.
+  // A missing measurement has derivative 0.
   for (int row = 0; row < trial.rows(); ++row)
     for (int c = 0; c < kChannels; ++c)
       if (!std::isfinite(trial.measured(row, c))) j.row(row * kChannels + c).setZero();

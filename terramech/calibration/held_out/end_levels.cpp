@@ -19,7 +19,7 @@ Values valuesOf(const Trial& trial, const std::string& column) {
   return x;
 }
 
-/// Least and greatest finite value of the rows that `rows` marks with `wanted`.
+/// Least and greatest finite value over the rows whose mark in `rows` is `wanted`.
 std::pair<double, double> rangeOver(const Values& x, const std::vector<char>& rows, char wanted) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t row = 0; row < x.size(); ++row)
@@ -28,15 +28,15 @@ std::pair<double, double> rangeOver(const Values& x, const std::vector<char>& ro
   return {low, high};
 }
 
-/// How much of a column's end is held out.
+/// Extent of the held-out end of a column.
 enum class Depth { Level, Half };
 
-/// Values of a column are of one level where they are nearer than the spacing of 25 even levels, of which a table of
-/// levels has fewer.
+/// Gap between levels over the range of the column: the spacing of 25 even levels. Values closer together belong to one
+/// level.
 constexpr double kLevelGap = 0.04;
 
-/// Rows of the outermost level, or of the levels that hold at most half of the rows; where there are no levels the
-/// outermost tenth or half. Empty where there is none to spare.
+/// Rows of the outermost level, or of the levels with at most half of the rows; without levels the outermost tenth or
+/// half. Empty if no rows can be held out.
 std::vector<char> outermost(const Values& x, bool high, Depth depth) {
   Values sorted;
   for (double v : x)
@@ -44,7 +44,7 @@ std::vector<char> outermost(const Values& x, bool high, Depth depth) {
   if (sorted.size() < 6) return {};
   std::sort(sorted.begin(), sorted.end());
   const double gap = kLevelGap * (sorted.back() - sorted.front());
-  std::vector<std::size_t> ends;  // of the levels
+  std::vector<std::size_t> ends;  // index of the last row of each level
   for (std::size_t k = 0; k < sorted.size(); ++k)
     if (k + 1 == sorted.size() || sorted[k + 1] - sorted[k] > gap) ends.push_back(k);
   if (ends.size() == 2) return {};
@@ -69,7 +69,7 @@ std::set<std::string> columnsOf(const TraceResult& result) {
   return there;
 }
 
-/// Log-likelihood of errors of the size of the floor, up to what all models share.
+/// Log-likelihood of errors with the standard deviation of the floor, except for a constant common to all models.
 double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& floor) {
   double sum = 0.0;
   for (std::size_t c = 0; c < kChannels; ++c)
@@ -77,7 +77,8 @@ double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& f
   return sum;
 }
 
-/// `level`: the outermost level, where `held` goes deeper; an effect whose law did not foretell that one has none.
+/// `level`: result for the outermost level if `held` is deeper, else null; an effect whose formula did not predict the
+/// outermost level has no reach.
 EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
                const std::vector<char>& held, const EndLevel* level) {
   const Values x = valuesOf(result.trial, column);
@@ -101,7 +102,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   const auto likelihood = [&](const RefinedModel& model) {
     return logLikelihood(end.rows, rmseAsMeasured(model, unseen), result.noise_floor);
   };
-  // By more than a number that means nothing gains by chance where it is fitted: half a chi-squared of one.
+  // Gain that an irrelevant parameter reaches by chance: half a quantile of chi-squared with one degree of freedom.
   const double chance = 0.5 * std::pow(normalQuantile(1.0 - 0.5 * options.significance), 2);
   const double reached = likelihood(by_law) - chance;
   RefinedModel earned = by_law;
@@ -168,7 +169,7 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
     const Values x = valuesOf(trial, column);
     const auto [low, high] = rangeOver(x, std::vector<char>(x.size(), 1), 1);
     TrainedRange range{.column = column, .low = low, .high = high};
-    // Least squares through 0, each end counted by its rows.
+    // Least squares through 0, each end weighted by its rows.
     for (const bool high_end : {false, true})
       for (std::size_t c = 0; c < kChannels; ++c) {
         double excess = 0.0, distance = 0.0;

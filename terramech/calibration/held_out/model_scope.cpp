@@ -9,8 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-/// Whether an end speaks against the refined model: its mean square is greater than the base's, and than the sensors', by
-/// more than that of as many normal errors is in 95 % of cases. Never of a channel that is not measured (NaN).
+/// True if an end contradicts the refined model: its mean square exceeds those of the base and of the sensors by more
+/// than that of as many normal errors in 95 % of cases. False for a channel without measurements (NaN).
 bool isWorse(const EndLevel& end, const ChannelErrors& floor, std::size_t channel) {
   const double chance = normalQuantile(1.0 - TraceOptions{}.significance) * std::sqrt(2.0 / end.rows);
   const double least = std::max(end.base_rmse[channel], floor[channel]);
@@ -22,8 +22,9 @@ void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& s
     if (!scope.kept[c]) refined[c] = base[c];
 }
 
-/// Sets how far the corrections reach at one end, of which `ends` are of one column and side, the nearest first. Somewhere
-/// between the last that confirms them and the first that does not they stop to hold: none is applied from the middle on.
+/// Sets the reach of the corrections at one side of a column. `ends`: the ends of this side, the nearest first. The
+/// corrections lose validity between the last end that confirms them and the first that contradicts them; none is
+/// applied from the middle between both on.
 void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>& ends,
               const ChannelErrors& floor) {
   for (std::size_t c = 0; c < kChannels; ++c) {

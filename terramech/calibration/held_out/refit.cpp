@@ -8,8 +8,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Each model is fitted under the errors that it would have: what the noise of slip and load does depends on
-/// it.
+/// Whitening by the errors of each model itself: the effect of the noise of slip and load depends on the model.
 Whitening whiteningOf(const RefinedModel& model, const SharedError& shared, const TraceResult& result) {
   SolvedContacts solved;
   Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),
@@ -25,7 +24,7 @@ RefinedModel refitted(const RefinedModel& model, const SharedError& shared, cons
   SolvedContacts start;
   FitPlan plan = fitPlan(model, options.fit_soil);
   plan.iterations = 8;
-  const std::size_t given = result.base.effects.size();  // the first effect that was found is the next
+  const std::size_t given = result.base.effects.size();  // index of the first effect that was found
   if (result.first_prior && model.effects.size() > given)
     plan.effect_prior[static_cast<int>(given)] = *result.first_prior;
   plan.misfit = misfitOf(white.apply(seen.measured - predictRows(model, seen, start)), seen);

@@ -11,10 +11,10 @@
 namespace talus::terramech {
 namespace {
 
-/// Steps of expectation maximisation: from a rough start, and from the null's covariance.
+/// Steps of expectation maximisation: from a rough start, and from the covariance of the null.
 constexpr int kFirstSteps = 60, kFurtherSteps = 4;
 
-/// Errors of independent rows and of runs of this covariance.
+/// Draws errors of unit variance for each row, and errors of runs with the given covariance.
 Eigen::VectorXd drawn(const std::vector<SharedFactor>& factor, const std::vector<int>& unit,
                       const RunError& run, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -37,7 +37,7 @@ Eigen::VectorXd drawn(const std::vector<SharedFactor>& factor, const std::vector
   return out;
 }
 
-/// What another soil does that its prior allows.
+/// Draws the effect of another soil from its prior.
 Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Eigen::VectorXd step(null.soil);
@@ -46,7 +46,7 @@ Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
   return null.known.columns.leftCols(null.soil) * step;  // (T36)
 }
 
-/// Scores of contenders against the null, table by table.
+/// Scores of contenders relative to the null, for each table.
 class Contest {
  public:
   Contest(const RunLikelihood& likelihood, const RunSums& known, const RunError& run)
@@ -54,7 +54,7 @@ class Contest {
 
   void setTables(Eigen::Index tables) { at_run_ = likelihood_.heldOut(known_, run_, 0, tables).score(); }
 
-  /// Gains of all tables with the run's error as the null has it.
+  /// Gains of all tables with the run error of the null.
   Eigen::VectorXd roughGains(const RunSums& both, bool positive) const {
     const HeldOutFit fit = likelihood_.heldOut(both, run_, 0, at_run_.size());
     Eigen::VectorXd gain = fit.score() - at_run_;
@@ -85,7 +85,7 @@ class Contest {
   Eigen::VectorXd at_run_;
 };
 
-/// Greatest gain of one table: the best at the null's run error, each profiled.
+/// Greatest gain on one table: among the kProfiled best at the run error of the null, each profiled.
 double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
                     const std::vector<char>& positive, const Eigen::MatrixXd& rough, Eigen::Index table) {
   std::vector<Eigen::Index> order(sums.size());

@@ -24,12 +24,12 @@ bool isTied(const WheelState& s) {
   return std::abs(s.speed_mps - ground) <= 1e-3 * std::abs(s.rim_speed_mps);
 }
 
-/// Speeds over ground with the errors that they have from their slips, and the mean of each group.
+/// Speeds over ground with the errors due to their slips, and the mean of each group.
 struct Speeds {
   Eigen::ArrayXd value, variance, mean, mean_variance;
   double groups = 0.0;
 
-  /// Mean square of the deviations from the means over their errors.
+  /// Mean square of the deviations from the group means, in units of their errors.
   double scatter() const {
     const auto n = static_cast<double>(value.size());
     return ((value - mean).square() / variance).sum() / std::max(1.0, n - groups);
@@ -40,7 +40,7 @@ Speeds speedsOf(const Trial& trial, const std::vector<int>& group,
                 const std::function<double(double)>& slip_std) {
   const auto n = static_cast<Eigen::Index>(trial.states.size());
   Speeds v{Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
-  std::map<int, std::pair<double, double>> sums;  // of weights, of weighted speeds
+  std::map<int, std::pair<double, double>> sums;  // of weights, and of weighted speeds
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const double rim = trial.states[row].rim_speed_mps;
@@ -112,9 +112,9 @@ struct Posterior {
   double mean, variance;
 };
 
-/// Posterior of each true value under the distribution of true values that makes the measured ones most
-/// likely: a mixture of atoms whose places and weights are found by expectation maximisation. `std_at` is the
-/// noise at a true value. Values that are known better than the atoms lie apart stay as measured.
+/// Posterior of each true value under the most likely distribution of true values: a mixture of atoms whose positions
+/// and weights are found by expectation maximisation. `std_at`: noise at a true value. Values whose noise is below half
+/// the spacing of the atoms stay as measured.
 std::vector<Posterior> deconvolve(const std::vector<double>& measured,
                                   const std::function<double(double)>& std_at) {
   constexpr int kRounds = 200;
@@ -147,7 +147,7 @@ std::vector<Posterior> deconvolve(const std::vector<double>& measured,
   return out;
 }
 
-/// Normal values with normal errors: the share of the scatter that is not error is kept.
+/// Posterior for normal values with normal errors: the share of the scatter that is not error is kept.
 std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
   const auto n = static_cast<Eigen::Index>(measured.size());
   const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
@@ -159,8 +159,8 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
   return out;
 }
 
-/// Slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of the
-/// mean of a run is each row's; that of one mean is sharedSlipStd().
+/// Posterior slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of
+/// a run's mean is added to each row; that of a single mean is in sharedSlipStd().
 std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<int>& group,
                                         const SensorNoise& noise) {
   const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
@@ -189,7 +189,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
     log_load[i] = std::log(trial.load_N[i]);
   }
   const std::vector<int> speed = setSpeeds(trial, noise);
-  // The mixture takes long to see that one level is one; nothing is lost where the scatter is mostly error.
+  // The mixture converges slowly for a single level; if the scatter is mostly error, shrink() loses nothing.
   const auto slips = !speed.empty() ? slipsAtSetSpeeds(trial, speed, noise)
                      : !slipIsSeen(trial, noise)
                          ? shrink(trial.slip, slip_std)
@@ -197,7 +197,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
   const auto loads =
       set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
-    // A grid cannot place a value better than its step: precise inputs are left as measured.
+    // The grid resolves no less than its step: precise inputs stay as measured.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));

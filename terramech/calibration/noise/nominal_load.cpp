@@ -8,7 +8,8 @@
 namespace talus::terramech {
 namespace {
 
-/// Readings of one set load scatter by less, and levels lie farther apart: no load cell in use errs by a tenth.
+/// Greatest scatter of readings of one set load, and least distance of levels, relative: load cells in use have errors
+/// below 10 %.
 constexpr double kLevel = 0.1;
 
 struct Groups {
@@ -49,7 +50,7 @@ Eigen::VectorXd sizes(const Groups& g) {
   return n;
 }
 
-/// Means over the groups; NaN count for nothing.
+/// Means over the groups; NaN is ignored.
 Eigen::VectorXd means(const Groups& g, const Eigen::VectorXd& x) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(g.count), n = sum;
   for (Eigen::Index row = 0; row < x.size(); ++row)
@@ -67,7 +68,7 @@ Eigen::VectorXd centred(const Groups& g, const Eigen::VectorXd& x) {
   return out;
 }
 
-/// Whether the rows are of a few set loads each: four rows on average, and no group that scatters more.
+/// True if the rows have set loads: four rows per group on average, and no group with a greater scatter.
 bool areSet(const Groups& g, const Eigen::VectorXd& deviation) {
   if (static_cast<Eigen::Index>(4 * g.count) > deviation.size()) return false;
   const Eigen::VectorXd square = means(g, deviation.cwiseAbs2());

@@ -9,7 +9,7 @@
 
 namespace talus::terramech {
 
-/// Sums of one fold under a run's covariance.
+/// Sums of one fold with the covariance of a run's error.
 struct RunLikelihood::FoldSums {
   Eigen::MatrixXd gram, cross;
   Eigen::VectorXd square;
@@ -18,7 +18,7 @@ struct RunLikelihood::FoldSums {
 
 namespace {
 
-/// What belongs to one row in a matrix of kChannels rows each, and to one unit in one of kShared.
+/// Rows of a matrix that belong to one row of the table (kChannels), and to one unit (kShared).
 template <typename Matrix>
 auto channelsOf(Matrix&& all, std::size_t row) {
   return all.template middleRows<kChannels>(static_cast<Eigen::Index>(row) * kChannels);
@@ -28,7 +28,7 @@ auto rowsOf(Matrix&& all, std::size_t unit) {
   return all.template middleRows<kShared>(static_cast<Eigen::Index>(unit) * kShared);
 }
 
-/// Sum of F^T X over the rows of each unit, one below the other.
+/// Sum of F^T X over the rows of each unit, stacked.
 Eigen::MatrixXd unitSums(const std::vector<SharedFactor>& factor, const std::vector<int>& unit,
                          std::size_t units, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(units) * kShared, columns.cols());
@@ -38,7 +38,7 @@ Eigen::MatrixXd unitSums(const std::vector<SharedFactor>& factor, const std::vec
   return sum;
 }
 
-/// The rows of each fold of a matrix, together.
+/// The rows of a matrix, split by fold.
 std::vector<Eigen::MatrixXd> byFold(const Eigen::MatrixXd& columns, const std::vector<int>& fold, int folds) {
   std::vector<Eigen::MatrixXd> part;
   for (int f = 0; f < folds; ++f) {
@@ -61,18 +61,18 @@ StepPrior joined(const StepPrior& a, const StepPrior& b) {
   return both;
 }
 
-/// The covariance with strength and stiffness independent of each other and of the offsets.
+/// The covariance with strength and stiffness uncorrelated with each other and with the offsets.
 RunError withoutCoupling(const RunError& run) {
   RunError r = RunError(run.diagonal().asDiagonal());
   r.topLeftCorner<kChannels, kChannels>() = run.topLeftCorner<kChannels, kChannels>();
   return r;
 }
 
-/// Precision that every direction of the steps has about 0 beyond its prior: 1 / variance of 30 000 steps. Only a direction of
-/// precision 0 that no row determines is changed by it.
+/// Precision about 0 that is added to every step: 1 / variance of 30 000 steps. Only a direction without prior that no
+/// row determines is affected.
 constexpr double kLeastPrecision = 1e-9;
 
-/// The normal equations of the steps, the prior among them: A step = b (T31).
+/// Normal equations of the steps, including the prior: A step = b (T31).
 struct Normal {
   Normal(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& cross, const StepPrior& prior)
       : precision(gram), right(cross) {
@@ -83,7 +83,8 @@ struct Normal {
   }
   Eigen::MatrixXd steps() const { return solver.solve(right); }
 
-  /// Least of step^T A step - 2 b^T step of each table; at `steps`, whose rounding errors enter it to second order only.
+  /// Minimum of step^T A step - 2 b^T step for each table, at `steps`; rounding errors of `steps` enter in second order
+  /// only.
   Eigen::VectorXd leastAt(const Eigen::MatrixXd& steps) const {
     return steps.cwiseProduct(precision * steps - 2.0 * right).colwise().sum().transpose();
   }
@@ -93,7 +94,7 @@ struct Normal {
   Eigen::LDLT<Eigen::MatrixXd> solver;
 };
 
-/// Squares of the steps of each table over their prior's standard deviations.
+/// Squared departures of each table's steps from the prior, in units of its standard deviations.
 Eigen::MatrixXd squaresOf(const StepPrior& prior, const Eigen::MatrixXd& steps) {
   return prior.precision.asDiagonal() * (steps.colwise() - prior.mean).cwiseAbs2();
 }

@@ -7,12 +7,11 @@
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
-/// The likelihood that tracing judges by: rows whitened each by itself, linear in the parameters about a fitted
-/// model, with a Gaussian prior, and an error that rows of one run share.
+/// Likelihood for residual tracing: rows whitened separately, linear in the parameters about a fitted model, with a
+/// Gaussian prior and an error common to the rows of a run.
 namespace talus::terramech {
 
-/// What parameters, as steps from where a model stands, are known to be beforehand: mean and 1 / variance, 0
-/// for nothing.
+/// Prior of the parameters, as steps from the model's current values: mean and 1 / variance; precision 0: no prior.
 struct StepPrior {
   Eigen::VectorXd mean, precision;
 };
@@ -23,55 +22,56 @@ struct LinearModel {
   StepPrior prior;
 };
 
-/// Sums over rows that the likelihood needs of columns X and of tables Y (whitened residuals, one a column).
+/// Sums over rows of columns X and of tables Y (whitened residuals, one table per column).
 struct RunSums {
-  std::vector<Eigen::MatrixXd> gram;   ///< X^T X, a fold
-  std::vector<Eigen::MatrixXd> cross;  ///< X^T Y, a fold
-  Eigen::MatrixXd unit_column;         ///< sum of F^T X, a unit: kShared x parameters, one below the other
+  std::vector<Eigen::MatrixXd> gram;   ///< X^T X, per fold
+  std::vector<Eigen::MatrixXd> cross;  ///< X^T Y, per fold
+  Eigen::MatrixXd unit_column;         ///< sum of F^T X, per unit: kShared x parameters, stacked
   StepPrior prior;
 };
 
-/// Parameters of each table, and how well those of the other folds predict each fold.
+/// Fitted steps of each table, and the likelihood of each fold under the fits to the other folds.
 struct HeldOutFit {
-  /// Sum over folds of ln p(rows of the fold | rows of the others, prior), less the constant that all models share: the
-  /// predictive density, in which a parameter that the other folds do not determine has its prior.
+  /// Sum over folds of ln p(rows of the fold | rows of the other folds, prior), without the constant common to all
+  /// models: the predictive density. A parameter that the other folds do not determine has its prior.
   Eigen::VectorXd log_likelihood;
-  /// Of each parameter the least among the fits without one fold each: of what one fold alone determines none.
+  /// Sum over parameters of the least squared departure from the prior among all fits with and without each fold: a
+  /// departure that a single fold determines does not count.
   Eigen::VectorXd prior_chi2;
-  Eigen::MatrixXd steps;  ///< those parameters, parameters x tables
+  Eigen::MatrixXd steps;  ///< fitted to all rows, parameters x tables
   /// log_likelihood - prior_chi2 / 2 (T34): no prior counts twice, and a soil that returns to its prior gains.
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
-/// Covariance of a table's residuals Y = X step + e + F u: e independent of unit variance, F what
-/// an error that rows share does to a whitened row, u ~ N(0, R) once a unit.
+/// Likelihood of residuals Y = X step + e + F u: e independent of unit variance, F the effect of a shared error on a
+/// whitened row, u ~ N(0, R), one u per unit.
 class RunLikelihood {
  public:
-  /// `factor`: F of each row; `unit`: number of its run from 0, empty where rows share nothing. Rows of a
-  /// unit in different folds count as different units.
+  /// `factor`: F of each row; `unit`: number of its run from 0, empty if rows share no error. Rows of a unit in
+  /// different folds count as different units.
   RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit, const Folds& folds);
 
-  /// Takes the tables that are judged, whitened residuals rows*kChannels x tables.
+  /// Sets the tables: whitened residuals, rows*kChannels x tables.
   void setTables(const Eigen::MatrixXd& tables);
 
   RunSums sums(const LinearModel& model) const;
 
-  /// Those of the columns of both models, at the price of the second's alone. `known` and `added` as given to
-  /// sums(), `of_known` its result.
+  /// Sums for the columns of both models; costs only those of `added`. `known` and `added` are models as for sums(),
+  /// `of_known` the sums of `known`.
   RunSums sums(const RunSums& of_known, const LinearModel& known, const LinearModel& added) const;
 
-  /// Each fold predicted from the others, for `count` tables from `first` on.
+  /// Predicts each fold from the other folds, for `count` tables from `first` on.
   HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
-  /// Covariance R of a unit's error that is most likely with these columns in the model, among those in which
-  /// strength and stiffness vary on their own: expectation maximisation of the restricted likelihood
-  /// (laird_ware_1982) from `start`.
+  /// Most likely covariance R of a unit's error with these columns in the model, with strength and stiffness
+  /// uncorrelated with other components: expectation maximisation of the restricted likelihood (laird_ware_1982) from
+  /// `start`.
   RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
   bool hasUnits() const { return !information_.empty(); }
   int folds() const { return folds_; }
 
-  /// Logarithm of the likelihood of a table under no parameters at all, for choosing units.
+  /// Log-likelihood of a table without parameters, for the choice of units.
   double logLikelihood(const RunError& run, Eigen::Index table) const;
 
  private:
@@ -84,10 +84,10 @@ class RunLikelihood {
   std::vector<SharedFactor> factor_;
   std::vector<int> unit_, fold_, fold_of_unit_;
   int folds_;
-  std::vector<RunError> information_;    ///< sum of F^T F, a unit
+  std::vector<RunError> information_;    ///< sum of F^T F, per unit
   std::vector<Eigen::MatrixXd> tables_;  ///< rows of each fold
   Eigen::MatrixXd square_;               ///< folds x tables
-  Eigen::MatrixXd unit_table_;           ///< sum of F^T Y, a unit: kShared x tables, one below the other
+  Eigen::MatrixXd unit_table_;           ///< sum of F^T Y, per unit: kShared x tables, stacked
 };
 
 }  // namespace talus::terramech

@@ -8,10 +8,10 @@
 namespace talus::terramech {
 namespace {
 
-/// Twenty times more likely: log 20.
+/// Log-likelihood ratio of 20: ln 20 = 3.0.
 constexpr double kClearly = 3.0;
 
-/// Runs from 0 on; empty where rows have none, one for all when there is one.
+/// Run numbers from 0; all 0 if rows have no run labels.
 std::vector<int> runsOf(const Trial& trial) {
   std::map<int, int> number;
   std::vector<int> run;
@@ -20,7 +20,7 @@ std::vector<int> runsOf(const Trial& trial) {
   return run;
 }
 
-/// Rows of each run in the order of time; empty where time is not known.
+/// Rows of each run in order of time; empty if a time is missing.
 std::vector<std::vector<std::size_t>> inTime(const Trial& trial, const std::vector<int>& run) {
   std::map<int, std::vector<std::size_t>> rows;
   for (std::size_t row = 0; row < run.size(); ++row) {
@@ -37,8 +37,8 @@ std::vector<std::vector<std::size_t>> inTime(const Trial& trial, const std::vect
   return all;
 }
 
-/// Whether what sets the contact follows time within the runs (neighbours correlate by more than 0.3, which would
-/// pass a tenth of a missing effect on): what the model lacks then lasts as noise might.
+/// True if a column that sets the contact follows time within the runs (neighbours correlate by more than 0.3, which
+/// would pass a tenth of a missing effect on): the error of the model then persists like noise.
 bool isInOrder(const Trial& trial, const std::vector<std::vector<std::size_t>>& runs) {
   for (const char* name : {"slip", "load_N", "slip_angle_rad", "slope_rad", "speed_mps", "pass_index"}) {
     if (std::find(trial.covariates.begin(), trial.covariates.end(), name) == trial.covariates.end()) continue;
@@ -55,12 +55,12 @@ bool isInOrder(const Trial& trial, const std::vector<std::vector<std::size_t>>& 
         last = x;
       }
     }
-    if (product > 0.3 * square) return true;  // NaN: a column that is not there
+    if (product > 0.3 * square) return true;  // false for NaN: a column without values
   }
   return false;
 }
 
-/// Each run cut into stretches of some rows.
+/// Divides each run into stretches of `length` rows.
 std::vector<int> stretches(const std::vector<std::vector<std::size_t>>& runs, std::size_t rows,
                            std::size_t length) {
   std::vector<int> unit(rows);
@@ -97,7 +97,7 @@ RunError roughRunError(const Whitening& whitening) {
 std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const Eigen::MatrixXd& left) {
   const Eigen::VectorXd table = whitening.rowByRow(left);
   const bool drive = !trial.moment.empty();
-  // Rows of a drive belong to moments, which count as one where its runs are too few.
+  // Rows of a drive belong to moments; a drive with too few runs counts as one run.
   const bool one_run = drive && trial.run == trial.moment;
   const std::vector<int> run = one_run ? std::vector<int>(trial.run.size(), 0) : runsOf(trial);
   const std::size_t together =
@@ -107,7 +107,7 @@ std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const 
   std::vector<int> best = *std::max_element(run.begin(), run.end()) > 0 ? run : std::vector<int>{};
   double likely = logLikelihood(whitening, best, table);
   const auto runs = inTime(trial, run);
-  // On a drive the ground sets slip in the order of time whatever it lacks, and its errors last: always stretches.
+  // On a drive the ground determines the slip in order of time, and errors persist: stretches are always tried.
   if (runs.empty() || (!drive && isInOrder(trial, runs))) return best;
   for (const std::size_t length : std::initializer_list<std::size_t>{16, 8, 4}) {
     if (3 * length * together > run.size()) continue;

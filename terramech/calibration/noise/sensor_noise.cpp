@@ -15,13 +15,13 @@
 namespace talus::terramech {
 namespace {
 
-/// Standard deviation of the logarithm of an error that a base file states.
+/// Standard deviation of the logarithm of a stated error.
 constexpr double kStatedSpread = 0.25;
 
-/// A positive number in a search on logarithms, with a log-normal prior.
+/// A positive number, searched by its logarithm, with a log-normal prior.
 struct Scale {
   double* target;
-  double median, spread;  // spread: std of the logarithm
+  double median, spread;  // spread: standard deviation of the logarithm
 };
 
 std::optional<double> statedOf(const StatedSensors& stated, Channel channel) {
@@ -66,7 +66,7 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
   return all;
 }
 
-/// Root mean square over all rows of the sensor's own error, in the unit of its column.
+/// Root mean square over all rows of the sensor's error, in the unit of its column.
 double errorOf(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise, int channel) {
   const auto k = static_cast<std::size_t>(channel);
   double sum = 0.0;
@@ -88,7 +88,7 @@ std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::Mat
   };
   for (int c = 0; c < kChannels; ++c) {
     const auto channel = static_cast<Channel>(c);
-    // The pull of a drive is no sensor's.
+    // The pull of a drive is not a reading of a sensor.
     if (!trial.has(channel) || (channel == Channel::DrawbarPull && !trial.moment.empty())) continue;
     const auto declared = statedOf(stated, channel);
     if (!isStrained(kAnswers[static_cast<std::size_t>(c)], declared, errorOf(trial, level, noise, c)))

@@ -23,7 +23,7 @@ void CalibratedRows::backToMeasured() {
   }
 }
 
-/// The stated errors, and the load cell's where the set loads show it.
+/// The stated errors, and the load cell's error from the set loads if not stated.
 StatedSensors CalibratedRows::knownSensors(const RefinedModel& model) const {
   StatedSensors sensors = model.stated;
   if (!set_load_ || sensors.load_N) return sensors;
@@ -54,7 +54,7 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   for (const std::string& column : noiseColumns(trial_))
     if (column != "time_s") timeless.push_back(column);
   const std::vector<int> unit = runUnits(trial_, whitening_, withoutSmooth(trial_, residual_, timeless));
-  if (!unit.empty()) {  // what rows share is no noise of theirs
+  if (!unit.empty()) {  // the shared error is not noise of single rows
     const double rows = trial_.rows(), kept = rows - (*std::max_element(unit.begin(), unit.end()) + 1);
     smooth -= unitMeans(smooth, whitening_.std, unit);
     if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes, model, solved);
@@ -82,7 +82,7 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   const Eigen::MatrixXd level = predictRows(model, trial_, solved);
   const InputSlopes slopes = inputSlopes(model, trial_, solved);
   const Eigen::MatrixXd measured = trial_.measured - level;
-  // Whatever its error, a slip that varies much is seen; only where that is in doubt must the error be known.
+  // A slip that varies much is seen for any error; only otherwise the error must be estimated.
   const SensorNoise unlimited{.slip_relative = 1.0};
   findSetLoads(measured, slopes);
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));

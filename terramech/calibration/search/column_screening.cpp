@@ -10,7 +10,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Rows in the order of runs, those of a moment together.
+/// Rows in order of runs, the rows of a moment together.
 std::vector<std::vector<std::size_t>> unitsInOrder(const Trial& trial) {
   std::vector<std::size_t> order(static_cast<std::size_t>(trial.rows()));
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -45,7 +45,7 @@ std::vector<double> gainsOf(const RefinedModel& base, const Trial& trial, const 
       candidates.push_back(std::move(c));
       column.push_back(k);
     }
-  Trial without = trial;  // of the columns that are asked about
+  Trial without = trial;  // without the columns that are screened
   std::erase_if(without.covariates, isOwnColumn);
   without.groupings.clear();
   const std::vector<double> each = TraceSearch{base, without, options, go_on}.gainsOf(candidates);

@@ -14,126 +14,129 @@
 
 namespace talus::terramech {
 
-/// How residuals are traced.
+/// Options of residual tracing.
 struct TraceOptions {
-  double significance = 0.05;  ///< share of tables without an effect in which one may be found
-  int max_effects = 7;
-  double least_share = 0.0;  ///< chi-squared a value that an effect must carry
-  int fits = 6;              ///< known forms that are fitted inside the full model, a round; of curves half
-  int draws = 199;           ///< tables drawn from the null: p-values from 0.005 on
-  /// Rows that are searched, of a table with more a sample (rowSample()): beyond it nothing but time is gained, as an
-  /// effect of a tenth of the scatter of single readings stands at 3 standard errors of a thousand.
+  double significance = 0.05;  ///< probability of finding an effect in a table without effects, (0, 1)
+  int max_effects = 7;         ///< greatest number of effects
+  double least_share = 0.0;    ///< least chi-squared per value that an effect must explain [-]
+  int fits = 6;                ///< known forms fitted in the full model per round; half as many curves
+  int draws = 199;             ///< tables drawn from the null model: the least p-value is 1 / (draws + 1)
+  /// Greatest number of rows that are searched; of a larger table a sample (rowSample()). More rows only cost time: an
+  /// effect of a tenth of the scatter of single readings has 3 standard errors with a thousand rows.
   int most_rows = 1000;
   int most_columns =
-      24;  ///< columns of one's own that are searched, of more the most promising (screenColumns())
-  bool fit_soil = false;  ///< the base soil is not given: it is fitted from the data
+      24;  ///< greatest number of additional columns that are searched; of more columns those with the
+           ///< greatest gains (screenColumns())
+  bool fit_soil = false;  ///< fit the soil of the base to the data, with vague priors
   std::uint64_t seed = 1;
 };
 
-/// A candidate that was fitted, and how well.
+/// A fitted candidate and its gain.
 struct Explanation {
   Candidate candidate;  ///< with fitted parameters
-  /// log-likelihood gained on held-out rows, with the share of the soil's prior that it regains.
+  /// Log-likelihood gained on held-out rows, including the regained share of the soil's prior [-].
   double gain = 0.0;
-  double chi2_gain = 0.0;  ///< twice the log-likelihood gained on the rows that it was fitted to
-  std::array<double, kChannels> by_channel{};  ///< chi2 gained in each channel
+  double chi2_gain = 0.0;                      ///< twice the log-likelihood gained on the fitted rows [-]
+  std::array<double, kChannels> by_channel{};  ///< chi-squared gained in each channel [-]
 };
 
-/// A candidate tried to first order.
+/// A candidate with its linearised gain.
 struct Promise {
   Candidate candidate;
-  double gain = 0.0;     ///< as Explanation's
-  double p_value = 1.0;  ///< how often a table without an effect gives any candidate this gain
+  double gain = 0.0;     ///< as Explanation::gain
+  double p_value = 1.0;  ///< probability that any candidate reaches this gain in a table without an effect
 };
 
-/// Root mean square of the scaled residual in each channel; NaN where nothing is measured.
+/// Root mean square of the scaled residual in each channel [-]; NaN: not measured.
 using ChannelErrors = std::array<double, kChannels>;
 
-/// Log-likelihood by which one account must fall behind to be ruled out: as unlikely beside the other as `significance`.
+/// Log-likelihood difference by which an explanation is excluded relative to another: -ln(significance).
 inline double closeGain(const TraceOptions& options) {
   return -std::log(options.significance);
 }
 
-/// An effect that was found.
+/// An accepted effect.
 struct TracedEffect {
   Explanation chosen;
-  Channel channel = Channel::DrawbarPull;  ///< where it shows most
-  std::vector<double> parameter_std;       ///< of the fitted model's parameters of chosen.candidate, in order
-  double p_value = 1.0;                    ///< how often a table without it gives any candidate its gain
-  /// Other causes that the rows cannot separate from it: in its place each gains no less, or less by no more than
-  /// closeGain(), best first.
+  Channel channel = Channel::DrawbarPull;  ///< channel in which the effect is largest
+  std::vector<double> parameter_std;       ///< of the fitted parameters of chosen.candidate, in order
+  double p_value = 1.0;                    ///< of its gain in a table without the effect
+  /// Other causes that the rows cannot distinguish from the effect: in its place the gain of each is higher, or lower
+  /// by at most closeGain(); best first.
   std::vector<Explanation> equal;
-  std::vector<Effect> correction;  ///< curves that carry what its form leaves in the same covariate
+  std::vector<Effect> correction;  ///< curves of the same covariate that describe the residual of the form
 };
 
-/// Another cause, and the model with it.
+/// An alternative cause, and the model with this cause.
 struct RivalCause {
-  std::string in_place_of;  ///< name of the traced effect; empty: beside those that there are
+  std::string in_place_of;  ///< name of the traced effect; empty: in addition to all effects
   Explanation explanation;
   RefinedModel model;  ///< with the covariance of its parameters
 };
 
-/// The outermost rows of a column, predicted by a model that was fitted to the others.
+/// The outermost rows of a column, predicted by a model that was fitted to the other rows.
 struct EndLevel {
   std::string column;
-  bool high = false;      ///< the greatest values, else the least
-  double edge = 0.0;      ///< outermost value of the others
-  double distance = 0.0;  ///< of the held rows from it, root mean square
+  bool high = false;      ///< true: the greatest values; false: the least
+  double edge = 0.0;      ///< outermost value of the other rows
+  double distance = 0.0;  ///< root mean square distance of the held-out rows from `edge`
   int rows = 0;
   ChannelErrors base_rmse{}, refined_rmse{};
-  bool law = false;  ///< an effect of this column foretold the level better by its law than held at `edge`
-  /// Of each effect of the refined model how far from `edge` it did: the farthest of these rows. 0 where it did not, or
-  /// is of another column.
+  bool law = false;  ///< true if the formula of an effect of this column predicted the level better than
+                     ///< its value at `edge`
+  /// For each effect of the refined model the distance from `edge` to which its formula is confirmed: that of the
+  /// farthest held-out row, or 0 if not confirmed or of another column.
   std::vector<double> reach{};
 };
 
-/// Errors on rows of one group of a text column, the fit made from all groups.
+/// Errors on the rows of one group of a text column, for a fit to all groups.
 struct GroupErrors {
-  std::string column, value;
-  int rows = 0;
+  std::string column, value;  ///< text column, and value of the group
+  int rows = 0;               ///< number of rows of the group
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// Errors on rows that the fit has not seen. The parameters are fitted again without each fold; which effects
-/// the model has was chosen on all rows.
+/// Errors on held-out rows. The parameters are refitted without each fold; the choice of effects used all rows.
 struct HeldOut {
-  std::string scheme;         ///< what was held out together
-  ChannelErrors base_rmse{};  ///< of the base model, its soil fitted again where it was fitted
+  std::string scheme;         ///< the kind of rows that are held out together
+  ChannelErrors base_rmse{};  ///< of the base model, its soil refitted if it was fitted
   ChannelErrors refined_rmse{};
-  std::vector<GroupErrors> groups;  ///< of each text column of which an effect acts on one group alone
+  std::vector<GroupErrors> groups;  ///< of each text column with an effect on a single group
 };
 
-/// Errors on the rows of a large table that the search did not use.
+/// Errors on the rows of a large table that the search did not use [-].
 struct UnsearchedRows {
   int rows = 0;
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// What tracing found.
+/// Result of residual tracing.
 struct TraceResult {
-  Soil given;            ///< of the base, before any fit
-  RefinedModel base;     ///< as given or fitted, with its noise
-  RefinedModel refined;  ///< base and the effects
-  Trial trial;           ///< the rows that were searched, inputs calibrated
+  Soil given;            ///< soil of the base before any fit
+  RefinedModel base;     ///< the base, fitted if it has free parameters, with its noise
+  RefinedModel refined;  ///< the base with the effects
+  Trial trial;           ///< the searched rows, with calibrated inputs
   UnsearchedRows unsearched;
   std::vector<TracedEffect> effects;
-  std::vector<RivalCause> rivals;     ///< of each effect the next best, of no effect what was rejected
-  std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or less likely than noise
+  std::vector<RivalCause> rivals;     ///< for each effect the best alternatives; without effects those of
+                                      ///< the rejected explanations
+  std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or below the threshold
   std::vector<Promise> first_promises, last_promises;  ///< of base and refined model, best first
-  double threshold = 0.0;                              ///< gain that noise reaches in a share `significance`
+  double threshold = 0.0;                              ///< gain that noise exceeds at `significance`
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
-  std::vector<StrainedSensor> strained;  ///< beside the refined model
-  ChannelErrors declared_floor{};        ///< noise_floor if these sensors erred as stated
+  std::vector<StrainedSensor> strained;  ///< sensors whose fitted noise exceeds the stated noise, with the
+                                         ///< refined model
+  ChannelErrors declared_floor{};        ///< noise_floor with the stated errors of these sensors
   std::optional<Estimate>
-      first_prior;  ///< of the first number of the first effect found, known beside the model
+      first_prior;  ///< prior of the first parameter of the first effect found, from outside the model
   SharedError base_shared,
-      shared;  ///< what the rows of a run have in common beside the base, and the refined model
-  std::vector<EndLevel> ends;  ///< of the model beyond its rows
-  HeldOut held_out;            ///< under foldsOf()
-  ModelScope scope;            ///< where held-out rows confirmed the effects
+      shared;                  ///< error common to the rows of a run, for the base and for the refined model
+  std::vector<EndLevel> ends;  ///< errors beyond the trained rows
+  HeldOut held_out;            ///< with the folds of foldsOf()
+  ModelScope scope;            ///< channels and ranges in which held-out rows confirmed the effects
 };
 
-/// Root mean square of the residuals (measured - predicted), scaled.
+/// Root mean square of measured minus predicted values, scaled [-].
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial);
 ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial);
 

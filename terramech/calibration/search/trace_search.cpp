@@ -13,7 +13,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Whether a form of a candidate is in the model: several forms together are tried once.
+/// True if the model contains a form of the candidate: joint forms are tried once.
 bool shares(const RefinedModel& model, const Candidate& candidate) {
   return std::any_of(candidate.parts.begin(), candidate.parts.end(), [&](const Effect& part) {
     return std::any_of(model.effects.begin(), model.effects.end(),
@@ -25,7 +25,7 @@ std::string keyOf(const Effect& e) {
   return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
 }
 
-/// A column, and whether by a known form or a curve.
+/// Key of a candidate: its column, and known form or curve.
 std::string kindOf(const Candidate& candidate) {
   return candidate.covariate() + (candidate.empirical() ? " curve" : " form");
 }
@@ -65,8 +65,8 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
   const Trial& trial = fit_.rows().trial();
   const Eigen::VectorXd sinkage_m = fit_.rows().sinkages_m();
   std::vector<Candidate> all;
-  // On a drive slip, load, heading and time go together: a curve of one stands for any, and only forms that say
-  // what every channel does can be told apart.
+  // On a drive slip, load, heading and time are correlated: a curve of one column can replace one of any other. Only
+  // forms that predict every channel can be distinguished.
   const bool drive = !trial.moment.empty();
   for (Candidate& c : libraryCandidates(trial, sinkage_m))
     if ((c.parts.size() == 1 || !shares(model(), c)) && !(drive && c.family == "drift"))
@@ -91,7 +91,7 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promis
   for (const Promise& p : promises) {
     int& count = p.candidate.empirical() ? empirical : library;
     if (!go_on_(0.0)) break;
-    // Forms that act together say little to first order.
+    // The linearised gain of joint forms is unreliable; joint forms are always fitted.
     if (!p.candidate.empirical() && p.candidate.parts.size() > 1) {
       ranked.push_back(fitted(p.candidate));
       continue;
@@ -128,8 +128,9 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
                         is = rows.whitening().marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
-  // What explains leaves the readings themselves less to explain. Beside a soil that is known, one that moves them
-  // farther off, by more than all that it gains, moved what rows of a run share; a soil that is fitted moves with it.
+  // A candidate that explains the rows reduces the residuals themselves. If the soil is not fitted, and a candidate
+  // increases the residuals by more than all of its gain, the gain is due to the error common to the rows of a run and
+  // is rejected. A fitted soil changes with the candidate, so that this test does not apply.
   if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))  // (T41)
     e.gain = std::min(0.0, e.gain);
   return e;
@@ -283,7 +284,7 @@ void TraceSearch::refineCurves() {
   if (refined) fit_.refresh();
 }
 
-/// Whether effect number k of the model got more knots.
+/// Returns true if effect k of the model received more knots.
 bool TraceSearch::refineCurve(std::size_t k) {
   const Trial& trial = fit_.rows().trial();
   const Eigen::VectorXd x = covariateValues(trial, model().effects[k].covariate, fit_.rows().sinkages_m());
@@ -325,7 +326,7 @@ void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::Matr
 }
 
 void TraceSearch::finish(TraceResult& result) {
-  // Without an effect the refined model is the base.
+  // Without effects the refined model is the base.
   const Eigen::MatrixXd covariance = fit_.finish(!result.effects.empty());
   describe(result.effects, covariance);
   result.refined = model();

@@ -109,7 +109,7 @@ class TraceSearch {
   TraceOptions options_;
   std::function<bool(double)> go_on_;
   TrialFit fit_;
-  std::optional<Estimate> first_prior_;  ///< of a correction that is never removed
+  std::optional<Estimate> first_prior_;  ///< of the first parameter of the first accepted effect
   std::size_t given_effects_;            ///< leading effects, of the base; fitted, never removed
   std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
 };

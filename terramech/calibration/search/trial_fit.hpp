@@ -14,11 +14,11 @@
 
 namespace talus::terramech {
 
-/// A model fitted to rows, and the score of others on the same rows under the same noise.
+/// A model fitted to rows, and scores of other models on the same rows with the same noise.
 class TrialFit {
  public:
-  /// Estimates the noise beside `base` and fits what it lets a fit move, the whole soil where `fit_soil`. `go_on` is asked
-  /// before each round of that fit; false ends it.
+  /// Estimates the noise for `base` and fits its free parameters, or the whole soil if `fit_soil`. `go_on` is called
+  /// before each round of the fit; false ends the fit.
   TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
            const std::function<bool(double)>& go_on);
 
@@ -26,39 +26,39 @@ class TrialFit {
   const CalibratedRows& rows() const { return rows_; }
   const SolvedContacts& solved() const { return solved_; }
 
-  /// Keeps the first parameter of the first effect behind the base's near what was known of it before.
+  /// Sets a prior for the first parameter of the first effect after those of the base.
   void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
 
-  /// Another model fitted to the rows, the noise as it is.
+  /// Fits another model to the rows with unchanged noise.
   Fit fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const;
 
-  /// The model of that fit, started from what was solved for this one.
+  /// The model of fit(), started from the present solutions.
   RefinedModel fitted(const RefinedModel& model, int iterations) const;
 
-  /// Another model as it stands on the rows, to first order.
+  /// Linearises another model on the rows.
   NullModel standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
                      SolvedContacts& solved) const;
 
-  /// The score of a fitted model under the noise as it is.
+  /// Score of a fitted model with unchanged noise.
   double scoreOf(const RefinedModel& fitted) const;
 
-  /// Replaces the model, the noise as it is.
+  /// Replaces the model with unchanged noise.
   void setModel(const RefinedModel& model);
 
-  /// Estimates the noise again.
+  /// Re-estimates the noise.
   void refresh();
 
-  /// Starts from another model, then fits everything and estimates the noise again, twice.
+  /// Sets the model, then fits all parameters and re-estimates the noise, twice.
   void settle(const RefinedModel& start);
 
-  /// Fits everything once more where `again`, and sets the model's free parameters and their covariance, which it
-  /// returns.
+  /// Fits all parameters again if `again`, sets the model's free parameters and their covariance, and returns the
+  /// covariance.
   Eigen::MatrixXd finish(bool again);
 
-  /// The channel in which the rows change most, over their noise, when one effect of the model is taken out.
+  /// The channel in which the removal of an effect changes the predictions most, relative to the noise.
   Channel strongest(std::size_t effect) const;
 
-  /// noiseFloor() of the model under this noise, at slip and load as measured.
+  /// noiseFloor() of the model with this noise, at slip and load as measured.
   std::array<double, kChannels> noiseFloor(const SensorNoise& noise);
 
  private:
@@ -69,12 +69,12 @@ class TrialFit {
 
   bool fit_soil_;
   RefinedModel model_;
-  int given_effects_;     ///< of the base, in front
-  double prior_modulus_;  ///< k_c + k_phi of the base, that its log_stiffness counts from
+  int given_effects_;     ///< number of leading effects, those of the base
+  double prior_modulus_;  ///< k_c + k_phi of the base, reference of log_stiffness
   CalibratedRows rows_;
   Folds folds_;
   SolvedContacts solved_;
-  double misfit_ = 1.0;  ///< as FitPlan's
+  double misfit_ = 1.0;  ///< as FitPlan::misfit
   std::optional<Estimate> first_prior_;
 };
 

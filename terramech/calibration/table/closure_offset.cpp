@@ -10,7 +10,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kAccuracy = 0.03;  // of the relation, over soils
+constexpr double kAccuracy = 0.03;  // error of the relation over soils [-]
 
 struct Split {
   double inside = 0.0, outside = 0.0, squares = 0.0;  // sums of the errors, and of their squares inside

@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Of each moment: u.w and |u|^2.
+/// For each moment u.w and |u|^2.
 struct Products {
   Eigen::VectorXd with_rows, length;
 };

@@ -230,7 +230,7 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
   errors.base = rmseOf(errors.base_told, unseen);
   errors.refined = rmseOf(errors.told, unseen);
   errors.floor = result.noise_floor;
-  Trial same = seen;  // the columns that were searched
+  Trial same = seen;  // uses the searched columns only
   same.covariates = result.trial.covariates;
   errors.regression = regressionErrors(same, unseen);
   return errors;

@@ -33,8 +33,8 @@ TracedEffect traced(const Explanation& chosen, double p_value) {
   return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
 }
 
-/// Puts in the offset of a force sensor that its group's own torque and sinkage betray, unless it makes held-out rows
-/// worse; a soil fitted to all rows would hide it. It stays: the search sees only what the soil left of it.
+/// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases held-out
+/// errors. The effect stays unless it changes no prediction: a soil fitted to all rows hides most of it.
 bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
                    std::vector<TracedEffect>& effects) {
   const auto found = findClosureOffset(trial, seed);
@@ -59,7 +59,7 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   return true;
 }
 
-/// Effects as they were taken in.
+/// Accepted effects, in the order of acceptance.
 struct Path {
   TraceSearch search;
   double close;  ///< closeGain()
@@ -68,10 +68,10 @@ struct Path {
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
   GainDistribution noise{};
-  std::size_t pinned = 0;  ///< effects at the front that stay
+  std::size_t pinned = 0;  ///< number of leading effects that only dropIdle() removes
 };
 
-/// Takes the first of explanations in.
+/// Accepts the first of the ranked explanations.
 void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   path.search.accept(ranked.front().candidate);
   path.effects.push_back(traced(ranked.front(), p_value));
@@ -85,14 +85,14 @@ long curves(const std::vector<Effect>& effects) {
   return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
 }
 
-/// What an account must gain more to take another's place: nothing where it names what the other leaves to curves; where
-/// it leaves to them what the other names, more than noise gives to some curve.
+/// Gain by which another explanation must exceed the present one to replace it: 0 if it has fewer curves, closeGain()
+/// for as many; for more curves at least the gain that noise gives to some curve.
 double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
   const long more = curves(other) - curves(present);
   return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;  // (T45)
 }
 
-/// Takes out, last first, what beside the others gains no more than noise would.
+/// Removes, last first, the effects whose gain beside the others is at most that of noise.
 void check(Path& path) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
     if (path.search.gainOf(k) > path.threshold) continue;  // (T44)
@@ -102,7 +102,7 @@ void check(Path& path) {
   }
 }
 
-/// Takes out what ended at a size that moves nothing; of forms found together those stay that gain more than noise would.
+/// Removes effects without influence on the predictions; of joint forms those remain whose gain exceeds that of noise.
 void dropIdle(Path& path) {
   for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
     TracedEffect& effect = path.effects[k];
@@ -122,8 +122,8 @@ void dropIdle(Path& path) {
   }
 }
 
-/// Finishes the result. While effects make the rows held out of some channel worse, the last of them that was found there
-/// goes out.
+/// Finishes the result. While effects increase the held-out error of some channel, removes the last effect found in
+/// that channel.
 void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
                      const std::function<bool(double)>& go_on) {
   while (true) {
@@ -139,8 +139,8 @@ void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& option
   }
 }
 
-/// Looks at the earlier effects again once another is in: what they explained beside a gap may be the other's, and
-/// each gives way to what explains clearly more beside the others. One that is left over would bend the search for more.
+/// Re-tests each earlier effect after a new one is accepted, because both may explain the same residual. An effect is
+/// replaced if an alternative has a clearly higher score: a superfluous effect would distort the further search.
 void reconsider(Path& path) {
   if (path.effects.size() > path.pinned + 1) check(path);
   for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
@@ -161,7 +161,7 @@ void reconsider(Path& path) {
   }
 }
 
-/// Looks for other causes in the place of each effect.
+/// Searches alternative causes for each effect.
 void findRivals(const Path& path, TraceResult& result, const std::function<bool(double)>& go_on) {
   for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
     TracedEffect& effect = result.effects[k];
@@ -174,7 +174,7 @@ void findRivals(const Path& path, TraceResult& result, const std::function<bool(
   if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
 }
 
-/// What was taken in, whatever the order.
+/// The accepted effects, independent of their order.
 std::multiset<std::string> takenIn(const Path& path) {
   std::multiset<std::string> all;
   for (const TracedEffect& e : path.effects)
@@ -183,8 +183,8 @@ std::multiset<std::string> takenIn(const Path& path) {
   return all;
 }
 
-/// Takes in what explains the residuals best until nothing gains more than noise would, or the same effects come back:
-/// one that is taken in and left out again would go round for ever.
+/// Accepts the best explanation until no gain exceeds that of noise, or until a set of effects recurs, which would
+/// repeat without end.
 void grow(Path& path, const Trial& trial, const TraceOptions& options,
           const std::function<bool(double)>& go_on) {
   std::set<std::multiset<std::string>> seen;
@@ -206,8 +206,8 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
   }
 }
 
-/// Tries two in place of the one or two that were found: one may stand for both. Two for one must gain more than
-/// one more would under noise; two for two clearly more; curves for what has a name as much again.
+/// Tries two effects in place of the one or two that were found. Two for one must gain at least the threshold, two for
+/// two the margin; more curves require the sum of both.
 void reconsiderPair(Path& path) {
   const std::size_t found = path.effects.size() - path.pinned;
   if (found < 1 || found > 2) return;
@@ -238,7 +238,7 @@ void reconsiderPair(Path& path) {
   }
 }
 
-/// Forms that were found together, each told for itself, by what noise alone would give it.
+/// Splits effects found together into single effects, each with the p-value of its own gain.
 std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect>& effects) {
   std::vector<TracedEffect> all;
   for (std::size_t k = 0; k < effects.size(); ++k) {
@@ -267,9 +267,8 @@ std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect
   return all;
 }
 
-/// What is known of a rover's own drive beforehand. Its pull is known as its slope is: unless stated, to 0.3
-/// degrees (an inclinometer's; ours). Wheels that follow another drive in its rut (rut.hpp); how stiff that
-/// is is fitted.
+/// Prior information on a rover's own drive. The pull has the error of the slope: 0.3 degrees of an inclinometer unless
+/// stated (ours). Wheels that follow another wheel drive in its rut (rut.hpp), whose stiffness is fitted.
 RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   constexpr double kSlopeError_rad = 0.005;
   if (trial.moment.empty()) return model;
@@ -290,8 +289,8 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 namespace {
 
-/// How much a kind of account can take up that is not its own: a drift in time or weather holds a constant, a curve
-/// holds any of both; a product stands for either of its columns.
+/// Extent to which a kind of candidate can absorb another cause: a drift includes a constant, a curve includes a drift,
+/// and a product represents both of its columns.
 int freedom(const Candidate& candidate) {
   return isProduct(candidate.covariate()) ? 3
          : candidate.empirical()          ? 2
@@ -299,7 +298,7 @@ int freedom(const Candidate& candidate) {
                                           : 0;
 }
 
-/// Of a lesser kind, or a form of the same family with fewer numbers: one that grows with speed holds a constant, too.
+/// True if `a` is of a kind with less freedom, or a form of the same family with fewer parameters.
 bool isSimpler(const Candidate& a, const Candidate& b) {
   if (freedom(a) != freedom(b)) return freedom(a) < freedom(b);
   return !a.empirical() && a.family == b.family && a.parts.size() == b.parts.size() &&
@@ -323,7 +322,7 @@ bool accepted(const std::vector<Explanation>& ranked, double threshold) {
 
 namespace {
 
-/// A share of work whose rounds are not known beforehand: each takes half of what is left.
+/// Progress of work in an unknown number of rounds: each round takes half of the remaining share.
 class Rounds {
  public:
   double at(double share) {
@@ -339,7 +338,7 @@ class Rounds {
 TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
                      const ProgressMonitor& watch) {
   TraceOptions options = given;
-  if (!trial.moment.empty()) {  // its errors of slip and slope are no normal noise: see docs/effects.md
+  if (!trial.moment.empty()) {  // non-normal errors of slip and slope: docs/effects.md
     options.max_effects = 1;
     options.least_share = 0.06;
   }

@@ -27,13 +27,13 @@ Eigen::VectorXd inOneColumn(const Eigen::MatrixXd& rows) {
   return all;
 }
 
-/// What a model predicts of the readings of rows that a trial measures: normal, those of a run together.
+/// Joint normal prediction of the measured readings of some rows, including the error common to a run.
 struct JointPrediction {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
 };
 
-/// Rows of a trial as a model predicts them; of any part of its measured readings their joint distribution.
+/// Predictions of a model for the rows of a trial, and the joint distribution of any of the measured readings.
 class CauseOnRows {
  public:
   CauseOnRows(const RefinedModel& model, const SharedError& shared, const Trial& trial)
@@ -50,7 +50,7 @@ class CauseOnRows {
             : Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(model.covariance.data(), count, count));
   }
 
-  /// `readings`: row * kChannels + channel each.
+  /// `readings`: indices row * kChannels + channel.
   JointPrediction of(const std::vector<Eigen::Index>& readings) const {
     const auto n = static_cast<Eigen::Index>(readings.size());
     JointPrediction joint{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
@@ -105,7 +105,7 @@ std::vector<Eigen::Index> readingsOf(const Trial& trial, int first_row, int rows
   return readings;
 }
 
-/// Of the values of a column over the rows.
+/// Quantile `share` of the values of a column over the rows.
 double quantile(const Trial& trial, const std::string& column, double share) {
   std::vector<double> values;
   for (const WheelState& s : trial.states)
@@ -119,7 +119,7 @@ bool varies(const Trial& trial, const std::string& column) {
   return std::find(trial.covariates.begin(), trial.covariates.end(), column) != trial.covariates.end();
 }
 
-/// Columns that a run sets: those of the causes, and the load. Travel speed and slip set the rim's speed.
+/// Columns that a run sets: those of the causes, and the load. The rim speed follows from travel speed and slip.
 std::vector<std::string> columnsToSet(const TraceResult& result) {
   std::set<std::string> columns{"load_N"};
   const auto add = [&](const Candidate& c) {
@@ -145,14 +145,14 @@ std::vector<std::string> columnsToSet(const TraceResult& result) {
   return kept;
 }
 
-/// The state of the rows with a column set, in turn, to the ends and the middle of its range, or to each of its words.
+/// The states with a column set to the ends and the middle of its range, or to each of its text values.
 std::vector<WheelState> withEachLevel(const std::vector<WheelState>& states, const Trial& trial,
                                       const std::string& column) {
   std::vector<WheelState> all;
   std::set<std::string> words;
   for (const WheelState& s : trial.states)
     if (!s.label(column).empty()) words.emplace(s.label(column));
-  // No run is made in the past.
+  // Time takes its greatest value only: no run can be made in the past.
   std::set<double> levels{quantile(trial, column, 1.0)};
   if (column != "time_s") levels.insert({quantile(trial, column, 0.0), quantile(trial, column, 0.5)});
   for (const WheelState& s : states) {
@@ -170,7 +170,7 @@ std::vector<WheelState> withEachLevel(const std::vector<WheelState>& states, con
   return all;
 }
 
-/// Slips of the rows of a run: five where the rows of runs differ in slip, else each alone.
+/// Slips of the rows of a run: five if the rows of a run differ in slip, otherwise one run for each slip.
 std::vector<std::vector<double>> slipsOf(const Trial& trial) {
   const double low = quantile(trial, "slip", 0.05), high = quantile(trial, "slip", 0.95);
   std::map<int, std::pair<double, double>> range;
@@ -190,7 +190,7 @@ std::vector<std::vector<double>> slipsOf(const Trial& trial) {
   return alone;
 }
 
-/// The row whose load is the middle one, at its set load.
+/// The row with the median load.
 WheelState middleRow(const Trial& trial) {
   const double load_N = quantile(trial, "load_N", 0.5);
   return *std::min_element(trial.states.begin(), trial.states.end(),
@@ -199,7 +199,7 @@ WheelState middleRow(const Trial& trial) {
                            });
 }
 
-/// Every run that may be proposed, one after the other, as rows that measure what the table does.
+/// All runs that may be proposed, one after the other, with the measured channels of the table.
 Trial possibleRuns(const TraceResult& result, std::size_t& rows_a_run) {
   const Trial& trial = result.trial;
   std::vector<WheelState> settings{middleRow(trial)};
@@ -257,7 +257,7 @@ RunPrediction meanOf(const std::string& cause, const JointPrediction& joint, con
   return p;
 }
 
-/// Which of the possible runs to make.
+/// Selection among the possible runs.
 class RunChoice {
  public:
   RunChoice(const std::vector<Cause>& causes, const std::vector<CauseOnRows>& models, const Trial& runs,
@@ -273,7 +273,7 @@ class RunChoice {
     }
   }
 
-  /// Their numbers, in the order of choice.
+  /// Numbers of the selected runs, in the order of selection.
   std::vector<int> best(int count) const {
     std::vector<double> apart(distances_.front().size(), 0.0);
     std::vector<int> chosen;
@@ -310,7 +310,7 @@ class RunChoice {
   }
 
  private:
-  /// Logarithm of the sum over pairs of exp(-B) once a run is made, which keeps an order where all are far apart.
+  /// Logarithm of the sum over pairs of exp(-B) after a run; the logarithm keeps the order if all B are large.
   double confusion(const std::vector<double>& apart, int run) const {
     const std::vector<double>& own = distances_[static_cast<std::size_t>(run)];
     double least = apart[0] + own[0], sum = 0.0;
@@ -331,7 +331,7 @@ class RunChoice {
   const std::vector<CauseOnRows>& models_;
   const Trial& runs_;
   int length_;
-  std::vector<std::vector<double>> distances_;  ///< of each run and pair of causes
+  std::vector<std::vector<double>> distances_;  ///< for each run and pair of causes
 };
 
 }  // namespace

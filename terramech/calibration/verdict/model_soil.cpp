@@ -9,8 +9,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kTold = 0.9;  // of the prior's standard deviation: a parameter above this share is not
-                               // determined by the rows
+constexpr double kTold = 0.9;  // greatest posterior over prior std of a determined parameter
 
 int indexOf(const std::string& name) {
   const auto& all = soilParameters();
@@ -61,7 +60,7 @@ class SoilModelFit {
     return fit;
   }
 
-  /// in the order of the plan
+  /// Covariance of the free parameters, in the order of the plan.
   Eigen::MatrixXd covariance(const RefinedModel& fitted) {
     return parameterCovariance(fitted, trial_, whiteningBy(fitted), plan_, solved_);
   }

@@ -13,7 +13,7 @@ namespace talus::terramech {
 
 /// Options for a soil fit under a model's effects.
 struct ModelSoilOptions {
-  /// Model whose stated soil is the prior; none: vague prior, as for a soil fitted by `talus trace`.
+  /// Model whose stated soil is the prior; empty: vague prior, as for a soil fitted by `talus trace`.
   std::optional<RefinedModel> prior;
   std::optional<double> shear_modulus_m;  ///< stated K [m], which is not fitted
   double noise = 0.05;  ///< relative standard deviation of readings without one in the model file [-]

@@ -9,12 +9,12 @@
 namespace talus::terramech {
 namespace {
 
-/// Errors of the sensors as they are stated, where they are.
+/// Stated errors of the sensors if some fitted errors are far larger, otherwise the fitted errors.
 const ChannelErrors& statedFloor(const TraceResult& result) {
   return result.strained.empty() ? result.noise_floor : result.declared_floor;
 }
 
-/// Variance that a channel has above its floor and `known`; 0 where the excess is within three standard errors.
+/// Variance of a channel above its floor and `known`; 0 if the excess is within three standard errors.
 double excess(const ChannelErrors& rmse, const TraceResult& result, const ChannelErrors& of_sensors,
               std::size_t channel, double known = 0.0) {
   const double floor = of_sensors[channel] * of_sensors[channel] + known;
@@ -41,7 +41,7 @@ bool isFixedByRun(const Trial& trial, const std::string& column) {
   return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
 }
 
-/// Whether each unit that shares an error is a run.
+/// True if each unit with a shared error is a run.
 bool unitsAreRuns(const TraceResult& result) {
   const std::vector<int>&unit = result.shared.unit, &run = result.trial.run;
   std::set<std::pair<int, int>> pairs;
@@ -60,7 +60,7 @@ std::string furtherRows(const TraceResult& result, const Answer& answer) {
            std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
   const double times = answer.gain > 0.0 ? result.threshold / answer.gain : 0.0;
   std::string rows = "rows over a wider range of " + answer.column + ", the other columns the same";
-  // A gain grows in proportion to the rows.
+  // A gain increases in proportion to the number of rows.
   if (times > 1.0 && times < 20.0)
     rows += ", or about " + std::to_string(static_cast<int>(std::ceil(times))) + " times as many";
   return rows;

@@ -69,7 +69,8 @@ TEST(CostGrid, RetiledElevationLeavesEarlierVersionsUnchanged) {
   for (const std::size_t other : {0U, 2U, 3U, 8U}) EXPECT_EQ(after[other], before[other]) << "shared";
 }
 
-// Property: whatever tiles of copies are set, each table holds what a plain list of its own would.
+// Property: after any sequence of shared tiles is set in several tables, each table holds the same values as
+// a plain list.
 TEST(TileTable, CopiesAreIndependent) {
   const auto tileOf = [](std::uint8_t curve) {
     auto tile = std::make_shared<CostTile>();

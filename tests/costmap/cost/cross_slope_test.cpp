@@ -23,7 +23,7 @@ TravelCost costOf(const GroundModel& model, const GroundBelief& belief) {
   return {model.limits(), std::vector<GroundCost>{model.ground(0, belief)}};
 }
 
-// A plane that rises by `along` in the heading east and by `across` to its left.
+// A plane that rises by `along` in the heading east and by `across` to the left of the heading.
 CellCode plane(double along, double across) {
   return CellCode({.dz_dx = along, .dz_dy = across, .curve = 0});
 }
@@ -45,7 +45,7 @@ GroundModel modelOf(const terramech::Soil& soil) {
       {.rover = testRover(), .classes = {{.number = 0, .soil = soil}}, .policy = {.allow_dangerous = true}});
 }
 
-// Closed form: a planner that knows slopes along the heading only pays on every slope across what it pays on none.
+// Closed form: with prices_crossing = false the cost on any cross slope equals the cost without cross slope.
 TEST(CrossSlope, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
   GroundModel::Parts parts = modelOf(testSand()).parts();
   const GroundModel priced(parts);
@@ -61,7 +61,7 @@ TEST(CrossSlope, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
   EXPECT_TRUE(std::isinf(cost.costPerMetre(plane(0.0, beyond), {})));
 }
 
-// Property: what the equilibrium of the rover refuses by more than a row across and a bin along is not allowed.
+// Property: a slope is refused if the equilibrium refuses it by more than one row across and one bin along.
 TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
   std::mt19937 random(1);
   int refused = 0, held = 0, given_up = 0;
@@ -79,8 +79,8 @@ TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
           EXPECT_FALSE(allowed) << soils << ' ' << along << ' ' << across;
           ++refused;
         }
-        // And what holds with a row and a bin to spare is given up nowhere, but where limits other than the
-        // soil's come first.
+        // Property: a slope that has an equilibrium with one row and one bin to spare is allowed, except
+        // where limits other than the soil's apply first.
         if (std::abs(along) < 0.3 && exact.at({along - 1.5 * inward, across + 2.0 / 64}).holds() &&
             exact.at({along + 0.02, across + 2.0 / 64}).holds() &&
             exact.at({along - 0.02, across + 2.0 / 64}).holds()) {
@@ -94,8 +94,8 @@ TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
   EXPECT_LE(given_up, held / 50);
 }
 
-// Property: away from failure a metre costs and slips what the equilibrium says at that gradient, row 0 included, whatever the
-// steering. Tolerance: linear between nodes and equilibria.
+// Property: away from failure, cost per metre and slip equal those of the equilibrium at the gradient, also
+// in row 0 and for any steering. Tolerance: linear interpolation between nodes and equilibria.
 TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
   std::mt19937 random(2);
   std::vector<double> ratios;
@@ -128,7 +128,8 @@ TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
   EXPECT_LT(ratios.back(), 1.10);
 }
 
-// Property: from heading to heading a degree apart the cost on a plane changes as the equilibrium's energy does, without steps.
+// Property: between headings one degree apart, the cost on a plane changes as the energy of the equilibrium
+// does, without steps.
 TEST(CrossSlope, CostIsSmoothInHeading) {
   const GroundModel model = modelOf(testSand());
   const terramech::SlopeEquilibrium exact(testSand(), testRover());
@@ -156,8 +157,8 @@ TEST(CrossSlope, CostIsSmoothInHeading) {
   EXPECT_GT(compared, 800);
 }
 
-// A rover as tall as it is dangerous: base and track 0.9 m, centre of mass 1.2 m high, tips at atan(0.45 / 1.2) = 20.6 degrees on ground that
-// holds far more.
+// A rover that tips easily: base and track 0.9 m, centre of mass 1.2 m high. The rover tips at atan(0.45 /
+// 1.2) = 20.6 degrees, on ground whose strength allows far steeper slopes.
 TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   terramech::Soil clay = testSand();
   clay.cohesion_Pa = 20000.0;
@@ -191,9 +192,9 @@ TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   }
 }
 
-// Property: where a slope is allowed, the deepest wheel, solved anew under the load that it carries there, sinks by less than
-// the clearance (0.04 of it: the table of wheel forces and a bin of gradient). A rover near tipping, whose lower wheels carry far more than
-// their share.
+// Property: on an allowed slope the deepest wheel, solved again under its load on the slope, sinks by less
+// than the clearance. Tolerance 0.04 of the clearance: table of wheel forces and one bin of gradient. The
+// rover is near tipping, so that its lower wheels carry far more than their share.
 TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
   terramech::Rover tall = testRover();
   tall.wheelbase_m = 0.8;
@@ -229,8 +230,8 @@ TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
   EXPECT_GT(sunk, 30);
 }
 
-// Property: cost, risk and refusal never fall as the slope across grows, nor when the rover crosses it the other
-// way round.
+// Property: cost, risk and refusal never decrease as the cross slope grows, and are equal for both
+// directions of travel.
 TEST(CrossSlope, CostIsMonotoneInCrossSlope) {
   std::mt19937 random(3);
   for (int soils = 0; soils < 4; ++soils) {
@@ -248,8 +249,8 @@ TEST(CrossSlope, CostIsMonotoneInCrossSlope) {
   }
 }
 
-// Property: weaker or less sure ground is never cheaper in any heading, and never allowed where stronger ground
-// is refused.
+// Property: weaker or less certain ground is never cheaper in any heading, and is never allowed where
+// stronger ground is refused.
 TEST(CrossSlope, CostIsMonotoneInSoilStrength) {
   std::mt19937 random(4);
   const auto between = [&random](double low, double high) {
@@ -284,7 +285,7 @@ TEST(CrossSlope, SideForceFailureIsReported) {
   ASSERT_FALSE(terramech::SlopeEquilibrium(loose, testRover()).at({-0.05, steep}).holds());
   EXPECT_EQ(cost.detail(plane(-0.05, steep), {}).refusal, Refusal::SideForce);
   EXPECT_TRUE(std::isinf(cost.costPerMetre(plane(-0.05, steep), {})));
-  // What is refused without anything across keeps its reason.
+  // A slope that is refused without a cross slope keeps its reason with one.
   EXPECT_EQ(cost.detail(plane(0.3, 0.1), {}).refusal, Refusal::Pull);
 }
 

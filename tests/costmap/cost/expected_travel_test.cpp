@@ -39,7 +39,8 @@ TEST(ExpectedTravel, ZeroStandardDeviationYieldsTheMobilityCurve) {
   for (const double demand : {-0.3, -0.05, 0.0, 0.07, 0.15}) {
     const terramech::MobilityState exact = curve.at(std::atan(demand));
     const ExpectedCost cost = drive.at({demand, 0.0}, -1.0);
-    // Closed form: no doubt, no expectation. Tolerance: a table of 1024 steps.
+    // Closed form: with zero standard deviation the expected cost is the cost. Tolerance: a table of 1024
+    // steps.
     EXPECT_NEAR(cost.energy_J_per_m, exact.energy_J_per_m, 1e-5 * exact.energy_J_per_m);
     EXPECT_NEAR(cost.time_s_per_m * exact.speed_mps, 1.0, 1e-5);
   }
@@ -49,7 +50,8 @@ TEST(ExpectedTravel, CostIsTheExpectationOverTheDemandDistribution) {
   const terramech::MobilityCurve curve(testSand(), testRover());
   const ExpectedTravel drive(curve);
   const Estimate demand{0.05, 0.03};
-  // Brute force: the mean over a fine grid of demands, the failed ones at twice the limit's cost.
+  // Closed form, by brute force: the mean over a fine grid of demands; a failed demand costs twice the cost
+  // at the limit.
   double sum = 0.0, weight = 0.0;
   for (double u = -6.0; u <= 6.0; u += 0.001) {
     const double at = demand.value + u * demand.std, w = std::exp(-0.5 * u * u);
@@ -57,10 +59,11 @@ TEST(ExpectedTravel, CostIsTheExpectationOverTheDemandDistribution) {
     sum += w * (at > drive.last() ? 2.0 * most : curve.at(std::atan(at)).energy_J_per_m);
     weight += w;
   }
-  EXPECT_NEAR(drive.at(demand, -1.0).energy_J_per_m, sum / weight, 1e-3 * sum / weight);  // seven points
+  EXPECT_NEAR(drive.at(demand, -1.0).energy_J_per_m, sum / weight, 1e-3 * sum / weight);  // seven-point rule
 }
 
-// Property: neither the cost nor the risk falls as a standard deviation grows, whatever rover, soil and belief.
+// Property: neither cost nor risk decreases as a standard deviation grows, for random rovers, soils and
+// estimates.
 TEST(ExpectedTravel, CostIsMonotoneInStandardDeviation) {
   std::mt19937_64 random(11);
   int compared = 0;
@@ -90,7 +93,7 @@ TEST(ExpectedTravel, CostIsMonotoneInStandardDeviation) {
   EXPECT_GT(compared, 2000) << "most of what was compared was refused";
 }
 
-// Property: ground that is climbed never gets cheaper or safer as it gets steeper.
+// Property: uphill, neither cost nor risk decreases as the gradient grows.
 TEST(ExpectedTravel, CostIsMonotoneInUphillGradient) {
   std::mt19937_64 random(12);
   int compared = 0;

@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace travel_cost_test {
 
-// A curve whose cost names its own bin, so that what was looked up can be read off.
+// A curve whose cost in each bin is the bin's number, so that the result shows which bin was read.
 TravelCurve numbered() {
   TravelCurve curve{};
   for (int bin = 0; bin < TravelCurve::kBins; ++bin)
@@ -53,12 +53,13 @@ TEST(TravelCost, CostUsesTheGradientAlongTheHeading) {
     const float seen = cost.costPerMetre(cell, towards(heading));
     if (std::abs(along) > 0.9 || std::abs(across) > 0.9)
       EXPECT_TRUE(std::isinf(seen));
-    else  // Closed form: linear between nodes at k/256, each of which costs its number; single precision.
+    else  // Closed form: linear between nodes at k/256 whose costs are k; single precision.
       EXPECT_NEAR(static_cast<double>(seen), along * 256.0 + 256.0, 1e-4);
   }
 }
 
-// Brute force: the four nodes about a gradient, in double precision; refused where one of them that counts is.
+// Closed form, by brute force: bilinear in the four nodes around a gradient, in double precision; infinite
+// if a node with a weight above zero is refused.
 TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
   std::mt19937 random(7);
   constexpr int kRows = 30;
@@ -71,7 +72,7 @@ TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
   std::uniform_real_distribution<double> gradient(-0.9, 0.9);
   int refused = 0, allowed = 0;
   for (int i = 0; i < 20000; ++i) {
-    const double snap = i % 3 == 0 ? 256.0 : 1e6;  // on nodes, too
+    const double snap = i % 3 == 0 ? 256.0 : 1e6;  // every third gradient lies on a node
     const double along = std::round(gradient(random) * snap) / snap,
                  across = std::round(gradient(random) * snap) / snap;
     const double x = along * 256.0 + 256.0, y = std::abs(across) * 64.0;
@@ -109,7 +110,7 @@ TEST(TravelCost, UnknownAndBlockedCellsAreInfeasibleInEveryHeading) {
     }
 }
 
-// Property: finite cost exactly where the numbers behind it say allowed.
+// Property: the cost is finite exactly where the detailed state is allowed.
 TEST(TravelCost, CostIsFiniteExactlyWhereTheStateIsFeasible) {
   const auto model = testGround();
   const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
@@ -137,7 +138,8 @@ TEST(TravelCost, InfeasibilityNamesTheExceededLimit) {
   EXPECT_EQ(cost.detail(CellCode({0.0, -0.25, 0}), {1.0, 0.0}).refusal, Refusal::Roll);
 }
 
-// Independent derivation: the centre of mass, plumbed onto the plane in three dimensions, against the wheels' rectangle.
+// Closed form: the projection of the centre of mass onto the plane in three dimensions, against the
+// rectangle of the wheels.
 TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = 0.8;
@@ -153,8 +155,7 @@ TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
     const Direction heading = towards(angle(random));
     const double size = std::sqrt(1.0 + cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy());
     const double rise = cell.dzDx() * heading.x + cell.dzDy() * heading.y, run = std::hypot(1.0, rise);
-    const double ahead_z =
-        rise / run;  // of the unit vector ahead on the plane; the one to the left is normal x ahead
+    const double ahead_z = rise / run;  // of the unit vector ahead on the plane; left = normal x ahead
     const double left_z = (-cell.dzDx() * heading.y + cell.dzDy() * heading.x) / (size * run);
     const double plumb = rover.centre_of_mass_height_m * size;
     const double off = std::max(plumb * std::abs(ahead_z) - 0.5 * rover.wheelbase_m,

@@ -1,5 +1,5 @@
-// The estimate of a cell and of a class by docs/belief.md alone: its equations (B1) and (B11) to (B15), of observations
-// of one drive that may raise.
+// Computes the estimate of a cell and of a class from docs/belief.md alone: equations (B1) and (B11) to
+// (B15), for observations of one drive that may raise an estimate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +18,8 @@
 namespace talus::costmap {
 namespace belief_page_test {
 
-constexpr int kSide = 64;            // of the map, in cells of a metre
-constexpr double kPrecision = 1e-7;  // the map keeps what a block comes to in floats
+constexpr int kSide = 64;            // side of the map, in cells of one metre
+constexpr double kPrecision = 1e-7;  // the map stores the sums of a block as floats
 
 struct Read {
   double pull, std, shared;
@@ -28,7 +28,7 @@ using Block =
     std::pair<int, int>;  // column and row of a block, or of a square of blocks, from the south-west
 using World = std::map<Block, std::vector<Read>>;
 
-// P0, p, q, l and the side of a block.
+// P0, p, q, l and the side of a block, as in docs/belief.md.
 struct Given {
   double prior, p, q, length, side;
 
@@ -42,7 +42,7 @@ double correlation(double d, double length) {
   return (2.0 + std::cos(turn)) / 3.0 * (1.0 - d / length) + std::sin(turn) / (2.0 * std::numbers::pi);
 }
 
-// C of (B11) at a power of two, with Phi^-1 by bisection.
+// C of (B11) at a power of two; Phi^-1 is found by bisection.
 double tailAt(double u) {
   if (u >= 1.0) return 0.0;
   double low = -40.0, high = 40.0;
@@ -70,7 +70,7 @@ double leastOf(std::vector<double> values, double sigma) {
 }
 
 struct Place {
-  double y = 0.0, variance = 0.0, shared = 0.0;  // y: less P0
+  double y = 0.0, variance = 0.0, shared = 0.0;  // y: departure from P0
 };
 
 // (B11)
@@ -96,13 +96,13 @@ Place placeOf(const std::vector<Read>& reads, const Given& given) {
   return place;
 }
 
-// The variance of (B13) by e^2, c and q^2, or what (B15) has in place of these.
+// The variance of (B13) from e^2, c and q^2, or from the corresponding terms of (B15).
 double withShared(double e2, double c, double v) {
   const double g = 1.0 - e2 / v;
   return g > 0.0 ? (e2 * g + c * c) / (g + c * c / v) : v;
 }
 
-// How many places were driven, and what the third best of those that may raise shows.
+// Number of places driven, and the third largest value among the places that may raise the estimate.
 struct Agreed {
   double driven = 0.0, rise = 0.0;
   bool may_raise = false;
@@ -169,7 +169,7 @@ Class classOf(const World& world, const Given& given) {
   return of;
 }
 
-// Gauss elimination.
+// Solves a linear system by Gaussian elimination.
 std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -238,8 +238,8 @@ struct Case {
   double length, stronger, extent;
 };
 
-// Places on a square of that extent, of a strength about P0 + stronger, every sixth beyond what the class explains,
-// none weaker by two standard deviations.
+// A world of places on a square of a given extent, with strengths about P0 + stronger. Every sixth place
+// deviates by more than the class variation explains; no place is weaker by two standard deviations.
 World drivenWorld(std::mt19937_64& random, const Given& given, const Case& one) {
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -288,8 +288,8 @@ void learn(TraversabilityMap& map, const World& world) {
                  .pull_may_raise = true});
 }
 
-// Compares the class, each cell that was driven and every third column of every third row; how many cells are neither
-// at the mean of their class nor at the most that it may rise.
+// Compares the class, each driven cell and every third column of every third row. Returns the number of
+// cells whose estimate is neither the mean of their class nor the highest value that they may reach.
 int expectAsPage(Site& site, const World& world) {
   const Given& given = site.given;
   learn(site.map, world);
@@ -311,8 +311,8 @@ int expectAsPage(Site& site, const World& world) {
   return between;
 }
 
-// Closed form: the page, for cells that were driven, near these and far from all, before and after three places may
-// raise.
+// Closed form: equations of docs/belief.md, for driven cells, cells nearby and cells far away, before and
+// after three places may raise the estimate.
 TEST(BeliefPage, EstimateMatchesThePublishedPage) {
   std::mt19937_64 random(2);
   for (const Case& one : {Case{3, 5.0, -0.03, 20.0},
@@ -327,8 +327,8 @@ TEST(BeliefPage, EstimateMatchesThePublishedPage) {
   }
 }
 
-// Closed form: the page, of three places, one of which is known to 0.061 or 0.054, and in one of which a single reading
-// lies below the class by 1.2 or 0.9 of its standard deviation.
+// Closed form: equations of docs/belief.md for three places. One place has a standard deviation of 0.061 or
+// 0.054; another has a single reading below the class by 1.2 or 0.9 of its standard deviation.
 TEST(BeliefPage, RaisingConditionMatchesThePublishedPage) {
   for (const std::size_t readings : {3U, 4U})
     for (const double single : {-0.12, -0.09}) {

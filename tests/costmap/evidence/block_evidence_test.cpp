@@ -26,7 +26,8 @@ ReadingCount times(ReadingCount reading, std::uint16_t count) {
 }
 
 TEST(ReadingCount, ReadingsAreRoundedConservatively) {
-  // Closed form: steps of 0.01 from -1.28, for a pull that may only lower down, else to the nearest, up for sinkage
+  // Closed form: steps of 0.01 from -1.28. A pull that may only lower is rounded down, other pulls to the
+  // nearest step; sinkage is rounded up.
   EXPECT_EQ(pullReading({0.109, 0.05}, false).step, 138);
   EXPECT_EQ(pullReading({0.109, 0.05}, true).step, 139);
   EXPECT_EQ(pullReading({0.104, 0.05}, true).step, 138);
@@ -54,8 +55,9 @@ ReadingCount of(ReadingCount reading, std::uint16_t drive) {
   return reading;
 }
 
-// Property: of two drives that disagree the place is as the weaker alone says, whichever has more readings; a drive of few readings
-// that scatter lowers nothing beyond what all of them say.
+// Property: of two contradicting drives the weaker one determines the estimate of the place, whichever has
+// more readings. A drive of few scattered readings does not lower the estimate below that of all readings
+// together.
 TEST(BlockEvidence, EstimateIsThatOfTheWeakestDrive) {
   const ReadingCount weak = pullReading({0.10, 0.05}, true), strong = pullReading({0.20, 0.05}, true);
   const BlockEvidence alone = summed({of(times(weak, 40), 1)});
@@ -68,7 +70,8 @@ TEST(BlockEvidence, EstimateIsThatOfTheWeakestDrive) {
   EXPECT_NEAR(summed(few).pull, summed({low, times(strong, 900), high}).pull, 1e-6F);
 }
 
-// Strength of places, on average, where so many drives read twelve times each; what their sensors are off by scatters by 0.01.
+// Mean strength of places read twelve times by each of `drives` drives, whose sensor errors have a standard
+// deviation of 0.01.
 double meanOfSound(int drives) {
   constexpr int kPlaces = 400;
   std::mt19937_64 random(11);
@@ -87,7 +90,8 @@ double meanOfSound(int drives) {
   return sum / kPlaces;
 }
 
-// Property: drives that are all sound do not take each other down, however many. (The least of eight lies 0.014 lower.)
+// Property: the number of sound drives does not bias the estimate. (The least of eight would be 0.014
+// lower.)
 TEST(BlockEvidence, NumberOfConsistentDrivesDoesNotBiasTheEstimate) {
   const double one = meanOfSound(1);
   for (const int drives : {2, 3, 4, 8, 16}) {
@@ -96,7 +100,7 @@ TEST(BlockEvidence, NumberOfConsistentDrivesDoesNotBiasTheEstimate) {
   }
 }
 
-// Property: readings of one drive say the same, whatever its number.
+// Property: the estimate from the readings of one drive does not depend on the number of the drive.
 TEST(BlockEvidence, EstimateIsIndependentOfDriveNumbers) {
   std::mt19937_64 random(5);
   for (int round = 0; round < 40; ++round) {
@@ -127,7 +131,7 @@ TEST(BlockEvidence, SinkageIsThatOfTheDeepestReadings) {
   EXPECT_FALSE(summed({sinkageReading(0.1, false)}).sinkage_raises);
 }
 
-// Property: of bounds the hardest holds, in whatever order they came and whatever else was read.
+// Property: the strictest of several bounds is kept, in any order and with any other readings.
 TEST(BlockEvidence, StrictestBoundIsKept) {
   std::vector<ReadingCount> counts{times(pullReading({0.3, 0.05}, true), 500)};
   for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
@@ -142,7 +146,7 @@ TEST(BlockEvidence, StrictestBoundIsKept) {
 }
 
 TEST(BlockEvidence, SampleCountIsInverseVarianceWeighted) {
-  // Closed form: standard deviation 0.05 counts one, 0.1 a quarter
+  // Closed form: a reading of standard deviation 0.05 counts as one sample, of 0.1 as a quarter
   EXPECT_NEAR(samples(std::vector{pullReading({0.2, 0.05}, true), pullReading({0.2, 0.1}, true)}), 1.25,
               1e-9);
 }

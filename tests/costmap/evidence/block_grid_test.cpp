@@ -15,8 +15,8 @@ std::shared_ptr<const GroundSite> siteOf(const std::vector<std::string>& rows, d
                  .model = testGround({.correlation_length_m = correlation_length_m})});
 }
 
-// Property: every cell lies in the block whose column and row it has, blocks are side by side, and their side is
-// the largest power of two of cells within a quarter of the correlation length.
+// Property: every cell lies in the block of its column and row, blocks are adjacent, and the side of a block
+// is the largest power of two of cells within a quarter of the correlation length.
 TEST(BlockGrid, BlocksPartitionTheMap) {
   for (const double length_m : {2.0, 8.0, 20.0, 40.0}) {
     const auto site = siteOf(std::vector<std::string>(21, std::string(37, '1')), length_m);

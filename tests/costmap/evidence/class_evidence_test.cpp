@@ -20,7 +20,7 @@ TEST(IndependentPlaces, AdjacentSquaresAreNotCountedAsIndependent) {
   EXPECT_EQ(places.driven(), 2U) << "of four in a row every other one";
   EXPECT_TRUE(std::isinf(places.agreed(3)));
   places.set({4, 0}, 0.05F);
-  // Closed form: squares 0, 2 and 4 hold 0.1, 0.1 and 0.05
+  // Closed form: squares 0, 2 and 4 contain 0.1, 0.1 and 0.05
   EXPECT_NEAR(places.agreed(3), 0.05, 1e-7);
   places.set({4, 0}, std::nullopt);
   EXPECT_EQ(places.driven(), 2U);
@@ -41,7 +41,7 @@ TEST(ClassEvidence, OnePlaceTeachesNothingTwoHalfThreeAll) {
   EXPECT_EQ(taught({-0.2}, true).posterior().pull.value, 0.0);
   const double two = taught({-0.2, -0.2}, true).posterior().pull.value;
   const double three = taught({-0.2, -0.2, -0.2}, true).posterior().pull.value;
-  // Closed form: prior n y / (n prior + variance), equal variances, times 1/2 of two places
+  // Closed form: prior n y / (n prior + variance) for equal variances; the weight of two places is 1/2
   EXPECT_NEAR(two, 0.5 * -0.2 * 2.0 / 3.0, 1e-5);
   EXPECT_NEAR(three, -0.2 * 3.0 / 4.0, 1e-5);
 }
@@ -53,11 +53,12 @@ TEST(ClassEvidence, RisesOnlyAsFarAsThreePlacesReach) {
   EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
 }
 
-// Property: of two drives, of 25 places each, whose means differ by less than 3 standard deviations of the difference the class may
-// rise; by more it may not, in either order. Closed form: of a mean over n places, variance q^2 p^2 / (n q^2 + p^2), q = p = 0.05.
+// Property: two drives of 25 places each may raise the class if their means differ by less than 3 standard
+// deviations of the difference, and may not, in either order, if the means differ by more. Closed form: the
+// mean over n places has the variance q^2 p^2 / (n q^2 + p^2), with q = p = 0.05.
 TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
   const double apart =
-      3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in what the places show
+      3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in the contributions of the places
   for (const double times : {0.0, 0.9, 1.1, 2.0})
     for (const double sign : {-1.0, 1.0}) {
       ClassEvidence lessons(sand());
@@ -73,7 +74,8 @@ TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
     }
 }
 
-// Property: lessons that may not raise leave the mean at most where those that may have it by themselves.
+// Property: evidence that may not raise never lifts the class mean above the mean from the evidence that
+// may.
 TEST(ClassEvidence, WhatMayNotRaiseNeverLifts) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-0.2, 0.2);
@@ -88,8 +90,9 @@ TEST(ClassEvidence, WhatMayNotRaiseNeverLifts) {
   }
 }
 
-// Property: a drive that may not raise lifts no mean, changes no deviation and makes no sinkage less, whatever drives were there: with and
-// without lessons that may raise, and with a second drive that may not.
+// Property: a drive that may not raise lifts no mean, changes no standard deviation and reduces no sinkage,
+// whatever other drives exist: with and without evidence that may raise, and with a second drive that may
+// not.
 TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> any(-0.2, 0.2), deep(0.0, 0.2);
@@ -127,7 +130,8 @@ TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
   }
 }
 
-// Closed form: the mean is the least over sets of drives, q^2 sum(h y)/(q^2 sum(h) + p^2): of -0.10, -0.08 and 0, one place each, that of the first two.
+// Closed form: the mean is the minimum over sets of drives of q^2 sum(h y)/(q^2 sum(h) + p^2). For -0.10, 0
+// and -0.08 at one place each, the minimum is that of the set {-0.10, -0.08}.
 TEST(ClassEvidence, IsWhatTheWeakestDrivesMakeOfIt) {
   ClassEvidence lessons(sand());
   for (int column = 0; column < 8; ++column) lessons.places().set({2 * column, 0}, -INFINITY);
@@ -138,8 +142,9 @@ TEST(ClassEvidence, IsWhatTheWeakestDrivesMakeOfIt) {
   EXPECT_NEAR(lessons.posterior().pull.value, -0.18 / 3.0, 1e-5);
 }
 
-// Closed form: of two drives the mean is at most what the weaker makes of it, q^2 W y/(q^2 W + p^2), and its deviation, q/sqrt(1 + q^2 W/p^2), W = 40
-// lessons; in either order to the bit, and a drive that is left out again leaves nothing.
+// Closed form: with two drives the mean is at most the value of the weaker drive, q^2 W y/(q^2 W + p^2), and
+// the standard deviation is that drive's, q/sqrt(1 + q^2 W/p^2), with W = 40 contributions. The result is
+// bit-identical in either order, and after a drive is added and removed again.
 TEST(ClassEvidence, NoDriveLiftsWhatAnotherShows) {
   const auto lessonOf = [](std::uint16_t drive) {
     return BlockContribution{.weight = 1.0,
@@ -171,7 +176,8 @@ TEST(ClassEvidence, NoDriveLiftsWhatAnotherShows) {
   EXPECT_EQ(one.state(), alone);
 }
 
-// Property: each number is rounded towards danger by less than a step, none beyond the prior, and what is untaught stays.
+// Property: each number is rounded conservatively by less than a step and not beyond the prior; numbers
+// without evidence are unchanged.
 TEST(ClassEvidence, StepsErrTowardsDanger) {
   EXPECT_EQ(ClassEvidence(sand()).stateInSteps().pull, 0.0);
   EXPECT_EQ(ClassEvidence(sand()).stateInSteps().pull_std, 0.05);
@@ -194,7 +200,7 @@ TEST(ClassEvidence, StepsErrTowardsDanger) {
   }
 }
 
-// Property: a lesson taken out again leaves no trace.
+// Property: removing a contribution restores the previous state to the bit.
 TEST(ClassEvidence, ForgetsToTheBit) {
   ClassEvidence lessons = taught({-0.1, -0.05, -0.07}, true);
   const ClassPosterior before = lessons.posterior();

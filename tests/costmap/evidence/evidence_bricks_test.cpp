@@ -17,10 +17,11 @@ Readings tableOf(const std::vector<ReadingCount>& counts) {
   return out;
 }
 
-// Property: whatever is put in, in any order, a plain std::map of the same says the same.
+// Property: after any sequence of insertions, in any order, the content equals that of a std::map with the
+// same insertions.
 TEST(EvidenceBricks, MatchesAPlainMap) {
   std::mt19937 random(7);
-  EvidenceBricks bricks(21, 13);  // no multiple of a brick
+  EvidenceBricks bricks(21, 13);  // not a multiple of the side of a brick
   std::map<Key, Readings> plain;
   for (int i = 0; i < 4000; ++i) {
     const BlockLevel at{static_cast<int>(random() % 21), static_cast<int>(random() % 13),
@@ -56,7 +57,7 @@ TEST(EvidenceBricks, MatchesAPlainMap) {
       all += levels;
     }
   EXPECT_EQ(all, plain.size());
-  // A box that reaches outside on three sides.
+  // The box extends beyond the map on three sides.
   std::size_t inside = 0, visited = 0;
   for (const auto& [key, heard] : plain)
     inside += std::get<0>(key) <= 11 && std::get<1>(key) >= 5 && std::get<2>(key) == BlockEvidence::kTop;
@@ -68,7 +69,7 @@ TEST(EvidenceBricks, MatchesAPlainMap) {
   EXPECT_GT(inside, 20U);
 }
 
-// Property: a count that is full stays full.
+// Property: a counter at its maximum stays at its maximum.
 TEST(EvidenceBricks, CountsSaturate) {
   EvidenceBricks bricks(8, 8);
   bricks.at({1, 1});

@@ -23,7 +23,7 @@ WheelObservation soft(double x, double y) {
           .sinkage_may_raise = true};
 }
 
-// Ground whose pull is so much less than its class's.
+// A reading whose pull is lower than the class mean by `by`.
 WheelObservation weaker(double x, double y, double by) {
   return {.time_s = 12.0,
           .place = {100.0 + x, 200.0 + y},
@@ -110,8 +110,8 @@ TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
     ordinary.learn(weaker(30.5, 30.5, 0.06));
   }
   map.publish();
-  // Property: seven standard deviations off move the class less than one does, yet are believed where they
-  // lie.
+  // Property: readings that lie seven standard deviations off move the class mean less than one standard
+  // deviation, but determine the estimate of their own cells.
   EXPECT_GT(map.evidence().posterior(0).pull.value, -0.05);
   const double prior = map.model().prior(0).pull.value;
   EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);

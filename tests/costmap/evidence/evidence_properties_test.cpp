@@ -1,4 +1,4 @@
-// What the evidence must keep to whatever was driven: random sites, random logs, by brute force over all cells.
+// Properties of the evidence on random sites with random logs, checked by brute force over all cells.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,7 +13,7 @@ namespace evidence_properties_test {
 
 constexpr int kSide = 30;
 
-// Patches of sand and dust whose borders run through blocks.
+// Patches of sand and dust whose borders cross blocks.
 std::vector<std::string> randomSite(std::mt19937_64& random) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (int patch = 0; patch < 3; ++patch) {
@@ -25,7 +25,7 @@ std::vector<std::string> randomSite(std::mt19937_64& random) {
   return rows;
 }
 
-// Two cells a block.
+// The correlation length makes a block two cells wide.
 std::shared_ptr<const GroundModel> ground() {
   return testGround({.correlation_length_m = 8.0});
 }
@@ -43,7 +43,7 @@ std::vector<WheelObservation> randomLog(std::mt19937_64& random, int rows) {
                           .place = {100.0 + place(random), 200.0 + place(random)},
                           .pull = {},
                           .sinkage = {0.0, std::numeric_limits<double>::infinity()}};
-    // Some places are driven again and again.
+    // Some places are driven repeatedly.
     if (i > 5 && share(random) < 0.6) seen.place = log[random() % 5].place;
     seen.pull = {pull(random), 0.025 * static_cast<double>(1U << random() % 4)};
     if (share(random) < 0.5) seen.sinkage = {std::abs(sinkage(random)), 0.05};
@@ -68,7 +68,7 @@ std::string bytesOf(const TraversabilityMap& map) {
   return stream.str();
 }
 
-// The most by which a cell is believed to be stronger, or to sink less, in one map than in another.
+// The largest increase of a cell's strength, or decrease of its sinkage, from one map to another.
 double mostRise(const TraversabilityMap& from, const TraversabilityMap& to) {
   double most = -1.0;
   for (int row = 0; row < kSide; ++row)
@@ -92,7 +92,7 @@ TEST(Evidence, ResultIsIndependentOfReadingOrder) {
   }
 }
 
-// Property: a wheel that finds ground weaker than anyone did nowhere makes the map more hopeful.
+// Property: a reading of weaker ground than any before never increases an estimate anywhere.
 TEST(Evidence, WeakReadingNeverIncreasesAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
@@ -125,7 +125,8 @@ TEST(Evidence, ReplacingAReadingByAWeakerOneIncreasesNoEstimate) {
   }
 }
 
-// Property: what may not raise leaves no cell better than it was, in mean and in the tail that risk comes from.
+// Property: readings that may only lower improve no cell, neither in the mean nor in the tail that
+// determines the risk.
 TEST(Evidence, LowerOnlyReadingsNeverIncreaseAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
@@ -142,8 +143,8 @@ TEST(Evidence, LowerOnlyReadingsNeverIncreaseAnyEstimate) {
   }
 }
 
-// Property: twenty readings of a trap in one cell, strong ground in every block around it, the trap's block
-// anywhere in its patch: the cell is as weak as it was read.
+// Property: after twenty readings of a trap in one cell, with strong ground in every block around and the
+// trap's block anywhere in its patch, the cell is as weak as its readings.
 TEST(Evidence, WeakEvidenceOfACellIsNeverDroppedForItsNeighbours) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     std::mt19937_64 random(seed);
@@ -189,7 +190,7 @@ TEST(Evidence, ClassesWithinABlockHaveSeparateEvidence) {
   }
 }
 
-// Property: three weak readings and sixty strong ones in one block, whichever came first.
+// Property: three weak readings in one block outweigh sixty strong ones, in either order.
 TEST(Evidence, FewWeakReadingsOutweighManyStrongOnes) {
   for (const bool weak_first : {false, true}) {
     TraversabilityMap map = mapOf(std::vector<std::string>(30, std::string(30, '1')));
@@ -225,8 +226,8 @@ TEST(Evidence, FirstDeepSinkageIsFullyWeighted) {
   EXPECT_NEAR(map.ground({15, 15})->sinkage.value, 0.77, 0.02);
 }
 
-// Property: a pose known to a metre makes all ground within two metres as weak as what was read, of any class,
-// and lets strength count only where all of it is of one class.
+// Property: a pose with a standard deviation of one metre makes all ground within two metres, of any class,
+// as weak as the reading. A strong reading counts only if all of that ground is of one class.
 TEST(Evidence, PoseErrorSpreadsWeakEvidenceAndRestrictsStrongEvidence) {
   std::vector<std::string> site(30, std::string(30, '1'));
   for (auto& row : site) row.replace(15, 15, 15, '2');

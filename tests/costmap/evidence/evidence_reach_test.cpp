@@ -16,11 +16,11 @@ TEST(EvidenceReach, ReachIsAlignedToPatchesWithinTheMap) {
   const maps::CellBox near = reach.add({.column = 0, .row = 0}, 0.0);
   EXPECT_EQ(near.first, (maps::Cell{0, 0}));
   EXPECT_EQ(reach.farthest_m(), 0.0);
-  // Property: the boxes lie within the map, apart from each other, and cover what add() returned.
+  // Property: the boxes lie within the map, do not overlap, and cover the box returned by add().
   int cells = 0;
   for (const maps::CellBox& box : reach.boxes()) cells += box.width() * box.height();
   EXPECT_EQ(cells, near.width() * near.height());
-  // Property: a place that may be further off reaches no less.
+  // Property: a larger pose error never reduces the reach.
   const maps::CellBox far = reach.add({.column = 0, .row = 0}, 20.0);
   EXPECT_GT(far.last.column, near.last.column);
   EXPECT_LT(far.last.column, 60);

@@ -16,7 +16,7 @@ TEST(SparseKernel, KernelDecreasesFromOneToZero) {
 TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
   const GaussianProcess process({{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}},
                                 kVariation);
-  // Closed form: prior and measurement of equal variance meet half way.
+  // Closed form: a prior and a measurement of equal variance average with equal weights.
   EXPECT_NEAR(process.at({0, 0}).pull.value, 0.05, 1e-12);
   EXPECT_NEAR(process.at({0, 0}).pull.std, 0.05 * std::sqrt(0.5), 1e-12);
   EXPECT_EQ(process.at({5, 0}).pull.value, 0.0);
@@ -26,10 +26,10 @@ TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
 TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
   std::vector<PlaceEvidence> many(20, {.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025});
   const double k = sparseKernel(2.0, 4.0);
-  // Property: what a perfectly known place can tell about one 2 m away is k^2 of its variance, no more.
+  // Property: a place 2 m away that is known exactly reduces the variance by the share k^2 at most.
   EXPECT_GE(GaussianProcess(many, kVariation).at({2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
-  // Kernel inference counts the repetitions instead: what the model gets wrong, and why the map does not use
-  // it.
+  // Kernel inference counts repeated readings as independent. The model underestimates the standard
+  // deviation, and therefore the map does not use it.
   EXPECT_LT(kernelInference(many, kVariation, {2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
 }
 

@@ -1,4 +1,4 @@
-// Both ways of spreading, on ground whose truth is known: what costmap/README.md quotes.
+// Both methods of spatial inference on ground of known strength; costmap/README.md quotes the results.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -13,8 +13,8 @@ namespace spreading_truth_test {
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 5.0};
 
-// A field without any kernel's signature: 60 waves of random direction, phase and length around 10 m, std
-// 0.05.
+// A field that no kernel generated: 60 waves of random direction, phase and length around 10 m; standard
+// deviation 0.05.
 class Waves {
  public:
   explicit Waves(std::mt19937_64& random) {
@@ -60,7 +60,8 @@ TEST(Spreading, GaussianProcessIsAsAccurateAndBetterCalibratedThanKernelInferenc
   Score process, inference, prior;
   for (int world = 0; world < 60; ++world) {
     const Waves truth(random);
-    // A drive straight across, a block every 1.25 m; asked at places up to the correlation length beside it.
+    // A straight drive with a block every 1.25 m; estimates are evaluated at places up to the correlation
+    // length beside the drive.
     std::vector<PlaceEvidence> drive;
     for (double x = 0.0; x <= 20.0; x += 1.25)
       drive.push_back({.place = {x, 0.0},
@@ -79,14 +80,15 @@ TEST(Spreading, GaussianProcessIsAsAccurateAndBetterCalibratedThanKernelInferenc
       "rms error: process %.4f, kernel inference %.4f, prior %.4f; truth within one std (0.683 is right): "
       "%.3f, %.3f\n",
       process.rms(), inference.rms(), prior.rms(), process.share(), inference.share());
-  // Pinned: 0.0343 against 0.0340. Without weights below 0 the process gives up 0.001 of its error.
+  // Pinned: RMS error 0.0343 (process) against 0.0340 (kernel inference). Excluding negative weights
+  // increases the error of the process by 0.001.
   EXPECT_LT(process.rms(), 1.02 * inference.rms());
   EXPECT_LT(process.rms(), prior.rms());
   EXPECT_LT(process.surprise, inference.surprise);
   EXPECT_NEAR(process.share(), 0.683, 0.1);  // Property: calibrated, as far as the kernel fits the field
 }
 
-// What was said to be weak with which probability, and how much of it was.
+// Predicted probability that ground is weak, against the observed share of weak ground.
 class Reliability {
  public:
   void add(const Estimate& said, double truth) {
@@ -98,12 +100,12 @@ class Reliability {
     bin.count += 1.0;
   }
 
-  // How far the share that was may lie above what was said, and below it: to call sound ground weak is the lesser
-  // harm.
+  // Largest excess of the observed share above the predicted one, and below it. Predicting sound ground as
+  // weak is the less harmful error.
   struct Tolerance {
     double above, below;
   };
-  // Prints the table and expects each share within the tolerance.
+  // Prints the table and expects each observed share within the tolerance.
   void expectWithin(const Tolerance& tolerance, const char* field) const {
     for (const Bin& bin : bins_) {
       const double said = bin.said / bin.count, were = bin.were / bin.count;
@@ -121,7 +123,7 @@ class Reliability {
   std::array<Bin, 5> bins_{};
 };
 
-// A drive straight across, a block every 1.25 m.
+// Places of a straight drive, a block every 1.25 m.
 std::vector<maps::Point> track() {
   std::vector<maps::Point> places;
   for (double x = 0.0; x <= 20.0; x += 1.25) places.push_back({x, 0.0});
@@ -130,7 +132,7 @@ std::vector<maps::Point> track() {
 
 constexpr double kNoise = 0.02;
 
-// Values at places drawn from the process itself, by the Cholesky factor of its covariance.
+// Draws values at the places from the Gaussian process by the Cholesky factor of its covariance.
 std::vector<double> drawnFrom(const std::vector<maps::Point>& places, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   const std::size_t n = places.size();
@@ -165,8 +167,8 @@ TEST(Spreading, WeakPlaceProbabilitiesAreCalibrated) {
       drive.push_back({places[i], truth[i] + noise(random), 0.0, kNoise * kNoise});
     own.add(GaussianProcess(drive, kVariation).at(places.back()).pull, truth.back());
   }
-  // Property: calibrated on ground that varies as it is said to, and never optimistic by more than 0.02; a standard
-  // error of the smallest bin is 0.014.
+  // Property: on ground drawn from the assumed kernel the prediction is calibrated, and optimistic by at
+  // most 0.02. The standard error of the smallest bin is 0.014.
   own.expectWithin({0.02, 0.05}, "ground of the kernel");
 }
 
@@ -189,8 +191,9 @@ TEST(Spreading, WeakPlaceProbabilitiesAreConservativeForOtherCovariance) {
       fitted.add(matched.at(p).pull, truth.at(p));
     }
   }
-  // The waves are alike to J0(2 pi d/10 m), 0.47 at 2.5 m, where the kernel says 0.17: what it says is too
-  // near the mean, by up to 0.1. With the length at which both agree there, 7.5 m, the table holds.
+  // The waves have the correlation J0(2 pi d/10 m), 0.47 at 2.5 m, where the kernel has 0.17. The
+  // predictions are therefore too close to the mean, by up to 0.1. With a length of 7.5 m both correlations
+  // agree at 2.5 m and the predictions are calibrated.
   waves.expectWithin({0.12, 0.12}, "waves, 5 m");
   fitted.expectWithin({0.02, 0.1}, "waves, 7.5 m");
 }

@@ -13,8 +13,7 @@ namespace wheel_observation_test {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// What a wheel of the test rover reads on a soil at a slip, noise-free, on the slope on which it drives
-// steadily.
+// Noise-free reading of a wheel of the test rover on a soil at a slip, on the slope of steady driving.
 TelemetryReading reading(const terramech::Soil& soil, double slip) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
@@ -34,7 +33,8 @@ TEST(WheelObserver, MatchingGroundShowsNoDeparture) {
   for (const double slip : {0.1, 0.3, 0.5}) {
     const auto seen = WheelObserver(*model).observe(0, reading(testSand(), slip));
     ASSERT_TRUE(seen.has_value());
-    // Property: reading and class agree; Eq. 3.12 is good to 0.03, and the slope outweighs it.
+    // Property: the estimate equals the class value. Eq. 3.12 is accurate to 0.03 and has less weight than
+    // the slope.
     EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.02) << slip;
     EXPECT_NEAR(seen->sinkage.value, model->prior(0).sinkage.value, 0.02) << slip;
   }
@@ -70,7 +70,8 @@ TEST(WheelObserver, InsufficientReadingsYieldNoObservation) {
   EXPECT_FALSE(WheelObserver(*model).observe(0, blind).has_value());
 }
 
-// Two wheels on one soil and two on another at one slip, the slope that they hold together.
+// Readings of two wheels on one soil and two on another at one slip, on the slope of their joint
+// equilibrium.
 std::vector<ClassReading> halfAndHalf(const terramech::Soil& front, const terramech::Soil& rear,
                                       double slip) {
   std::vector<ClassReading> all{{0, reading(front, slip)},
@@ -96,7 +97,7 @@ TEST(WheelObserver, WheelsOnDifferentGroundAreDistinguished) {
 TEST(WheelObserver, DeepSinkageAtLowSlipIndicatesWeakerGround) {
   const auto model = testGround();
   const auto seen = WheelObserver(*model).observe(halfAndHalf(testDust(), testSand(), 0.05));
-  // Property: weaker by more than the class varies from place to place
+  // Property: the estimate is lower by more than the variation of the class between places
   EXPECT_LT(seen[0]->pull.value, model->prior(0).pull.value - 0.05);
 }
 
@@ -124,7 +125,7 @@ TEST(PullFromTorque, PullEqualsTorqueAtZeroSinkage) {
   EXPECT_DOUBLE_EQ(pullFromTorque(0.4, 0.0), 0.4);  // Closed form: no sinkage, no resistance
 }
 
-// What a wheel reads that is turned uphill on the slope that it holds along and across.
+// Reading of a wheel turned uphill by a slip angle, on the slope and cross slope of its equilibrium.
 TelemetryReading crabbing(const terramech::Soil& soil, double slip, double slip_angle_rad) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
@@ -154,13 +155,14 @@ TEST(WheelObserver, SlipAngleDoesNotBiasTheObservation) {
       EXPECT_EQ(on_sand.across > 0.0, angle < 0.0);
       const auto same = observer.observe(0, on_sand);
       ASSERT_TRUE(same);
-      // Property: reading and class agree, as for straight wheels; the table of forces is good to 0.015.
+      // Property: the estimate equals the class value, as for straight wheels; the table of forces is
+      // accurate to 0.015.
       EXPECT_NEAR(same->pull.value, sand, 0.03) << slip << ' ' << angle;
-      // Property: weaker ground is seen to be weaker, whichever of its forces gives it away.
+      // Property: weaker ground is estimated as weaker, at any combination of pull and side force.
       const auto weaker = observer.observe(0, crabbing(testDust(), slip, angle));
       ASSERT_TRUE(weaker);
       EXPECT_LT(weaker->pull.value, sand - 2.0 * weaker->pull.std) << slip << ' ' << angle;
-      // Property: what is not known of the angle or the slope across errs towards weaker ground.
+      // Property: an unknown slip angle or cross slope yields a lower estimate.
       for (const bool angle_known : {false, true}) {
         TelemetryReading less = on_sand;
         (angle_known ? less.across : less.slip_angle_rad) = kNone;
@@ -171,13 +173,13 @@ TEST(WheelObserver, SlipAngleDoesNotBiasTheObservation) {
     }
 }
 
-// Ground that pulls as its class does, yet holds less across.
+// Ground with the pull of its class but a lower side force.
 TEST(WheelObserver, LowSideForceIndicatesWeakerGround) {
   const auto model = testGround();
   const WheelObserver observer(*model);
   TelemetryReading sliding = crabbing(testSand(), 0.3, -0.4);
   const double along = sliding.gradient, across = sliding.across, held = 0.4;
-  // The same pull in the wheel's plane, that part of the side force.
+  // The pull in the wheel's plane is unchanged; the side force is reduced to the share `held`.
   const double c = std::cos(0.4), s = std::sin(0.4), pull = along * c + across * s,
                side = across * c - along * s;
   sliding.gradient = pull * c - held * side * s;
@@ -191,7 +193,8 @@ TEST(WheelObserver, LowSideForceIndicatesWeakerGround) {
   EXPECT_NEAR(observer.observe(0, sliding)->pull.value, model->prior(0).pull.value, 0.03);
 }
 
-// Property: from slip 0.9 on a balance says nothing better than the class; what is weaker is kept.
+// Property: from slip 0.9 on a force balance never raises the estimate above the class; a lower estimate is
+// kept.
 TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
   const auto ground = testGround();
   const WheelObserver observer(*ground);

@@ -14,7 +14,8 @@ CategoryTable tableOf(const GroundModel& model) {
   return {model, model.prior(0), model.ground(0, model.prior(0))};
 }
 
-// Property: the category is the model's at the climb of the worst heading, or worse where planners read it so.
+// Property: the category equals that of the model on the steepest heading, or is worse through the planners'
+// rounding.
 TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
@@ -37,8 +38,8 @@ TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   EXPECT_GT(same, 1600);  // nodes are 4 steps apart
 }
 
-// Property: the map's category of a cell is at least as bad as its category in any heading. A cell that the map shows as safe or
-// marginal is not refused in its worst heading.
+// Property: the map's category of a cell is at least as bad as its category in any heading. A cell that the
+// map shows as safe or marginal is not refused in its worst heading.
 TEST(CategoryTable, NoHeadingHasAWorseCategory) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
@@ -58,7 +59,7 @@ TEST(CategoryTable, NoHeadingHasAWorseCategory) {
 TEST(CategoryTable, SteepestRepresentableGradientIsDangerous) {
   const auto model = testGround();
   const CategoryTable table = tableOf(*model);
-  // Property: nothing climbs a gradient of 2.8.
+  // Property: a gradient of 2.8 is dangerous.
   EXPECT_EQ(table.at(CellCode({-2.0, -2.0, 0})).category,
             static_cast<std::uint8_t>(terramech::Category::Dangerous));
 }

@@ -7,7 +7,7 @@
 namespace talus::costmap {
 namespace class_borders_test {
 
-// Brute force: every cell against every cell around it.
+// Closed form, by brute force: each cell is compared with every cell around it.
 TEST(ClassBorders, BordersAreCellsWithAnotherClassWithinReach) {
   std::mt19937_64 random(2);
   for (int trial = 0; trial < 60; ++trial) {

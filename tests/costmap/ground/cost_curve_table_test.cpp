@@ -8,7 +8,8 @@
 namespace talus::costmap {
 namespace cost_curve_table_test {
 
-// Property: what a belief costs does not depend on which like it was asked for first.
+// Property: the cost of an estimate does not depend on which of several similar estimates was requested
+// first.
 TEST(CostCurveTable, CostIsIndependentOfRequestOrder) {
   const GroundBelief sure{.pull = {0.101, 0.031}, .sinkage = {0.6, 0.01}};
   const GroundBelief unsure{.pull = {0.107, 0.033}, .sinkage = {0.6, 0.3}};
@@ -26,8 +27,8 @@ TEST(CostCurveTable, CostIsIndependentOfRequestOrder) {
   EXPECT_EQ(different, 0);
 }
 
-// Property: a number's ground costs no less than the belief that it was given for, at any gradient, also when the
-// numbers have run out.
+// Property: the tabulated cost is never below the cost of the estimate that was requested, at any gradient,
+// also after all curve numbers are in use.
 TEST(CostCurveTable, TabulatedCostIsNeverBelowTheExactCost) {
   std::mt19937_64 random(9);
   const auto drawn = [&](double low, double high) {
@@ -49,7 +50,8 @@ TEST(CostCurveTable, TabulatedCostIsNeverBelowTheExactCost) {
   EXPECT_TRUE(table.overflowed());
 }
 
-// Property: a class that nobody asked for is refused; asked for, it has the ground of the belief that it came to meanwhile.
+// Property: a class without a request is refused; after its first request it has the cost of its current
+// estimate.
 TEST(CostCurveTable, ClassCostIsComputedOnFirstRequest) {
   const auto model = testGround();
   CostCurveTable table(model);
@@ -69,8 +71,8 @@ TEST(CostCurveTable, ClassCostIsComputedOnFirstRequest) {
   EXPECT_LE(table.priorBelief(1).pull.value, weaker.pull.value);
 }
 
-// Property: numbers of classes that nobody asked for are lent to beliefs when all others are used up, and the class has its own
-// again after a restart; until then nothing is cheaper than it should be.
+// Property: curve numbers of unrequested classes are reused for estimates when all others are in use, and
+// the class has its own number again after a restart. Until then no cost is too low.
 TEST(CostCurveTable, UnusedClassNumbersAreReusedConservatively) {
   GroundModel::Parts parts = testGround()->parts();
   while (parts.classes.size() < 254)
@@ -93,7 +95,7 @@ TEST(CostCurveTable, UnusedClassNumbersAreReusedConservatively) {
   EXPECT_EQ(table.cost()->curves()[253].cost_J_per_m, table.cost()->curves()[1].cost_J_per_m);
 }
 
-// Property: a prior that moves to and fro comes to the same each time.
+// Property: a prior that changes and returns yields the same costs each time.
 TEST(CostCurveTable, RestoredPriorReproducesItsCosts) {
   CostCurveTable book(testGround());
   const GroundBelief low{.pull = {0.2, 0.06}, .sinkage = {0.2, 0.1}};

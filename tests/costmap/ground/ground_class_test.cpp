@@ -20,7 +20,8 @@ TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
   EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
 }
 
-// The value that no soil has is none that the file states.
+// The error message names the stated standard deviation, not the parameter's value at half of it, which no
+// soil has.
 TEST(GroundClass, StdOutsideTheSoilRangeIsReported) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
   EXPECT_THAT(
@@ -33,7 +34,8 @@ TEST(GroundClass, WithoutSoilStdTheDefaultStdIsUsed) {
             GroundClass{}.mean_std);
 }
 
-// Property: an Earth's test says less of the Moon: weaker ground, and more doubt; of the gravity that it was tested in, all.
+// Property: a test under the Earth's gravity yields weaker and less certain ground on the Moon; under the
+// test's own gravity the values are unchanged.
 TEST(GroundClass, LowerGravityThanTestedWeakensAndIncreasesStd) {
   terramech::SoilPrior prior{.mean = testSand(), .deviation = {}};
   terramech::Rover rover = testRover();
@@ -66,7 +68,8 @@ TEST(GroundClass, RefinedModelKeepsItsGroundEffects) {
   const GroundClass ground = groundClass(3, digging(), testRover());
   ASSERT_EQ(ground.effects.size(), 1U);
   EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
-  // Property: deeper in slipping than the sand alone, weaker at the reference slip.
+  // Property: slip sinkage makes the wheel sink deeper than in plain sand and weakens the pull at the
+  // reference slip.
   EXPECT_LT(mobilityOf(ground, testRover()).reference().drawbar_pull_over_load, pull(testSand()));
 }
 
@@ -77,7 +80,8 @@ TEST(GroundClass, PullStdFollowsFromTheModelCovariance) {
   const auto at = [](const terramech::RefinedModel& m) {
     return terramech::MobilityCurve(m, testRover()).reference().drawbar_pull_over_load;
   };
-  // Closed form: |dDP/dn1| std, std 0.04; a central difference against a one-sided one, hence 2 %.
+  // Closed form: |dDP/dn1| times the standard deviation 0.04. Tolerance 2 %: a central against a one-sided
+  // difference.
   const double expected = std::abs(at(more) - at(less)) / 0.008 * 0.04;
   EXPECT_NEAR(groundClass(3, digging(), testRover()).mean_std, expected, 0.02 * expected);
 }

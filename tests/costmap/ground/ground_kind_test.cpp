@@ -17,7 +17,8 @@ GroundBelief anyBelief(std::mt19937_64& random) {
 
 const GroundBelief kPrior{.pull = {0.137, 0.09}, .sinkage = {0.23, 0.1}};
 
-// Property: at every level what stands for a belief is no better than it in anything, and is its own kind.
+// Property: at every level the rounded estimate is no better than the exact one in any quantity, and rounds
+// to itself.
 TEST(GroundKind, RoundingIsConservativeAtEveryLevel) {
   std::mt19937_64 random(3);
   const GroundClass ground{.soil = testSand()};
@@ -26,7 +27,7 @@ TEST(GroundKind, RoundingIsConservativeAtEveryLevel) {
     for (int level = 0; level <= GroundKind::kCoarsest; ++level) {
       const GroundKind kind = GroundKind::of(kPrior, 0, 0, belief, level);
       const GroundBelief worst = kind.belief(kPrior, ground);
-      // A millionth of a step is rounding of numbers, not of beliefs.
+      // A difference of a millionth of a step is floating-point rounding.
       GroundBelief a_little_better = belief;
       a_little_better.pull.value += 1e-6;
       a_little_better.pull.std -= 1e-5;
@@ -43,8 +44,8 @@ TEST(GroundKind, RoundingIsConservativeAtEveryLevel) {
 
 TEST(GroundKind, RoundingStepsMatchTheirDefinition) {
   const GroundClass ground{.soil = testSand()};
-  // Closed form: from 0.137 down two steps of 0.02 to 0.097, 0.03 up to 0.09 * 2^(-6/4), from 0.23 up two steps of 0.1; at
-  // level 2 steps of 0.08, an octave and 0.4.
+  // Closed form: pull from 0.137 down two steps of 0.02 to 0.097, standard deviation 0.03 up to 0.09 *
+  // 2^(-6/4), sinkage from 0.23 up two steps of 0.1; at level 2 the steps are 0.08, an octave and 0.4.
   const GroundBelief belief{.pull = {0.108, 0.03}, .sinkage = {0.41, 0.1}};
   const GroundBelief fine = GroundKind::of(kPrior, 0, 0, belief).belief(kPrior, ground);
   EXPECT_DOUBLE_EQ(fine.pull.value, 0.097);
@@ -56,7 +57,8 @@ TEST(GroundKind, RoundingStepsMatchTheirDefinition) {
   EXPECT_NEAR(coarse.sinkage.value, 0.63, 1e-12);
 }
 
-// Property: what is no worse than the prior of its class is rounded to nothing worse, at any level.
+// Property: an estimate no worse than the prior of its class is rounded to a value no worse than the prior,
+// at any level.
 TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
   std::mt19937_64 random(4);
   const GroundClass ground{.soil = testSand()};

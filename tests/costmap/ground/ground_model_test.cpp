@@ -28,7 +28,8 @@ TEST(GroundModel, ExactPriorEqualsTheMobilityCurve) {
   for (const double gradient : {-0.2, -0.05, 0.0, 0.05, 0.1}) {
     const auto expected = curve.at(std::atan(gradient));
     const TravelState state = model->state(0, certain(*model), gradient);
-    // Closed form: no shift, no doubt; the horizontal metre is longer on the slope. Tolerance: float storage.
+    // Closed form: no departure and no uncertainty. A horizontal metre is longer on the slope. Tolerance:
+    // float storage.
     EXPECT_NEAR(state.slip, expected.slip, 1e-6);
     EXPECT_NEAR(state.energy_J_per_m, expected.energy_J_per_m * std::hypot(1.0, gradient), 1e-3);
     EXPECT_NEAR(state.torque_Nm, expected.torque_Nm, 1e-5);
@@ -39,11 +40,12 @@ TEST(GroundModel, PullDeficitIsEquivalentToASteeperGradient) {
   const auto model = testGround();
   GroundBelief weaker = certain(*model);
   weaker.pull.value -= 0.04;
-  // Property: the definition of the shift.
+  // Property: ground weaker by d slips as the class does on a gradient steeper by d.
   EXPECT_NEAR(model->state(0, weaker, 0.03).slip, model->state(0, certain(*model), 0.07).slip, 1e-6);
 }
 
-// Closed form: half of the thrust at the reference slip is half of what more slip gives, too; the resistance stays.
+// Closed form: half of the thrust at the reference slip is half of the thrust at any higher slip; the
+// resistance is unchanged.
 TEST(GroundModel, AboveReferenceSlipWeakerGroundScalesTheThrust) {
   const auto model = testGround();
   const terramech::MobilityCurve curve(testSand(), testRover());
@@ -55,13 +57,14 @@ TEST(GroundModel, AboveReferenceSlipWeakerGroundScalesTheThrust) {
                 curve.at(std::atan(at.drawbar_pull_over_load + 2.0 * beyond)).slip, 1e-5);
 }
 
-// Property: ground that is refused on no slope that its soil refuses would hold rovers. Soils drawn about the class, each
-// believed to have its true pull at the reference slip: how far the steepest slope that is not refused lies above the soil's own.
+// Property: the steepest slope that is not refused exceeds that of the soil by less than 0.02 on average,
+// and by more than 0.03 for at most 6 soils. Soils are drawn about the class, and each estimate has the true
+// pull of its soil at the reference slip.
 TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   GroundModel::Parts parts = testGround()->parts();
-  // Of the soil library, without the deviations of pressure and sinkage.
+  // Soils of the library, without their standard deviations of pressure and sinkage.
   terramech::SoilPrior crusty, loam;
   crusty.mean = {.name = "mars_crusty",
                  .cohesion_Pa = 1100,
@@ -113,7 +116,7 @@ TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
     }
     EXPECT_LE(promised, 6) << name;
     EXPECT_LT(std::abs(sum / weak), 0.02) << name;
-    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // why the curve is not shifted
+    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // reason why the curve is not shifted
   }
 }
 
@@ -127,13 +130,13 @@ TEST(GroundModel, FollowingWheelsUseMultipassEffects) {
   const auto rover = terramech::MobilityCurve({.soil = ground.soil, .effects = ground.effects}, parts.rover,
                                               {.axles = parts.rover.wheel_count / 2});
   for (const double gradient : {0.0, 0.08}) {
-    // Closed form: the rover as a whole by the curve of its axles.
+    // Closed form: the curve of the whole rover is that of its axles together.
     EXPECT_NEAR(model.state(0, certain(model), gradient).slip, rover.at(std::atan(gradient)).slip, 1e-5);
-    // Property: ruts help.
+    // Property: ruts reduce the slip.
     EXPECT_LT(model.state(0, certain(model), gradient).slip, plain.state(0, certain(plain), gradient).slip);
   }
-  // What is believed of ground is still said of a wheel on fresh ground: two rules of one integral, 1e-6
-  // apart.
+  // Estimates refer to a wheel on fresh ground, with and without ruts. Tolerance: two quadrature rules of
+  // one integral, 1e-6 apart.
   EXPECT_NEAR(model.prior(0).pull.value, plain.prior(0).pull.value, 1e-5);
   EXPECT_NEAR(model.steady(0, {.slip = 0.3}).gradient, plain.steady(0, {.slip = 0.3}).gradient, 1e-4);
   EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
@@ -208,7 +211,7 @@ TEST(GroundModel, EmptyAndDuplicateClassesAreRejected) {
   EXPECT_REFUSED(GroundModel{parts}, std::invalid_argument, "class 1 is declared twice");
 }
 
-// Property: threads that ask together for what is worked out when it is first asked for get one answer, that of one thread alone.
+// Property: concurrent first requests of lazily computed results return the result of a single thread.
 TEST(GroundModel, ConcurrentRequestsYieldTheSingleThreadedResult) {
   const auto together = testGround(), alone = testGround();
   const GroundModel copy = *together;
@@ -229,7 +232,7 @@ TEST(GroundModel, ConcurrentRequestsYieldTheSingleThreadedResult) {
   EXPECT_EQ(together->crossing(1), copy.crossing(1)) << "copies share what was worked out";
 }
 
-// Property: what is worked out later was held against its range at once.
+// Property: the range of a lazily evaluated class is checked at construction.
 TEST(GroundModel, InvalidSoilOfAnUnusedClassIsRejected) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes.push_back({.number = 9, .soil = testSand()});
@@ -245,7 +248,8 @@ TEST(GroundModel, SteadyWheelMatchesTheForwardModel) {
     const SteadyWheel steady = model->steady(0, {.slip = slip});
     const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.gradient);
     const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
-    // Closed form: the wheel under its load on that slope; the curve's table is good to 1e-3 in slip
+    // Closed form: the wheel under its load on that slope; the table of the curve is accurate to 1e-3 in
+    // slip
     EXPECT_NEAR(steady.gradient, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
     EXPECT_NEAR(steady.sinkage_over_radius, wheel.sinkage_m / rover.wheel.radius_m, 2e-3) << slip;
     EXPECT_NEAR(steady.torque_over_load_radius, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 5e-3)

@@ -43,8 +43,9 @@ TEST(WheelSwath, PullIsTheMeanOverTheWheels) {
   Around around = all(swath, strong());
   for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
   const WheelSwath::Judged judged = swath.judged(around);
-  // Closed form: the middle on the edge, one wheel stands beyond it, and where the edge runs along a diagonal of
-  // the rover the two wheels on that touch it with their width: three of four. The fourth never does.
+  // Closed form: with the centre on the edge, one wheel stands beyond it. If the edge runs along a diagonal
+  // of the rover, the two wheels on the diagonal touch the ground beyond with their width: three of four
+  // wheels. The fourth wheel never touches it.
   EXPECT_NEAR(judged.belief.pull.value, 0.25 * 0.3 - 0.75 * 0.25, 1e-12);
   EXPECT_EQ(judged.weakest_class, 1);
   EXPECT_DOUBLE_EQ(judged.belief.sinkage.value, 0.8) << "the deepest wheel";
@@ -55,7 +56,7 @@ TEST(WheelSwath, DiagonalNeighboursAreIncluded) {
   const WheelSwath swath(testRover(), 1.0, 0.0);
   Around around = all(swath, strong());
   at(around, swath, {1, 1}) = trap();
-  // Closed form: a quarter of the wheels, the middle at the corner of the cells.
+  // Closed form: a quarter of the wheels, with the centre at the corner of the cells.
   EXPECT_LE(swath.judged(around).belief.pull.value, 0.75 * 0.3 - 0.25 * 0.25 + 1e-12);
 }
 
@@ -67,8 +68,9 @@ TEST(WheelSwath, PoseErrorExtendsTheReach) {
   EXPECT_LT(unsure.judged(around).belief.pull.value, 0.3);
 }
 
-// Property: wherever the middle stands in the cell, whatever the heading, the wheels pull together no less than
-// is said, up to the steps of places and headings; nor is it ever better than the cell's own ground.
+// Property: for any position of the centre in the cell and any heading, the mean pull of the wheels is at
+// least the stated value, up to the step of positions and headings. The stated value is never better than
+// the cell's own ground.
 TEST(WheelSwath, PullIsTheMinimumOverPositionsAndHeadings) {
   std::mt19937_64 random(5);
   const auto drawn = [&](double low, double high) {
@@ -107,7 +109,7 @@ TEST(WheelSwath, PullIsTheMinimumOverPositionsAndHeadings) {
       missed += sum < said - 1e-9;
     }
   }
-  // One wheel may clip a corner of a cell between two of the places and headings that are looked at.
+  // A wheel may touch a corner of a cell between two of the sampled positions and headings.
   EXPECT_LT(missed / standings, 0.01);
 }
 

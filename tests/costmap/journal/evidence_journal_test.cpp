@@ -29,7 +29,7 @@ class EvidenceJournalTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-// As driveId() gives them.
+// A drive id in the format of driveId().
 std::string idOf(std::int64_t number) {
   std::string digits = std::to_string(number);
   return digits.insert(0, 16 - digits.size(), '0');
@@ -71,7 +71,8 @@ void change(const std::string& path, const char* sql) {
   sqlite3_close(database);
 }
 
-// Printed in: costmap/evidence_journal.cpp of Talus 0.1.0, which wrote format 3; a row of a drive and one of another.
+// Printed in: costmap/evidence_journal.cpp of Talus 0.1.0, which wrote format 3; one row of each of two
+// drives.
 const char* const kJournal010 =
     "CREATE TABLE IF NOT EXISTS evidence(id INTEGER PRIMARY KEY AUTOINCREMENT, source TEXT NOT NULL, line "
     "INTEGER NOT NULL,"
@@ -97,14 +98,14 @@ TEST_F(EvidenceJournalTest, MigratesAJournalOfRelease010) {
     EXPECT_EQ(b[0].line, 7);
     EXPECT_EQ(b[0].observation.z_m, -2500.5);
     EXPECT_TRUE(b[0].observation.pull_may_raise);
-    // Property: it does not state which error the readings share, so that they can only lower an estimate.
+    // Property: rows of format 3 lack the shared error, so that they can only lower an estimate.
     EXPECT_TRUE(std::isnan(b[0].observation.shared_std));
     ASSERT_EQ(a.size(), 1U);
     EXPECT_TRUE(std::isnan(a[0].observation.z_m));
   }
 }
 
-// Formats 1, 2 and 4 to 8 were written by no release.
+// No release wrote formats 1, 2 and 4 to 8.
 TEST_F(EvidenceJournalTest, UnknownFormatsAreRejectedWithOneLine) {
   for (const int format : {1, 2, 4, 5, 6, 7, 8}) {
     std::filesystem::remove(path());
@@ -156,7 +157,8 @@ TEST_F(EvidenceJournalTest, UncommittedRowsAreDiscarded) {
   EXPECT_EQ(EvidenceJournal(path()).size(), 1);
 }
 
-// Property: no change to a row by another hand is replayed, whichever column, whether or not the value is possible.
+// Property: a row modified outside Talus is never replayed, for any column, with a valid or an invalid
+// value.
 TEST_F(EvidenceJournalTest, ModifiedRowsAreRejected) {
   for (const char* sql :
        {"UPDATE evidence SET pull = 9e999", "UPDATE evidence SET pull = NULL",
@@ -177,7 +179,8 @@ TEST_F(EvidenceJournalTest, ModifiedRowsAreRejected) {
   }
 }
 
-// Property: a drive's entry is its rows' and nobody else's. The ids were not checked: replay ended by 0 with no row used.
+// Property: the entry of a drive belongs to its rows alone. (Unchecked ids made the replay end with exit
+// code 0 and no row used.)
 TEST_F(EvidenceJournalTest, ModifiedDriveEntriesAreRejected) {
   for (const char* sql :
        {"UPDATE drive SET id = zeroblob(1000000) WHERE number = 1",
@@ -207,7 +210,7 @@ TEST_F(EvidenceJournalTest, ModifiedDriveEntriesAreRejected) {
   }
 }
 
-// A trigger that deletes, and a view in the place of a table, lost rows in silence.
+// A trigger that deletes rows, or a view in place of a table, would lose rows without an error.
 TEST_F(EvidenceJournalTest, ForeignSchemaObjectsAreRejected) {
   for (const char* format : {"", "; PRAGMA user_version = 3", "; PRAGMA user_version = 0"})
     for (const char* sql :
@@ -227,14 +230,14 @@ TEST_F(EvidenceJournalTest, ForeignSchemaObjectsAreRejected) {
     }
 }
 
-// SQLite takes these for databases that are in no file: rows in them are gone with the process.
+// SQLite takes these names for databases without a file, whose rows are lost when the process ends.
 TEST_F(EvidenceJournalTest, InMemoryAndUriNamesAreRejected) {
   for (const char* name : {"", ":memory:", "file:zz.db?mode=memory", "file:zz.db", "folder/"})
     EXPECT_THROW(EvidenceJournal{name}, InputError) << name;
   EXPECT_THROW(EvidenceJournal(path()).append("a", {row(1)}), std::invalid_argument);
 }
 
-// Property: rows whose drive was taken off the list are missed, not passed over.
+// Property: rows of a drive that is not listed are reported as an error.
 TEST_F(EvidenceJournalTest, RowsOfAnUnlistedDriveAreRejected) {
   { EvidenceJournal(path()).append(kIdA, {row(7)}); }
   EXPECT_EQ(EvidenceJournal(path()).drives().size(), 1U);
@@ -242,7 +245,7 @@ TEST_F(EvidenceJournalTest, RowsOfAnUnlistedDriveAreRejected) {
   EXPECT_THROW(static_cast<void>(EvidenceJournal(path()).drives()), InputError);
 }
 
-// Rows of 0.1.0 have no checksum: their values are judged by themselves.
+// Rows of Talus 0.1.0 have no checksum; their values are validated instead.
 TEST_F(EvidenceJournalTest, ImpossibleValuesAreRejected) {
   for (const char* sql : {"pull = 9e999", "pull = NULL", "x_m = 9e999", "pull = 'x'"}) {
     std::filesystem::remove(path());
@@ -268,7 +271,7 @@ TEST_F(EvidenceJournalTest, BoundsRoundTripExactly) {
   EXPECT_EQ(back[2].observation.here.most_pull, -0.1 / 3.0);
 }
 
-// SQLite's message quotes the damaged schema: the line holds no byte that is no text.
+// SQLite's message quotes the damaged schema; the error line must contain printable characters only.
 TEST_F(EvidenceJournalTest, DamagedSchemaErrorIsOnePrintableLine) {
   { EvidenceJournal(path()).append(kIdA, {row(1)}); }
   const auto read = [](const std::string& name) {
@@ -314,7 +317,7 @@ TEST_F(EvidenceJournalTest, FilesThatAreNoJournalAreRejected) {
   }
 }
 
-// Writes rows and says after each how many are in, until it is killed.
+// Writes rows and reports the number of rows after each, until the process is killed.
 [[noreturn]] void writeForever(const std::string& path, int out) {
   EvidenceJournal journal(path);
   for (std::int64_t line = 1;; ++line) {
@@ -339,7 +342,7 @@ std::int64_t killedAfter(const std::string& path, useconds_t microseconds) {
 }
 
 TEST_F(EvidenceJournalTest, KilledWriterLosesAtMostOneRow) {
-  // 200 kills at scattered moments, from before the first row on.
+  // 200 kills at varied times, the earliest before the first row.
   for (unsigned kill = 0; kill < 200; ++kill) {
     const std::string file = path(std::to_string(kill).append(".db").c_str());
     const std::int64_t told = killedAfter(file, 500 + kill * 7919 % 12000);

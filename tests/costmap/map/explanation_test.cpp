@@ -24,9 +24,10 @@ const std::vector<std::string> kPlain(12, "111111111111");
 TEST(Explain, SafeCellListsItsCauses) {
   const Explanation e = explain(mapOf(kPlain, 0.05), {6, 6});
   EXPECT_EQ(e.category, Category::Safe);
-  // Closed form: the drawn plane. Tolerance: heights of 1000 m are floats, 6e-5 m apart.
+  // Closed form: the given plane. Tolerance: heights of 1000 m are stored as floats, 6e-5 m apart.
   EXPECT_NEAR(cause(e, "slope_rad").value, std::atan(0.05), 1e-4);
-  EXPECT_NEAR(cause(e, "slope_along_rad").value, std::atan(0.05), 1e-3);  // the code's step is 1/1024
+  EXPECT_NEAR(cause(e, "slope_along_rad").value, std::atan(0.05),
+              1e-3);  // the slope is stored in steps of 1/1024
   EXPECT_EQ(cause(e, "evidence_samples").value, 0.0);
   EXPECT_GT(cause(e, "drawbar_pull_over_load").std, 0.0);
 }
@@ -40,7 +41,8 @@ TEST(Explain, CategoryDependsOnHeading) {
   EXPECT_EQ(down.category, Category::Safe);
 }
 
-// Property: without a heading the category is that of the map, refusals included, and no better than in the worst heading.
+// Property: without a heading the category is that of the map, refusals included, and no better than in the
+// worst heading.
 TEST(Explain, CategoryWithoutHeadingIsThatOfTheMapAndWorstHeading) {
   for (int k = 0; k < 30; ++k) {
     const TraversabilityMap map = mapOf(kPlain, 0.0133 * k);
@@ -70,7 +72,8 @@ TEST(Explain, UnseenCellIsUnknown) {
   EXPECT_TRUE(std::isnan(unseen.probability)) << "Unknown has none";
 }
 
-// Property: where the policy opens it, it is said why it is no longer refused, and as what it is driven.
+// Property: for an unseen cell that the policy opens, the explanation states the policy and the assumed
+// ground.
 TEST(Explain, UnseenCellOpenedByPolicyIsReported) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';
@@ -82,7 +85,8 @@ TEST(Explain, UnseenCellOpenedByPolicyIsReported) {
   EXPECT_EQ(cause(open, "hazard").remark, "not excluded");
 }
 
-// Property: what wheels met on ground that nobody has seen refuses it and is said, opened or not.
+// Property: immobilisation evidence on an unseen cell refuses the cell, and the explanation states the
+// evidence, whether or not the policy opens the cell.
 TEST(Explain, UnseenCellWithImmobilisationEvidenceIsRefused) {
   std::vector<std::string> site = kPlain;
   site[5][6] = '?';

@@ -18,7 +18,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-// Patches of sand and dust, obstacles, unseen cells and keep-out polygons on rolling ground.
+// Patches of sand and dust, obstacles, unseen cells and keep-out polygons on undulating ground.
 MapLayers anySite(std::mt19937_64& random) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (int patch = 0; patch < 4; ++patch) {
@@ -36,7 +36,7 @@ MapLayers anySite(std::mt19937_64& random) {
   return layers;
 }
 
-// A short drive over ground that is weaker or stronger than thought, here and there.
+// A short drive with readings of ground that is weaker or stronger than estimated.
 void learnSomething(TraversabilityMap& map, std::mt19937_64& random, int readings) {
   maps::Point at{100.0 + uniform(random, 2.0, kSide - 2.0), 200.0 + uniform(random, 2.0, kSide - 2.0)};
   for (int i = 0; i < readings; ++i) {
@@ -58,7 +58,7 @@ bool equal(const TravelState& a, const TravelState& b) {
          a.risk_per_m == b.risk_per_m && a.refusal == b.refusal && a.category == b.category;
 }
 
-// Sand as class 1, dust as class 2, and classes that no cell has up to so many in all.
+// A model with sand as class 1, dust as class 2, and further classes without cells up to `classes` in all.
 std::shared_ptr<const GroundModel> declaring(int classes) {
   GroundModel::Parts parts = testGround()->parts();
   for (int number = 3; number <= classes; ++number)
@@ -66,8 +66,8 @@ std::shared_ptr<const GroundModel> declaring(int classes) {
   return std::make_shared<GroundModel>(std::move(parts));
 }
 
-// Property: however many classes are declared, a map costs what it costs with those that its cells have, before and after it
-// is learned: classes that no cell has take no numbers away.
+// Property: declared classes without cells do not change the costs of a map, before and after evidence is
+// added; such classes use no curve numbers.
 TEST(GroundCurves, UnusedClassesDoNotAffectCosts) {
   const std::vector<std::string> rows{"1122112211", "1111222211", "1212121211", "1111111111", "2222111122"};
   TraversabilityMap few(drawn(rows, 0.1), declaring(2), {}), many(drawn(rows, 0.1), declaring(250), {});
@@ -94,9 +94,9 @@ TEST(GroundCurves, UnusedClassesDoNotAffectCosts) {
   EXPECT_TRUE(same());
 }
 
-// Property: what is published after each of many drives is what is published at once. The numbers of the curves
-// may differ, what they say may not. The classes as a whole are known: where they move by less than a step of
-// their prior, ground that was learned elsewhere keeps its number.
+// Property: publishing after each of many drives yields the same costs as publishing once. Curve numbers may
+// differ, costs may not. The class means are fixed here: if a class mean moves by less than a step of the
+// prior, ground with evidence of its own keeps its curve number.
 TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
   std::mt19937_64 random(21);
   GroundModel::Parts parts = testGround()->parts();
@@ -124,8 +124,8 @@ TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
   }
 }
 
-// Property: what explain calls dangerous in a heading, or unknown, may not be driven in that heading; what it
-// allows costs something finite; the numbers behind the cost and the cost agree.
+// Property: a heading that explain() rates dangerous or unknown has infinite cost; an allowed heading has
+// finite cost. The cost equals the one in the detailed state.
 TEST(GroundCurves, DangerousAndUnknownHeadingsHaveInfiniteCost) {
   std::mt19937_64 random(22);
   int dangerous = 0, allowed = 0;
@@ -153,7 +153,7 @@ TEST(GroundCurves, DangerousAndUnknownHeadingsHaveInfiniteCost) {
   EXPECT_GT(allowed, 100);
 }
 
-// Property: a hazard more, whatever kind, lowers no cost.
+// Property: an additional hazard of any kind never lowers a cost.
 TEST(GroundCurves, AddedHazardNeverLowersACost) {
   std::mt19937_64 random(23);
   for (int trial = 0; trial < 10; ++trial) {
@@ -177,14 +177,15 @@ TEST(GroundCurves, AddedHazardNeverLowersACost) {
   }
 }
 
-// A line beside a trap: half the wheels stand in it.
+// A straight path beside a trap, with half the wheels in the trap.
 TEST(GroundCurves, CellsNextToWeakGroundUseTheWheelMean) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (std::string& row : rows) row.replace(12, 6, 6, '2');
   const TraversabilityMap map = mapOf(rows);
   const GroundBelief sand = *map.costs().ground({5, 12}), dust = *map.costs().ground({15, 12});
   const GroundBelief beside = *map.costs().ground({11, 12});
-  // Closed form: at least two wheels of four on the weaker, at most three; rounded down to 0.02.
+  // Closed form: two or three of four wheels stand on the weaker ground; the result is rounded down to a
+  // step of 0.02.
   EXPECT_LE(beside.pull.value, 0.5 * (sand.pull.value + dust.pull.value));
   EXPECT_GT(beside.pull.value, 0.25 * sand.pull.value + 0.75 * dust.pull.value - 0.0201);
   EXPECT_EQ(map.costs().ground({9, 12})->pull.value, sand.pull.value) << "out of reach";
@@ -192,7 +193,7 @@ TEST(GroundCurves, CellsNextToWeakGroundUseTheWheelMean) {
             map.published()->cost().detail(map.published()->at({5, 12}), {0, 1}).risk_per_m);
 }
 
-// Property: ground of more kinds than there are curves is refused or costs more than it need, never less.
+// Property: with more kinds of ground than curves, a cost is exact, too high, or infinite; never too low.
 TEST(GroundCurves, CurveTableOverflowIsConservative) {
   std::mt19937_64 random(24);
   std::vector<GroundClass> classes;
@@ -227,7 +228,8 @@ TEST(GroundCurves, CurveTableOverflowIsConservative) {
   EXPECT_GT(blocked, 0) << "there were curves enough";
 }
 
-// The finest steps that do are taken, and a map that fits them again gets them back.
+// The finest rounding steps that avoid blocked cells are used; a map that needs fewer curves returns to
+// finer steps.
 TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
   std::mt19937_64 random(25);
   TraversabilityMap map(drawn(std::vector<std::string>(80, std::string(80, '1'))), testGround(), {});
@@ -238,7 +240,7 @@ TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
                  .pull = {uniform(random, -0.5, 0.6), 0.03},
                  .sinkage = {uniform(random, 0.05, 2.0), 0.05}});
   map.publish();
-  int blocked = 0, cheaper = 0;  // but for the edge of the map, which is blocked
+  int blocked = 0, cheaper = 0;  // the edge of the map is blocked and not counted
   for (int row = 1; row < 79; ++row)
     for (int column = 1; column < 79; ++column) {
       const CellCode code = map.published()->at({column, row});
@@ -251,7 +253,7 @@ TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
   EXPECT_EQ(cheaper, 0);
 }
 
-// A long rover two cells from a cell that the class raster leaves out: its wheels may stand on it.
+// A long rover two cells from a cell without a class: a wheel may stand on the unclassified cell.
 TEST(GroundCurves, UnclassifiedCellUnderAWheelIsUnknown) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = 3.0;

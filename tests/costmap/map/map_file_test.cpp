@@ -72,7 +72,7 @@ TEST(MapFile, CoordinateSystemRoundTrips) {
   EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
 }
 
-// Without PROJ such a map has metres alone, and keeps its coordinate system for machines that have it.
+// Without PROJ the map has metric coordinates only, and keeps its coordinate system for a machine with PROJ.
 TEST(MapFile, UnsupportedSystemRoundTripsWithoutGeographicCoordinates) {
   MapLayers layers = drawn({"11", "11"});
   layers.elevation.georeference.emplace(
@@ -114,7 +114,7 @@ TEST(MapFile, GroundEffectsRoundTrip) {
   EXPECT_EQ(read.parameters, curve.parameters);
   EXPECT_EQ(read.channel, curve.channel);
   EXPECT_EQ(read.only_value, curve.only_value);
-  // Property: ground that digs is not the ground of its soil alone.
+  // Property: a class with slip sinkage has a different prior from that of its soil alone.
   EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
 }
 
@@ -136,7 +136,7 @@ TEST(MapFile, CrossSlopeParametersRoundTrip) {
   EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);
 }
 
-// A place where a driver got stuck stays refused after a restart.
+// A place where a rover was immobilised stays refused after a restart.
 TEST(MapFile, RefusedAreasRoundTrip) {
   TraversabilityMap map = mapOf(std::vector<std::string>(12, std::string(12, '1')));
   map.refuse({106.0, 206.0}, 2.1);
@@ -192,7 +192,7 @@ TEST(MapFile, DriveListRoundTrips) {
   EXPECT_THAT(fromBytes(bytesOf(map)).drives(), testing::ElementsAre("a", "b"));
 }
 
-// A map of another version is refused by one line that states the version and the remedy.
+// A map of another version is rejected with one line that states the version and the remedy.
 TEST(MapFile, OtherVersionIsRejectedNamingBothVersions) {
   std::string bytes = bytesOf(site());
   bytes[bytes.size() - 12] = 3;

@@ -23,7 +23,7 @@ double uniform(std::mt19937& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
 }
 
-// A site far larger than any window of it.
+// Elevation of a site far larger than any window.
 float heightAt(maps::Point p) {
   return static_cast<float>(0.5 * std::sin(0.3 * p.x_m) * std::cos(0.2 * p.y_m));
 }
@@ -35,7 +35,7 @@ maps::Grid window(Cell tiles) {
           .south_west = {32.0 * tiles.column, 32.0 * tiles.row}};
 }
 
-// What is known of a window of the site once `seen` has been looked at.
+// Layers of a window of the site, with data in `seen` only.
 MapLayers layersOf(const maps::Grid& grid, const maps::Grid& seen) {
   MapLayers layers;
   layers.elevation.elevation_m = maps::Raster<float>(grid, kNaN);
@@ -63,8 +63,8 @@ std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
   return bits;
 }
 
-// Property: after moves, drives, a refusal and new ground the map is, bit by bit, what is built at once from the same
-// layers and the evidence that is left.
+// Property: after moves, drives, a refusal and new data the map is bit-identical to one built from the same
+// layers and the remaining evidence.
 TEST(MapMove, MovedMapEqualsARebuiltMap) {
   std::mt19937 random(3);
   for (const Cell tiles : {Cell{1, 0}, Cell{0, -1}, Cell{-1, 1}, Cell{2, 0}}) {
@@ -92,7 +92,7 @@ TEST(MapMove, MovedMapEqualsARebuiltMap) {
       ASSERT_EQ(moved.belief(c), at_once.belief(c)) << c.column << ' ' << c.row;
       ASSERT_EQ(costs(*moved.published(), c), costs(*at_once.published(), c)) << c.column << ' ' << c.row;
     });
-    // What was learned of a place in both windows is still known there.
+    // Evidence of a place in both windows is retained.
     std::size_t blocks = 0;
     moved.evidence().visit([&](const SavedBlock&) { ++blocks; });
     forEachCell(allOf(after), [&](Cell c) {

@@ -26,7 +26,7 @@ int whole(std::mt19937& random, int low, int high) {
   return low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
 }
 
-// Ground with hills, steps, holes in what was seen, rocks and three classes, one of them without a soil.
+// Ground with hills, steps, holes in the data, rocks and three classes, one of them without a soil.
 float height(std::mt19937& random, Cell c, double level_m) {
   if (uniform(random, 0.0, 1.0) < 0.02) return kNaN;
   const double step = uniform(random, 0.0, 1.0) < 0.01 ? 0.6 : 0.0;
@@ -56,7 +56,7 @@ MapLayers ground(std::mt19937& random, const maps::Grid& grid) {
   return layers;
 }
 
-// A window anywhere, at borders and over all of the map too, of some of the layers, with holes.
+// A patch anywhere, also at borders and over the whole map, with some of the layers and with holes.
 SurfacePatch window(std::mt19937& random, const maps::Grid& grid) {
   const Cell first{whole(random, 0, 3) == 0 ? 0 : whole(random, 0, grid.width - 1),
                    whole(random, 0, 3) == 0 ? 0 : whole(random, 0, grid.height - 1)};
@@ -76,7 +76,7 @@ SurfacePatch window(std::mt19937& random, const maps::Grid& grid) {
   if (layers & 8) patch.keep_out = maps::Raster<std::uint8_t>(part);
   forEachCell(allOf(part), [&](Cell c) {
     const Cell there{first.column + c.column, first.row + c.row};
-    const bool first_cell = c.column == 0 && c.row == 0;  // says something always
+    const bool first_cell = c.column == 0 && c.row == 0;  // the first cell always has data
     if (layers & 1) patch.elevation_m[c] = first_cell ? 0.1F : height(random, there, level_m);
     if (layers & 2) patch.rock_abundance[c] = first_cell ? 0.0F : std::array{kNaN, 0.0F, 0.9F}[random() % 3];
     if (layers & 4) patch.classes[c] = first_cell ? 1 : classOf(random, {there.column + 4, there.row});
@@ -85,7 +85,7 @@ SurfacePatch window(std::mt19937& random, const maps::Grid& grid) {
   return patch;
 }
 
-// What a map built at once is built from: independent of the map's own bookkeeping.
+// Writes a patch into the layers for the full build, independent of the map's own bookkeeping.
 void lay(const SurfacePatch& patch, MapLayers& layers) {
   const maps::Grid& grid = layers.elevation.elevation_m.grid();
   const auto each = [&](const auto& layer, const auto& take) {
@@ -114,7 +114,7 @@ WheelObservation drive(std::mt19937& random, const maps::Grid& grid) {
   return seen;
 }
 
-// The costs that a planner would pay in a cell, in sixteen headings, as bits.
+// The bits of a planner's costs in a cell for sixteen headings.
 std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
   std::array<std::uint32_t, 16> bits{};
   for (std::size_t k = 0; k < bits.size(); ++k) {
@@ -150,8 +150,9 @@ struct Case {
   TravelPolicy policy{};
 };
 
-// Property: after patches and drives in any order the map is, bit by bit, what is built at once from the layers as
-// patched and taught the same evidence; where it ran out of numbers for curves, once it gives them anew.
+// Property: after patches and drives in any order the map is bit-identical to one built from the patched
+// layers and the same evidence. If the map ran out of curve numbers, the maps are equal after the numbers
+// are assigned again.
 void patchedIsAtOnce(const Case& how) {
   std::mt19937 random(how.seed);
   const maps::Grid grid{
@@ -189,7 +190,7 @@ TEST(MapSurface, PatchedEqualsFullBuild) {
   for (unsigned seed = 1; seed <= 2; ++seed) patchedIsAtOnce({.seed = seed});
 }
 
-// The rover keeps clear of what lies further off than its footprint reaches.
+// The rover's clearance radius exceeds the radius of its footprint.
 TEST(MapSurface, PatchedEqualsFullBuildWithSmallFootprint) {
   patchedIsAtOnce({.seed = 41,
                    .resolution_m = 0.05,
@@ -212,8 +213,8 @@ TEST(MapSurface, PatchedEqualsFullBuildWithUnknownAllowed) {
     patchedIsAtOnce({.seed = seed, .policy = {.allow_unknown = true}});
 }
 
-// A strip of two metres without data between heights that differ: open where the slope between them is, whatever lies in it no cliff
-// that it could be is.
+// Property: a strip of two metres without data between known heights has the slope between these heights,
+// and is opened if the height difference could not be a cliff.
 TEST(MapSurface, OpenedUnseenCellsUseTheSlopeBetweenKnownHeights) {
   for (const double fall_m : {0.2, 5.0}) {
     MapLayers layers;
@@ -227,7 +228,7 @@ TEST(MapSurface, OpenedUnseenCellsUseTheSlopeBetweenKnownHeights) {
     for (int column = 18; column < 22; ++column) {
       const CellCode code = grid->at({column, 20});
       EXPECT_EQ(code.curve() == CellCode::kBlocked, fall_m > 1.0) << column;
-      // Closed form: five cells of half a metre apart; to half a step.
+      // Closed form: the known heights are five cells of half a metre apart. Tolerance: half a step.
       if (fall_m < 1.0) {
         EXPECT_NEAR(code.dzDx(), -fall_m / 2.5, 0.5 * CellCode::kStep);
       }

@@ -49,7 +49,8 @@ TEST(MapText, RoundTripIsExact) {
   EXPECT_EQ(written(back), written(example()));
 }
 
-// Property: where the mass lies is kept; a rover read with it in the middle would tip later than the one that drives.
+// Property: the centre of mass is stored. A rover read with a centred mass would tip later than the actual
+// rover.
 TEST(MapText, CentreOfMassRoundTrips) {
   MapText text = example();
   text.ground.rover.centre_of_mass_ahead_m = 0.07;
@@ -58,13 +59,13 @@ TEST(MapText, CentreOfMassRoundTrips) {
   const terramech::Rover back = parsed(lines, "m").ground.rover;
   EXPECT_EQ(back.centre_of_mass_ahead_m, 0.07);
   EXPECT_EQ(back.centre_of_mass_left_m, -0.03);
-  // A map without the two lines is of a rover whose mass lies in the middle.
+  // A map without the two lines has a rover with a centred mass.
   const std::string older = replaced(lines, "rover.centre_of_mass_left_m -0.03\n", "");
   EXPECT_EQ(parsed(older, "m").ground.rover.centre_of_mass_left_m, 0.0);
 }
 
-// Property: every field of the coordinate system is kept; a planetocentric latitude read as a geographic one
-// is up to 20 km off on Mars.
+// Property: every field of the coordinate system is stored; on Mars a planetocentric latitude taken as
+// planetographic is wrong by up to 20 km.
 TEST(MapText, CoordinateSystemRoundTripsCompletely) {
   for (const bool planetocentric : {false, true}) {
     MapText text = example();

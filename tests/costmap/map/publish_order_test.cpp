@@ -1,4 +1,4 @@
-// What is published piece by piece against all of it at once, over random drives, patches, refusals and moves.
+// Incremental against full publication, over random drives, patches, refusals and moves.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -25,11 +25,11 @@ struct Case {
   unsigned seed = 1;
   double resolution_m = 0.5;
   int rounds = 12, most_readings = 12;
-  bool levels = false;        // ground beneath a deck, and no raster of classes
-  double pull_spread = 0.15;  // of the readings
-  bool costs = false;         // a layer of joules
-  bool runs_out = false;      // of curves
-  bool forgets = false;       // some of what was learned
+  bool levels = false;        // ground beneath a deck, and no class raster
+  double pull_spread = 0.15;  // standard deviation of the readings' pull
+  bool costs = false;         // whether a cost layer is added
+  bool runs_out = false;      // whether the cost curves run out
+  bool forgets = false;       // whether some evidence is removed again
   TravelPolicy policy{};
 };
 
@@ -94,7 +94,8 @@ maps::Point Sequence::anywhere() {
           grid.south_west.y_m + uniform(0.0, grid.height * grid.resolution_m)};
 }
 
-// Sound ones, suspected ones, ones that share an error, bounds, and wheels that sank; a place that is known more or less.
+// Sound readings, suspected readings, readings with a shared error, bounds, and sinkage, at places known
+// more or less precisely.
 WheelObservation Sequence::reading(const maps::Point& place) {
   WheelObservation seen{.time_s = 1.0, .place = place};
   if (how_.levels) seen.z_m = uniform(-0.3, 4.3);
@@ -125,7 +126,7 @@ void Sequence::drive() {
   }
 }
 
-// Classes move, heights change, holes stay.
+// Changes classes and heights; holes remain.
 void Sequence::patch() {
   const maps::Grid& grid = map_->grid();
   const Cell first{whole(0, grid.width - 1), whole(0, grid.height - 1)};
@@ -146,8 +147,8 @@ void Sequence::patch() {
   map_->patch(seen);
 }
 
-// Whether a cell is published as ground that is stronger, or sinks less, than it is believed to be. What is rounded is
-// beyond a step by a millionth of it at most.
+// Whether a cell is published as stronger, or with less sinkage, than its estimate. Rounding exceeds a step
+// by a millionth of the step at most.
 bool Sequence::isBetterThanBelieved(Cell cell) const {
   constexpr double kRounded = 1e-6, kTail = 6.0;
   const auto known = map_->ground(cell), published = map_->costs().ground(cell);
@@ -158,7 +159,7 @@ bool Sequence::isBetterThanBelieved(Cell cell) const {
          published->sinkage.value < known->sinkage.value - kRounded;
 }
 
-// A map that moved by nothing is one built at once from the same layers, evidence and refused places.
+// Compares with moved({0, 0}), which builds the map from the same layers, evidence and refused places.
 void Sequence::publishedIsAtOnce() {
   const TraversabilityMap at_once = map_->moved({0, 0});
   const auto a = map_->published(), b = at_once.published();
@@ -212,7 +213,7 @@ void runAll(Case how, unsigned seeds) {
   EXPECT_GT(drivable, 10000);
 }
 
-// Property: also where some of what was learned is forgotten again.
+// Property: incremental equals full publication if some of the evidence is removed again.
 TEST(PublishOrder, IncrementalEqualsFullPublicationWithForgottenReadings) {
   int forgotten = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -224,8 +225,8 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationWithForgottenReadings) {
   EXPECT_GT(forgotten, 20);
 }
 
-// Property: whatever was learned, patched, refused and moved, in pieces of any size, the costs are bit for bit those of the
-// whole map published at once.
+// Property: after any evidence, patches, refusals and moves, in pieces of any size, the costs are
+// bit-identical to those of the whole map published at once.
 TEST(PublishOrder, IncrementalEqualsFullPublication) {
   runAll({.seed = 1, .rounds = 30}, 4);
 }
@@ -234,7 +235,7 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationForSingleReadings) {
   runAll({.seed = 11, .rounds = 60, .most_readings = 1}, 2);
 }
 
-// More places than a process takes, and blocks of several cells.
+// More places than one Gaussian process takes, and blocks of several cells.
 TEST(PublishOrder, IncrementalEqualsFullPublicationForDenseEvidence) {
   runAll({.seed = 21, .resolution_m = 0.25, .rounds = 25, .most_readings = 80, .pull_spread = 0.05}, 2);
 }
@@ -247,7 +248,8 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationWithUnknownAllowed) {
   runAll({.seed = 41, .rounds = 20, .policy = {.allow_unknown = true, .pose_error_m = 0.0}}, 2);
 }
 
-// Property: where curves run out, what is published piece by piece is nowhere cheaper.
+// Property: if the curves run out, no cost of incremental publication is lower than that of full
+// publication.
 TEST(PublishOrder, IncrementalCostIsNotLowerOnCurveOverflow) {
   runAll({.seed = 51, .rounds = 10, .most_readings = 40, .pull_spread = 0.5, .costs = true, .runs_out = true},
          1);

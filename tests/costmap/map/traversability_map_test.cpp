@@ -46,7 +46,7 @@ TEST(TraversabilityMap, ClimbingCostsMoreThanDescending) {
   const TraversabilityMap map = mapOf({8, "11111111"}, 0.08);
   const auto grid = map.published();
   const CellCode cell = grid->at({4, 4});
-  EXPECT_NEAR(cell.dzDx(), 0.08, 1.0 / 1024.0);  // Closed form: the plane, to the code's step
+  EXPECT_NEAR(cell.dzDx(), 0.08, 1.0 / 1024.0);  // Closed form: the plane, to a step of the cell code
   EXPECT_GT(grid->cost().costPerMetre(cell, {1, 0}), grid->cost().costPerMetre(cell, {-1, 0}));
 }
 
@@ -65,7 +65,8 @@ TEST(TraversabilityMap, UnknownIsTraversableOnlyOnRequest) {
 }
 
 TEST(TraversabilityMap, ResultIsIndependentOfBandsAndThreads) {
-  // Property: 600 rows are three bands; the metrics equal those of the whole raster, whatever the threads.
+  // Property: 600 rows are three bands; the metrics equal those of the whole raster for any number of
+  // threads.
   const maps::Grid grid{.width = 40, .height = 600, .resolution_m = 0.5, .south_west = {}};
   MapLayers layers;
   layers.elevation.elevation_m = maps::Raster<float>(grid);
@@ -87,8 +88,9 @@ TEST(TraversabilityMap, ResultIsIndependentOfBandsAndThreads) {
     }
 }
 
-// Readers on other threads, while versions come: each is whole (what was refused together is refused
-// together), none is older than the one before, and one that is held does not change.
+// Property: while versions are published, a reader on another thread sees only complete versions (cells
+// refused together appear together), never an older version after a newer one, and a version that it holds
+// does not change.
 TEST(TraversabilityMap, ConcurrentReadersObserveConsistentVersionsInOrder) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(300, '1')));
   const auto refused = [](const CostGrid& grid, int column) {

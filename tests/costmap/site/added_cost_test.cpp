@@ -58,8 +58,8 @@ void inEachHeading(const maps::Grid& grid, const Check& check) {
   });
 }
 
-// Property: sums of two digits are exact; the cost of a metre is that without layers and the sum of theirs, in every heading,
-// across slopes too, and nothing else is allowed or refused.
+// Property: sums of values with two digits are exact. In every heading, across slopes too, the cost of a
+// metre is the cost without layers plus the sum of the layers, and no refusal changes.
 TEST(AddedCost, TwoDigitSumsAreExact) {
   const MapLayers ground = hills(30);
   const maps::Grid grid = ground.elevation.grid();
@@ -73,7 +73,7 @@ TEST(AddedCost, TwoDigitSumsAreExact) {
     ASSERT_EQ(std::isinf(before), std::isinf(after));
     if (std::isinf(before)) return;
     ++allowed;
-    // Costs are floats: one rounding each.
+    // Costs are stored as floats, with one rounding each.
     EXPECT_NEAR(after - before, 10.0 + 10.0 * (c.row % 5), 3e-7 * after);
   });
   EXPECT_GT(allowed, 1000);
@@ -100,7 +100,8 @@ TEST(AddedCost, ValuesAreRoundedUp) {
     });
 }
 
-// Property: whatever is added to a layer, no cost in any heading falls and nothing that was refused is allowed.
+// Property: increasing the values of a layer lowers no cost in any heading and allows nothing that was
+// refused.
 TEST(AddedCost, AddedLayerNeverLowersACost) {
   std::mt19937 random(11);
   for (int round = 0; round < 2; ++round) {
@@ -133,8 +134,8 @@ TEST(AddedCost, AddedLayerNeverLowersACost) {
   }
 }
 
-// Property: where 254 curves do not suffice for the values, nothing costs less than was asked for, and coarser steps
-// leave open what was open.
+// Property: if 254 curves do not suffice for the values, no cost is below the requested one, and coarser
+// steps block no cell that was open.
 TEST(AddedCost, CurveOverflowNeverLowersACost) {
   std::mt19937 random(12);
   const MapLayers ground = hills(60);
@@ -173,8 +174,8 @@ TEST(AddedCost, RefusedAndNoDataCellsFollowThePolicy) {
       why.causes, [](const Cause& c) { return c.name == "layer_own_J_per_m" && c.value == 5.0; }));
 }
 
-// Property: new ground, new weights and what wheels teach keep what a layer adds; a patch that lifts keep-out lifts no
-// refusal of a layer.
+// Property: patches, new weights and telemetry keep the added cost of a layer; a patch that removes a
+// keep-out area does not remove a refusal of a layer.
 TEST(AddedCost, PatchesWeightsAndEvidenceKeepTheAddedCost) {
   MapLayers ground = hills(30);
   const maps::Grid grid = ground.elevation.grid();
@@ -210,7 +211,7 @@ TEST(AddedCost, PatchesWeightsAndEvidenceKeepTheAddedCost) {
   EXPECT_GE(cheap->cost().costPerMetre(cheap->at(middle), {}), own.added_J_per_m[middle]);
 }
 
-// Property: the same with four classes in patches, whose borders are kinds of ground of their own.
+// Property: the same holds for four classes in patches, whose borders are further kinds of ground.
 TEST(AddedCost, ManyClassesAndValuesStayFeasible) {
   std::mt19937 random(13);
   MapLayers ground = hills(80);
@@ -247,7 +248,7 @@ TEST(AddedCost, AddedCostAppliesToOpenedUnseenCells) {
   EXPECT_NEAR(costAt(dearer, {3, 2}, 0) - costAt(plain, {3, 2}, 0), 10.0, 1e-3);
 }
 
-// Property: what a class learns counts under a layer as it does beside it.
+// Property: evidence of a class applies to its cells with an added cost as to those without.
 TEST(AddedCost, ClassEvidenceAppliesUnderALayer) {
   const MapLayers ground = drawn(std::vector<std::string>(90, std::string(90, '1')));
   const maps::Grid grid = ground.elevation.grid();

@@ -24,7 +24,7 @@ TraversabilityMap flatMap() {
   return TraversabilityMap(flat(), testGround(), {});
 }
 
-// 4 x 4 cells of the map with their corner at a place.
+// A grid of 4 x 4 cells with its corner at a place.
 maps::Grid gridAt(maps::Point south_west) {
   return {.width = 4, .height = 4, .resolution_m = 0.5, .south_west = south_west};
 }
@@ -114,7 +114,8 @@ TEST(SurfacePatch, InvalidPatchIsRejectedWithOneLineAndMapUnchanged) {
   }
 }
 
-// A map is refused what a patch of it is refused: no such height and no such share of rocks would count as none.
+// Property: a map rejects the layer values that a patch rejects; an invalid height or rock share must not
+// count as missing.
 TEST(SurfacePatch, MapLayersAreValidatedLikePatches) {
   for (const float bad : {1e30F, INFINITY, -INFINITY}) {
     MapLayers layers = flat();
@@ -150,7 +151,7 @@ TEST(SurfacePatch, ClassPatchRequiresAMapWithClasses) {
   EXPECT_NE(refusal(map, patch).find("build it with a class raster"), std::string::npos);
 }
 
-// Property: a class that a later patch brings costs what it costs on a map that began with it.
+// Property: a class that a later patch introduces costs as much as on a map built with the class.
 TEST(SurfacePatch, NewClassCostsAsOnAMapBuiltWithIt) {
   MapLayers with = flat();
   const SurfacePatch patch = [] {
@@ -173,7 +174,8 @@ TEST(SurfacePatch, NewClassCostsAsOnAMapBuiltWithIt) {
   EXPECT_EQ(patched.costs().category(inside), begun.costs().category(inside));
 }
 
-// Property: only tiles that the change reaches are new; the others are shared with the version before.
+// Property: a patch replaces only the tiles within its reach; all other tiles are shared with the previous
+// version.
 TEST(SurfacePatch, PatchSharesUnaffectedTiles) {
   MapLayers layers;
   const maps::Grid grid{.width = 640, .height = 640, .resolution_m = 0.5, .south_west = {}};
@@ -188,7 +190,7 @@ TEST(SurfacePatch, PatchSharesUnaffectedTiles) {
   EXPECT_EQ(changed, 1U);
 }
 
-// A map that begins with nothing takes its heights from the first patch, at whatever level that is.
+// Property: a map built without data takes its base elevation from the first patch.
 TEST(SurfacePatch, FirstPatchSetsTheBaseElevation) {
   MapLayers layers;
   const maps::Grid grid{.width = 60, .height = 60, .resolution_m = 0.05, .south_west = {}};
@@ -204,7 +206,7 @@ TEST(SurfacePatch, FirstPatchSetsTheBaseElevation) {
   EXPECT_NE(refusal(map, patch).find("within 1638.35 m of -4500 m"), std::string::npos);
 }
 
-// Of ground of its class, weaker and stronger, of which some holds a wheel.
+// A reading of ground of the class, weaker or stronger, sometimes with immobilisation.
 WheelObservation anywhere(std::mt19937_64& random) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -221,8 +223,8 @@ WheelObservation anywhere(std::mt19937_64& random) {
   return seen;
 }
 
-// Property: what wheels read on ground of a known class before its heights are seen counts once they are, beside that
-// ground and on it, as on a map that began with the heights; likewise where the map began with none.
+// Property: readings on ground of a known class before its heights are known count after a patch adds the
+// heights, there and nearby, as on a map built with the heights; likewise for a map built without any data.
 TEST(SurfacePatch, EvidenceFromBeforeThePatchIsRetained) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937_64 random(seed);
@@ -262,8 +264,8 @@ TEST(SurfacePatch, EvidenceFromBeforeThePatchIsRetained) {
   }
 }
 
-// Two threads: each patch lands whole or is refused because the other thread changes the map; after all of them
-// landed the map is that of one thread.
+// Property: with two threads each patch is applied completely, or rejected because the other thread changes
+// the map. After all patches are applied the map equals that of one thread.
 TEST(SurfacePatch, ConcurrentPatchesAreAtomic) {
   TraversabilityMap map = flatMap();
   const auto keepPatching = [&](double x_m) {

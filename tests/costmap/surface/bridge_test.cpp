@@ -1,4 +1,4 @@
-// Several levels: a road under a bridge, as a point cloud shows it.
+// Several levels: a road under a bridge, as in a point cloud.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,9 +18,9 @@ namespace talus::costmap {
 namespace bridge_test {
 
 constexpr double kVoxel_m = 0.5;
-constexpr double kRoad_m = 0.25, kDeck_m = 3.25;  // middles of voxels
+constexpr double kRoad_m = 0.25, kDeck_m = 3.25;  // centres of voxels
 
-// A plain of 40 m by 20 m; a deck 3 m above it from x = 16 m to 24 m, which a drive passes beneath.
+// A plain of 40 m by 20 m; a deck 3 m above the plain from x = 16 m to 24 m, with free space beneath.
 OctomapGround bridge(double ceiling_m = std::numeric_limits<double>::infinity()) {
   octomap::OcTree tree(kVoxel_m);
   for (int x = 0; x < 80; ++x)
@@ -45,7 +45,7 @@ TraversabilityMap mapOf(OctomapGround ground) {
   return TraversabilityMap(std::move(layers), testGround(), {});
 }
 
-// Weak ground from x = 0 on at this height, a reading every half metre.
+// Readings of weak ground every half metre at the height z_m, between two values of x.
 terramech::Telemetry drive(double z_m, double from_m, double to_m) {
   terramech::Telemetry out;
   out.source = "drive.csv";
@@ -78,8 +78,8 @@ TEST(Bridge, EvidenceBelowTheDeckDoesNotAffectTheDeckCell) {
   TraversabilityMap map = mapOf(bridge());
   const CellBelief deck = map.belief(cellAt(map, 20.0)), road = roadBelief(map, 20.0);
   addDrive(map, drive(kRoad_m, 17.0, 23.0), nullptr);
-  // One soil everywhere, so the class may learn; the deck's cell has no evidence of its own and moves with
-  // it.
+  // All ground has one soil, so that the class may learn. The deck's cell has no evidence of its own and
+  // follows the class.
   const CellBelief after = map.belief(cellAt(map, 20.0)), below = roadBelief(map, 20.0);
   EXPECT_EQ(after.evidence, 0.0F);
   EXPECT_EQ(deck.evidence, 0.0F);
@@ -123,7 +123,7 @@ TEST(Bridge, EvidenceBeforeTheBridgeExtendsToTheRoadBelow) {
   EXPECT_EQ(roadBelief(map, 22.0).pull_mean, away) << "beyond the correlation length";
 }
 
-// A road that climbs by a voxel every metre and a half, under a deck far above it.
+// A road that rises by one voxel every metre and a half, under a deck far above the road.
 TEST(Bridge, ClimbingRoadIsOneFloor) {
   octomap::OcTree tree(kVoxel_m);
   const auto road_m = [](int x) { return kVoxel_m * (x / 3) + 0.25; };
@@ -145,7 +145,7 @@ TEST(Bridge, ClimbingRoadIsOneFloor) {
   const float away = static_cast<float>(map.evidence().classBelief(0).pull.value);
   EXPECT_EQ(away, before) << "one place, which moves no class";
   EXPECT_LT(roadBelief(map, 17.7).pull_mean, away - 0.005F) << "told by ground half a metre and more below";
-  // Cells of a block whose road lies a voxel apart share what one of them told.
+  // Cells of one block share evidence if their roads differ by one voxel in height.
   addDrive(map, drive(road_m(38) + 0.1, 19.2, 19.2), nullptr);
   std::size_t with_own = 0;
   for (double x = 17.2; x < 21.0; x += 0.5) with_own += roadBelief(map, x).evidence > 0.0F;
@@ -159,14 +159,14 @@ TEST(Bridge, RowsWithoutHeightOrFloorAreAssignedToTheTop) {
   std::erase_if(rows.numbers, [](const auto& column) { return column.name == "z_m"; });
   addDrive(map, rows, nullptr);
   EXPECT_GT(map.belief(cellAt(map, 20.0)).evidence, 0.0F);
-  // On open ground a z_m of another datum changes nothing.
+  // On open ground a z_m with another vertical datum changes nothing.
   TraversabilityMap plain = mapOf(bridge()), offset = mapOf(bridge());
   addDrive(plain, drive(kRoad_m, 2.0, 10.0), nullptr);
   addDrive(offset, drive(kRoad_m - 2500.0, 2.0, 10.0), nullptr);
   EXPECT_EQ(plain.belief(cellAt(plain, 6.0)), offset.belief(cellAt(offset, 6.0)));
 }
 
-// The slope of the deck says nothing about the road beneath it.
+// Property: the slope of the deck is not used for the road beneath.
 TEST(Bridge, RowWithoutSlopeUsesTheSlopeOfItsOwnFloor) {
   TraversabilityMap map = mapOf(bridge());
   const auto without_slope = [](double z_m) {

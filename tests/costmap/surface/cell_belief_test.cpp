@@ -6,7 +6,7 @@ namespace cell_belief_test {
 constexpr Hazard kAll[] = {Hazard::Unknown, Hazard::Slope,   Hazard::Step,     Hazard::Roughness,
                            Hazard::Rocks,   Hazard::KeepOut, Hazard::Obstacle, Hazard::Near};
 
-// Property: hazards are a set; each of the 256 subsets holds its members and nothing else.
+// Property: a hazard value is a set; each of the 256 subsets contains exactly its members.
 TEST(CellBelief, HazardSubsetsAreRepresentedExactly) {
   for (unsigned subset = 0; subset < 256; ++subset) {
     Hazard set = Hazard::None;

@@ -14,7 +14,7 @@ TEST(Floors, WheelIsAssignedToTheNearestFloor) {
   ASSERT_EQ(floors.of(5).size(), 2U);
   EXPECT_EQ(floors.of(5)[0].height_m, -2.0F);
   EXPECT_TRUE(floors.of(4).empty());
-  // Closed form: the top at 8 m; half way between 8 and 3 is 5.5, between 3 and -2 it is 0.5.
+  // Closed form: the top is at 8 m; the midpoint of 8 and 3 is 5.5, that of 3 and -2 is 0.5.
   EXPECT_FALSE(floors.under(5, 5.6, 8.0).has_value());
   EXPECT_EQ(floors.under(5, 5.4, 8.0)->height_m, 3.0F);
   EXPECT_EQ(floors.under(5, 0.6, 8.0)->height_m, 3.0F);

@@ -20,7 +20,8 @@ TEST(Inflate, KeepOutCellsAreInflatedByHalfTheRoverWidth) {
   HazardLimits limits;
   limits.inflation_m = 0.2;
   inflate(hazards, limits);
-  // Closed form: cells some place of which is less than 0.2 m from the cell: one and two cells away, not three (0.2 m).
+  // Closed form: cells with a point less than 0.2 m from the cell: one and two cells away, not three (0.2
+  // m).
   EXPECT_TRUE(has(hazards[{6, 5}], Hazard::Near));
   EXPECT_TRUE(has(hazards[{7, 5}], Hazard::Near));
   EXPECT_FALSE(has(hazards[{8, 5}], Hazard::Near));
@@ -28,7 +29,7 @@ TEST(Inflate, KeepOutCellsAreInflatedByHalfTheRoverWidth) {
   EXPECT_FALSE(has(hazards[{8, 7}], Hazard::Near)) << "0.22 m";
 }
 
-// A free lane narrower than the rover between rocks is none.
+// Property: a free lane between rocks that is narrower than the rover is inflated entirely.
 TEST(Inflate, RocksAreInflatedByHalfTheRoverWidth) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
   for (int row = 0; row < 11; ++row) hazards[{2, row}] = hazards[{7, row}] = Hazard::Rocks;
@@ -38,7 +39,7 @@ TEST(Inflate, RocksAreInflatedByHalfTheRoverWidth) {
   for (int column = 2; column <= 7; ++column) EXPECT_NE((hazards[{column, 5}]), Hazard::None) << column;
 }
 
-// Outside the map is as unseen as a hole in it.
+// Property: ground outside the map counts as unknown, like a hole.
 TEST(Inflate, MapEdgeIsInflatedByHalfTheRoverWidth) {
   maps::Raster<Hazard> hazards(grid(11, 0.1), Hazard::None);
   HazardLimits limits;
@@ -54,12 +55,13 @@ TEST(Inflate, MapEdgeIsInflatedByHalfTheRoverWidth) {
   EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 121) << "where the unseen may be driven";
 }
 
-// The middle of the rover may be anywhere in a cell, beside the edge too.
+// The centre of the rover may be anywhere in a cell, also at its edge.
 TEST(Inflate, NeighboursOfCellsWiderThanTheRoverAreInflated) {
   maps::Raster<Hazard> hazards(grid(7, 5.0), Hazard::None);
   hazards[{3, 3}] = Hazard::Unknown;
   inflate(hazards, HazardLimits::of(testRover()));
-  // Closed form: neither the eight neighbours nor the 24 cells along the edge, but the ring between.
+  // Closed form: the eight neighbours and the 24 cells along the edge are inflated; the 16 cells between are
+  // not.
   EXPECT_EQ(std::ranges::count(hazards.values(), Hazard::None), 16);
 }
 
@@ -73,7 +75,8 @@ TEST(ShapeJudge, EachExceededLimitIsNamed) {
   const HazardLimits limits{
       .max_gradient = 0.3, .max_step_m = 0.1, .max_roughness_m = 0.05, .wheelbase_m = 1.0};
   const ShapeJudge judge(limits, {.footprint_m = 2.0, .cell_m = 0.5});
-  // Closed form: over 2 m, twice the wheelbase, relief and roughness count half; a step between cells counts whole.
+  // Closed form: over 2 m, twice the wheelbase, relief and roughness count half; a step between cells counts
+  // in full.
   EXPECT_EQ(judge({.dz_dx = 0.29F, .dz_dy = 0.0F, .roughness_m = 0.09F, .relief_m = 0.19F, .step_m = 0.09F}),
             Hazard::None);
   EXPECT_EQ(judge({.dz_dx = 0.25F, .dz_dy = 0.25F}), Hazard::Slope);
@@ -83,7 +86,7 @@ TEST(ShapeJudge, EachExceededLimitIsNamed) {
   EXPECT_EQ(judge({.dz_dx = NAN}), Hazard::Unknown);
 }
 
-// Property: in a box alone is as everywhere, there; nothing else is touched.
+// Property: inflation in a box equals full inflation inside the box, and changes nothing outside.
 TEST(Hazards, InflationInABoxEqualsFullInflation) {
   std::mt19937 random(5);
   const maps::Grid grid{.width = 30, .height = 24, .resolution_m = 0.5, .south_west = {}};

@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace octomap_surface_test {
 
-// A slope of voxels with a slab above part of it and free space between.
+// A slope of voxels with a slab above a section of the slope and free space between.
 template <typename Tree>
 void fill(Tree& tree) {
   const auto voxel = [](int column, int row, double z) {
@@ -32,12 +32,12 @@ void expectSlopeUnderSlab(const OctomapGround& ground) {
   const maps::ElevationMap& map = ground.surface;
   ASSERT_EQ(map.grid().width, 20);
   ASSERT_EQ(map.grid().height, 10);
-  // Closed form: the drawing above; voxel middles, float heights.
+  // Closed form: the slope of fill(); heights are voxel centres, stored as floats.
   EXPECT_NEAR(map.elevation_m[(maps::Cell{2, 3})], 1.05, 1e-6);
   EXPECT_NEAR(map.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
   EXPECT_NEAR(map.grid().centre({12, 3}).x_m, 1.25, 1e-9);
-  // Closed form: five columns of ten cells lie under the slab, the first four at one step, the fifth at the
-  // next.
+  // Closed form: five columns of ten cells lie under the slab, the first four at one height, the fifth one
+  // step higher.
   ASSERT_EQ(ground.floors.size(), 50U);
   const Floors floors(ground.floors, map.grid().size());
   ASSERT_EQ(floors.of(map.grid().index({2, 3})).size(), 1U);
@@ -73,7 +73,7 @@ TEST(OctomapSurface, CeilingSelectsTheGroundBelow) {
   EXPECT_THROW(octomapGround(stream, "a.bt", -1.0), InputError);
 }
 
-// A rock of two voxels' height above the ground leaves no room to drive under, and a hole in a scan is none.
+// Property: a rock of two voxels above the ground leaves no headroom, and a gap in a scan is no headroom.
 TEST(OctomapSurface, FloorRequiresFreeHeadroom) {
   for (const double slab_m : {0.35, 0.55, 0.65}) {
     octomap::OcTree tree(0.1);
@@ -81,7 +81,7 @@ TEST(OctomapSurface, FloorRequiresFreeHeadroom) {
     tree.updateNode(octomap::point3d(0.05F, 0.05F, static_cast<float>(slab_m)), true);
     std::stringstream stream;
     tree.write(stream);
-    // Closed form: free voxels between them are 2, 4 and 5 of the 5 that half a metre takes.
+    // Closed form: 2, 4 and 5 voxels between ground and slab are free; headroom of half a metre needs 5.
     EXPECT_EQ(octomapGround(stream, "a.ot").floors.size(), slab_m > 0.6 ? 1U : 0U) << slab_m;
   }
 }
@@ -103,14 +103,15 @@ TEST(OctomapSurface, EveryTruncationIsRejected) {
   }
 }
 
-// A tree whose only leaf is a cube `depth` steps below the root, and whose voxels are of that size.
+// An OcTree whose only leaf is `depth` levels below the root, with the given voxel size.
 std::string oneCube(int depth, const std::string& resolution) {
   std::string bytes = "# Octomap OcTree file\nid OcTree\nsize 2\nres " + resolution + "\ndata\n";
   for (int k = 0; k < depth; ++k) bytes += std::string("\0\0\0\0\x01", 5);
   return bytes + std::string("\0\0\x80\x3f\0", 5);
 }
 
-// Closed form: a cube of side 2^(16 - depth) from the lowest key on; its top voxel is at side - 0.5 - 2^15.
+// Closed form: the cube begins at the lowest key and has the side 2^(16 - depth); its top voxel is at side -
+// 0.5 - 2^15.
 TEST(OctomapSurface, LargeLeafIsASurfaceOfItsFullWidth) {
   std::istringstream stream(oneCube(6, "0.1"));
   const OctomapGround ground = octomapGround(stream, "cube.ot");
@@ -120,7 +121,7 @@ TEST(OctomapSurface, LargeLeafIsASurfaceOfItsFullWidth) {
     EXPECT_FLOAT_EQ(ground.surface.elevation_m[cell], static_cast<float>((1023.5 - 32768.0) * 0.1));
 }
 
-// Property: few bytes that state much are refused before the memory or the time is taken.
+// Property: a small file that declares a huge extent is rejected before memory or time is spent.
 TEST(OctomapSurface, OversizedLeavesAreRejected) {
   for (const int depth : {0, 1}) {
     std::istringstream stream(oneCube(depth, "0.1"));

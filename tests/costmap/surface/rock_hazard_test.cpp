@@ -7,7 +7,7 @@
 namespace talus::costmap {
 namespace rock_hazard_test {
 
-// Rocks a square metre wider than d, by brute force from the definition.
+// Number of rocks per square metre with a diameter above d, by quadrature of the definition.
 double rocksByQuadrature(double k, double d) {
   const double q = 1.79 + 0.152 / k;
   const double step = 1e-4;
@@ -31,7 +31,8 @@ TEST(RockHazard, WithoutRocksTheHazardIsZero) {
   EXPECT_EQ(rockHazard(std::numeric_limits<double>::quiet_NaN(), {.diameter_m = 0.1, .area_m2 = 1.0}), 0.0);
 }
 
-// Property: more rocks are never less of a hazard. By its formula nine tenths of rocks left 0.55 of such places free.
+// Property: the hazard never decreases with rock abundance. (By the bare formula, an abundance of 0.9 left
+// 0.55 of such places free.)
 TEST(RockHazard, HazardIsMonotoneInRockAbundance) {
   const RockCrossing fido{.diameter_m = 0.46, .area_m2 = 0.7};
   double last = 0.0;

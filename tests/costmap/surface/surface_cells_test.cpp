@@ -34,7 +34,7 @@ TEST(SurfaceKeys, HeightsAreClampedAndTooManyCellsRejected) {
   EXPECT_THROW(SurfaceKeys(wide, 0.0), std::invalid_argument);
 }
 
-// Property: every block holds the lowest and the highest key of its cells, by brute force.
+// Property: every block contains the lowest and the highest key of its cells, by brute force.
 TEST(SurfacePyramid, BlocksContainTheKeyRangeOfTheirCells) {
   const SurfaceKeys keys(kGrid, 0.0);
   maps::Raster<float> z(kGrid);

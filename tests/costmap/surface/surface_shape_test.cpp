@@ -8,8 +8,8 @@
 namespace talus::costmap {
 namespace surface_shape_test {
 
-// Property: what is measured in a box is, bit by bit, what terrainMetrics() measures of the whole; each cell of the
-// box comes once, and a height changes no cell beyond reach().
+// Property: metrics of a box are bit-identical to those of terrainMetrics() on the whole map. Each cell of
+// the box appears once, and a height changes no cell beyond reach().
 TEST(SurfaceShape, ShapeOfABoxEqualsTheWhole) {
   std::mt19937 random(3);
   const maps::Grid grid{.width = 50, .height = 320, .resolution_m = 0.5, .south_west = {3.0, 4.0}};

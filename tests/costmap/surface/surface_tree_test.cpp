@@ -13,7 +13,7 @@
 namespace talus::costmap {
 namespace surface_tree_test {
 
-// A step of five cells, so that the surface leaves cubes out between.
+// A step of five cells in height, so that the surface contains gaps of several voxels.
 MapLayers cliff() {
   MapLayers layers = drawn({"1111", "11?1", "1111", "1111"});
   for (int row = 0; row < 4; ++row) layers.elevation.elevation_m[{3, row}] += 5.0F;
@@ -47,8 +47,8 @@ std::string streamed(const TraversabilityMap& map) {
   return stream.str();
 }
 
-// Property: writing node by node gives the bytes of a tree that was built, on even ground and rough, with
-// evidence and without, where all is alike and where nothing is.
+// Property: the streamed bytes equal those of a tree in memory, on even and rough ground, with and without
+// evidence, for uniform and for empty maps.
 TEST(SurfaceTree, StreamedBytesEqualTheTree) {
   EXPECT_EQ(streamed(TraversabilityMap(drawn({"??", "??"}), testGround(), {})),
             held(TraversabilityMap(drawn({"??", "??"}), testGround(), {})));
@@ -73,7 +73,7 @@ TEST(SurfaceTree, StreamedBytesEqualTheTree) {
   }
 }
 
-// Property: leaf by leaf the stream says of each cell what the tree says.
+// Property: every leaf of the stream equals that of the tree.
 TEST(SurfaceTree, StreamedLeavesEqualTheTree) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(33, '1')), 0.2);
   map.learn({.time_s = 1.0, .place = {110.0, 210.0}, .pull = {0.1, 0.05}, .sinkage = {0.2, 0.05}});

@@ -40,7 +40,7 @@ TraversabilityTree fromBytes(const std::string& bytes) {
 
 TEST(TraversabilityTree, EqualCellsArePrunedAndDifferingCellsKept) {
   const TraversabilityTree tree = sample();
-  // Property: 64 equal cells but one leave far fewer leaves, and each cell still answers.
+  // Property: 64 cells that are equal except one need far fewer leaves, and each cell can still be read.
   EXPECT_LT(tree.getNumLeafNodes(), 12U);
   EXPECT_EQ(tree.find(OcTreeKey(32770, 32770, 32770))->evidence, 3.5F);
   EXPECT_EQ(*tree.find(OcTreeKey(32775, 32769, 32770)), sandy());

@@ -17,7 +17,8 @@ maps::Raster<float> plane(double dz_dx, double dz_dy) {
   return z;
 }
 
-// Closed form: on a plane the heights beside a hole say the plane's slope, however wide the hole; single precision.
+// Closed form: on a plane the heights around a hole yield the plane's slope for any width of the hole;
+// single precision.
 TEST(UnseenSlope, PlaneSlopeIsRecovered) {
   std::mt19937 random(1);
   maps::Raster<float> z = plane(0.3, -0.2);
@@ -28,7 +29,7 @@ TEST(UnseenSlope, PlaneSlopeIsRecovered) {
     for (int column = 0; column < 30; ++column) {
       const UnseenSlope slope = unseenSlope(z, {column, row});
       for (const auto& [said, want] : {std::pair{slope.dz_dx, 0.3}, {slope.dz_dy, -0.2}}) {
-        if (said == 0.0) continue;  // no height to one side
+        if (said == 0.0) continue;  // no known height on one side
         EXPECT_NEAR(said, want, 1e-5);
         ++seen;
       }

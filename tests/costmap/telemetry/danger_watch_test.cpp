@@ -1,4 +1,4 @@
-// What each channel of one reading bounds.
+// Bounds from each channel of one reading.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -29,7 +29,7 @@ TEST(DangerWatch, OrdinaryReadingsYieldNoBound) {
       EXPECT_FALSE(DangerWatch(*model).hear(0, level(slip, z), 0.0).any());
 }
 
-// Closed form: tan(slope - margin) is where ground of that slope is dangerous.
+// Closed form: ground whose pull is below tan(slope - margin) is dangerous on that slope.
 TEST(DangerWatch, EachChannelBoundsIndependently) {
   const auto model = testGround();
   const DangerWatch watch(*model);
@@ -49,12 +49,13 @@ TEST(DangerWatch, EachChannelBoundsIndependently) {
   const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
   EXPECT_TRUE(std::isnan(deep.most_pull));
   EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
-  // At the motor's limit either way round.
+  // Torque at the motor's limit in either direction.
   EXPECT_LT(watch.hear(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
 }
 
-// Closed form: at its slip ground of the class would have climbed at(slip); what the slope was less than that the ground
-// is weaker, but for two standard deviations, 0.05. In a rut the class's rut is what it would have climbed.
+// Closed form: at its slip, ground of the class would pull at(slip). The deficit is at(slip) less the
+// gradient, reduced by two standard deviations of 0.05 in total. In a rut at(slip) is that of the class's
+// rut.
 TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
   const auto model = testGround();
   const DangerWatch watch(*model);
@@ -69,7 +70,7 @@ TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
             model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);
 }
 
-// Closed form: two standard deviations of the reading and of the class together.
+// Closed form: two standard deviations of reading and class combined.
 TEST(DangerWatch, SuspectedPullFarBelowTheClassBounds) {
   const auto model = testGround();
   const double prior = model->prior(0).pull.value, class_std = model->parts().classes[0].pull_std;
@@ -85,7 +86,7 @@ TEST(DangerWatch, SuspectedPullFarBelowTheClassBounds) {
   EXPECT_TRUE(std::isnan(bound(kNone)));
 }
 
-// Property: more slip, more sinkage and less slope never bound less.
+// Property: more slip, more sinkage or a lower slope never loosens a bound.
 TEST(DangerWatch, BoundsAreMonotoneInSlipSinkageAndSlope) {
   const auto model = testGround();
   const DangerWatch watch(*model);
@@ -101,7 +102,7 @@ TEST(DangerWatch, BoundsAreMonotoneInSlipSinkageAndSlope) {
   }
 }
 
-// A log of one wheel or several; columns that are NaN in every row are left out of the table.
+// Telemetry of one wheel or several; a column that is NaN in every row is left out.
 
 }  // namespace danger_watch_test
 }  // namespace talus::costmap

@@ -1,4 +1,5 @@
-// Two drives over the same ground, of which one is faulty: it frees nothing that the sound one refused, whichever came first.
+// Two drives over the same ground, one of them faulty: the faulty drive allows nothing that the sound drive
+// refused, in either order.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,7 +14,7 @@
 namespace talus::costmap {
 namespace drive_against_drive_test {
 
-constexpr double kHeight_m = 0.6;  // slopes that weak sand holds
+constexpr double kHeight_m = 0.6;  // height of waves whose slopes weak sand supports
 
 TraversabilityMap sand() {
   return mapOf(testSand(), 4, kHeight_m);
@@ -25,7 +26,7 @@ Drive soundDrive(const TraversabilityMap& map, unsigned seed) {
   return drive;
 }
 
-// Slip of the class on the slope, whatever the ground.
+// Slip of the class on a gradient.
 double slipOfClass(const GroundModel& model, double gradient) {
   double low = -0.5, high = 0.9;
   while (high - low > 1e-4) {
@@ -37,7 +38,7 @@ double slipOfClass(const GroundModel& model, double gradient) {
   return low;
 }
 
-// Cells that are allowed straight up their steepest slope.
+// Number of cells allowed in the heading straight up their steepest slope.
 int allowed(const TraversabilityMap& map) {
   int cells = 0;
   for (int row = 0; row < kRoverSide; ++row)
@@ -54,8 +55,9 @@ struct Fault {
 
 class OneFaultyDrive : public ::testing::TestWithParam<Fault> {};
 
-// Property: of what a sound drive takes from the class a faulty one gives back 5 in 100 at most, where the sound one read little; in
-// either order the same, to the bit. (Where the readings of all drives count as one it gives back 84, 86, 7 and 89 in 100.)
+// Property: a faulty drive restores at most 5 % of the cells that a sound drive with few readings refused;
+// the result is bit-identical in either order. (If the readings of all drives counted as one drive, it would
+// restore 84, 86, 7 and 89 %.)
 TEST_P(OneFaultyDrive, DoesNotRaiseWhatASoundDriveLowered) {
   TraversabilityMap sound = sand(), both = sand(), turned = sand();
   const Drive first = soundDrive(sound, 1);
@@ -130,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Each, GentleDrive,
                                                  }}),
                          [](const auto& each) { return each.param.name; });
 
-// Property: a journal's replay tells drives apart as the telemetry did, to the bit.
+// Property: replaying a journal distinguishes drives as the telemetry did; the maps are bit-identical.
 TEST(DriveAgainstDrive, JournalReplayDistinguishesDrives) {
   const std::string path = ::testing::TempDir() + "drive_against_drive.db";
   std::filesystem::remove(path);
@@ -146,7 +148,8 @@ TEST(DriveAgainstDrive, JournalReplayDistinguishesDrives) {
       ASSERT_EQ(map.ground({column, row})->pull.value, again.ground({column, row})->pull.value);
 }
 
-// Property: slip that is read too small from half way on raises nothing, and the finding says why and what to do.
+// Property: slip that is read too small from half way on raises no estimate, and the finding states the
+// reason and the remedy.
 TEST(DriveAgainstDrive, SlipBiasFromMidDriveRaisesNothing) {
   TraversabilityMap map = sand();
   const TraversabilityMap before = sand();

@@ -1,5 +1,5 @@
-// Evidence of danger through whole drives: each channel of each row refuses the place where it was read, whatever else
-// was read.
+// Evidence of danger in whole drives: a dangerous value in any channel of any row refuses the place of the
+// row, regardless of other readings.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,7 +54,7 @@ terramech::Telemetry tableOf(const std::vector<Row>& rows, const terramech::Rove
 
 constexpr int kSide = 40;
 
-// A rover of Sojourner's size too.
+// Rovers of the tests, one of them of Sojourner's size.
 std::vector<terramech::Rover> rovers() {
   terramech::Rover six = testRover(), tiny = testRover();
   six.wheel_count = 6;
@@ -86,7 +86,7 @@ bool refused(const TraversabilityMap& map, const maps::Point& place) {
   return true;
 }
 
-// Soil that holds a rover on nearly any slope.
+// Soil that supports a rover on nearly any slope.
 terramech::Soil bedrock() {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa = 20000.0;
@@ -94,7 +94,7 @@ terramech::Soil bedrock() {
   return soil;
 }
 
-// 60 rows without a fault, then some at x = 125.5.
+// 60 rows without a fault, then the given rows at x = 125.5.
 std::vector<Row> afterGoodRows(const std::vector<Row>& last, bool with_slope) {
   std::vector<Row> rows;
   for (int i = 0; i < 60; ++i) {
@@ -129,8 +129,9 @@ TEST(Danger, OneDangerousChannelRefusesThePlaceWithOthersMissing) {
         }
 }
 
-// Property: where the map has no elevation or no class, danger refuses the place and what lies within the error of the pose, unknown
-// ground allowed or not, and keeps it refused when the ground is patched in: by its class where that is known.
+// Property: on ground without elevation or class, danger refuses the place and everything within the pose
+// error, whether or not unknown ground is allowed. The refusal remains after a patch adds the ground, with
+// the limits of its class if known.
 TEST(Danger, DangerOnUnobservedGroundIsRetainedAfterPatching) {
   for (const bool allow_unknown : {false, true})
     for (const char hole : {'?', '9'})
@@ -172,7 +173,7 @@ TEST(Danger, DeepSinkageAtLowSlipRefusesThePlace) {
       }
 }
 
-// Standing, reversing and a thousand good rows at the place itself.
+// Later rows at the same place: standing, reversing and a thousand good rows.
 TEST(Danger, LaterReadingsDoNotRemoveARefusal) {
   for (const double slip_after : {0.0, -0.1, 0.05}) {
     TraversabilityMap map = plain(testRover(), testSand());
@@ -188,7 +189,8 @@ TEST(Danger, LaterReadingsDoNotRemoveARefusal) {
   }
 }
 
-// What carries DP/W -0.05 lets a wheel spin on the level: a thousand such rows must not average to a mean that passes.
+// Ground with DP/W -0.05 lets a wheel spin on level ground; a thousand such rows must not average to an
+// acceptable mean.
 TEST(Danger, ManyDangerousReadingsDoNotAverageOut) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise(0.0, 0.01);
@@ -204,8 +206,8 @@ TEST(Danger, ManyDangerousReadingsDoNotAverageOut) {
   EXPECT_TRUE(refused(map, {125.5, 220.5}));
 }
 
-// Property: one wheel of six meets pits, its fellows none. All of its pits are refused, in any order of the rows of a
-// moment, and after a spike.
+// Property: if one wheel of six meets pits and the others none, every pit is refused, in any order of the
+// rows of a moment, and after an outlier.
 TEST(Danger, EveryPitOfOneWheelIsRefused) {
   const terramech::Rover rover = rovers()[1];
   std::mt19937_64 random(8);
@@ -239,7 +241,7 @@ TEST(Danger, EveryPitOfOneWheelIsRefused) {
   }
 }
 
-// Property: the order of rows within a moment does not show in any cell.
+// Property: the order of rows within a moment changes no cell.
 TEST(Danger, ResultIsIndependentOfRowOrderWithinAMoment) {
   const terramech::Rover rover = rovers()[1];
   std::mt19937_64 random(4);
@@ -270,7 +272,8 @@ TEST(Danger, ResultIsIndependentOfRowOrderWithinAMoment) {
     }
 }
 
-// A sensor that the others contradict: its place is refused, no other ground is believed to be weaker.
+// Property: a reading that contradicts the other channels refuses its place and lowers no estimate
+// elsewhere.
 TEST(Danger, SuspectedReadingRefusesOnlyItsPlace) {
   const std::vector<Row> calm = afterGoodRows({}, true), spike = afterGoodRows({{0, 0, 0.95}}, true);
   TraversabilityMap before = plain(testRover(), testSand()), after = plain(testRover(), testSand());
@@ -285,7 +288,7 @@ TEST(Danger, SuspectedReadingRefusesOnlyItsPlace) {
     }
 }
 
-// Rows that no fit may use: each holds one number that is danger, and mostly one that is no number.
+// Rows that no fit may use: each contains one dangerous value, and most contain one that is not a number.
 TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
   const std::string path = std::filesystem::temp_directory_path() / ("danger" + std::to_string(::getpid()));
   const double radius_m = testRover().wheel.radius_m;
@@ -314,8 +317,8 @@ TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
   }
 }
 
-// A row that was rejected may have any heading wrong: what it says is taken as read straight downhill, and so the place is
-// refused downhill, too, where a reading uphill would leave it.
+// A rejected row may have a wrong heading. Its reading is taken as straight downhill, so that the place is
+// refused downhill too, where an uphill reading would not refuse it.
 TEST(Danger, RejectedRowIsAssumedToBeDownhill) {
   for (const bool rejected : {false, true}) {
     terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));
@@ -335,8 +338,8 @@ TEST(Danger, RejectedRowIsAssumedToBeDownhill) {
   }
 }
 
-// Property: a channel that is danger refuses its place, whatever the row's other numbers are: missing, infinite, the
-// greatest double, or plausible and impossible. In rows that the reader rejects, and in those that it takes.
+// Property: a dangerous channel refuses its place for any other values of the row: missing, infinite, the
+// largest double, plausible or impossible; in rows that the reader rejects and in rows that it accepts.
 TEST(Danger, DangerousChannelRefusesThePlaceForAnyOtherValues) {
   constexpr double kMost = std::numeric_limits<double>::max();
   const std::vector<double> any{0.0, kNone, kInfinite, -kInfinite, kMost, -kMost, 1e300, -1e300, 1e-320};

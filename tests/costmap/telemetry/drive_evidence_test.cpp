@@ -19,7 +19,7 @@ std::vector<std::string> wide() {
   return std::vector<std::string>(60, std::string(60, '1'));
 }
 
-// Columns of numbers, from rows of them.
+// Telemetry with the given columns, from rows of numbers.
 terramech::Telemetry tableOf(const std::string& source, const std::vector<std::string>& names,
                              const std::vector<std::vector<double>>& rows) {
   terramech::Telemetry out;
@@ -33,8 +33,8 @@ terramech::Telemetry tableOf(const std::string& source, const std::vector<std::s
   return out;
 }
 
-// A drive east along the middle over ground that is dust, though the map takes it for sand; every tenth row
-// off the map.
+// A drive east along the middle over dust that the map classifies as sand; every tenth row lies outside the
+// map.
 terramech::Telemetry drive() {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
@@ -66,7 +66,7 @@ TEST(AddDrive, DustDrivenAsSandIsEstimatedAsWeak) {
   EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
 }
 
-// Rows first .. end - 1.
+// Rows first to end - 1.
 terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, std::ptrdiff_t end) {
   for (auto& column : whole.numbers)
     column.values = {column.values.begin() + first, column.values.begin() + end};
@@ -74,7 +74,7 @@ terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, st
   return whole;
 }
 
-// Property: the order of rows and a wrong clock lose no weak ground.
+// Property: reversed rows and a wrong clock lose no evidence of weak ground.
 TEST(AddDrive, WeakGroundIsDetectedForReversedRowsAndWrongClock) {
   TraversabilityMap forward = mapOf(wide());
   addDrive(forward, drive());
@@ -104,14 +104,14 @@ TEST(DriveIntake, PartsEqualTheWhole) {
   DriveIntake intake(parts);
   for (std::ptrdiff_t first = 0; first < 100; first += 5) intake.add(partOf(drive(), first, first + 5));
   parts.publishAll();
-  // Property: the same rows in the same order, however divided, where no sensor is biased.
+  // Property: without sensor bias, rows in the same order give the same result however the drive is divided.
   EXPECT_EQ(intake.report().used, expected.used);
   EXPECT_EQ(intake.report().rejected, expected.rejected);
   EXPECT_EQ(intake.report().findings, expected.findings);
   EXPECT_EQ(bytesOf(parts), bytesOf(whole));
 }
 
-// A log that was sent while it grew counted its first rows again each time.
+// Property: a log that is sent again after it has grown adds only its new rows.
 TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("grown" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -126,7 +126,7 @@ TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
       rejected += report.rejected;
       EXPECT_EQ(report.repeated + report.used + report.rejected, static_cast<std::size_t>(rows));
     }
-    // Property: where no sensor is biased, what the whole teaches.
+    // Property: without sensor bias the result equals that of the whole file.
     EXPECT_EQ(used, expected.used);
     EXPECT_EQ(rejected, expected.rejected);
     EXPECT_EQ(journal.size(), 100);
@@ -140,13 +140,13 @@ TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
       ASSERT_EQ(one->pull.std, other->pull.std) << column << ' ' << row;
     }
   EXPECT_EQ(addDrive(grown, drive()).repeated, 100U);
-  // A file that begins otherwise is another drive.
+  // A file with a different beginning is another drive.
   EXPECT_EQ(addDrive(grown, partOf(drive(), 1, 100)).repeated, 0U);
   std::filesystem::remove_all(folder);
 }
 
-// Four wheels up a slope at one slip, each with the torque of its own load; `told`: the load column is right,
-// else it holds the even share.
+// Four wheels uphill at one slip, each with the torque of its own load. `told`: whether the load column has
+// the actual loads or equal shares.
 terramech::Telemetry climb(bool told) {
   const terramech::Rover rover = testRover();
   const double gradient = 0.15;
@@ -179,7 +179,7 @@ TEST(AddDrive, LoadTransferIsComputedIfTheFileOmitsIt) {
   EXPECT_THAT(addDrive(right, climb(true)).findings, testing::ElementsAre(nothing_raises));
   EXPECT_THAT(addDrive(even, climb(false)).findings,
               testing::UnorderedElementsAre(testing::HasSubstr("load transfer"), nothing_raises));
-  // Closed form: corrected, both files say the same
+  // Closed form: after the correction of the loads both files give the same pull
   EXPECT_NEAR(even.ground({24, 30})->pull.value, right.ground({24, 30})->pull.value, 1e-6);
 }
 

@@ -11,7 +11,7 @@
 namespace talus::costmap {
 namespace drive_id_test {
 
-// Every used column; two rows, and a rejected one between them.
+// A table with every used column: two accepted rows and a rejected one between them.
 terramech::Telemetry table() {
   terramech::Telemetry out;
   out.source = "t.csv";
@@ -27,8 +27,8 @@ terramech::Telemetry table() {
   return out;
 }
 
-// Property: the order of columns, columns that no map learns from and empty ones are not the drive's. Such a file counted
-// for a second time.
+// Property: the id of a drive is independent of the order of columns, of unused columns and of empty
+// columns, so that such a file is not counted twice.
 TEST(DriveId, IdIsIndependentOfColumnOrderAndUnusedColumns) {
   const std::string id = driveId(table());
   terramech::Telemetry turned = table();
@@ -52,7 +52,7 @@ TEST(DriveId, IdIsIndependentOfColumnOrderAndUnusedColumns) {
   EXPECT_NE(driveId(less), id);
 }
 
-// Property: whatever used value differs is another drive, in rejected rows, too, and so is another order of rows.
+// Property: a change of any used value, also in rejected rows, or of the order of rows makes a different id.
 TEST(DriveId, IdDependsOnEveryUsedValue) {
   std::set<std::string> ids{driveId(table())};
   std::size_t tables = 1;
@@ -74,7 +74,7 @@ TEST(DriveId, IdDependsOnEveryUsedValue) {
   });
 }
 
-// Property: a drive in parts is that drive.
+// Property: the id of a divided drive is that of the whole drive.
 TEST(DriveId, IdIsIndependentOfDivision) {
   terramech::Telemetry first = table(), second = table();
   for (auto* columns : {&first.numbers, &second.numbers})

@@ -1,4 +1,4 @@
-// What a drive teaches that comes in part by part, against the same rows as one file.
+// Result of a drive added in parts, against the same rows as one file.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -41,7 +41,7 @@ Drive partOf(const Drive& drive, std::size_t first, std::size_t end) {
   return {.rows = from(drive.rows), .run = from(drive.run), .wheel = from(drive.wheel)};
 }
 
-// Ends of parts of whole moments, at random.
+// Random ends of parts; each part contains whole moments.
 std::vector<std::size_t> randomParts(std::size_t rows, std::size_t most_moments, std::mt19937_64& random) {
   std::vector<std::size_t> ends;
   std::uniform_int_distribution<std::size_t> moments(1, most_moments);
@@ -50,7 +50,7 @@ std::vector<std::size_t> randomParts(std::size_t rows, std::size_t most_moments,
   return ends;
 }
 
-// Of the class, stronger, weaker, and so weak that wheels spin.
+// Soil of the class, stronger, weaker, and so weak that wheels spin.
 terramech::Soil soilOf(unsigned seed) {
   if (seed == 4) return weakSand();
   terramech::Soil soil = testSand();
@@ -58,8 +58,8 @@ terramech::Soil soilOf(unsigned seed) {
   return soil;
 }
 
-// Property: settled, a drive in any parts leaves the map and the journal of the same rows as one file, to the bit; also where
-// it was settled on the way.
+// Property: after settle(), a drive in any parts yields bit-identically the map and the journal of the same
+// rows as one file, also if settle() was called between parts.
 TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("talus_drive_parts_" + std::to_string(::getpid()) + ".db"))
@@ -90,9 +90,9 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
   for (const char* const file : {"", "-wal", "-shm"}) std::filesystem::remove(path + file);
 }
 
-// Property: where nothing is settled, no sensor is biased and time does not decrease, how a drive is divided does not show.
-// Pinned: by what comes to be known of the sensors, and of the strength of all ground, later it lies up to 0.035 in DP/W from the whole, to
-// either side.
+// Property: without settle(), without sensor bias and with non-decreasing time, the result is independent of
+// the division into parts. Pinned: the result differs from that of the whole file by up to 0.035 in DP/W in
+// either direction, because sensor errors and class strength are estimated later.
 TEST(DriveParts, UnsettledPartsAreIndependentOfDivision) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     std::mt19937_64 random(seed);

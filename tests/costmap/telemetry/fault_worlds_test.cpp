@@ -1,5 +1,6 @@
-// Worlds of known soil, in which sound drives are followed by faulty ones: what a fault frees.
-// TALUS_FAULT_WORLDS="FIRST COUNT" in place of the 200 of each run; a campaign is made of such parts.
+// Worlds of known soil in which sound drives are followed by faulty ones; counts the cells that a fault
+// makes allowed wrongly. TALUS_FAULT_WORLDS="FIRST COUNT" replaces the 200 worlds of each run; a campaign
+// consists of such runs.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -20,7 +21,7 @@ namespace fault_worlds_test {
 
 constexpr int kSide = 48, kWheels = 4;
 
-// What all wheels pull, half of them in ruts, on ground that departs from its soil at slip 0.5.
+// Mean pull of all wheels, half of them in ruts, on ground with a given departure from its soil at slip 0.5.
 class Pull {
  public:
   explicit Pull(const GroundModel& soil) {
@@ -55,7 +56,7 @@ class Pull {
   std::vector<double> pull_, share_;
 };
 
-// Everything about one world, by its seed.
+// All properties of one world, determined by its seed.
 class World {
  public:
   explicit World(unsigned seed) : random_(seed) {
@@ -87,7 +88,7 @@ class World {
     return out;
   }
 
-  // By how much the ground of a place departs from the world's soil at slip 0.5: waves of some metres.
+  // Departure of a place's DP/W from the world's soil at slip 0.5: waves of several metres.
   double departure(const maps::Point& at) const {
     return variation_ * (std::sin(0.9 * at.x_m + phases_[0]) * std::sin(0.8 * at.y_m + phases_[1]) +
                          std::sin(0.5 * at.x_m + phases_[2]) * std::sin(0.6 * at.y_m + phases_[3]));
@@ -107,7 +108,7 @@ class World {
   std::vector<double> phases_;
 };
 
-// Of all wheels of a moment.
+// Reading common to all wheels of a moment.
 struct Read {
   double time_s, x_m, y_m, slope_rad, slip;
 };
@@ -117,7 +118,7 @@ const char* const kFaults[] = {"none",        "offset",    "scale",        "step
                                "pose_offset", "time_step", "slope_offset", "slope_scale",
                                "all_stuck",   "divided",   "uphill",       "one_wheel"};
 
-// What the sensors make of the moments of a drive.
+// Applies a sensor fault to the moments of a drive.
 void spoil(const std::string& fault, std::vector<Read>& drive, World& world, const Pull& of_class) {
   const std::vector<Read> sound = drive;
   const double amount = world.uniform(-0.2, 0.2), scale = world.uniform(0.4, 1.3),
@@ -142,7 +143,7 @@ void spoil(const std::string& fault, std::vector<Read>& drive, World& world, con
   }
 }
 
-// Along three lines over the waves; a gentle drive goes along their crests and hollows, on slopes to 0.05.
+// A drive along three lines over the waves; a gentle drive follows crests and troughs, on slopes up to 0.05.
 terramech::Telemetry driven(World& world, const Pull& of_class, const TraversabilityMap& map,
                             const std::string& fault, int number, bool gentle = false) {
   Drive out;
@@ -178,7 +179,7 @@ terramech::Telemetry driven(World& world, const Pull& of_class, const Traversabi
   return tableOf(out, false);
 }
 
-// Cells that are allowed straight up.
+// Cells that are allowed in the uphill heading.
 std::vector<bool> allowedOn(const TraversabilityMap& map) {
   std::vector<bool> cells;
   for (int row = 0; row < kSide; ++row)
@@ -190,7 +191,7 @@ std::vector<bool> allowedOn(const TraversabilityMap& map) {
   return cells;
 }
 
-// Cells that are allowed, were not before, and do not hold.
+// Number of cells that have become allowed although their ground is too weak.
 int freedBy(const TraversabilityMap& map, const World& world, const std::vector<bool>& before) {
   const std::vector<bool> after = allowedOn(map);
   int freed = 0;
@@ -203,13 +204,14 @@ int freedBy(const TraversabilityMap& map, const World& world, const std::vector<
   return freed;
 }
 
-// Property: faulty drives, one to three of one kind, by themselves, behind a sound one or behind a sound one on gentle ground, make no cell
-// allowed that does not hold, but for three in a thousand cells of one world in a hundred; and sound ones neither.
+// Property: one to three faulty drives of one kind, alone, after a sound drive, or after a sound drive on
+// gentle ground, make no cell allowed whose ground is too weak; tolerated are three in a thousand cells, and
+// more in one world of a hundred. The same holds for sound drives.
 TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
   const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 200);
   const auto class_model = groundOf(testSand(), kWheels);
   const Pull of_class(*class_model);
-  std::map<std::string, std::vector<int>> freed;  // cells, by fault, of each world
+  std::map<std::string, std::vector<int>> freed;  // cells of each world, by fault
   unsigned worse = 0;
   for (unsigned seed = part.first; seed < part.end(); ++seed) {
     World world(seed);

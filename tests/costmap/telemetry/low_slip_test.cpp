@@ -1,4 +1,4 @@
-// What readings below the reference slip say of ground at that slip and beyond it.
+// Extrapolation of readings below the reference slip to the reference slip and beyond.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,9 +18,9 @@ namespace low_slip_test {
 constexpr double kReferenceSlip = 0.5;
 constexpr double kTwelveDegrees = 0.2126;  // tangent of 12 deg
 constexpr std::array<maps::Cell, 4> kCells{
-    {{30, 23}, {16, 23}, {30, 26}, {30, 60}}};  // driven twice, beside, far
+    {{30, 23}, {16, 23}, {30, 26}, {30, 60}}};  // driven twice, beside the drive, far away
 
-// Of the soil library, and one that is strong and quick to give its strength.
+// Soils of the library, and a strong soil with a small shear modulus.
 std::vector<terramech::SoilPrior> priors() {
   const auto soil = [](const char* name, double cohesion_Pa, double friction_rad, double exponent,
                        double frictional_modulus, double shear_modulus_m) {
@@ -81,12 +81,12 @@ std::shared_ptr<const GroundModel> modelOf(const terramech::SoilPrior& prior) {
 }
 
 struct LowSlip {
-  double scale = 1.0, shift = 0.0;  // of the slip that is read
+  double scale = 1.0, shift = 0.0;  // scale and offset of the slip reading
   bool felt = true;                 // whether torque and sinkage are columns of the file
   unsigned seed = 1;
 };
 
-// A drive over hills at slips up to 0.45; what is steeper was driven around.
+// A drive over hills at slips up to 0.45; steeper places are avoided.
 TraversabilityMap driven(const std::shared_ptr<const GroundModel>& model, double height_m,
                          const terramech::Soil& truth, const LowSlip& how) {
   TraversabilityMap map(hills(height_m), model, {});
@@ -103,7 +103,7 @@ TraversabilityMap driven(const std::shared_ptr<const GroundModel>& model, double
   return map;
 }
 
-// The steepest gradient that is not refused to ground of this pull at the reference slip.
+// The steepest gradient that is not refused on ground with this pull at the reference slip.
 double reach(const GroundModel& model, double pull) {
   GroundBelief belief = model.prior(0);
   belief.pull = {pull, 0.0};
@@ -115,15 +115,15 @@ double reach(const GroundModel& model, double pull) {
   return low;
 }
 
-// Drawbar pull over load, torque and sinkage of a wheel on a soil.
+// Forces of a wheel on a soil at a slip.
 terramech::WheelForces onWheel(const terramech::Soil& soil, double slip) {
   const terramech::Rover rover = testRover();
   return terramech::equilibrium(soil, rover.wheel, {.load_N = terramech::wheelLoad_N(rover), .slip = slip});
 }
 
-// Property: of ground that is weaker than its class, read at slips from 0.05 to 0.45 with the errors of good sensors, one
-// reading is stronger than the truth by more than its deviation, and by 1.645 of it, no more often than the normal
-// distribution has (0.16 and 0.05); with torque and sinkage and without.
+// Property: on ground weaker than its class, read at slips from 0.05 to 0.45 with the errors of good
+// sensors, one reading exceeds the truth by more than 1 and 1.645 standard deviations no more often than the
+// normal distribution does (0.16 and 0.05); with and without torque and sinkage.
 TEST(LowSlip, SingleReadingOnWeakGroundIsCalibrated) {
   const terramech::Rover rover = testRover();
   const double load_N = terramech::wheelLoad_N(rover);
@@ -161,9 +161,9 @@ TEST(LowSlip, SingleReadingOnWeakGroundIsCalibrated) {
   }
 }
 
-// Property: of soils drawn about their class and driven at slips up to 0.45, the pull at the reference slip, and the
-// steepest slope that is driven beyond it, are too high by more than the stated deviation, and by 1.645 of it, in no more
-// worlds than the normal distribution has (0.16 and 0.05; two deviations of the count are allowed).
+// Property: for soils drawn about their class and driven at slips up to 0.45, the pull at the reference slip
+// and the steepest slope beyond exceed the truth by more than 1 and 1.645 standard deviations in no more
+// worlds than the normal distribution does (0.16 and 0.05). Tolerance: two standard deviations of the count.
 TEST(LowSlip, PullAndMaximumSlopeAreCalibrated) {
   std::mt19937_64 random(5);
   std::array<std::array<int, 2>, kCells.size()> above{}, beyond{};
@@ -197,8 +197,8 @@ TEST(LowSlip, PullAndMaximumSlopeAreCalibrated) {
     }
 }
 
-// Property: of ground that is weaker by strength a reading at little slip says what it is at the reference slip; its
-// departure at its slip is far less than that.
+// Property: on ground of lower strength, a reading at low slip gives the departure at the reference slip,
+// although the departure at its own slip is far smaller.
 TEST(LowSlip, StrengthDeficitIsExtrapolatedToTheReferenceSlip) {
   for (const terramech::SoilPrior& prior : {priors()[0], priors()[1], firm()}) {
     const auto model = modelOf(prior);
@@ -226,9 +226,10 @@ TEST(LowSlip, StrengthDeficitIsExtrapolatedToTheReferenceSlip) {
   }
 }
 
-// Property: a drive at little slip leaves the chance that 12 degrees are too steep, which they are, at 0.85 of what it was or
-// more where the soil is several deviations off its class, weaker and quicker to give its strength, or where its slip is read
-// too small. (No reading can know a modulus that the class does not know; 0.4 to 0.85 of it was left by the shift.)
+// Property: a drive at low slip leaves the probability that 12 degrees are too steep (which is true here) at
+// 0.85 of its previous value or more, if the soil lies several standard deviations off its class (weaker,
+// with a smaller shear modulus) or its slip is read too small. (No reading can show a modulus outside the
+// class. Shifting the curve left 0.4 to 0.85.)
 TEST(LowSlip, LowSlipDriveDoesNotReduceRiskOnSteepSlopes) {
   const auto model = modelOf(firm());
   const auto soil = [](double friction_rad, double modulus_m) {

@@ -1,4 +1,5 @@
-// Rows of another wheel, load or rover raise nothing, in a file and in a journal; the rover's own do.
+// Property: rows of another wheel, load or rover raise no estimate, in a file and in a journal; the rover's
+// own rows do.
 #include <filesystem>
 
 #include <rover_drive.hpp>
@@ -25,7 +26,7 @@ void setColumn(terramech::Telemetry& table, const char* name, double value) {
   table.numbers.push_back({name, std::vector<double>(table.size(), value)});
 }
 
-// Cells that are surer, or stronger, than they were.
+// Number of cells whose estimate is more certain or stronger than before.
 int better(const TraversabilityMap& before, const TraversabilityMap& after) {
   int count = 0;
   for (int row = 0; row < kRoverSide; ++row)
@@ -56,7 +57,7 @@ TEST(OwnWheel, ReadingsOfTheRoverWheelRaiseEstimates) {
   EXPECT_EQ(addDrive(stated, table).raising, report.raising);
 }
 
-// Property: one finding, and no cell is better in mean or tail.
+// Property: one finding is reported, and no cell improves in mean or tail.
 TEST(OtherWheel, ReadingsOfAnotherWheelRaiseNothing) {
   const TraversabilityMap before = sand();
   for (const char* column : {"wheel_radius_m", "wheel_width_m", "load_N"}) {
@@ -77,7 +78,8 @@ TEST(OtherWheel, ReadingsOfAnotherWheelRaiseNothing) {
   }
 }
 
-// Property: the journal of a light rover raises nothing for a heavy one; nor do rows that do not say whose they are.
+// Property: the journal of a light rover raises no estimate for a heavy rover; nor do rows that do not state
+// their rover.
 TEST(OtherJournal, JournalOfAnotherRoverRaisesNothing) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("other" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);

@@ -1,5 +1,5 @@
-// Whole rovers of four and six wheels, in their own ruts, with one faulty sensor: no ground that was refused in some
-// direction becomes allowed in it. Sound rovers do learn.
+// Whole rovers of four and six wheels, in their own ruts, with one faulty sensor: no heading that was
+// refused in a cell becomes allowed. Drives of sound rovers do raise estimates.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -12,8 +12,8 @@
 namespace talus::costmap {
 namespace rover_fault_test {
 
-// Cells and headings, up a slope or along it, that were refused and are allowed now. (Downhill a drive over weaker
-// ground brakes less by the model of GroundModel, and may be allowed for it.)
+// Number of cells and headings, uphill or level, that were refused and are now allowed. (Downhill,
+// GroundModel brakes less after a drive over weaker ground, and the cell may become allowed.)
 int freed(const TraversabilityMap& before, const TraversabilityMap& after) {
   const auto a = before.published(), b = after.published();
   int count = 0;
@@ -38,7 +38,7 @@ double meanRise(const TraversabilityMap& before, const TraversabilityMap& after)
   return sum / (kRoverSide * kRoverSide);
 }
 
-// Of one wheel, or of what all wheels share.
+// A fault of one wheel, or of a sensor common to all wheels.
 struct RoverFault {
   const char* name;
   std::function<void(Drive&)> make;
@@ -111,7 +111,7 @@ const std::vector<RoverFault>& faults() {
 
 class OneFaultyRoverSensor : public ::testing::TestWithParam<RoverFault> {};
 
-// Property: the ground is as weak as its class or weaker, and the map knows its class: nothing is freed.
+// Property: if the ground is as weak as its class or weaker, a faulty sensor makes no cell allowed.
 TEST_P(OneFaultyRoverSensor, FaultyRoverSensorRaisesNothing) {
   for (const int wheels : {4, 6})
     for (const terramech::Soil& truth : {weakSand(), weakerSand()}) {

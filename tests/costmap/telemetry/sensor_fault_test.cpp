@@ -1,4 +1,4 @@
-// Drives with one faulty sensor: none makes ground better than it was believed; a sound drive does.
+// Drives with one faulty sensor: none improves an estimate; a sound drive does.
 #include <cmath>
 #include <functional>
 #include <random>
@@ -11,7 +11,7 @@
 namespace talus::costmap {
 namespace sensor_fault_test {
 
-// Ground stronger than the class by about what classes differ.
+// Ground stronger than the class by about the variation between classes.
 terramech::Soil firmerSand() {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa = 1200.0;
@@ -21,7 +21,7 @@ terramech::Soil firmerSand() {
 
 constexpr int kSide = 80;
 
-// Waves of slopes up to 15 degrees, that differ from place to place; class 2 in the east.
+// Waves with slopes up to 15 degrees that vary between places; class 2 in the east.
 TraversabilityMap hills() {
   MapLayers layers;
   const maps::Grid grid{.width = kSide, .height = kSide, .resolution_m = 1.0, .south_west = {}};
@@ -41,7 +41,8 @@ struct Row {
   std::string run;
 };
 
-// East along three lines on one soil, a row every quarter of a metre, with the noise of good sensors.
+// A drive east along three lines on one soil, a row every quarter of a metre, with the noise of good
+// sensors.
 std::vector<Row> driveOver(const TraversabilityMap& map, const terramech::Soil& soil) {
   const terramech::MobilityCurve curve = mobilityOf({.number = 1, .soil = soil}, testRover());
   std::mt19937_64 random(3);
@@ -88,7 +89,7 @@ terramech::Telemetry tableOf(const std::vector<Row>& rows) {
   return out;
 }
 
-// Cells whose belief rose by more than rounding, in mean or in the tail.
+// Number of cells whose estimate rose by more than rounding, in mean or tail.
 int raised(const TraversabilityMap& before, const TraversabilityMap& after) {
   int cells = 0;
   for (int row = 0; row < kSide; ++row)
@@ -173,7 +174,8 @@ INSTANTIATE_TEST_SUITE_P(One, SensorFault,
                                                  }}),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// Property: a bias of slip of any size makes nothing better than it was believed to be, or than a sound sensor makes it.
+// Property: a slip bias of any size improves no estimate beyond its previous value or the value of a sound
+// sensor.
 TEST(FaultyDrive, SlipBiasRaisesNothingBeyondASoundSensor) {
   const TraversabilityMap before = hills();
   for (const terramech::Soil& soil : {firmerSand(), testSand()})
@@ -193,7 +195,7 @@ TEST(FaultyDrive, SlipBiasRaisesNothingBeyondASoundSensor) {
     }
 }
 
-// Torque and sinkage sensors alone raise nothing beyond what slip and slope do.
+// Property: torque and sinkage sensors alone raise no estimate beyond that from slip and slope.
 TEST(FaultyDrive, TorqueAndSinkageAloneRaiseNothing) {
   const TraversabilityMap before = hills();
   for (const double torque : {1.3, 1.0, 0.0})
@@ -216,7 +218,8 @@ TEST(FaultyDrive, TorqueAndSinkageAloneRaiseNothing) {
     }
 }
 
-// Property: rows of danger that are put into a drive anywhere make no ground better than the drive without them.
+// Property: dangerous rows inserted anywhere in a drive improve no estimate beyond that of the drive without
+// them.
 TEST(FaultyDrive, DangerousRowsRaiseNothing) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -239,7 +242,7 @@ TEST(FaultyDrive, DangerousRowsRaiseNothing) {
   }
 }
 
-// Property: two rows of a trap in the middle of a sound drive: the ground there is weaker for it.
+// Property: two rows of a trap in the middle of a sound drive lower the estimate at their place.
 TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimateDespiteSpikeFilter) {
   TraversabilityMap before = hills(), after = hills();
   std::vector<Row> rows = soundDrive(before);
@@ -255,8 +258,8 @@ TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimateDespiteSpikeFilter) {
   EXPECT_GT(after.ground(cell)->sinkage.value, 0.4);
 }
 
-// Property: wheels sunk 0.85 r at little slip contradict the slope and look like a datum that is off; the depth
-// counts all the same.
+// Property: a sinkage of 0.85 r at low slip contradicts the slope and resembles a wrong sinkage datum; the
+// sinkage counts nevertheless.
 TEST(FaultyDrive, DeepSinkageAtLowSlipLowersTheEstimate) {
   const TraversabilityMap before = hills();
   TraversabilityMap after = hills();

@@ -12,7 +12,7 @@ namespace sensor_proof_test {
 
 using Row = SensorProof::Row;
 
-// Over waves of slopes, 0.6 m from row to row, with the noise of good sensors; `change` spoils a row.
+// A drive over waves of slope, 0.6 m between rows, with the noise of good sensors; `change` modifies a row.
 SensorProof proofOf(const std::function<void(Row&, int)>& change = {}, int rows = 120) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise;
@@ -46,7 +46,7 @@ TEST(SensorProof, SoundSensorsAreProven) {
   EXPECT_FALSE(proof.pullSound("a", "v"));
 }
 
-// Each proof that fails is named, the first of them.
+// Property: each failed proof is named, in the order of the checks.
 TEST(SensorProof, SaysWhatIsLacking) {
   using Lack = SensorProof::Lack;
   const double kSilent = std::nan("");
@@ -64,7 +64,7 @@ TEST(SensorProof, SaysWhatIsLacking) {
   const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
   EXPECT_EQ(proofOf({}, 400).lack(), Lack::Nothing);
   EXPECT_EQ(proofOf(step, 400).lack(), Lack::SlipStep);
-  // A sensor is one, whatever runs its rows are of.
+  // A step is found across runs, because a sensor is the same in all runs.
   const auto in_runs = [&](Row& r, int i) {
     r.run = i < 200 ? "a" : "b";
     step(r, i);
@@ -72,8 +72,9 @@ TEST(SensorProof, SaysWhatIsLacking) {
   EXPECT_EQ(proofOf(in_runs, 400).lack(), Lack::SlipStep);
 }
 
-// Property: of 500 sound drives with a noise of 0.02 in slope, over waves of 0.06 to 0.3 in gradient, 5 at most are held for too steep; read 1.4 times,
-// with waves from 0.1 on, none is missed.
+// Property: of 500 sound drives with a slope noise of 0.02, over waves of gradient 0.06 to 0.3, at most 5
+// are reported as reading slopes too steep. With slopes read 1.4 times too steep, and waves from 0.1 on,
+// every drive is reported.
 TEST(SensorProof, SlopesOfSoundDrivesAreNotHeldForTooSteep) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise;

@@ -36,7 +36,8 @@ TEST(SensorWatch, StuckValuesAndSpikesAreRejected) {
   EXPECT_EQ(watch.findings().size(), 2U);
 }
 
-// Property: rows whose time decreases are as good as others, or a file in another order would lose its weak ground.
+// Property: rows with decreasing time are accepted; otherwise a file in another order would lose its weak
+// ground.
 TEST(SensorWatch, DecreasingTimeStartsANewSeries) {
   const auto model = testGround();
   SensorWatch watch(*model, {.stuck_rows = 8});
@@ -46,18 +47,18 @@ TEST(SensorWatch, DecreasingTimeStartsANewSeries) {
   }
   ASSERT_EQ(watch.findings().size(), 1U);
   EXPECT_NE(watch.findings()[0].find("39 rows: time decreases"), std::string::npos) << watch.findings()[0];
-  // Property: what was equal before does not count on.
+  // Property: equal readings before a decrease of time are not counted.
   for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(10.0 + i, 0.2)).has_value()) << i;
   for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(1.0 + i, 0.2)).has_value()) << i;
 }
 
-// One sensor of several stands still; one that is rounded to few steps may.
+// Property: one stuck sensor of several is reported; a sensor with coarse rounding is not.
 TEST(SensorWatch, SingleStuckSensorIsNamed) {
   const auto model = testGround();
   const auto reading = [](int i) {
     TelemetryReading r = at(0.1 * i, 0.1 + 0.001 * (i % 7));
     r.torque_Nm = 0.5 + 0.003 * (i % 11);
-    r.sinkage_m = 0.001 * (i / 40);  // in whole millimetres
+    r.sinkage_m = 0.001 * (i / 40);  // rounded to millimetres
     return r;
   };
   SensorWatch watch(*model);
@@ -70,7 +71,7 @@ TEST(SensorWatch, SingleStuckSensorIsNamed) {
     believed += reason ? 0 : 1;
     EXPECT_EQ(reason.value_or("torque is stuck"), "torque is stuck");
   }
-  EXPECT_EQ(believed, 24);  // Closed form: the 25th equal reading is the first that is not believed
+  EXPECT_EQ(believed, 24);  // Closed form: the 25th equal reading is the first to be rejected
   EXPECT_FALSE(watch.refuse("w", reading(100)).has_value()) << "it moves again";
 }
 
@@ -152,7 +153,7 @@ TEST(SensorWatch, JumpAtAllWheelsIsNotASpike) {
   const auto both = moment(3.0, 0.9, 0.91);
   EXPECT_FALSE(both[0].has_value());
   EXPECT_FALSE(both[1].has_value());
-  // A wheel that is refused for another reason has no say.
+  // A wheel refused for another reason does not count in the comparison.
   TelemetryReading backwards = at(4.0, -0.5);
   backwards.gradient = 0.3;
   const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"rear", backwards}});

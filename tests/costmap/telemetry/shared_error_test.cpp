@@ -1,5 +1,5 @@
-// An error that all readings of a rover share, as of the slip of all wheels or of the speed over ground, is not averaged
-// away: by numbers, by places nor by drives.
+// An error common to all readings of a rover, for example of slip or ground speed, is not reduced by
+// averaging over readings, places or drives.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,7 +26,7 @@ TraversabilityMap sand() {
   return mapOf(testSand(), 4, kHeight_m);
 }
 
-// Sand of a strength that pulls less than the class by 0.12 and by 0.23.
+// Sand whose pull is lower than that of the class by 0.12 and 0.23 for the two calls below.
 terramech::Soil weakerBy(double cohesion_Pa, double friction_rad) {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa -= cohesion_Pa;
@@ -34,7 +34,7 @@ terramech::Soil weakerBy(double cohesion_Pa, double friction_rad) {
   return soil;
 }
 
-// The slip of all wheels is read so much too small; the file has no torque.
+// A drive without torque whose slip readings of all wheels are too small by a scale and an offset.
 TraversabilityMap driven(const terramech::Soil& truth, double scale, double shift) {
   TraversabilityMap map = sand();
   Drive drive = driveOver(map, truth, 1, {8.5, 23.5, 38.5});
@@ -47,8 +47,8 @@ float risk(const TraversabilityMap& map, maps::Cell cell) {
   return map.model().state(0, *map.ground(cell), kGradient).risk_per_m;
 }
 
-// Property: by a slip that is read too small, weak ground is no safer than before the drive: where it was driven, beside
-// that, nor elsewhere.
+// Property: slip read too small never makes weak ground safer than before the drive: on the drive, beside
+// it, or elsewhere.
 TEST(SharedError, UnderreadSlipOfAllWheelsLowersNoRisk) {
   const TraversabilityMap before = sand();
   for (const terramech::Soil& truth : {weakerBy(400.0, 0.1), weakerBy(700.0, 0.2)})
@@ -63,10 +63,11 @@ double pullStd(const TraversabilityMap& map, maps::Cell cell) {
   return map.ground(cell)->pull.std;
 }
 
-// What a reading at one slip of ground that is as its class leaves open in all readings likewise, and its weight 1/v, k = H(0.5)/H(s) the
-// growth of a departure on its way to slip 0.5, in [1, 3]: what grows by more raises nothing, g' the slope of the mobility curve.
-//   m^2 = (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25: what soils differ in otherwise
-//   shared^2 = m^2 + of_sensor^2, kept in steps of 1.5 from 0.02 on, rounded up; of_sensor: what the drive leaves open of its sensor
+// Shared error and weight 1/v of a reading at slip s on ground equal to its class. k = H(0.5)/H(s) in [1, 3]
+// is the growth of a departure from s to slip 0.5; a reading with a larger k raises no estimate. g' is the
+// slope of the mobility curve.
+//   m^2 = (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25: other differences between soils
+//   shared^2 = m^2 + of_sensor^2, stored in steps of 1.5 from 0.02 on, rounded up; of_sensor: remaining error of the drive's sensor
 //   v = m^2 + k^2 (0.01^2 + 0.02^2 + (0.03 g')^2), its root rounded up to 0.025 2^(i/2)
 struct Shared {
   double std, weight;
@@ -87,7 +88,7 @@ Shared sharedAt(const GroundModel& model, double slip, bool in_rut, double of_se
   return {kept, 1.0 / (counted * counted)};
 }
 
-// The slip sensor of a drive (SlipFit, which is tested by itself).
+// Posterior of the slip sensor of a drive (by SlipFit, which has its own test).
 std::shared_ptr<const SlipPosterior> sensorOf(const GroundModel& model, const Drive& drive) {
   SlipFit fit(model);
   for (std::size_t i = 0; i < drive.rows.size(); i += 4) {
@@ -102,9 +103,9 @@ std::shared_ptr<const SlipPosterior> sensorOf(const GroundModel& model, const Dr
   return fit.fitted([](const std::string&) { return 0.0; });
 }
 
-// Closed form: numbers take the deviation m of the class as a whole to m c / sqrt(m^2 + c^2), c the mean of the error that
-// the readings of a drive share, and leave its ground that from place to place. A drive over gentle hills, at slips about
-// 0.1, sees half of a departure and less, and is known by that to within 2 %.
+// Closed form: many readings reduce the standard deviation m of the class mean to m c / sqrt(m^2 + c^2), c
+// being the mean shared error of the drive's readings; the variation between places remains. A drive over
+// gentle hills at slips of about 0.1 shows half of a departure or less. Tolerance 2 %.
 TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   const TraversabilityMap before = sand();
   TraversabilityMap after = sand();
@@ -113,7 +114,7 @@ TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   const auto sensor = sensorOf(after.model(), drive);
   ASSERT_LT(std::abs(sensor->slip_bias), 0.01);
   std::map<std::pair<int, int>, std::pair<double, double>>
-      blocks;  // of a metre: weights, and what they weigh
+      blocks;  // of one metre: weights, and weighted values
   double shared = 0.0, slip = 0.0;
   for (const auto& row : drive.rows) {
     const Shared read =
@@ -137,7 +138,7 @@ TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   EXPECT_LT(pullStd(after, kClimbed), 0.7 * pullStd(before, kClimbed));
 }
 
-// Of each run some moments on level ground, and those at slips about the reference slip.
+// Selects from each run some moments on level ground, and those with slips near the reference slip.
 Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
   constexpr int kLevelMoments = 24;
   Drive out;
@@ -158,8 +159,9 @@ Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
   return out;
 }
 
-// Property: a drive whose slip is right and whose wheels work near the reference slip makes ground surer, the more the
-// nearer; most where the rover climbed. The margins are those of readings that need not be taken to another slip.
+// Property: a drive with correct slip near the reference slip reduces the standard deviation, more at closer
+// places, most where the rover climbed. The margins are those of readings that need no extrapolation in
+// slip.
 TEST(SharedError, SoundDriveReducesStdMostWhereItDrove) {
   constexpr double kSteep_m = 1.5;
   const TraversabilityMap before = mapOf(testSand(), 4, kSteep_m);
@@ -173,8 +175,8 @@ TEST(SharedError, SoundDriveReducesStdMostWhereItDrove) {
   EXPECT_LT(pullStd(after, kFar), 0.92 * pullStd(before, kFar));
 }
 
-// Closed form: however many drives, the class is known no better than p c^2 / (p + c^2), p its prior and c the shared
-// error; without one it is.
+// Closed form: for any number of drives the standard deviation of the class is at least p c / sqrt(p^2 +
+// c^2), with the prior p and the shared error c; without a shared error it can be smaller.
 TEST(SharedError, ClassStdIsBoundedBelowBySharedErrorOverManyDrives) {
   for (const double shared : {0.0, 0.045}) {
     TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
@@ -198,8 +200,8 @@ TEST(SharedError, ClassStdIsBoundedBelowBySharedErrorOverManyDrives) {
   }
 }
 
-// Property: ground with evidence of its own that is no weaker than its class is as sure as ground of the class that
-// nobody drove on, or surer; also where some of the evidence may only lower.
+// Property: ground with evidence that is no weaker than its class is at least as certain as undriven ground
+// of the class, also if some of the evidence may only lower.
 TEST(SharedError, DrivenGroundIsNoLessCertainThanItsClass) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);

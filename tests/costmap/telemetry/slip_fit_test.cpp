@@ -1,4 +1,5 @@
-// Strength of the ground and offset and scale of the slip sensor, from slip over slope: against drives of which all three are known.
+// Estimation of ground strength, slip-sensor offset and scale from slip against slope, on drives with known
+// values of all three.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -18,7 +19,7 @@ double none(const std::string&) {
   return 0.0;
 }
 
-// Test sand of another strength, and of another shear modulus.
+// Test sand with strength and shear modulus multiplied by factors.
 terramech::Soil sand(double strength, double modulus = 1.0) {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa *= strength;
@@ -31,7 +32,7 @@ double pullOf(const terramech::Soil& soil) {
   return groundOf(soil, 4)->reference(0, false).gradient;
 }
 
-// By the rows of a drive, of a map that takes its ground for test sand.
+// Posterior from the rows of a drive, on a map that classifies the ground as test sand.
 std::shared_ptr<const SlipPosterior> fitted(const TraversabilityMap& map, const Drive& drive,
                                             const std::function<double(double)>& read) {
   constexpr std::size_t kWheels = 4;
@@ -52,9 +53,9 @@ struct Sensor {
   double offset, scale;
 };
 
-// Property: of ground of any strength the offset is found to within 0.02, the scale to within 0.2, and what a decision counts on is
-// no more than the ground has, by more than 0.02; of a sound sensor it is no less than that by more than 0.07, and not less than the class where the
-// ground is stronger.
+// Property: for ground of any strength the offset is found to within 0.02 and the scale to within 0.2. The
+// conservative pull exceeds that of the ground by at most 0.02. For a sound sensor the conservative pull is
+// at most 0.07 below that of the ground, and not below the class if the ground is stronger.
 TEST(SlipFit, SlipBiasAndStrengthAreSeparated) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   const double of_class = map.model().prior(0).pull.value;
@@ -77,7 +78,7 @@ TEST(SlipFit, SlipBiasAndStrengthAreSeparated) {
   }
 }
 
-// Property: a greater shear modulus, which a sensor of a scale above 1 would look like, counts as weak ground.
+// Property: a larger shear modulus, which resembles a sensor scale above 1, is estimated as weak ground.
 TEST(SlipFit, LargerShearModulusIsEstimatedAsWeakGround) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   for (const double modulus : {1.0, 1.5, 2.0, 3.0}) {
@@ -87,7 +88,8 @@ TEST(SlipFit, LargerShearModulusIsEstimatedAsWeakGround) {
   }
 }
 
-// Closed form: without a moment nothing is told; and moments on one slope alone leave most of it open.
+// Closed form: without a moment the standard deviation is infinite. Moments on one slope alone leave it
+// above the standard deviation of the class.
 TEST(SlipFit, ConstantSlopeLeavesStrengthUnidentified) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   SlipFit fit(map.model());
@@ -100,8 +102,9 @@ TEST(SlipFit, ConstantSlopeLeavesStrengthUnidentified) {
   EXPECT_EQ(fit.moments(), 400U);
 }
 
-// Property: what a map believes of its class after a drive is the drive's ground to within 0.02 where that is weaker, and where it is stronger
-// goes at least a quarter of the way to it and never beyond; the slips may all be read 0.1 too small.
+// Property: the class estimate after a drive equals the strength of weaker ground to within 0.02. For
+// stronger ground it moves at least a quarter of the way and never beyond. Both hold also if all slips are
+// read 0.1 too small.
 TEST(SlipFit, ClassEstimateFollowsGroundStrengthDespiteSlipOffset) {
   for (const double strength : {0.85, 0.93, 1.1, 1.2, 1.3})
     for (const double offset : {0.0, -0.1}) {
@@ -127,7 +130,7 @@ TEST(SlipFit, ClassEstimateFollowsGroundStrengthDespiteSlipOffset) {
     }
 }
 
-// Pull and thrust of fresh ground by slip, in fine steps.
+// Pull and thrust of fresh ground against slip, in fine steps.
 struct FineCurve {
   std::vector<double> slip, pull, share;
 
@@ -151,8 +154,8 @@ struct FineCurve {
   std::size_t at(double of) const { return static_cast<std::size_t>(std::lround((of + 0.5) / 0.0005)); }
 };
 
-// The posterior by (B3), (B4), drawn: draws from the prior, weighed by their likelihood, give its mean to within four of their own
-// standard errors, and its variance to a fifth.
+// Closed form: the posterior of (B3), (B4) by importance sampling. Draws from the prior, weighted by their
+// likelihood, give the mean to within four of their standard errors, and the variance to a fifth.
 TEST(SlipFit, FitMatchesImportanceSamplingOfThePosterior) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   const GroundClass& ground = map.model().parts().classes[0];

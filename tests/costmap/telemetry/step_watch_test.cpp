@@ -11,7 +11,7 @@ namespace step_watch_test {
 
 constexpr double kLeast = 0.04;
 
-// Values about 0 that scatter from place to place and from value to value, with a step at a share of them.
+// Values about 0 with scatter between places and between values, and a step at a share of the sequence.
 StepWatch watchOf(std::mt19937_64& random, int places, double place_std, double step, double at) {
   std::normal_distribution<double> noise;
   StepWatch watch(kLeast);
@@ -31,8 +31,8 @@ TEST(StepWatch, StepSizeAndSignAreRecovered) {
           << step << ' ' << at;
 }
 
-// Statistical: ground that differs from place to place is no step, nor is a step below the least; of 2000 drives 2 at most are
-// taken for one.
+// Property: variation between places is not reported as a step, nor is a step below the threshold; at most 2
+// of 2000 drives are reported wrongly.
 TEST(StepWatch, ScatterYieldsNoStep) {
   std::mt19937_64 random(2);
   int found = 0;

@@ -7,7 +7,7 @@
 namespace talus::costmap {
 namespace telemetry_processor_test {
 
-// One wheel that creeps east on the level; column by column.
+// Telemetry of one wheel that moves slowly east on level ground, column by column.
 terramech::Telemetry quiet(int count) {
   terramech::Telemetry out;
   out.source = "t.csv";
@@ -67,7 +67,7 @@ TEST(TelemetryProcessor, SuspectedDangerousReadingsBoundThePlace) {
       << "strength that looks like a fault is no evidence";
 }
 
-// Below the slip that is danger by itself: what the reading would say of the pull bounds its place all the same.
+// Property: below the slip that counts as danger alone, a suspected low pull still bounds its place.
 TEST(TelemetryProcessor, SuspectedPullBoundsThePlace) {
   terramech::Telemetry t = quiet(12);
   column(t, "slip")[9] = 0.68;
@@ -87,7 +87,7 @@ TEST(TelemetryProcessor, ObservationsMayNotRaiseBeforeSensorsAreValidated) {
   }
 }
 
-// Property: torque that is not proven makes no wheel stronger than slip and slope do.
+// Property: torque from an unproven sensor never yields a higher pull than slip and slope do.
 TEST(TelemetryProcessor, UnvalidatedTorqueNeverIncreasesThePull) {
   terramech::Telemetry with = quiet(20), without = quiet(20);
   for (terramech::Telemetry* t : {&with, &without}) column(*t, "slip").assign(20, 0.6);

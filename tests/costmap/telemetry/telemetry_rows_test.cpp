@@ -15,7 +15,7 @@ TraversabilityMap ramp() {
   return mapOf(std::vector<std::string>(20, std::string(20, '1')), 0.1);
 }
 
-// Three moments of two wheels; the last of one only.
+// Three moments of two wheels; the last moment has one wheel only.
 terramech::Telemetry table() {
   terramech::Telemetry out;
   out.source = "t.csv";
@@ -69,7 +69,7 @@ TEST(TelemetryRows, SlipFollowsFromTravelAndRimSpeed) {
   EXPECT_TRUE(std::isnan(rows.reading(4).speed_slip)) << "a wheel that does not turn";
 }
 
-// A slope beyond vertical is none; a row that is not to be trusted may have gone straight down.
+// Property: a slope beyond vertical is ignored; a row that is not trusted may have gone straight downhill.
 TEST(TelemetryRows, LeastGradientIgnoresImpossibleSlopes) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
@@ -93,7 +93,8 @@ TEST(TelemetryRows, MomentContainsAllWheelsOfOneTime) {
   EXPECT_EQ(momentOf(rows, {2, 3}, map.model().rover()).readings.size(), 2U);
 }
 
-// Wheels and runs in any order within a time; the second row of a wheel is a moment of its own.
+// Property: wheels and runs may come in any order within a time; a second row of a wheel is a moment of its
+// own.
 TEST(TelemetryRows, MomentsAreIndependentOfRowOrderWithinATime) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
@@ -121,7 +122,7 @@ TEST(TelemetryRows, SpeedSlipIsSignSymmetricAndNanIfUndefined) {
   EXPECT_NEAR(rows.reading(0).speed_slip, 0.95, 1e-12);
   EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
   for (const std::size_t i : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(rows.reading(i).speed_slip));
-  // Property: the same backwards.
+  // Property: the same holds in reverse.
   for (std::size_t k = t.numbers.size() - 2; k < t.numbers.size(); ++k)
     for (double& v : t.numbers[k].values) v = -v;
   const TelemetryRows back(t, map, 0.5);

@@ -9,7 +9,7 @@ TEST(Ellipsoid, BodyNameFollowsFromTheRadius) {
   EXPECT_EQ(bodyName(kEarth), "Earth");
   EXPECT_EQ(bodyName(kMoon), "Moon");
   EXPECT_EQ(bodyName(kMars), "Mars");
-  // A map of HiRISE lies on a sphere of Mars' radius at its latitude.
+  // HiRISE maps use a sphere with the radius of Mars at their latitude.
   EXPECT_EQ(bodyName({3376234.0, 0.0}), "Mars");
   EXPECT_EQ(bodyName({255000.0, 0.0}), "Vesta");
   EXPECT_EQ(bodyName({11267.0, 0.0}), "body of radius 11.3 km");

@@ -27,8 +27,8 @@ TEST(Georeference, PolarStereographicMatchesClosedForm) {
 }
 
 TEST(Georeference, EquirectangularHasUnitScaleOnItsStandardParallel) {
-  // Closed form: on the parallel of 30 degrees one map metre east is one of ground, and so is one north
-  // everywhere.
+  // Closed form: on the parallel of 30 degrees one map metre east is one metre of ground; one map metre
+  // north is so everywhere.
   const Georeference georeference(
       {.name = "mars",
        .ellipsoid = {3396190.0, 0.0},
@@ -67,7 +67,7 @@ TEST(Georeference, PointsOutsideTheProjectionAreNan) {
   EXPECT_TRUE(std::isnan(plate.forward({2.0, 0.0}).x_m));
 }
 
-// Of such a map only metres are known until PROJ is there.
+// Without PROJ such a map has metric coordinates only.
 TEST(Georeference, UnsupportedSystemHasNoGeographicCoordinates) {
   const Georeference swiss(
       {.name = "LV03", .ellipsoid = kEarth, .projection = {.method = ProjectionMethod::Foreign}, .wkt = "A"});

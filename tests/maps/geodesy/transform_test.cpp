@@ -12,7 +12,7 @@ namespace transform_test {
 using enum ProjectionMethod;
 
 constexpr Ellipsoid kSphere{1000.0, 0.0};
-// A body flatter than any planet, so that a formula of the sphere shows.
+// A body flatter than any planet, so that use of a spherical formula is detected.
 constexpr Ellipsoid kFlat{3396190.0, 0.05};
 
 Projection projection(ProjectionMethod method) {
@@ -65,7 +65,8 @@ TEST(Transform, EveryProjectionRoundTrips) {
   }
 }
 
-// Property: angles are kept, so east and north stay square and equally long. Tolerance: differences of 1e-6.
+// Property: angles are preserved: east and north stay perpendicular and of equal length. Tolerance:
+// differences of 1e-6.
 TEST(Transform, ConformalProjectionsPreserveAngles) {
   for (ProjectionMethod method : {TransverseMercator, Mercator, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));
@@ -88,7 +89,7 @@ TEST(Transform, ProjectionsMatchClosedFormsOnTheSphere) {
               1000 * std::atanh(std::cos(p.latitude_rad) * std::sin(p.longitude_rad)), 1e-9);
 }
 
-// Property: a conic is true along its standard parallels, on either half of the body.
+// Property: a conic projection has unit scale along its standard parallels, on either hemisphere.
 TEST(Transform, ConicHasUnitScaleOnItsStandardParallels) {
   for (const double half : {1.0, -1.0}) {
     const auto transform = makeTransform(kFlat, {.method = LambertConformalConic,

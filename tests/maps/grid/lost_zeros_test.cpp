@@ -12,7 +12,7 @@ constexpr int kWidth = 60, kHeight = 50;
 
 using Height = std::function<double(int column, int row)>;
 
-// A letter a cell: '#' lost, '.' not.
+// One letter for each cell: '#' lost, '.' kept.
 std::vector<std::string> lost(const Height& height, std::size_t* count = nullptr) {
   LostZeros search(kWidth);
   for (int row = 0; row < kHeight; ++row) {
@@ -39,7 +39,7 @@ double rough(int column, int row) {
   return 0.3 * std::sin(0.7 * column) + 0.2 * std::cos(0.9 * row + 0.1 * column);
 }
 
-// Cells begin to end - 1 of the file are 0.
+// Sets the cells begin to end - 1, in file order, to 0.
 Height zeroed(const Height& height, int begin, int end) {
   return [=](int column, int row) {
     const int at = row * kWidth + column;
@@ -47,7 +47,8 @@ Height zeroed(const Height& height, int begin, int end) {
   };
 }
 
-// Property: a block of zeros in ground that is not near 0 is lost as a whole, wherever it lies, with a cell around it.
+// Property: a block of zeros in ground away from 0 is lost as a whole, with one cell around it, wherever it
+// lies.
 TEST(LostZeros, BlockOfZerosWithinOtherElevationsIsLost) {
   for (const double level : {-2500.0, -3.0, 2.0, 150.0})
     for (const int cells : {1, 7, 128, 1024})
@@ -63,7 +64,7 @@ TEST(LostZeros, BlockOfZerosWithinOtherElevationsIsLost) {
       }
 }
 
-// A number that lies across the edge of what was lost, its upper bytes 0.
+// A number across the edge of the lost block, whose upper bytes are 0.
 TEST(LostZeros, PartiallyZeroedNumberIsLost) {
   EXPECT_EQ(lostCount([](int c, int r) {
               return r == 20 && c >= 20 && c <= 30 ? (c == 20 ? 1e-39 : 0.0) : 150 + rough(c, r);
@@ -72,7 +73,8 @@ TEST(LostZeros, PartiallyZeroedNumberIsLost) {
 }
 
 TEST(LostZeros, ContinuousTerrainAtZeroElevationIsKept) {
-  // A sea beside a shore, a plain beside dunes, a lake between hills, a crater in a plain, a map at its datum.
+  // A sea beside a shore, a plain beside dunes, a lake between hills, a crater in a plain, a map at its
+  // datum: nothing is lost.
   EXPECT_EQ(lostCount([](int c, int r) { return std::max(0.0, 0.1 * (c - 25) + 0.3 * rough(c, r)); }), 0U);
   EXPECT_EQ(
       lostCount([](int c, int r) { return std::max(0.0, 2.0 * std::sin(0.2 * c) * std::cos(0.15 * r)); }),
@@ -92,7 +94,7 @@ TEST(LostZeros, LevelMapsWallsSpikesAndHolesAreKept) {
   EXPECT_EQ(lostCount([=](int, int) { return nan; }), 0U);
 }
 
-// Regions are judged one by one, also where they meet only further down.
+// Property: regions of zeros are classified separately, also if they meet in a later row.
 TEST(LostZeros, RegionsAreClassifiedSeparately) {
   std::size_t count = 0;
   const auto drawing = lost(
@@ -106,7 +108,7 @@ TEST(LostZeros, RegionsAreClassifiedSeparately) {
   EXPECT_EQ(drawing[40].find('#'), std::string::npos);
 }
 
-// Share of cells that hold rocks, 0 in between: round fields of some cells.
+// Share of each cell that rocks cover: round fields of several cells, 0 in between.
 double rockFields(int column, int row) {
   const double x = column % 15 - 7.0, y = row % 12 - 6.0, away = std::hypot(x, y);
   return away < 5.5 ? 0.4 + 0.01 * std::sin(3.0 * column + row) : 0.0;
@@ -122,8 +124,8 @@ std::size_t lostRocks(const Height& share) {
   return search.finish().count;
 }
 
-// Property: where 0 is an ordinary value, ground between fields of rocks is ground, whatever its border; cells that follow each
-// other in the rows of a file are lost where rocks lie all around.
+// Property: if 0 is a frequent value, zeros between rock fields are kept for any border. Cells that follow
+// each other in file order are lost if rocks surround them.
 TEST(LostZeros, InMapsWithManyZerosOnlyRunsInFileOrderAreLost) {
   EXPECT_GT(lostCount(rockFields), 1000U);
   EXPECT_EQ(lostRocks(rockFields), 0U);

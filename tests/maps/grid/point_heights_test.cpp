@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr Grid kGrid{.width = 7, .height = 5, .resolution_m = 0.5, .south_west = {10.0, -2.0}};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Property: against each cell's points sorted by themselves, in any order of the cloud.
+// Property: the height equals that from sorting each cell's points separately, for any order of the cloud.
 TEST(PointHeights, HeightsArePercentilesOfThePointsOfACell) {
   std::mt19937 random(7);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -41,7 +41,7 @@ TEST(PointHeights, HeightsArePercentilesOfThePointsOfACell) {
             static_cast<double>(std::ranges::count_if(own, [&](float z) { return z <= taken; }));
         const auto under =
             static_cast<double>(std::ranges::count_if(own, [&](float z) { return z < taken; }));
-        // The least of the points that is no lower than the percentile.
+        // The lowest point that is not below the percentile.
         EXPECT_GE(below, choice.percentile * static_cast<double>(own.size()) - 1e-9);
         EXPECT_LT(under, choice.percentile * static_cast<double>(own.size()));
       }

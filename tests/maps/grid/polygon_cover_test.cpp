@@ -17,7 +17,7 @@ Ring box(double west, double south, double east, double north) {
   return {{west, south}, {east, south}, {east, north}, {west, north}, {west, south}};
 }
 
-// In metres from the corner of the grid.
+// Converts a ring in metres from the corner of the grid.
 Ring placed(Ring ring) {
   for (Point& p : ring) p = {p.x_m + kGrid.south_west.x_m, p.y_m + kGrid.south_west.y_m};
   return ring;
@@ -34,7 +34,7 @@ std::size_t closed(const Polygon& polygon) {
   return static_cast<std::size_t>(std::ranges::count(mask.values(), 1));
 }
 
-// The sum of the angles that a ring turns about a place: another way than the sweep over rows.
+// Winding number from the sum of angles, independent of the sweep over rows.
 int windings(const Ring& ring, Point p) {
   double turned = 0.0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -51,7 +51,7 @@ bool isGround(const Polygon& polygon, Point p) {
   return windings(polygon.outer, p) != 0 && holes % 2 == 0;
 }
 
-// Liang and Barsky: whether a part of the edge lies in the closed cell.
+// Whether a part of the edge lies in the closed cell (Liang and Barsky).
 bool meets(Point a, Point b, Cell cell) {
   const Point middle = kGrid.centre(cell);
   const double half = 0.5 * kGrid.resolution_m;
@@ -96,8 +96,8 @@ Polygon drawnAtRandom(std::mt19937& random) {
   return polygon;
 }
 
-// Property: whatever place lies in a polygon, by the angles that its rings turn about it, has its cell closed; a closed
-// cell has its boundary or, as a whole, the polygon's ground; none that was closed is opened. Rings cross themselves.
+// Property: the cell of every point with a non-zero winding number is covered. A covered cell contains
+// boundary or lies in the polygon; no covered cell is opened. Rings may cross themselves.
 TEST(PolygonCover, CoversCellsOfNonZeroWindingNumber) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> column(0.0, 24.0), row(0.0, 18.0);
@@ -128,7 +128,7 @@ TEST(PolygonCover, CoversCellsOfNonZeroWindingNumber) {
   }
 }
 
-// Closed form: a box of 3 x 2 cells, drawn twice, over itself and the other way round.
+// Closed form: a box of 3 x 2 cells, repeated in the same and in the opposite direction.
 TEST(PolygonCover, RepeatedRingCountsOnce) {
   const Ring once = placed(box(2.5, 2.5, 7.5, 5.5));
   EXPECT_EQ(closed({once, {}}), 6U);
@@ -137,7 +137,8 @@ TEST(PolygonCover, RepeatedRingCountsOnce) {
   EXPECT_EQ(closed({Ring(once.rbegin(), once.rend()), {}}), 6U);
 }
 
-// Closed form: of 8 x 8 cells the 4 x 4 that lie in the hole as a whole are open; an island in it is closed.
+// Closed form: of 8 x 8 cells the 4 x 4 cells entirely in the hole are open; an island in the hole is
+// covered.
 TEST(PolygonCover, HolesStayOpenAndIslandsAreCovered) {
   const Ring outer = placed(box(0.5, 0.5, 15.5, 15.5)), hole = placed(box(3.5, 3.5, 12.5, 12.5));
   EXPECT_EQ(closed({outer, {hole}}), 64U - 16U);

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr int kSide = 48;
 
-// Heights from 100 to 200 m that are whole numbers, so that every format holds them, and differ from their neighbours.
+// Integer heights from 100 to 200 m, which every format can store, each different from its neighbours.
 std::vector<std::vector<double>> heights() {
   std::vector<std::vector<double>> rows;
   for (int row = 0; row < kSide; ++row) {
@@ -39,11 +39,12 @@ void spill(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// A format: how a file of it is made, and which file holds its cells. Written as label and numbers where GDAL does not write it.
+// A format: how a file is written, and which file contains its cells. Formats that GDAL cannot write are
+// written as label and numbers.
 struct Format {
   std::string driver, name;
   std::function<void(const std::string& path)> make;
-  std::string data{};  // beside the label; else the file itself
+  std::string data{};  // file with the cells if not `name`
   ReadOptions options{};
 };
 
@@ -101,8 +102,8 @@ std::vector<Format> formats() {
   return all;
 }
 
-// What is read of a damaged file: refused, or heights of which none differs from those of the whole one. Its grid may be
-// smaller, by whole rows from one end.
+// Whether a damaged file is rejected, or gives no height that differs from those of the undamaged file. The
+// grid may be smaller by whole rows at one end.
 ::testing::AssertionResult refusedOrUnknown(const std::string& path, const ReadOptions& options,
                                             const ElevationMap& whole) {
   ElevationMap map;
@@ -122,7 +123,8 @@ std::vector<Format> formats() {
   return ::testing::AssertionSuccess() << "unknown";
 }
 
-// Brute force: every format that is opened, cut at twenty places and before its last bytes.
+// Property: a file of any format, cut at twenty places and before its last bytes, is rejected or has no data
+// there.
 TEST(CompleteFile, TruncatedFileOfAnyFormatIsRejectedOrNoData) {
   for (const Format& format : formats()) {
     const TemporaryFolder folder;
@@ -140,12 +142,13 @@ TEST(CompleteFile, TruncatedFileOfAnyFormatIsRejectedOrNoData) {
   }
 }
 
-// What zero bytes in a compressed picture become cannot be told from a picture.
+// Formats in which zeroed bytes decode to valid pixels and cannot be detected.
 bool hasNoCheck(const std::string& driver) {
   return driver == "JPEG" || driver == "JP2OpenJPEG";
 }
 
-// Brute force: blocks of every format overwritten by zeros, as a disk does that lost a sector or a page.
+// Property: files of every format with blocks overwritten by zeros, as after the loss of a sector or page,
+// are rejected or have no data there.
 TEST(CompleteFile, ZeroedBlocksOfAnyFormatAreRejectedOrNoData) {
   for (const Format& format : formats()) {
     if (hasNoCheck(format.driver)) continue;
@@ -168,8 +171,8 @@ TEST(CompleteFile, ZeroedBlocksOfAnyFormatAreRejectedOrNoData) {
   }
 }
 
-// A driver that is allowed has its row above. USGSDEM: GDAL writes none that it reads; profiles it does not find are no data
-// (usgsdemdataset.cpp fills them first).
+// Each allowed driver has a row above, except USGSDEM, which GDAL cannot write in a readable form; it fills
+// missing profiles with no data (usgsdemdataset.cpp).
 TEST(CompleteFile, EveryAllowedFormatIsCovered) {
   std::set<std::string> cut{"USGSDEM"};
   for (const Format& format : formats()) cut.insert(format.driver);
@@ -177,7 +180,7 @@ TEST(CompleteFile, EveryAllowedFormatIsCovered) {
   EXPECT_EQ(cut, std::set<std::string>(allowed.begin(), allowed.end()));
 }
 
-// Blocks of a GeoTIFF that were never written, as where its writer was killed.
+// A GeoTIFF with unwritten blocks, as after its writer was killed.
 void writeHalf(const std::string& path, std::optional<double> nodata, GDALDataType type = GDT_Float32) {
   registerDrivers();
   const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16", nullptr};
@@ -255,7 +258,7 @@ std::vector<float> heights(const std::string& values) {
   return map.elevation_m.values();  // the southern row first
 }
 
-// Closed form: a grid of whole numbers holds what it says, words for "not a number" included.
+// Closed form: a grid of integers returns its values; words for "not a number" are no data.
 TEST(TextGrid, NanInAWholeNumberGridIsNoData) {
   for (const char* word : {"nan", "NaN", "-nan", "-9999", "1.#QNAN", "-1.#IND"}) {
     const auto values = heights(std::string("1 ") + word + " 3\n4 5 6\n");

@@ -25,7 +25,7 @@ TEST(ElevationReader, RowsAreReadSouthFirstAndNodataAsNan) {
   EXPECT_THAT(map.georeference->system().name, HasSubstr("UTM zone 10N"));
 }
 
-// Closed form: the mean of two by two pixels; of those that there are in the north and east.
+// Closed form: the mean of two by two pixels, or of the existing ones at the northern and eastern edge.
 TEST(ElevationReader, OverviewCellsAreMeans) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
@@ -38,8 +38,8 @@ TEST(ElevationReader, OverviewCellsAreMeans) {
   EXPECT_EQ(elevationGrid(path, {.overview = 2}), map.grid());
 }
 
-// Property: every cell of an overview is the mean of the cells under it, and none of the map is left out, whichever way
-// the rows of the file run.
+// Property: every overview cell is the mean of the cells below it, and the overview covers the whole map,
+// for either order of rows in the file.
 TEST(ElevationReader, OverviewCoversTheWholeMap) {
   const TemporaryFolder folder;
   for (const double down : {-10.0, 10.0}) {
@@ -68,7 +68,7 @@ TEST(ElevationReader, OverviewCoversTheWholeMap) {
   }
 }
 
-// Ground of some 30 m with cells 200 to 327 of the file zeroed, 40 a row.
+// Ground of about 30 m with cells 200 to 327 of the file zeroed, 40 cells a row.
 RasterFile zeroedFile() {
   RasterFile file;
   for (int row = 0; row < 40; ++row) {
@@ -91,7 +91,7 @@ TEST(ElevationReader, ZeroedRegionIsNoDataUnlessKeptOnRequest) {
   const ElevationMap kept = readElevation(path, {.keep_zeros = true});
   EXPECT_EQ((kept.elevation_m[{5, 33}]), 0.0F);
   EXPECT_THAT(kept.notes, testing::Not(Contains(HasSubstr("exactly 0"))));
-  // A window that lies within what was lost, means of cells, and cells of another size.
+  // A window inside the lost cells, means of cells, and cells of another size.
   const Window inside{Point{500020, 4999920}, Point{500300, 4999940}};
   EXPECT_THAT(refusal([&] { readElevation(path, {.window = inside}); }), HasSubstr("no data in any cell"));
   const ElevationMap means = readElevation(path, {.overview = 2});
@@ -101,7 +101,7 @@ TEST(ElevationReader, ZeroedRegionIsNoDataUnlessKeptOnRequest) {
   EXPECT_EQ(validFraction(readElevation(path, {.nodata = 0.0}).elevation_m), 1.0 - 128.0 / 1600);
 }
 
-// What windows are planned on is held to the same limit as what is read whole: 6.4e9 cells were planned on for minutes.
+// Property: the grid for windowed planning has the same limit on cells as a map that is read whole.
 TEST(ElevationReader, MapGridIsLimitedByMaxCells) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill}, folder / "hill.tif");
@@ -112,7 +112,7 @@ TEST(ElevationReader, MapGridIsLimitedByMaxCells) {
 
 TEST(ElevationReader, EveryFormatYieldsTheSameMap) {
   const TemporaryFolder folder;
-  // PDS4 holds no false easting.
+  // PDS4 has no false easting.
   const RasterFile mars{.rows = kHill,
                         .crs = "IAU_2015:49910",
                         .transform = std::array<double, 6>{8142400, 10, 0, -276500, 0, -10},
@@ -241,7 +241,7 @@ TEST(ElevationReader, InvalidInputYieldsAOneLineErrorWithARemedy) {
   }
 }
 
-// Property: whatever the bytes, a file is read or refused in one line; nothing else comes out.
+// Property: any file is read, or rejected with one line; nothing else is printed.
 TEST(ElevationReader, DamagedFilesAreReadOrRejectedWithOneLine) {
   const TemporaryFolder folder;
   const std::string good = write({.rows = kHill, .nodata = -1}, folder / "good.tif");

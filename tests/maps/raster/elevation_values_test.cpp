@@ -65,7 +65,7 @@ TEST(ElevationValues, BandUnitsAreConvertedToMetres) {
   EXPECT_EQ(scale("KM", 1), 1000.0);
   EXPECT_EQ(scale("ft", 1), 0.3048);
   EXPECT_EQ(scale("US survey foot", 1), 1200.0 / 3937.0);
-  EXPECT_EQ(scale("furlong", 1), 1.0);  // unknown: metres, and said
+  EXPECT_EQ(scale("furlong", 1), 1.0);  // unknown: taken as metres, with a note
 }
 
 TEST(ElevationValues, ElevationIsValueTimesScalePlusOffset) {
@@ -81,7 +81,7 @@ TEST(ElevationValues, ElevationIsValueTimesScalePlusOffset) {
   EXPECT_TRUE(notes.empty());
 }
 
-// Property: a customary mark counts as one only where it is the least value of all.
+// Property: a customary no-data value counts as no data only if it is the minimum of all values.
 TEST(ElevationValues, NodataMarkerCountsOnlyAsTheMinimumValue) {
   std::vector<std::string> notes;
   std::vector<float> trench{-9999, -10500, 3};

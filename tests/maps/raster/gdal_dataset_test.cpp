@@ -32,7 +32,7 @@ TEST(GdalDataset, OpensRastersAndRejectsOtherFiles) {
               HasSubstr("GDAL opens no raster"));
 }
 
-// Closed form: 4 x 5 cells of 4 bytes; one byte less is a file cut short.
+// Closed form: 4 x 5 cells of 4 bytes; a file one byte shorter is truncated.
 TEST(GdalDataset, TruncatedEnviFileIsRejected) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .driver = "ENVI"}, folder / "hill.img");
@@ -68,7 +68,8 @@ TEST(GdalDataset, MemoryRasterIsOneBandOfZeros) {
   EXPECT_THAT(values, testing::Each(0.0F));
 }
 
-// A log would overwrite the file that it names; a cache of none changes the order of blocks in a GeoTIFF.
+// A log file named in the environment would be overwritten, and a cache of size 0 changes the order of
+// blocks in a GeoTIFF.
 TEST(GdalDataset, EnvironmentVariablesDoNotAffectGdal) {
   registerDrivers();
   for (const char* name : {"CPL_LOG", "CPL_DEBUG", "GDAL_CONFIG_FILE", "GDAL_CACHEMAX"}) {
@@ -78,7 +79,8 @@ TEST(GdalDataset, EnvironmentVariablesDoNotAffectGdal) {
   }
 }
 
-// Writing without GTiff (GDAL_SKIP=GTiff in the environment) ended by a signal.
+// Property: without the GTiff driver (GDAL_SKIP=GTiff) writing reports an error instead of ending by a
+// signal.
 TEST(GdalDataset, MissingDriverIsReported) {
   EXPECT_EQ(std::string(GDALGetDriverShortName(&driverNamed("MEM"))), "MEM");
   EXPECT_THAT(refusal([] { driverNamed("NoSuchDriver"); }), HasSubstr("driver NoSuchDriver: is missing"));

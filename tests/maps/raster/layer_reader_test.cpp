@@ -17,7 +17,7 @@ TEST(LayerReader, ClassesOnTheMapGridAreExact) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), "1122\n1.22\n3333\n");
 }
 
-// GDAL would drop the imaginary part of each.
+// GDAL would drop the imaginary parts.
 TEST(LayerReader, ComplexNumbersAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = readElevation(write({.rows = drawn({"1111", "1111", "1111"})}, folder / "d.tif"));
@@ -29,7 +29,7 @@ TEST(LayerReader, ComplexNumbersAreRejected) {
   }
 }
 
-// Rock abundance of some 0.3, a part of it zeroed: whether rocks lie there is not known.
+// Rock abundance of about 0.3 with a zeroed region, in which the abundance is unknown.
 TEST(LayerReader, ZeroedRegionOfRockAbundanceIsUnseen) {
   const TemporaryFolder folder;
   RasterFile dem, rocks;
@@ -58,7 +58,8 @@ TEST(LayerReader, FinerShiftedClassesAreAlignedToTheMap) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), ".123\n.123\n.456\n");
 }
 
-// Property: against brute force over every pixel that reaches into a cell, for random sizes, places and orders.
+// Property: the class equals that by brute force over every pixel that overlaps the cell, for random sizes,
+// positions and orders.
 TEST(LayerReader, ACellTakesTheWeakestClassOfOverlappingPixels) {
   std::mt19937 random(7);
   const auto among = [&random](int lowest, int highest) {
@@ -103,8 +104,9 @@ TEST(LayerReader, ACellTakesTheWeakestClassOfOverlappingPixels) {
   }
 }
 
-// Property: every place of a pixel that lies askew, by its geotransform or its CRS, has a class in the map that is no stronger;
-// and no cell has a class of which no place lies in it or its neighbours. Places by a fine lattice over each pixel.
+// Property: for a raster rotated by its geotransform or CRS, every point of a pixel has a class in the map
+// that is no stronger, and no cell has a class without a point in the cell or its neighbours. Points form a
+// fine lattice over each pixel.
 TEST(LayerReader, RotatedPixelsAreFoundInEveryCellTheyOverlap) {
   std::mt19937 random(5);
   const TemporaryFolder folder;
@@ -116,7 +118,7 @@ TEST(LayerReader, RotatedPixelsAreFoundInEveryCellTheyOverlap) {
                 folder / "d.tif"));
       const double c = std::cos(turn), s = std::sin(turn);
       const int count = static_cast<int>(120 / side_m);
-      // Turned about the middle of the map.
+      // Rotated about the centre of the map.
       const double half = 0.5 * count * side_m;
       const std::array<double, 6> affine{500040 - half * c - half * s,  side_m * c, side_m * s,
                                          5000040 - half * s + half * c, side_m * s, -side_m * c};
@@ -155,7 +157,8 @@ TEST(LayerReader, RotatedPixelsAreFoundInEveryCellTheyOverlap) {
   }
 }
 
-// Property: pixels of the cells' own size, or a part of it, stay in their cells wherever the map lies, however its numbers round.
+// Property: pixels of the cells' size, or an integer fraction of it, stay in their cells for any position of
+// the map and any rounding.
 TEST(LayerReader, RoundingDoesNotSpreadPixelsToNeighbourCells) {
   const TemporaryFolder folder;
   std::mt19937 random(11);
@@ -209,7 +212,8 @@ TEST(LayerReader, ClassesAreReprojectedToTheMapCrs) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
   const Georeference& g = *dem.georeference;
-  // Degrees: a split between 1 and 2 along the meridian through x = 500020, which is not quite upright.
+  // In degrees: a boundary between 1 and 2 along the meridian through x = 500020, which is slightly inclined
+  // on the map.
   const double middle_deg = g.reverse({500020, 4999985}).longitude_rad * 180 / std::numbers::pi;
   const std::string path =
       write({.rows = drawn({"12", "12"}),
@@ -225,12 +229,12 @@ TEST(LayerReader, LayerWithoutCrsUsesMapCoordinates) {
   const RasterFile file{.rows = drawn({"1234", "2345", "3456"}), .crs = "", .transform = std::nullopt};
   const ElevationMap local = readElevation(write(file, folder / "dem.tif"), {.resolution_m = 2.0});
   EXPECT_EQ(drawing(readTerrainClasses({.path = folder / "dem.tif"}, local)), "1234\n2345\n3456\n");
-  // The same size in a map with a CRS: cell upon cell.
+  // A raster of the same size on a map without a CRS is matched cell by cell.
   EXPECT_EQ(drawing(readTerrainClasses({.path = folder / "dem.tif"}, map(TemporaryFolder()))),
             "1234\n2345\n3456\n");
 }
 
-// The greatest of what lies in a cell, whatever is not known or refused beside it.
+// Property: a cell takes the maximum of its pixels, also beside pixels that are unknown or refused.
 TEST(LayerReader, FinerCostLayerIsReducedByMaximum) {
   const TemporaryFolder folder;
   auto rows = drawn({"11223344", "15223349", "11223344", "11223344", "77777777", "77777777"});
@@ -278,7 +282,7 @@ TEST(LayerReader, RockAbundanceBandIsFoundByNameAndMustBeAFraction) {
   const TemporaryFolder folder;
   auto rows = drawn({"0000", "0000", "0000"});
   for (auto& row : rows)
-    for (double& v : row) v = -999.75;  // band 2 is 1000 more
+    for (double& v : row) v = -999.75;  // band 2 is larger by 1000
   const std::string path = write({.rows = rows, .names = {"dem", "dlre_ra"}}, folder / "stack.tif");
   EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, map(folder)).share[{2, 1}]), 0.25F);
   const std::string percent = write({.rows = drawn({"0090", "0000", "0000"})}, folder / "percent.tif");

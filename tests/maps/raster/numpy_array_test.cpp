@@ -60,7 +60,7 @@ TEST(NumpyArray, ExtentsMustBeDecimalIntegers) {
         InputError, text);
 }
 
-// Matching takes stack for each character: a header of version 2 may have 4 GB of them.
+// The regular expression uses stack for each character, and a header of version 2 may have 4 GB.
 TEST(NumpyArray, HeaderAboveItsLimitIsRejected) {
   for (const char* filling : {"1,", " "}) {
     std::string shape;

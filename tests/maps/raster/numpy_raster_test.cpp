@@ -26,13 +26,13 @@ TEST(NumpyRaster, ReadsTheJacksboroElevationMap) {
   EXPECT_NEAR(middle.y_m, 0, 1);
   EXPECT_NEAR(map.grid().width * map.grid().resolution_m, 30100, 150);
   EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 31850, 150);
-  // Row 20 of column 30 holds 507 m, which is found in the north only when the limits are swapped back.
+  // Row 20 of column 30 has 507 m; it is in the north only if the swapped limits are corrected.
   const Point inside = map.georeference->forward({36.7158333 * kDegree, -84.3883333 * kDegree});
   EXPECT_NEAR(elevationAt(map.elevation_m, inside).value(), 507,
-              8);  // between cells: neighbours differ by that
+              8);  // difference of neighbouring cells
 }
 
-// A .npy of 64-bit floats.
+// A .npy file of 64-bit floats.
 std::string npy(const std::string& shape, const std::vector<double>& values) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }\n";
   std::string out("\x93NUMPY\x01\x00", 8);
@@ -42,7 +42,7 @@ std::string npy(const std::string& shape, const std::vector<double>& values) {
   return out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
 }
 
-// GDAL writes archives under the ending .zip alone.
+// GDAL writes archives only with the ending .zip.
 std::string npz(const std::string& path, const std::vector<std::pair<std::string, std::string>>& files) {
   const std::string archive = "/vsizip/" + path + ".zip";
   VSILFILE* zip = VSIFOpenL(archive.c_str(), "wb");
@@ -80,7 +80,7 @@ TEST(NumpyRaster, LimitsAreOuterEdges) {
   ASSERT_EQ(raster->GetGeoTransform(transform.data()), CE_None);
   // Closed form: 400 m over four columns, 200 m over two rows, from the north-west corner.
   EXPECT_THAT(transform, testing::ElementsAre(1000, 100, 0, 0, 0, -100));
-  EXPECT_EQ(raster->GetSpatialRef(), nullptr);  // 1000 and more are no degrees
+  EXPECT_EQ(raster->GetSpatialRef(), nullptr);  // values of 1000 and more are not degrees
   EXPECT_TRUE(notes.empty());
 }
 
@@ -103,7 +103,7 @@ std::string number(std::size_t value, int bytes) {
   return out;
 }
 
-// A zip archive of one file that is not compressed, as numpy.savez writes.
+// An uncompressed zip archive of one file, as written by numpy.savez.
 std::string stored(const std::string& name, const std::string& content) {
   const std::string sizes = number(crc32(content), 4) + number(content.size(), 4) +
                             number(content.size(), 4) + number(name.size(), 2) + number(0, 2);

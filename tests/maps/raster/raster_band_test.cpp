@@ -22,7 +22,7 @@ TEST(RasterBand, BandNamedLikeElevationIsChosen) {
   EXPECT_EQ((readElevation(path, {.band = 3}).elevation_m[{0, 0}]), 2005);
 }
 
-// A wish for elevation as the reader has it.
+// Criteria for an elevation band, as the reader uses them.
 BandCriteria wish(const std::string& path, std::optional<int> band = {}) {
   return {.path = path, .band = band, .words = {"elev", "dem"}, .others = {"slope"}};
 }

@@ -21,13 +21,13 @@ TEST(RasterFrame, WithoutCrsTheResolutionIsRequired) {
   const ElevationMap map = readElevation(path, {.resolution_m = 0.5});
   EXPECT_FALSE(map.georeference);
   EXPECT_EQ(map.grid(), (Grid{.width = 4, .height = 5, .resolution_m = 0.5, .south_west = {-20, 27.5}}));
-  // A pixel size that is not the one stated: the file's coordinates mean nothing.
+  // If the given pixel size differs from the file's, the file's coordinates are ignored.
   EXPECT_EQ(readElevation(path, {.resolution_m = 0.1}).grid().south_west, (Point{0, 0}));
   const std::string bogus = write({.rows = kHill, .crs = "EPSG:4326"}, folder / "bogus.tif");
   EXPECT_EQ(readElevation(bogus, {.resolution_m = 2.0, .ignore_crs = true}).grid().resolution_m, 2.0);
 }
 
-// A cone of 20 degrees on a map of degrees keeps its slope once it is in metres.
+// Property: a cone of 20 degrees on a map in degrees has the same slope after the conversion to metres.
 TEST(RasterFrame, GeographicCoordinatesBecomeMetresOnEachBody) {
   const TemporaryFolder folder;
   for (const auto& [crs, radius_m, latitude_deg] :
@@ -58,7 +58,7 @@ TEST(RasterFrame, GeographicCoordinatesBecomeMetresOnEachBody) {
   }
 }
 
-// A raster that lies on no body was read as if its longitude were one of the others.
+// Property: a raster with coordinates outside the body is rejected, not wrapped in longitude.
 TEST(RasterFrame, DegreesOutOfRangeAreRejected) {
   const TemporaryFolder folder;
   const auto read = [&folder](double east_deg, double north_deg) {
@@ -86,14 +86,14 @@ TEST(RasterFrame, RotatedAndNonSquarePixelsAreResampled) {
   const ElevationMap map = readElevation(write({.rows = rows, .transform = turned}, folder / "turned.tif"));
   EXPECT_NEAR(map.grid().resolution_m, 10, 1e-9);
   EXPECT_THAT(map.notes, Contains(HasSubstr("resampled to square cells of 10 m")));
-  // Closed form: height is a tenth of the way east.
+  // Closed form: the height is a tenth of the distance east.
   EXPECT_NEAR(elevationAt(map.elevation_m, {500280, 5000000}).value(), 28.0, 0.01);
   EXPECT_NEAR(elevationAt(map.elevation_m, {500300, 4999990}).value(), 30.0, 0.01);
 }
 
 TEST(RasterFrame, DistortedProjectionsAreReprojectedToTrueScale) {
   const TemporaryFolder folder;
-  // At 60 degrees north this projection shows a metre of ground as two from west to east.
+  // At 60 degrees north this projection doubles distances from west to east.
   const std::string path =
       write({.rows = std::vector<std::vector<double>>(20, std::vector<double>(40, 7.0)),
              .crs = "IAU_2015:49910",

@@ -60,7 +60,7 @@ TEST_F(ReferencedFiles, ReferencesOutsideTheFolderAreRejected) {
   }
   EXPECT_THAT(said(virtualRaster("a.tif", "<PixelFunctionType>x</PixelFunctionType>"), true),
               testing::HasSubstr("code"));
-  // A raw band names its file, too.
+  // A raw band refers to a file as well.
   EXPECT_NE(said("<VRTDataset><VRTRasterBand subClass=\"VRTRawRasterBand\"><SourceFilename>/etc/passwd"
                  "</SourceFilename></VRTRasterBand></VRTDataset>",
                  true),
@@ -75,7 +75,7 @@ TEST_F(ReferencedFiles, PlainNamesAndOtherFilesAreAccepted) {
   EXPECT_EQ(said(std::string("II*\0\x08", 5)), "");
 }
 
-// A GeoTIFF that is none, which GDAL by itself would follow.
+// A virtual raster with another file name, which GDAL alone would open.
 TEST_F(ReferencedFiles, OpeningChecksReferencesOfVirtualRasters) {
   const std::string path = folder_.write("label", virtualRaster("/etc/passwd"));
   EXPECT_REFUSED(openRaster(path), InputError,
@@ -86,7 +86,7 @@ TEST_F(ReferencedFiles, OpeningChecksReferencesOfVirtualRasters) {
                  "/vsicurl/http://127.0.0.1:9/a.tif: no such file");
 }
 
-// Each way in which XML writes a text, and each in which a keyword's value may stand apart from it.
+// All notations of a text in XML, and all separations between a keyword and its value.
 TEST_F(ReferencedFiles, EscapedReferencesAreDetected) {
   for (const char* source : {"<![CDATA[/etc/passwd]]>", "<!-- a -->/etc/passwd", " \n/etc/passwd"}) {
     EXPECT_THAT(said(virtualRaster(source), true), HasSubstr("no file of its own folder")) << source;
@@ -103,7 +103,7 @@ TEST_F(ReferencedFiles, EscapedReferencesAreDetected) {
                    "</Metadata></VRTDataset>",
                    true),
               HasSubstr("own folder"));
-  // An image may follow the label; its bytes name nothing.
+  // An image may follow the label; its bytes are no references.
   EXPECT_EQ(said("PDS_VERSION_ID = PDS3\n^IMAGE = 3\nEND\n" + std::string(600, ' ') + "^A = /etc/passwd"),
             "");
 }
@@ -131,7 +131,7 @@ TEST_F(ReferencedFiles, SymbolicLinksOutOfTheFolderAreRejected) {
   EXPECT_THAT(said("<Product_Observational><file_name>a.tif</file_name></Product_Observational>"),
               HasSubstr("leads out of the folder"));
   EXPECT_THAT(said("PDS_VERSION_ID = PDS3\n^IMAGE = (\"A.TIF\", 3)\n"), HasSubstr("leads out of the folder"));
-  // The file of the call may be a link: its own folder is the other one, too.
+  // If the given file is a link, the folder of its target is the allowed one as well.
   EXPECT_EQ(checked("a.tif"), "");
   write({.rows = kHill}, folder_ / "b.tif");
   fs::create_symlink("b.tif", folder_ / "c.tif");

@@ -1,4 +1,4 @@
-// Georeference against PROJ's own transform of the same CRS, as GDAL calls it.
+// Compares Georeference with PROJ's own transform of the same CRS, called through GDAL.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -43,7 +43,7 @@ TEST_P(AgainstProj, ForwardAndReverseMatchProj) {
   ASSERT_TRUE(proj);
   const Georeference ours = georeferenceAt(coordinateSystem(crs, "test"), {});
   const double metres = crs.GetLinearUnits();
-  // PROJ's series of the authalic latitude comes back to a millimetre.
+  // PROJ's series of the authalic latitude is inverted to a millimetre.
   const double back_rad = ours.system().projection.method == ProjectionMethod::Foreign ? 2e-10 : 1e-11;
   for (const GeoPoint& place : GetParam().places_deg) {
     const double unit = crs.GetAngularUnits() / kDegree;
@@ -62,7 +62,7 @@ TEST_P(AgainstProj, ForwardAndReverseMatchProj) {
   }
 }
 
-// The same system once more, from its numbers alone.
+// Property: the coordinate system rebuilt from its parameters equals the original.
 TEST_P(AgainstProj, SystemRoundTripsThroughItsParameters) {
   const CoordinateSystem first = coordinateSystem(reference(GetParam().definition), "test");
   if (first.projection.method == ProjectionMethod::Foreign) GTEST_SKIP() << "lives by its WKT";
@@ -75,7 +75,7 @@ TEST_P(AgainstProj, SystemRoundTripsThroughItsParameters) {
   for (const GeoPoint& place : GetParam().places_deg) {
     const GeoPoint radians{place.latitude_rad * kDegree, place.longitude_rad * kDegree};
     EXPECT_NEAR(a.forward(radians).x_m, b.forward(radians).x_m, 1e-6);
-    if (first.planetocentric) continue;  // the numbers alone make a geographic system
+    if (first.planetocentric) continue;  // the parameters alone make a planetographic system
     EXPECT_NEAR(a.forward(radians).x_m, c.forward(radians).x_m, 1e-6);
     EXPECT_NEAR(a.forward(radians).y_m, c.forward(radians).y_m, 1e-6);
   }
@@ -151,7 +151,7 @@ double off_m(const Georeference& georeference, Point point, GeoPoint stated_deg)
          kEarth.equatorial_radius_m;
 }
 
-// A latitude and longitude on Earth is what a receiver of GPS shows, whatever the datum of the map.
+// Property: latitude and longitude on Earth are those of WGS 84 (GPS), whatever the datum of the map.
 TEST(SpatialReference, GeographicCoordinatesOnEarthAreWgs84) {
   struct Known {
     const char* definition;
@@ -169,7 +169,7 @@ TEST(SpatialReference, GeographicCoordinatesOnEarthAreWgs84) {
     const Georeference georeference = at(known.definition, known.point);
     EXPECT_EQ(georeference.system().projection.method, ProjectionMethod::Foreign) << known.definition;
     EXPECT_LE(off_m(georeference, known.point, known.wgs84_deg), known.most_m) << known.definition;
-    // Tolerance: seven parameters and their inverse, as EPSG has them, differ by a millimetre.
+    // Tolerance: the seven-parameter transformation of EPSG and its inverse differ by a millimetre.
     const Point back = georeference.forward(georeference.reverse(known.point));
     EXPECT_NEAR(back.x_m, known.point.x_m, 2e-3) << known.definition;
     EXPECT_NEAR(back.y_m, known.point.y_m, 2e-3) << known.definition;
@@ -187,7 +187,7 @@ TEST(SpatialReference, WebMercatorIsSpherical) {
             1e-3);
 }
 
-// Property: what is kept as numbers, for machines without PROJ, is what PROJ says at the place of the map.
+// Property: the parameters stored for machines without PROJ agree with PROJ at the map's location.
 TEST(SpatialReference, ParametersAreKeptForExactlySupportedProjections) {
   for (const char* own : {"EPSG:32610", "EPSG:3031", "EPSG:3413", "IAU_2015:49910", "IAU_2015:30135"})
     EXPECT_NE(at(own, {500000, 500000}).system().projection.method, ProjectionMethod::Foreign) << own;

@@ -62,7 +62,7 @@ TEST(Warp, AverageResamplingIsTheMeanOfPixels) {
   EXPECT_NEAR(pixels(*coarse).front(), 100 + 2 * 0.5 + 3 * 0.5, 1e-3);
 }
 
-// Property: a value that is declared no data, by the caller over the file, never enters a mean.
+// Property: a value that the caller declares as no data, overriding the file, never enters a mean.
 TEST(Warp, NoDataIsExcludedFromMeans) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(write({.rows = drawn({"9911", "9911"})}, folder / "marks.tif"));

@@ -8,7 +8,7 @@
 namespace talus::maps {
 namespace zip_directory_test {
 
-// Printed in: every catalogue of CRCs, the check value of CRC-32/ISO-HDLC.
+// Printed in: catalogues of CRCs, the check value of CRC-32/ISO-HDLC.
 TEST(ZipDirectory, ChecksumMatchesCrc32) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
   EXPECT_EQ(crc32(""), 0U);

@@ -15,15 +15,15 @@ TEST(CraterField, SizesFollowThePowerLaw) {
   const auto larger = [&](double d) {
     return std::count_if(craters.begin(), craters.end(), [=](const Crater& c) { return 2 * c.radius_m > d; });
   };
-  // Closed form: numbers go with D^-2 - Dmax^-2.
+  // Closed form: the number of craters above D is proportional to D^-2 - Dmax^-2.
   EXPECT_NEAR(static_cast<double>(larger(8)) / static_cast<double>(larger(16)), 4.0, 0.25);
   EXPECT_NEAR(static_cast<double>(larger(4)), 0.04 * 3800 * 3800 / 16, 100);
 }
 
 TEST(CraterField, FreshCraterMatchesPikeProportions) {
   const Crater crater{.centre = {}, .radius_m = 10, .age = 0};
-  // Printed in: Pike (1977): depth a fifth of the diameter, rim 0.036 of it. The rounding of the rim takes
-  // some.
+  // Printed in: Pike (1977): the depth is a fifth of the diameter, the rim 0.036 of it. Rounding of the rim
+  // lowers both slightly.
   EXPECT_NEAR(crater.height_m(10) - crater.height_m(0), 0.2 * 20, 0.2);
   EXPECT_NEAR(crater.height_m(10), 0.036 * 20, 0.12);
   EXPECT_EQ(crater.height_m(30), 0.0);

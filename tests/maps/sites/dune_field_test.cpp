@@ -16,7 +16,7 @@ TEST(DuneField, SlipFacesHaveTheAngleOfRepose) {
       const Sand there = dunes.at(x + 0.05, y);
       if (!here.slip_face || !there.slip_face) continue;
       ++faces;
-      // Closed form: along the wind a slip face falls at the angle of repose.
+      // Closed form: along the wind the slope of a slip face is the angle of repose.
       ASSERT_NEAR(std::atan((here.height_m - there.height_m) / 0.05), 0.576, 1e-6);
     }
   EXPECT_GT(faces, 500);

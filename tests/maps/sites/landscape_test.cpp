@@ -28,7 +28,7 @@ std::vector<Ground> groundAt(SiteKind kind, std::uint64_t seed) {
   return out;
 }
 
-// Property: a place is a function of kind, grid and seed alone.
+// Property: the ground at a place depends on kind, grid and seed alone.
 TEST(Landscape, SameSeedReproducesTheGround) {
   for (SiteKind kind : kKinds) {
     const auto first = groundAt(kind, 9), again = groundAt(kind, 9), other = groundAt(kind, 10);
@@ -43,20 +43,20 @@ TEST(Landscape, SameSeedReproducesTheGround) {
 }
 
 TEST(Landscape, RockSharesAreWithinTheStatedRange) {
-  // Printed in: golombek_rapp_1997, Viking and Pathfinder met 1 to 35 %.
+  // Printed in: golombek_rapp_1997; Viking and Pathfinder sites have rock abundances of 1 to 35 %.
   for (const Ground& g : groundAt(SiteKind::Rocks, 4)) {
     ASSERT_TRUE(g.rock_share >= 0.01 && g.rock_share <= 0.35);
     ASSERT_EQ(g.soil == SiteClass::Rock, g.rock_share > 0.2);
   }
   for (const Ground& g : groundAt(SiteKind::Craters, 4))
     ASSERT_TRUE(g.rock_share >= 0.004 && g.rock_share <= 0.3 && g.soil != SiteClass::Rock);
-  // Bedrock crops out between dunes only: sand holds no rock.
+  // Bedrock occurs between dunes only; sand has no rocks.
   for (const Ground& g : groundAt(SiteKind::Dunes, 4))
     ASSERT_TRUE(g.soil == SiteClass::Rock ? g.rock_share <= 0.25 : g.rock_share == 0.0);
 }
 
 TEST(Landscape, RollingGroundIsWithinItsAmplitude) {
-  // Closed form: octaves of 0.03 x 0.6 x 160 m, each 2^-0.9 of the last, of a noise within sqrt(2).
+  // Closed form: octaves of 0.03 x 0.6 x 160 m, each 2^-0.9 of the previous, of a noise bounded by sqrt(2).
   const double greatest_m = std::sqrt(2.0) * 0.03 * 0.6 * 160 / (1 - std::exp2(-0.9));
   double least = 0.0, most = 0.0;
   for (const Ground& g : groundAt(SiteKind::Rocks, 2)) {

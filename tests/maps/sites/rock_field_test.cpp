@@ -34,7 +34,7 @@ TEST(RockField, CoveredAreaMatchesTheSizeDistribution) {
   const double q = 1.79 + 0.152 / k;
   const auto share = [&](double d) { return k * std::exp(-q * d); };
   EXPECT_NEAR(all_m2 / 640000.0, share(0.5) - share(4.0), 0.03 * share(0.5));
-  // Sizes come in twelve steps; 1 m lies on the edge of one: 0.5 * 8^(4/12).
+  // Diameters have twelve steps; 1 m is the limit of a step: 0.5 * 8^(4/12).
   EXPECT_NEAR(larger_than_1_m2 / 640000.0, share(1.0) - share(4.0), 0.06 * share(1.0));
 }
 

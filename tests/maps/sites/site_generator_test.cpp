@@ -43,7 +43,7 @@ TEST(SiteGenerator, EverySiteIsCompleteWithSeveralClasses) {
     EXPECT_GE(classes.size(), 3U);
     for (const auto& [number, count] : classes) EXPECT_TRUE(number >= 1 && number <= 4) << number;
     for (float k : site.rock_abundance.values()) ASSERT_TRUE(k >= 0 && k < 0.5F);
-    // A rover's ground: mostly gentle, somewhere steep.
+    // Ground for a rover: mostly gentle, steep in some places.
     const TerrainMetrics m = terrainMetrics(site.map.elevation_m, {.radius_m = 2.0});
     std::vector<float> slopes;
     for (int r = 0; r < 400; ++r)
@@ -65,7 +65,8 @@ TEST(SiteGenerator, InvalidOptionsAreRejected) {
   EXPECT_REFUSED(generateSite({.threads = 0}), std::invalid_argument, "threads = 0.000000, must be >= 1");
 }
 
-// Property: outside the blocky ground (abundance over 0.2) what the classes call rock is what boulders cover.
+// Property: outside rocky ground (abundance above 0.2) the area of the rock class equals the area that
+// boulders cover.
 TEST(SiteGenerator, RockClassAreaMatchesRockAbundance) {
   const Site site =
       generateSite({.kind = SiteKind::Rocks, .width = 300, .height = 300, .resolution_m = 0.25});
@@ -79,7 +80,7 @@ TEST(SiteGenerator, RockClassAreaMatchesRockAbundance) {
       const double q = 1.79 + 0.152 / k;
       abundance += k * (std::exp(-0.375 * q) - std::exp(-4.0 * q));
     }
-  // Boulders overlap, and a cell is rock by its middle: a fifth either way.
+  // Boulders overlap, and a cell is rock if its centre is: tolerance of a fifth.
   EXPECT_NEAR(share / abundance, 1.0, 0.2);
 }
 

@@ -36,14 +36,14 @@ TEST(ValueNoise, GradientNoiseIsZeroOnTheLatticeAndBounded) {
   std::uniform_real_distribution<double> place(-1e4, 1e4);
   for (int i = 0; i < 500000; ++i)
     greatest = std::max(greatest, std::abs(noise(place(random), place(random))));
-  // Closed form: slopes within [-1, 1]^2 weighed at the middle of a square give sqrt(2) at most.
+  // Closed form: gradients within [-1, 1]^2, weighted at the centre of a square, give at most sqrt(2).
   EXPECT_LE(greatest, std::sqrt(2.0));
   EXPECT_GT(greatest, 0.7);
   for (int x = -3; x < 4; ++x)
     for (int y = -3; y < 4; ++y) EXPECT_EQ(noise(x, y), 0.0);
 }
 
-// Property: value and slope are continuous where two squares meet (fifth-order curves).
+// Property: value and slope are continuous at the border of two squares (fifth-order curves).
 TEST(ValueNoise, GradientNoiseIsSmoothAcrossCells) {
   const GradientNoise noise(11);
   constexpr double h = 1e-5;

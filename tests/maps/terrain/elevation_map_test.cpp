@@ -18,7 +18,7 @@ TEST(ElevationMap, ValidFractionIsTheShareOfCellsWithData) {
 TEST(ElevationMap, InterpolationIsBilinear) {
   const Grid grid{.width = 6, .height = 5, .resolution_m = 2.0, .south_west = {100.0, 50.0}};
   Raster<float> z(grid);
-  // Closed form: a + b x + c y + d x y is its own bilinear interpolation.
+  // Closed form: bilinear interpolation reproduces a + b x + c y + d x y.
   const auto height = [](Point p) { return 3.0 + 0.5 * p.x_m - 0.25 * p.y_m + 0.125 * p.x_m * p.y_m; };
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column)
@@ -33,7 +33,7 @@ TEST(ElevationMap, InterpolationIsBilinear) {
   }
 }
 
-// Closed form: between the outermost centres and the edge of the map nothing is extrapolated.
+// Closed form: between the outermost centres and the edge of the map the elevation is not extrapolated.
 TEST(ElevationMap, ElevationIsConstantBeyondTheOutermostCentres) {
   Raster<float> z(Grid{.width = 3, .height = 2, .resolution_m = 2.0});
   for (int r = 0; r < 2; ++r)

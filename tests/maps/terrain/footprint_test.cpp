@@ -13,7 +13,7 @@ TEST(Footprint, ContainsCellsWithCentresWithinTheRadius) {
     std::set<std::pair<int, int>> held;
     for (const auto& o : disc.offsets) held.insert({o.column, o.row});
     ASSERT_EQ(held.size(), disc.offsets.size());
-    // Measured by others: every cell of a larger square, asked one by one.
+    // Measured by others: every cell of a larger square is checked.
     for (int row = -9; row <= 9; ++row)
       for (int column = -9; column <= 9; ++column)
         EXPECT_EQ(held.contains({column, row}), std::hypot(column, row) <= radius + 1e-9)
@@ -36,7 +36,7 @@ TEST(Footprint, MomentsMatchTheOffsets) {
       xx += o.column * o.column, yy += o.row * o.row;
       reach = std::max(reach, std::abs(o.column));
     }
-    // Property: symmetric, so that the plane's normal equations are diagonal.
+    // Property: the footprint is symmetric, so that the plane's normal equations are diagonal.
     EXPECT_EQ(x, 0.0);
     EXPECT_EQ(xy, 0.0);
     EXPECT_EQ(xx, yy);

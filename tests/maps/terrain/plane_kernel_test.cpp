@@ -64,7 +64,7 @@ TEST(PlaneKernel, KernelsAreBitIdentical) {
     });
     const Fitted plain = fitted(fitPlanesBaseline, disc, rows, 37),
                  fast = fitted(planeKernel(), disc, rows, 37);
-    // Property: NaN in the same places, else equal bit by bit.
+    // Property: NaN occurs in the same places; other values are bit-identical.
     const auto same = [](float a, float b) {
       return (std::isnan(a) && std::isnan(b)) ||
              std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
@@ -78,7 +78,7 @@ TEST(PlaneKernel, KernelsAreBitIdentical) {
   }
 }
 
-// Far below the datum, where floats are coarse.
+// Heights far below the datum, where floats are coarse.
 #if defined(__x86_64__)
 TEST(PlaneKernel, KernelsAreBitIdenticalFarFromTheDatum) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";

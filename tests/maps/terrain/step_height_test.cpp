@@ -1,4 +1,4 @@
-// How high a step under a rover is, whatever the plane over its footprint makes of it.
+// Height of a step under a rover, independent of the plane over the footprint.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -27,7 +27,7 @@ Raster<float> surface(const Grid& grid, const auto& height) {
   return z;
 }
 
-// By the definition, pair by pair, in double, with no thought of speed.
+// The definition, pair by pair, in double precision.
 class SlowSteps {
  public:
   SlowSteps(const Raster<float>& z, double radius_cells, int span)
@@ -72,7 +72,7 @@ class SlowSteps {
   int span_;
 };
 
-// Property: the kernel is the definition, on rough ground with holes, for any footprint and span.
+// Property: the kernel equals the definition on rough ground with holes, for any footprint and span.
 TEST(StepHeight, MatchesThePairwiseDefinition) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -90,7 +90,7 @@ TEST(StepHeight, MatchesThePairwiseDefinition) {
       for (int column = 0; column < grid.width; ++column) {
         const Cell c{column, row};
         ASSERT_EQ(std::isnan(m.step_m[c]), std::isnan(m.dz_dx[c])) << trial;
-        // Heights below 20 m in single precision: 1e-6 m, four of them.
+        // Heights below 20 m in single precision: four errors of 1e-6 m.
         if (!std::isnan(m.step_m[c])) {
           ASSERT_NEAR(static_cast<double>(m.step_m[c]), slow.at(c), 1e-5)
               << trial << ' ' << column << ' ' << row;
@@ -99,8 +99,8 @@ TEST(StepHeight, MatchesThePairwiseDefinition) {
   }
 }
 
-// A sheer edge through the middle in any direction, on ground of any slope: nowhere on it less than its height, less
-// what of the slope a pair across it may not show.
+// Property: a vertical edge in any direction on any slope has at least its height everywhere, less the slope
+// that a pair of cells across the edge may have.
 TEST(StepHeight, VerticalStepHasItsHeightForAnyCellSizeSlopeAndDirection) {
   for (const double cell_m : {0.1, 0.25, 0.5, 1.0})
     for (const double slope : {0.0, 0.2, -0.45})
@@ -124,7 +124,8 @@ TEST(StepHeight, VerticalStepHasItsHeightForAnyCellSizeSlopeAndDirection) {
       }
 }
 
-// Smooth ground is no step: what is left is the change of slope from cell to cell, curvature times the square of the distance.
+// Property: smooth ground has no step except the change of slope between cells, curvature times the square
+// of the distance.
 TEST(StepHeight, SmoothSteepGroundHasNoStep) {
   for (const double cell_m : {0.25, 1.0}) {
     const Grid grid{.width = 80, .height = 80, .resolution_m = cell_m, .south_west = {}};
@@ -137,22 +138,23 @@ TEST(StepHeight, SmoothSteepGroundHasNoStep) {
     const Raster<float> dune = surface(grid, [&](double x, double) { return 0.466 / k * std::sin(k * x); });
     const TerrainMetrics smooth = terrainMetrics(dune, {.radius_m = 0.7, .step_span_m = 0.5});
     const double distance_m = std::max(cell_m, 0.5);
-    // A diagonal pair is sqrt(2) as far apart, its line turned by 45 degrees: the same product.
+    // A diagonal pair is sqrt(2) times as far apart, with the direction turned by 45 degrees: the same
+    // product.
     EXPECT_LT(*std::ranges::max_element(smooth.step_m.values()), 1.05 * 0.466 * k * distance_m * distance_m);
   }
 }
 
-// A scarp that the map's resampling has spread over a wheel's diameter is as high.
+// Property: a scarp that resampling has spread over a wheel's diameter has its full height.
 TEST(StepHeight, ScarpWithinTheSpanHasItsFullHeight) {
   const Grid grid{.width = 61, .height = 5, .resolution_m = 0.1, .south_west = {}};
   const Raster<float> z =
       surface(grid, [](double x, double) { return 0.4 * std::clamp((x - 3.05) / 0.3, 0.0, 1.0); });
   EXPECT_NEAR((terrainMetrics(z, {.step_span_m = 0.3}).step_m[{30, 2}]), 0.4, 1e-6);
-  // Closed form: neighbours alone have a third of it.
+  // Closed form: neighbouring cells alone have a third of the height.
   EXPECT_NEAR((terrainMetrics(z, {}).step_m[{30, 2}]), 0.4 / 3, 1e-6);
 }
 
-// Property: NaN-free or not, wide or narrow, every kernel gives the same bits.
+// Property: all kernels are bit-identical, with and without NaN, for wide and narrow maps.
 TEST(StepHeight, KernelsAreBitIdentical) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-4501.0F, -4499.0F);

@@ -35,7 +35,7 @@ struct Expected {
   double dz_dx, dz_dy, roughness_m, relief_m;
 };
 
-// Measured by others: Eigen's QR on the cells of the disc, without a thought of speed.
+// Measured by others: least squares by Eigen's QR on the cells of the disc; slow.
 Expected leastSquares(const Raster<float>& z, Cell middle, double radius_m) {
   const Grid& grid = z.grid();
   std::vector<Eigen::Vector3d> points;
@@ -67,7 +67,7 @@ TEST(TerrainMetrics, TiltedPlaneIsExactIncludingEdges) {
     const TerrainMetrics m = terrainMetrics(z, {.radius_m = radius_m});
     for (int r = 0; r < grid.height; ++r)
       for (int c = 0; c < grid.width; ++c) {
-        // Closed form. Heights are multiples of 1/16 m, so nothing is rounded.
+        // Closed form: a plane. Heights are multiples of 1/16 m, so that nothing is rounded.
         ASSERT_NEAR((m.dz_dx[{c, r}]), 0.25, 1e-6);
         ASSERT_NEAR((m.dz_dy[{c, r}]), -0.5, 1e-6);
         ASSERT_NEAR((m.roughness_m[{c, r}]), 0.0, 1e-6);
@@ -108,7 +108,7 @@ TEST(TerrainMetrics, SmallFootprintFallsBackToThreeByThreeAndReportsIt) {
 }
 
 TEST(TerrainMetrics, ReliefOfARockEqualsItsHeight) {
-  // Closed form: over many cells the plane hardly sees one rock.
+  // Closed form: over many cells a single rock has little influence on the plane.
   Raster<float> z(Grid{.width = 41, .height = 41, .resolution_m = 0.1});
   z[{20, 20}] = 0.4F;
   const TerrainMetrics m = terrainMetrics(z, {.radius_m = 0.8});
@@ -119,7 +119,7 @@ TEST(TerrainMetrics, ReliefOfARockEqualsItsHeight) {
 
 TEST(TerrainMetrics, NoDataIsPreserved) {
   Raster<float> z(Grid{.width = 20, .height = 12, .resolution_m = 1.0}, kNaN);
-  // One cell alone, three in a corner, and a line have no plane; a block of four does.
+  // A single cell, three in a corner, and a line of cells define no plane; a block of four does.
   z[{2, 2}] = 1.0F;
   for (int i = 0; i < 3; ++i) z[{6 + i, 9}] = 1.0F;
   for (Cell c : {Cell{15, 5}, Cell{16, 5}, Cell{15, 6}, Cell{16, 6}}) z[c] = 3.0F;
@@ -147,7 +147,7 @@ TEST(TerrainMetrics, ResultIsIndependentOfThreadCount) {
 }
 
 TEST(TerrainMetrics, GradientStdMatchesScatterUnderWhiteNoise) {
-  // Property: the stated standard error is the spread of gradients that white noise makes.
+  // Property: the stated standard error equals the spread of gradients from white noise.
   const TerrainMetrics m =
       terrainMetrics(noise({.width = 300, .height = 300, .resolution_m = 2.0}, 0.0), {.radius_m = 5.0});
   double spread = 0;

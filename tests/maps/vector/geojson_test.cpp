@@ -37,7 +37,7 @@ TEST(GeoJson, GeometriesOfAnyNestingAreFoundInOrder) {
   EXPECT_EQ(found[2].get()["type"], "LineString");
 }
 
-// Property: what has coordinates and no type, or a type that is no word, is no geometry.
+// Property: an object without a type, or with a type that is not text, is no geometry.
 TEST(GeoJson, ObjectsWithoutTypeAreNoGeometry) {
   EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":[{"coordinates":[1,2]},
     {"type":7,"coordinates":[1,2]}, 3, null, "x"]})"))
@@ -65,7 +65,8 @@ TEST(GeoJson, LocalCoordinatesAreMetresIfDeclaredOrWithoutMapCrs) {
   EXPECT_EQ(PositionReader(json{{"type", "Point"}}, yard, "")(json{700.0, 800.0}), (Point{700, 800}));
 }
 
-// GeoJSON of 2008 names a CRS: positions in degrees are read, others are refused, and where the map has none, all are.
+// Property: of the CRS names of GeoJSON 2008, those in degrees are accepted and others rejected; all are
+// rejected if the map has no CRS.
 TEST(GeoJson, NonDegreeCrsIsRejected) {
   const auto named = [](const std::string& name) {
     return json{{"type", "Point"}, {"crs", {{"type", "name"}, {"properties", {{"name", name}}}}}};
@@ -116,7 +117,7 @@ TEST(GeoJson, InvalidGeoJsonIsRejected) {
   std::string deep = R"({"type":"Point","coordinates":)";
   deep += std::string(100000, '[') + std::string(100000, ']') + "}";
   EXPECT_THAT(line(deep), HasSubstr("nests deeper than 100 levels"));
-  // The last of two would silently win; one name in several objects is no doubt.
+  // The last of two equal keys would replace the first; equal names in different objects are valid.
   EXPECT_THAT(line(R"({"type":"Point","coordinates":[1,2],"coordinates":[3,4]})"),
               HasSubstr("has \"coordinates\" twice in one object"));
   EXPECT_THAT(
@@ -126,7 +127,7 @@ TEST(GeoJson, InvalidGeoJsonIsRejected) {
             "accepted");
 }
 
-// A tree in memory takes many times the bytes of its text.
+// The parsed tree needs many times the bytes of its text.
 TEST(GeoJson, MemoryBudgetIsCheckedBeforeParsing) {
   const TemporaryFolder folder;
   std::string text = R"({"type":"Polygon","coordinates":[[])";

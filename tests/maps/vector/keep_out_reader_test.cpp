@@ -16,7 +16,7 @@ TEST(KeepOutReader, EveryCellTouchedByAPolygonIsClosed) {
   EXPECT_EQ(drawing(readKeepOut(path, map(folder)).mask), "0110\n0110\n0100\n");
 }
 
-// Drawing loops over the rows of a ring: one that reaches far is cut first, and covers the same cells.
+// Property: a polygon that extends far beyond the map is clipped first, and covers the same cells.
 TEST(KeepOutReader, PolygonsBeyondTheMapAreClipped) {
   const TemporaryFolder folder;
   const auto cells = [&](const std::string& ring) {
@@ -81,8 +81,8 @@ std::string collection(const std::string& geometry) {
          R"(,{"type":"Feature","properties":{},"geometry":)" + geometry + "}]}";
 }
 
-// Property: a feature beside a sound one closes ground, or is refused by its number. Of a box wound twice the even-odd rule
-// left its boundary alone, and every other fault passed in silence.
+// Property: every feature beside a sound one covers cells, or is rejected with its number, including rings
+// wound twice, of which an even-odd rule would cover the boundary only.
 TEST(KeepOutReader, EveryFeatureClosesCellsOrIsRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);
@@ -112,7 +112,7 @@ TEST(KeepOutReader, EveryFeatureClosesCellsOrIsRejected) {
               HasSubstr("feature 2: a polygon encloses no ground"));
 }
 
-// Property: a team has one file for many maps, so that what lies beside this one is told and not refused.
+// Property: a polygon outside the map is reported and not rejected, because one file may serve several maps.
 TEST(KeepOutReader, PolygonOutsideTheMapIsReported) {
   const TemporaryFolder folder;
   const KeepOut areas =

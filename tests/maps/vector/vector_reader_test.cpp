@@ -21,7 +21,7 @@ namespace vector_reader_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Geometries as WKT, in a file of one layer.
+// A file of one layer with geometries in WKT.
 struct Drawing {
   std::string driver = "GPKG";
   std::string crs = "EPSG:4326";
@@ -57,7 +57,7 @@ std::string write(const Drawing& drawing, const std::string& path) {
   return path;
 }
 
-// A hill in UTM zone 10 north, a hundred cells of 10 m.
+// Level ground in UTM zone 10 north, 100 x 100 cells of 10 m.
 ElevationMap hill(const TemporaryFolder& folder, const std::string& crs = "EPSG:32610") {
   const std::vector<std::vector<double>> rows(100, std::vector<double>(100, 7.0));
   return readElevation(maps::write({.rows = rows, .crs = crs}, folder / "hill.tif"), {.resolution_m = 10.0});
@@ -78,7 +78,7 @@ TEST(VectorReader, EveryVectorFormatYieldsTheSamePlace) {
     const std::string path =
         write({.driver = driver, .wkt = {wkt.str()}}, folder / ("place." + kEndings.at(driver)));
     const Point at = readPlace(path, map, "--start");
-    // Closed form: the same place. Tolerance: MapInfo has whole numbers of a micro-degree.
+    // Closed form: the same place. Tolerance: MapInfo stores integers of a micro-degree.
     const double most_m = driver == "MapInfo File" ? 0.1 : 0.01;
     EXPECT_NEAR(at.x_m, 500300, most_m) << driver;
     EXPECT_NEAR(at.y_m, 4999600, most_m) << driver;
@@ -147,7 +147,7 @@ TEST(VectorReader, LayersThatCannotBeGeoreferencedAreRejected) {
               HasSubstr("contains no feature"));
 }
 
-// Property: of a file that is cut anywhere nothing is taken that the whole one does not have.
+// Property: a file truncated anywhere gives no geometry that the whole file lacks.
 TEST(VectorReader, TruncatedFileIsRejectedOrComplete) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
@@ -166,7 +166,7 @@ TEST(VectorReader, TruncatedFileIsRejectedOrComplete) {
   }
 }
 
-// Property: rings with holes, parts and collections of a GeoPackage close the cells that the same geometries close as GeoJSON.
+// Property: geometries of a GeoPackage with holes, parts and collections cover the same cells as in GeoJSON.
 TEST(VectorReader, KeepOutAreasAreTheSameInEveryForm) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);

@@ -75,7 +75,7 @@ TEST(VectorWriter, GpxAndKmlCoordinatesAreWgs84) {
         if (way == nullptr) continue;
         seen = true;
         EXPECT_STREQ(feature->GetFieldAsString("name"), "way") << driver;
-        // Tolerance: GPX has nine digits behind the point.
+        // Tolerance: GPX has nine decimals.
         EXPECT_NEAR(way->getX(1), place.longitude_rad / kDegree, 1e-9) << driver;
         EXPECT_NEAR(way->getY(1), place.latitude_rad / kDegree, 1e-9) << driver;
       }

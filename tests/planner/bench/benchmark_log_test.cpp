@@ -12,8 +12,8 @@
 namespace talus::planner {
 namespace benchmark_log_test {
 
-// A reader of its own for the grammar that OMPL's ompl_benchmark_statistics.py (1.6) takes apart line by line
-// for Planner Arena. It throws where that script would.
+// An independent reader of the log grammar that OMPL's ompl_benchmark_statistics.py (1.6) parses line by
+// line for Planner Arena. Throws where that script would fail.
 class ArenaReader {
  public:
   struct Planner {
@@ -67,7 +67,7 @@ class ArenaReader {
     return text;
   }
 
-  // The words of a line, some of which are told by their place; counted from the end below 0.
+  // The words of a line. `expected` gives some of them by position; negative positions count from the end.
   std::vector<std::string> words(const std::map<int, std::string>& expected) {
     std::istringstream text(line());
     std::vector<std::string> all;

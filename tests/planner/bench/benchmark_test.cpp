@@ -33,11 +33,13 @@ TEST(Benchmark, RunsEveryPlannerCaseAndSeed) {
     EXPECT_FALSE(run.breached);
     EXPECT_GT(run.megabytes, 1.0);
     EXPECT_EQ(run.status == RouteStatus::Found, run.case_index == 0);
-    // Property: no cost on the way is below that of the route that was checked; without one there is none.
+    // Property: no intermediate cost is below that of the checked route; a run without a route has no
+    // intermediate costs.
     EXPECT_EQ(run.progress.empty(), run.case_index != 0);
     for (const CostAtTime& at : run.progress) EXPECT_GE(at.cost_J, run.cost_J);
   }
-  // Property: what is found costs no less than its bound, and the best known is the least of all.
+  // Property: the cost of a route is at least its lower bound, and the best known cost is the least over all
+  // runs.
   EXPECT_GE(runs[0].cost_J, runs[0].lower_bound_J);
   EXPECT_LE(bestKnown_J(plan, runs, 0), runs[0].cost_J);
   EXPECT_TRUE(std::isinf(bestKnown_J(plan, runs, 1)));
@@ -82,7 +84,7 @@ TEST(Benchmark, StopEndsTheCurrentRun) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     stop.request_stop();
   });
-  EXPECT_TRUE(runBenchmark(plan, watch).empty());  // else the test takes ten minutes
+  EXPECT_TRUE(runBenchmark(plan, watch).empty());  // otherwise the test takes ten minutes
 }
 
 }  // namespace benchmark_test

@@ -16,7 +16,7 @@ namespace grid_suite_test {
 
 using testing::drawn;
 
-// Eight neighbours, no corner cut: what MovingAI's scenario files call the optimum.
+// Optimum of MovingAI's scenario files: eight neighbours, corners are not cut.
 double octile(const costmap::CostGrid& map, maps::Cell from, maps::Cell to) {
   const maps::Grid& grid = map.grid();
   const auto open = [&](maps::Cell c) { return grid.contains(c) && map.at(c).curve() == 0; };
@@ -53,8 +53,8 @@ TEST(GridSuite, ShortestPathAroundWallsMatchesClosedForm) {
   EXPECT_TRUE(std::isinf(shortestAroundWalls_m(*drawn({"..#..", "..#.."}), {0, 0}, {4, 1})));
 }
 
-// Property: the any-angle optimum is no longer than the eight-neighbour one, and the field's route no shorter
-// than the optimum nor more than a hundredth longer.
+// Property: the any-angle optimum is no longer than the eight-neighbour optimum, and the field's route is
+// between the any-angle optimum and 1 % above it.
 TEST(GridSuite, FieldIsWithinOnePercentOfTheOptimum) {
   double worst = 0.0;
   std::size_t cases = 0;
@@ -70,7 +70,7 @@ TEST(GridSuite, FieldIsWithinOnePercentOfTheOptimum) {
       problem.goal = asked.goal;
       const Plan plan = FieldPlanner().plan(problem);
       ASSERT_EQ(plan.status, RouteStatus::Found) << asked.name;
-      EXPECT_GE(plan.cost_J, asked.optimum_J * (1.0 - 1e-6)) << asked.name;  // prices are floats
+      EXPECT_GE(plan.cost_J, asked.optimum_J * (1.0 - 1e-6)) << asked.name;  // costs are floats
       worst = std::max(worst, plan.cost_J / asked.optimum_J - 1.0);
     }
   EXPECT_EQ(cases, 24u);

@@ -45,7 +45,8 @@ TEST_F(MovingAi, ReadsCasesNorthUp) {
   problem.goal = cases[0].goal;
   const Plan plan = FieldPlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found);
-  // Property: any-angle is at most the grid's optimum, and at least the straight line.
+  // Property: the any-angle route is no longer than the grid's optimum and no shorter than the straight
+  // line.
   EXPECT_LE(plan.cost_J, cases[0].optimum_J + 1e-9);
   EXPECT_GE(plan.cost_J, std::hypot(4.0, 3.0));
 }

@@ -38,8 +38,8 @@ TEST(SlipWorld, TerrainSharesMatchTheOptions) {
   EXPECT_NEAR(misclassification_rate / cells, 0.2, 1e-3);
 }
 
-// Property: without doubt and relief the cost is the time at the level's slip, and the drive, its errors
-// taken out, takes just that.
+// Property: without uncertainty and relief the cost is the time at the slip on level ground, and a drive
+// without slip errors takes the same time.
 TEST(SlipWorld, CostOnLevelGroundIsTheTravelTime) {
   SlipWorld world =
       slipWorld({.seed = 3, .misclassification_rate = 0.0, .relief_m = 0.0, .risk_aware = false});
@@ -48,11 +48,11 @@ TEST(SlipWorld, CostOnLevelGroundIsTheTravelTime) {
   const SlipTraverse drive = driven(world, route);
   EXPECT_TRUE(drive.reached);
   EXPECT_LE(drive.max_slip, 0.1);
-  // A tenth of a cell at each change of terrain is priced by the wrong one.
+  // At each change of terrain a tenth of a cell may be priced as the other terrain.
   EXPECT_NEAR(MotionCost(world.map).along(route), drive.time_s, 2e-3 * drive.time_s);
 }
 
-// Closed form: the mean of a Gaussian beyond its upper decile is 1.755 deviations above its mean.
+// Closed form: the mean of a Gaussian beyond its upper decile is 1.755 standard deviations above its mean.
 TEST(SlipWorld, RiskAwareCostIsTheTailOfTheMixture) {
   const SlipWorld world =
       slipWorld({.seed = 3, .misclassification_rate = 0.0, .relief_m = 0.0, .risk_aware = true, .tail = 0.1});
@@ -70,11 +70,11 @@ TEST(SlipWorld, RoverStopsAtSlipOne) {
   const SlipTraverse stuck = driven(world, {{10.5, 20.5}, {90.5, 20.5}});
   EXPECT_FALSE(stuck.reached);
   EXPECT_EQ(stuck.max_slip, 1.0);
-  EXPECT_NEAR(stuck.time_s, 40.0 / 0.1, 0.15 * 400.0);  // it came 40 m far, slipping 0 to 0.1
+  EXPECT_NEAR(stuck.time_s, 40.0 / 0.1, 0.15 * 400.0);  // the rover travelled 40 m at slips of 0 to 0.1
   EXPECT_TRUE(driven(world, {{10.5, 21.5}, {90.5, 21.5}}).reached);
 }
 
-// Property, the paper's: heeding doubt brings more rovers to the goal than the mean of the terrain seen.
+// Property (stated by the paper): risk-aware planning reaches more goals than planning on the mean slip.
 TEST(SlipWorld, RiskAwarePlanningReachesMoreGoals) {
   int blind = 0, heedful = 0, asked = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

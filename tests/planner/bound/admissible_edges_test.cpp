@@ -15,8 +15,8 @@ namespace admissible_edges_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Property: the field over the corners is below the cost of every allowed motion between two corners, straight
-// or bent once, whatever its heading; on even patches, where it is sharp enough to be wrong.
+// Property: the field over the corners is below the cost of every allowed motion between two corners,
+// straight or with one bend, in any heading; on uniform patches, where the bound is close to the cost.
 TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
   int tried = 0, sharp = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
@@ -58,8 +58,8 @@ TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
   EXPECT_GT(sharp, 50);
 }
 
-// Closed form: on even ground of 10 J/m no heading is dearer than another; the octagon under that circle has
-// edges no lower than cos(22.5 degrees) of it, and whole units take a 64th.
+// Closed form: on uniform ground of 10 J/m all headings cost the same. The edges of the octagon under that
+// circle are at least cos(22.5 degrees) of its radius; rounding to whole units takes 1/64.
 TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
   const auto edges = admissibleEdges(drawn({"....", "....", "...."}));
   ASSERT_TRUE(edges);
@@ -73,8 +73,8 @@ TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
   }
 }
 
-// Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; a step across a
-// blocked cell, or off the map, is none.
+// Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; no step exists
+// across a blocked cell or off the map.
 TEST(AdmissibleEdges, SideEdgeUsesTheCheaperCellAndBlockedCellsHaveNone) {
   const auto edges = admissibleEdges(drawn({"44", "..", "##"}));
   const auto step_J = [&](maps::Cell into, int heading) {

@@ -7,7 +7,7 @@ namespace cheapest_metre_test {
 
 using testing::drawn;
 
-// Closed form: the least metre of the curves that cells have: 10 J times the number of the curve plus one.
+// Closed form: the minimum over the curves that occur in cells: 10 J times the number of the curve plus one.
 TEST(CheapestMetre, MinimumIsTakenOverCurvesInUse) {
   EXPECT_NEAR(cheapestMetre_J(*drawn({"234", "#?4"})), 30.0, 1e-5);
   EXPECT_NEAR(cheapestMetre_J(*drawn({"4.4"})), 10.0, 1e-5);

@@ -8,7 +8,7 @@
 namespace talus::planner {
 namespace cost_lower_bound_test {
 
-// Property: no allowed metre in any heading costs less than the line says.
+// Property: no allowed metre in any heading costs less than the linear bound.
 TEST(CostLowerBounds, BoundIsBelowTheCostInEveryHeading) {
   const auto cost = testing::driveCost({.max_along = 0.4, .max_across = 0.4});
   const CostLowerBounds lines(*cost);

@@ -12,7 +12,7 @@ namespace directional_cost_bounds_test {
 
 constexpr double kSector = 2.0 * std::numbers::pi / DirectionalCostBounds::kHeadings;
 
-// The gauge between the limits of neighbouring headings.
+// The gauge function, interpolated between the limits of neighbouring headings.
 double gauge(const DirectionalCostBounds::Limits& limits, double angle) {
   const auto k = static_cast<std::size_t>(angle / kSector);
   const double in = angle - static_cast<double>(k) * kSector;
@@ -29,8 +29,8 @@ costmap::CellCode randomCell(std::mt19937& random, int most, std::size_t curves)
       {.dz_dx = gradient(), .dz_dy = gradient(), .curve = static_cast<std::uint8_t>(random() % curves)});
 }
 
-// Property: between the headings, too, no limit is above the cost of the heading, also at the very headings at which
-// the cost's table has its nodes, and where only single headings are allowed.
+// Property: no limit is above the cost of its heading, also between the tabulated headings, at the nodes of
+// the cost table, and where only single headings are allowed.
 TEST(DirectionalCostBounds, GaugeIsBelowTheCost) {
   for (const auto& cost :
        {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
@@ -59,8 +59,8 @@ TEST(DirectionalCostBounds, GaugeIsBelowTheCost) {
   }
 }
 
-// Closed form: on level ground a metre costs 10 J in all directions, and the chords of 64 sectors are below by the
-// cosine of half a sector.
+// Closed form: on level ground a metre costs 10 J in all directions; the chords of 64 sectors lower the
+// limit by the cosine of half a sector.
 TEST(DirectionalCostBounds, LevelGroundLimitIsReducedByCosineOfHalfASector) {
   const auto cost = testing::driveCost();
   DirectionalCostBounds::Limits limits;
@@ -71,7 +71,8 @@ TEST(DirectionalCostBounds, LevelGroundLimitIsReducedByCosineOfHalfASector) {
   }
 }
 
-// Property: where the cost is smooth and convex over headings, the limits are within half a percent of it.
+// Property: for a cost that is smooth and convex over headings, the limits are within half a percent of the
+// cost.
 TEST(DirectionalCostBounds, LimitsAreTightForASmoothCost) {
   costmap::TravelCurve curve;
   for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {

@@ -9,8 +9,8 @@
 namespace talus::planner {
 namespace directional_lower_bound_test {
 
-// Property: the gauge between the prices of neighbouring headings is nowhere above the cost, in any
-// direction, and every heading has a price.
+// Property: the gauge between the values of neighbouring headings is never above the cost, in any direction,
+// and every heading has a value.
 TEST(DirectionalLowerBounds, GaugeIsBelowTheCost) {
   for (const auto& cost :
        {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
@@ -39,7 +39,7 @@ TEST(DirectionalLowerBounds, GaugeIsBelowTheCost) {
   }
 }
 
-// A cart that rolls at `level` joules a metre and lifts its weight: downhill it never pays less than nothing.
+// A vehicle with rolling resistance `level` [J/m] that lifts its weight; downhill the cost is at least 0.
 std::shared_ptr<const costmap::TravelCost> rollingCart(double level_J_per_m, double weight_N) {
   costmap::TravelCurve curve;
   for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
@@ -48,8 +48,8 @@ std::shared_ptr<const costmap::TravelCost> rollingCart(double level_J_per_m, dou
   return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
 }
 
-// Property: where a heading is allowed, prices are finite and no higher than the cost of their own heading,
-// also where the slope outweighs the rolling many times or the ground costs nothing.
+// Property: for an allowed heading the bound is finite and not above the cost of the heading, also if
+// gravity exceeds the rolling resistance many times or the ground costs nothing.
 TEST(DirectionalLowerBounds, BoundsAreFiniteForAllowedHeadingsAndBelowTheCost) {
   for (const double level_J_per_m : {100.0, 10.0, 1.0, 0.0}) {
     const auto cost = rollingCart(level_J_per_m, 1000.0);

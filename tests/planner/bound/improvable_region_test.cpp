@@ -21,7 +21,7 @@ ImprovableRegion around(double known_J, double tolerance_m = 0.0) {
                            .known_cost_J = known_J});
 }
 
-// Closed form: at 10 J/m the places through which 25 m suffice are those of the ellipse with foci 20 m apart.
+// Closed form: at 10 J/m the region for a route of 25 m is an ellipse with foci 20 m apart.
 TEST(ImprovableRegion, RegionIsAnEllipseOnUniformGround) {
   const auto region = around(250.0);
   int inside = 0;
@@ -32,11 +32,11 @@ TEST(ImprovableRegion, RegionIsAnEllipseOnUniformGround) {
       inside += away_m <= 25.0;
     }
   EXPECT_GT(inside, 500);
-  EXPECT_NEAR(around(250.0, 4.0).toGoal({20.5, 15.5}), 60.0, 1e-4);  // 10 m less 4 of tolerance
+  EXPECT_NEAR(around(250.0, 4.0).toGoal({20.5, 15.5}), 60.0, 1e-4);  // 10 m less a tolerance of 4 m
   EXPECT_EQ(around(250.0, 4.0).toGoal({29.5, 15.5}), 0.0);
 }
 
-// Property: bounds are below the cost of every allowed motion.
+// Property: the bounds are below the cost of every allowed motion.
 TEST(ImprovableRegion, BoundsAreBelowTheCost) {
   const auto map = randomMap({.seed = 9, .blocked = 0.05});
   const ImprovableRegion region({.map = map, .start = {3.5, 3.5}, .goal = {16.5, 15.5}, .known_route = {}});
@@ -52,8 +52,8 @@ TEST(ImprovableRegion, BoundsAreBelowTheCost) {
   EXPECT_GT(tried, 50);
 }
 
-// Property: samples lie where the best cost can be beaten, also a lower one than that of the known route; they
-// reach every quarter of the ellipse, and the same engine gives the same.
+// Property: every sample can be on a route cheaper than the best cost, also for a best cost below that of
+// the known route. The samples reach every quarter of the ellipse, and an equal engine gives equal samples.
 TEST(ImprovableRegion, SamplesCoverTheRegion) {
   const auto region = around(250.0);
   for (const double best_J : {250.0, 215.0, 1e9}) {

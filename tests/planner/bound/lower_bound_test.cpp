@@ -12,8 +12,8 @@ namespace lower_bound_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Property: no polyline costs less, of which the best that the planner finds, refined as hard as we can, is
-// the sharpest.
+// Property: no route costs less than the bound; the refined best route of the planner is the strictest
+// check.
 TEST(LowerBound, BoundIsBelowEveryPlannedRoute) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const auto map =
@@ -33,7 +33,7 @@ TEST(LowerBound, BoundIsBelowEveryPlannedRoute) {
   }
 }
 
-// Ramps of one gradient and soil, 20 cells wide: ground on which the bound is sharp enough to be wrong.
+// Ramps of one gradient and soil, 20 cells wide: ground on which the bound is close to the cost.
 std::shared_ptr<const costmap::CostGrid> ramps(unsigned seed) {
   std::mt19937 random(seed);
   std::vector<costmap::CellCode> patches;
@@ -48,7 +48,7 @@ std::shared_ptr<const costmap::CostGrid> ramps(unsigned seed) {
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
 }
 
-// Property: no motion that happens to be allowed costs less, straight or bent once, of any length and
+// Property: no random allowed motion costs less than the bound, straight or with one bend, of any length and
 // heading, also along the map's border.
 TEST(LowerBound, BoundIsBelowRandomMotions) {
   int tried = 0, sharp = 0;
@@ -78,7 +78,7 @@ TEST(LowerBound, BoundIsBelowRandomMotions) {
   EXPECT_GT(sharp, 20);
 }
 
-// Closed form: 10 J/m, where corners of cells alone would give away up to 7.6 %.
+// Closed form: 10 J/m; a bound over corners of cells alone would be up to 7.6 % too low.
 TEST(LowerBound, BoundEqualsStraightLineCostOnUniformGround) {
   const auto map = drawn(std::vector<std::string>(200, std::string(200, '.')));
   const Segment ends{{10.5, 10.5}, {190.5, 80.5}};
@@ -86,7 +86,7 @@ TEST(LowerBound, BoundEqualsStraightLineCostOnUniformGround) {
   EXPECT_NEAR(LowerBound()(map, ends, 0.0), best, 1e-9 * best);
 }
 
-// Closed form: 10 J/m, and 8 cells of another soil in the way of every straight line cost twice that.
+// Closed form: 10 J/m, except 8 m of another soil across every straight line, which cost twice as much.
 TEST(LowerBound, BoundIsWithinTheOctagonMetricForMixedGround) {
   std::vector<std::string> rows(200, std::string(200, '.'));
   for (std::string& row : rows) row.replace(96, 8, "11111111");
@@ -98,7 +98,7 @@ TEST(LowerBound, BoundIsWithinTheOctagonMetricForMixedGround) {
 }
 
 TEST(LowerBound, BoundIsHigherUphillThanDownhill) {
-  // Closed form: a ramp of 0.2 costs 43 J/m straight up and 26 J/m down, ten on the flat.
+  // Closed form: a ramp of 0.2 costs 43 J/m straight up and 26 J/m down; level ground costs 10 J/m.
   std::vector<std::string> rows(60, std::string(60, '>'));
   const auto map = drawn(rows);
   const double up = LowerBound()(map, {{5.5, 30.5}, {54.5, 30.5}}, 0.0);
@@ -112,8 +112,8 @@ TEST(LowerBound, ToleranceLowersTheBound) {
   EXPECT_LT(LowerBound()(map, ends, 20.0), LowerBound()(map, ends, 0.0));
 }
 
-// Closed form: 50 m along a track of 1 J/m cost 50 J, though climbing there costs a thousand times that and
-// the ground beside it ten times.
+// Closed form: 50 m along a track of 1 J/m cost 50 J, although climbing on the track costs a thousand times
+// as much and the ground beside the track ten times as much.
 TEST(LowerBound, BoundIsValidIfSlopeCostDominatesRollingCost) {
   costmap::TravelCurve track, ground;
   ground.cost_J_per_m.fill(10.0F);

@@ -15,7 +15,7 @@ namespace mesh_route_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Waves of two lengths with blocked cells strewn over them.
+// Waves of two lengths with scattered blocked cells.
 std::shared_ptr<const costmap::CostGrid> hills(unsigned seed) {
   maps::Raster<costmap::CellCode> cells(
       {.width = 40, .height = 30, .resolution_m = 1.0, .south_west = {12.0, -7.0}});
@@ -37,8 +37,8 @@ double legs_J(const MotionCost& cost, const Polyline& points) {
   return sum;
 }
 
-// Property: the way leads from start to goal over ground that allows it, costs no less than is proven, and on average less
-// than the cheapest in 32 headings, unrefined both.
+// Property: the route leads from start to goal over allowed ground, costs at least the proven bound, and
+// costs on average less than the cheapest route in 32 headings, both unrefined.
 TEST(MeshRoute, RouteIsCheaperThanWithThirtyTwoHeadings) {
   std::vector<double> ratios;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -62,7 +62,7 @@ TEST(MeshRoute, RouteIsCheaperThanWithThirtyTwoHeadings) {
   EXPECT_LT(ratios[ratios.size() / 2], 1.0);
 }
 
-// Property: of a start that no search leaves there is no way.
+// Property: a start enclosed by refused ground has an empty route.
 TEST(MeshRoute, UnreachableGoalYieldsAnEmptyRoute) {
   maps::Raster<costmap::CellCode> cells({.width = 12, .height = 9, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.curve = 2}));

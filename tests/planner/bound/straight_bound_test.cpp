@@ -13,7 +13,8 @@ namespace straight_bound_test {
 
 using testing::drawn;
 
-// Closed form: ten joules a metre on level ground, in every direction; a drawn ramp elsewhere has cheaper gradients.
+// Closed form: 10 J/m on level ground in every direction; the cheaper gradients of a ramp elsewhere do not
+// count.
 TEST(StraightBound, BoundEqualsStraightLineCostOnUniformGround) {
   const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
   for (int k = 0; k < 24; ++k) {
@@ -26,7 +27,8 @@ TEST(StraightBound, BoundEqualsStraightLineCostOnUniformGround) {
   }
 }
 
-// Closed form: 30 J/m, and ground of 10 J/m so far aside that the way there alone costs more than the straight line.
+// Closed form: 30 J/m; ground of 10 J/m lies so far aside that reaching it costs more than the straight
+// line.
 TEST(StraightBound, CheapGroundOutOfReachIsExcluded) {
   std::vector<std::string> rows(120, std::string(120, '2'));
   for (int k = 0; k < 20; ++k)
@@ -38,9 +40,8 @@ TEST(StraightBound, CheapGroundOutOfReachIsExcluded) {
   EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J, 1e-6 * cost_J);
 }
 
-// Closed form: a track of 10 J/m that begins 3 m behind the start and ends 3 m behind the goal makes the way round,
-// over
-// ground of 50 J/m at both ends, cheaper than the straight line of 1000 J.
+// Closed form: a track of 10 J/m begins 3 m behind the start and ends 3 m behind the goal. The detour over
+// ground of 50 J/m at both ends and the track is cheaper than the straight line of 1000 J.
 TEST(StraightBound, CheapTrackBehindTheStartIsIncluded) {
   std::vector<std::string> rows(60, std::string(100, '4'));
   const auto track = [&rows](int column, int y) {
@@ -58,7 +59,7 @@ TEST(StraightBound, CheapTrackBehindTheStartIsIncluded) {
   EXPECT_LE(straightBoundOver_J(*map, ends, 0.0, cost(ends)), round_J);
 }
 
-// Property: whatever route is known, no motion of those drawn costs less than the bound, by way of any third place.
+// Property: for any known route, no random motion through any third place costs less than the bound.
 TEST(StraightBound, BoundIsBelowEveryMotionForAnyKnownRoute) {
   std::size_t tried = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {

@@ -33,8 +33,8 @@ MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::Trav
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
 }
 
-// Property: in each triangle, along random headings, a metre takes no more of the solution over its excess than it
-// costs to drive. The gradient is that of a plane through three nodes, from their places.
+// Property: in each triangle and random heading, the slope of the solution, divided by its excess, is at
+// most the cost of a metre. The gradient is that of a plane through the three nodes.
 TEST(SubSolution, SlopeIsBoundedByTheCostInAllHeadings) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto map = randomGround(seed, seed % 2 == 0 ? testing::jaggedCost() : testing::driveCost());
@@ -73,7 +73,7 @@ TEST(SubSolution, SlopeIsBoundedByTheCostInAllHeadings) {
   }
 }
 
-// The least that a drive over a plane costs: along one heading, or zigzag along two of 720.
+// The least cost of a drive over a plane: along one heading, or along two of 720 headings in turn.
 double leastOnPlane_J(const costmap::TravelCost& cost, costmap::CellCode code, const Segment& ends) {
   const double length_m = distance_m(ends.from, ends.to);
   const auto at = directionOf(ends);
@@ -93,8 +93,8 @@ double leastOnPlane_J(const costmap::TravelCost& cost, costmap::CellCode code, c
   return least * length_m;
 }
 
-// Property: on a plane, whose metre costs the same everywhere but not in all headings, the best drive costs no more
-// than half a percent above the bound, and never less than the bound.
+// Property: on a plane, whose cost is uniform but depends on the heading, the best drive is between the
+// bound and half a percent above it.
 TEST(LowerBound, BoundIsTightOnPlanes) {
   std::mt19937 random(11);
   for (int n = 0; n < 12; ++n) {
@@ -116,8 +116,8 @@ TEST(LowerBound, BoundIsTightOnPlanes) {
   }
 }
 
-// Property: what is pruned by the cost of a known route leaves a proof, within what the order in which caps are chosen
-// changes of it (0.033 at most on this ground, whose cells have nothing to do with each other), and no route costs less.
+// Property: pruning by the cost of a known route changes the bound only through the order of the caps (by
+// 0.033 at most on this ground of uncorrelated cells), and no route costs less than the bound.
 TEST(SubSolution, KnownRouteOnlyPrunesTheSearch) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const auto map = randomGround(seed, testing::driveCost());

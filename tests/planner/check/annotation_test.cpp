@@ -11,7 +11,7 @@
 namespace talus::planner {
 namespace annotation_test {
 
-// Flat and sloping ground whose states say what a metre is like.
+// Level and sloping ground with tables of travel states.
 std::shared_ptr<const costmap::CostGrid> mapWithStates() {
   auto states = std::make_shared<costmap::TravelTable>();
   for (int bin = 0; bin < 512; ++bin) {
@@ -35,7 +35,7 @@ TEST(Annotation, VerticesLieOnCellBorders) {
   const auto map = mapWithStates();
   Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {3.5, 0.5}}, 40.0, 20.0};
   const Route route = annotated(plan, {.map = *map, .planner = "field"});
-  ASSERT_EQ(route.vertices.size(), 5U);  // start, three borders, end
+  ASSERT_EQ(route.vertices.size(), 5U);  // start, three borders of cells, end
   const RouteVertex& slope = route.vertices[2];
   EXPECT_EQ(slope.x_m, 2.0);
   EXPECT_NEAR(slope.slope_along_rad, std::atan(0.25), 1e-12);
@@ -53,8 +53,8 @@ TEST(Annotation, VerticesLieOnCellBorders) {
   EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
 }
 
-// Property: the vertices of a route, read again as a polyline, make the same route, though they lie on sides of cells
-// to rounding only.
+// Property: annotating the vertices of a route again yields the same route, although vertices lie on sides
+// of cells to rounding only.
 TEST(Annotation, ReannotatedRouteIsUnchanged) {
   std::mt19937 random(3);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
@@ -79,7 +79,8 @@ TEST(Annotation, RouteWithAViolationIsWithheld) {
   const AnnotationInput input{.map = *map, .planner = "field"};
   Plan plan{RouteStatus::Found, {}, {{0.5, 0.5}, {0.9, 0.5}}, 4.0, 4.0};
   EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::Found);
-  plan.drive = {.start = {{0.5, 0.5}, 0.0}, .legs = {{{1.0, 0.0}, 0.0}}};  // the drive goes on into the wall
+  plan.drive = {.start = {{0.5, 0.5}, 0.0},
+                .legs = {{{1.0, 0.0}, 0.0}}};  // the drive continues into the wall
   EXPECT_EQ(checkedRoute(plan, input).status, RouteStatus::NoneFound);
   plan.drive = {};
   plan.points.push_back({2.5, 0.5});

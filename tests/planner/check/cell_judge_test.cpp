@@ -28,7 +28,7 @@ TEST(CellJudge, MostExpensiveHeadingOnAPlaneIsUphill) {
 TEST(CellJudge, KindFollowsFromRefusedHeadings) {
   EXPECT_EQ(judged({.curve = costmap::CellCode::kUnknown}).kind, Kind::Unknown);
   EXPECT_EQ(judged({.curve = costmap::CellCode::kBlocked}).kind, Kind::Refused);
-  // A slope of 0.33 where 0.28 along and 0.17 across are allowed: every heading breaks one of the two.
+  // Slope 0.33 with limits of 0.28 along and 0.17 across: every heading violates one of the limits.
   EXPECT_EQ(judged({.dz_dx = 0.33, .curve = 0}, {.max_along = 0.28, .max_across = 0.17}).kind, Kind::Refused);
   EXPECT_EQ(judged({.dz_dx = 0.3, .curve = 0}, {.max_along = 0.28, .max_across = 0.36}).kind,
             Kind::Restricted);
@@ -36,7 +36,7 @@ TEST(CellJudge, KindFollowsFromRefusedHeadings) {
   EXPECT_THROW(CellJudge(nullptr), std::invalid_argument);
 }
 
-// Independent derivation: 720 headings of random cells, each by itself.
+// Closed form, by brute force: 720 headings of random cells, each evaluated separately.
 TEST(CellJudge, MatchesBruteForceOverHeadings) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> gradient(-0.3, 0.3);
@@ -57,7 +57,8 @@ TEST(CellJudge, MatchesBruteForceOverHeadings) {
     }
     EXPECT_EQ(judgement.kind == Kind::Open, allowed == 720);
     EXPECT_TRUE(allowed == 0 || judgement.kind != Kind::Refused);
-    // The dearest of 64 headings is at most half of their distance off: 1 - cos(pi / 64) = 0.12 % of the gradients.
+    // The most expensive of 64 headings is off by at most half their spacing: 1 - cos(pi / 64) = 0.12 % of
+    // the gradients.
     if (judgement.kind != Kind::Open) continue;
     EXPECT_NEAR(judgement.dearest_J_per_m / dearest, 1.0F, 0.005F);
   }

@@ -29,7 +29,7 @@ TEST(ChassisPlanner, RouteAvoidsInsufficientGroundClearance) {
   FieldPlanner field;
   const Problem problem{.map = map, .start = {3.5, 10.5}, .goal = {16.5, 10.5}};
   const auto plan = planOnChassis(problem, chassis, [&](const Problem& p) { return field.plan(p); });
-  // The gap is two cells and the edge of the raster: too narrow for wheels half a metre from the middle.
+  // The gap is two cells beside the edge of the raster: too narrow for wheels half a metre from the centre.
   EXPECT_EQ(plan.status, RouteStatus::NoneFound);
   EXPECT_NE(plan.reason.find("no detour found where"), std::string::npos) << plan.reason;
   for (int r = 3; r < 7; ++r) ground[{10, r}] = 0.0F;
@@ -39,7 +39,7 @@ TEST(ChassisPlanner, RouteAvoidsInsufficientGroundClearance) {
   EXPECT_GT(open.cost_J, 140.0);
 }
 
-// Property: what was not sought for lack of time is not said to be missing.
+// Property: a search that is stopped does not report that no detour exists.
 TEST(ChassisPlanner, StopYieldsCancelled) {
   const auto map = testing::drawn(std::vector<std::string>(20, std::string(20, '.')));
   maps::Raster<float> ground(map->grid());

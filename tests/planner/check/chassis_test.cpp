@@ -41,10 +41,10 @@ maps::Raster<float> terrain(unsigned seed, double roughness_m, double resolution
   return made;
 }
 
-// The body as a frame: axes by their rises, heading kept.
+// Attitude of the body: rises of its axes; the heading is given.
 struct Body {
   double along_rise, across_rise;  // sin of pitch and of roll
-  double z_m;                      // of the contact plane at the middle
+  double z_m;                      // height of the contact plane at the centre
 
   struct Spot {
     double x, y, z;
@@ -77,7 +77,7 @@ double groundAt(const maps::Raster<float>& terrain, const Body::Spot& spot) {
   return maps::elevationAt(terrain, {spot.x, spot.y}).value_or(NAN);
 }
 
-// The body on three of its wheels, found by iteration: their plane through the ground where they then are.
+// Body resting on three given wheels: the plane through the ground at the wheels, by iteration.
 Body onThree(const maps::Raster<float>& ground, const Pose& pose,
              const std::array<std::pair<double, double>, 3>& feet) {
   Body body{0.0, 0.0, 0.0};
@@ -96,7 +96,7 @@ Body onThree(const maps::Raster<float>& ground, const Pose& pose,
   return body;
 }
 
-// Brute force: every way in which the body can rest on three wheels, the others on or above the ground.
+// All stable attitudes by brute force: three wheels on the ground, the others on or above it.
 std::vector<Body> settled(const maps::Raster<float>& ground, const Pose& pose, int count) {
   const auto wheels = wheelsOf(count);
   std::vector<Body> bodies;
@@ -104,7 +104,7 @@ std::vector<Body> settled(const maps::Raster<float>& ground, const Pose& pose, i
     for (std::size_t j = i + 1; j < wheels.size(); ++j)
       for (std::size_t k = j + 1; k < wheels.size(); ++k) {
         if (wheels[i].second == wheels[j].second && wheels[j].second == wheels[k].second)
-          continue;  // it would roll
+          continue;  // the centre of mass lies outside the three wheels
         const Body body = onThree(ground, pose, {wheels[i], wheels[j], wheels[k]});
         bool stands = true;
         for (const auto& [x, y] : wheels) {
@@ -116,7 +116,7 @@ std::vector<Body> settled(const maps::Raster<float>& ground, const Pose& pose, i
   return bodies;
 }
 
-// Independent kinematics of the rocker-bogie: wheels on the ground, found by iteration.
+// Kinematics of the rocker-bogie, derived independently: wheels on the ground, by iteration.
 Body articulated(const maps::Raster<float>& ground, const Pose& pose) {
   Body body{0.0, 0.0, 0.0};
   for (int n = 0; n < 60; ++n) {
@@ -159,8 +159,8 @@ bool withinLimits(const Body& body) {
 }
 
 TEST(Chassis, BoundsContainRigidBodyPoses) {
-  // Property: wherever brute force settles the body, pitch, roll and clearance lie within the bounds; on fine
-  // and coarse rasters, four wheels and six.
+  // Property: for every attitude found by brute force, pitch, roll and clearance lie within the bounds; on
+  // fine and coarse rasters, with four and six wheels.
   int tried = 0;
   for (unsigned seed = 1; seed <= 60; ++seed)
     for (const int wheels : {4, 6})
@@ -197,7 +197,8 @@ TEST(Chassis, BoundsContainRockerBogiePoses) {
 }
 
 TEST(Chassis, BoundsWithSlackContainNearbyPoses) {
-  // Property: the bounds at a pose with slack hold the stances of every pose that moves no wheel further.
+  // Property: the bounds at a pose with slack contain the attitudes of every pose that moves no wheel
+  // further than the slack.
   const auto ground = terrain(7, 0.04, 0.2);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -222,12 +223,12 @@ TEST(Chassis, BoundsEqualTheSlopeOnAPlane) {
   for (int r = 0; r < 40; ++r)
     for (int c = 0; c < 40; ++c) slope[{c, r}] = static_cast<float>(0.2 * 0.2 * c);
   auto cart = rover(4);
-  cart.max_roll_rad = 0.01;  // hardly any tilting: the boxes are nearly points
+  cart.max_roll_rad = 0.01;  // almost no tilt: the boxes are nearly points
   cart.max_pitch_rad = 0.21;
   const auto stance = Chassis(slope, cart, Suspension::Rigid).stance({{4.0, 4.0}, 0.0});
   ASSERT_TRUE(stance.has_value());
-  // Closed form: 0.24 m over the 1.2 m of the chassis, along the map; the boxes add tan 0.2 times 2.5 % of
-  // 0.78 m.
+  // Closed form: 0.24 m over the 1.2 m of the chassis, along the map axis; the boxes add tan 0.2 times 2.5 %
+  // of 0.78 m.
   EXPECT_NEAR(stance->pitch_rad.low, std::asin(0.2), 0.02);
   EXPECT_NEAR(stance->pitch_rad.high, std::asin(0.2), 0.02);
 }
@@ -244,18 +245,18 @@ TEST(Chassis, RockBetweenTheWheelsViolatesGroundClearance) {
   ASSERT_FALSE(violations.empty());
   for (const Violation& v : violations) EXPECT_LT(std::abs(v.place.x_m - 4.05), 1.5);
   EXPECT_TRUE(chassis.violations(std::vector<maps::Point>{{1.5, 6.0}, {6.5, 6.0}}).empty());
-  EXPECT_NE(chassis.refusal({{0.2, 0.2}, 0.0}), "");  // half the rover over the edge
+  EXPECT_NE(chassis.refusal({{0.2, 0.2}, 0.0}), "");  // half the rover beyond the edge
 }
 
 TEST(Chassis, TurnInPlaceChecksEveryWheelCircle) {
-  // The front left wheel passes a rock 107 degrees round its circle, between the poses at both ends and the
-  // middle.
+  // The front left wheel meets a rock 107 degrees along its circle, between the poses that are checked at
+  // both ends and in the middle.
   maps::Raster<float> flat({.width = 80, .height = 80, .resolution_m = 0.1, .south_west = {}});
   const double around = 107.0 * kDegree;
   const auto cell = flat.grid().cellAt({4.0 + 0.781 * std::cos(around), 4.0 + 0.781 * std::sin(around)});
   flat[*cell] = 1.5F;
   auto cart = rover(4);
-  cart.max_pitch_rad = cart.max_roll_rad = 0.2;  // hardly any tilting: the wheels' boxes are small
+  cart.max_pitch_rad = cart.max_roll_rad = 0.2;  // almost no tilt: the wheels' boxes are small
   const Chassis chassis(flat, cart, Suspension::Rigid);
   for (const double heading : {0.0, std::numbers::pi / 4, std::numbers::pi / 2})
     EXPECT_EQ(chassis.refusal({{4.0, 4.0}, heading}), "") << heading;

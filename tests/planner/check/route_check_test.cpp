@@ -31,7 +31,8 @@ TEST(RouteCheck, ViolationHasPlaceAndReason) {
   EXPECT_EQ(found[1], (Violation{{3.5, 0.5}, "unobserved cell"}));
 }
 
-// A corner belongs to the cell north-east of it: a route may end there whatever lies in the others.
+// Property: a corner belongs to the cell north-east of it, and a route may end there whatever the other
+// cells contain.
 TEST(RouteCheck, RouteMayEndOnACellCorner) {
   const auto map = drawn({"...", "...", "#.."});
   EXPECT_TRUE(violations(*map, {{2.5, 2.5}, {1.0, 1.0}}).empty());
@@ -69,7 +70,7 @@ TEST(RouteCheck, TurnThroughTippingHeadingsIsAViolation) {
 }
 
 TEST(RouteCheck, TiltLimitDependsOnHeading) {
-  // A slope of 0.2 eastwards under limits of 0.3 along and 0.1 across: up and down it, not across it.
+  // A slope of 0.2 eastwards with limits of 0.3 along and 0.1 across: allowed up and down, refused across.
   maps::Raster<costmap::CellCode> cells({.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.2, .dz_dy = 0.0, .curve = 0}));
   const auto map = costmap::flattened(cells, testing::driveCost({.max_along = 0.3, .max_across = 0.1}));
@@ -79,8 +80,7 @@ TEST(RouteCheck, TiltLimitDependsOnHeading) {
   EXPECT_EQ(across[0].reason, "slope across the heading above the roll limit");
 }
 
-// Property: a polyline has violations exactly where MotionCost is infinite, and where fine sampling meets a
-// refusal.
+// Property: a polyline has violations exactly if MotionCost is infinite and fine sampling meets a refusal.
 TEST(RouteCheck, ViolationsMatchInfiniteMotionCostAndFineSampling) {
   std::mt19937 random(11);
   const auto coordinate = [&random] { return 20.0 * static_cast<double>(random()) / 4294967296.0; };
@@ -113,7 +113,7 @@ TEST(RouteCheck, ViolationsMatchInfiniteMotionCostAndFineSampling) {
   EXPECT_LT(refused, 350);
 }
 
-// A slope that becomes steeper eastwards, on soil that is not quite known.
+// A slope that steepens eastwards, on soil with a standard deviation.
 costmap::TraversabilityMap steepening(const costmap::TravelPolicy& policy = {}) {
   costmap::MapLayers layers;
   const maps::Grid grid{.width = 120, .height = 20, .resolution_m = 0.5, .south_west = {}};
@@ -126,8 +126,8 @@ costmap::TraversabilityMap steepening(const costmap::TravelPolicy& policy = {}) 
   return {std::move(layers), costmap::testGround(policy), {.footprint_radius_m = 1.0}};
 }
 
-// Closed form: P(pull < gradient) of a normal belief is a straight line over the gradient in standard deviations,
-// 1/std steep, and crosses the quantile where the first danger is told.
+// Closed form: for a normal estimate, the quantile of P(pull < gradient) is linear in the gradient with
+// slope 1/std, and the first danger is reported where the probability exceeds the requested quantile.
 TEST(RouteMonitor, DangerIsReportedWhereFailureProbabilityExceedsTheQuantile) {
   const costmap::TraversabilityMap map = steepening();
   const auto grid = map.published();
@@ -145,19 +145,19 @@ TEST(RouteMonitor, DangerIsReportedWhereFailureProbabilityExceedsTheQuantile) {
   for (const Danger& d : found)
     if (d.probability < 1.0) last = &d;
   EXPECT_GT(first->probability, 0.02);
-  EXPECT_LT(first->probability, 0.03);  // one cell of a few thousandths of gradient further
+  EXPECT_LT(first->probability, 0.03);  // one cell further, a few thousandths of gradient
   EXPECT_NEAR(first->along_m, first->place.x_m - 2.0, 1e-9);
   const double std = map.costs().ground({60, 10})->pull.std;
   const double steepness =
       (deviations(last->probability) - deviations(first->probability)) / (gradient(*last) - gradient(*first));
-  EXPECT_NEAR(steepness * std, 1.0, 0.15);  // bins of gradient are 1/256 wide, and 0.05 apart at most here
+  EXPECT_NEAR(steepness * std, 1.0, 0.15);  // bins of gradient are 1/256 wide
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_GE(found[i].along_m, found[i - 1].along_m);
     EXPECT_GE(found[i].probability, found[i - 1].probability);
   }
 }
 
-// Property: what violations() finds is a danger of probability 1, at any quantile; downhill nothing falls short.
+// Property: a violation is a danger with probability 1 at any quantile; downhill no danger is reported.
 TEST(RouteMonitor, ViolationsAreDangersWithProbabilityOne) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> share(0.01, 0.99);
@@ -179,7 +179,7 @@ TEST(RouteMonitor, ViolationsAreDangersWithProbabilityOne) {
   EXPECT_TRUE(dangers(*steepening().published(), {{30.0, 5.25}, {2.0, 5.25}}).empty());
 }
 
-// Property: how often weak ground holds a rover changes the cost, not what is told of the ground.
+// Property: the entrapment probability changes the cost and not the reported dangers.
 TEST(RouteMonitor, DangerIsIndependentOfEntrapmentProbability) {
   const std::vector<maps::Point> up{{2.0, 5.25}, {58.0, 5.25}};
   const auto usual = dangers(*steepening().published(), up, 0.02);
@@ -194,7 +194,7 @@ TEST(RouteMonitor, DangerIsIndependentOfEntrapmentProbability) {
   }
 }
 
-// A vertex that is nowhere costs no more than one beside the map.
+// Property: a vertex at any distance outside the map is reported as outside the map.
 TEST(RouteCheck, DistantVerticesAreOutsideTheMap) {
   const auto map = drawn({"....", "....", "...."});
   for (const double far : {1e3, 1e9, 1e14, 1e300}) {

@@ -13,7 +13,7 @@
 namespace talus::planner {
 namespace route_risk_test {
 
-// A straight route of stretches of one length, each with its own probability of failing per correlation
+// A straight route of sections of equal length, each with its own failure probability per correlation
 // length.
 Route straight(const std::vector<double>& failing, double metres, double correlation_m) {
   Route route;
@@ -37,14 +37,14 @@ TEST(RouteRisk, SingleSegmentRiskEqualsItsFailureProbability) {
 
 TEST(RouteRisk, DistantSegmentsAreIndependentAndNearOnesCorrelated) {
   const std::vector<double> failing(10, 0.05);
-  // Closed form: independent stretches, 1 - (1 - p)^n; fully alike ones, p.
+  // Closed form: 1 - (1 - p)^n for independent sections; p for fully correlated sections.
   const RouteRisk far =
       routeRisk(straight(failing, 100.0, 5.0), {.correlation_length_m = 5.0, .worlds = 20000});
   EXPECT_NEAR(far.immobilisation, 1 - std::pow(0.95, 10), withinFour(far));
   const RouteRisk near =
       routeRisk(straight(failing, 1e-4, 5.0), {.correlation_length_m = 5.0, .worlds = 20000});
   EXPECT_NEAR(near.immobilisation, 0.05,
-              withinFour(near) + 0.002);  // 0.002: they are a millimetre apart, not at one place
+              withinFour(near) + 0.002);  // 0.002: the sections are a millimetre apart
 }
 
 TEST(RouteRisk, CvarIsTheTailMeanAtTheWorstPlace) {
@@ -56,7 +56,8 @@ TEST(RouteRisk, CvarIsTheTailMeanAtTheWorstPlace) {
   EXPECT_LT(risk.cvar, routeRisk(straight({1e-6, 0.3, 1e-6}, 10.0, 5.0), {.tail = 1.0}).cvar);
 }
 
-// Share of worlds that hold a rover, by plain draws of class, places and what each weak place does.
+// Share of worlds in which the rover is immobilised, by sampling class, places and entrapment at each weak
+// place.
 double heldShare(const Route& route, const RouteRiskOptions& options, int worlds) {
   std::mt19937_64 random(17);
   std::normal_distribution<double> gauss;
@@ -84,8 +85,8 @@ double heldShare(const Route& route, const RouteRiskOptions& options, int worlds
   return sum / worlds;
 }
 
-// Property: from 1e-4 to 0.5 what is said is the share of drawn worlds that hold the rover, whether it rescues
-// itself or not, however much of the doubt its class shares.
+// Property: for risks from 1e-4 to 0.5 the estimate equals the share of sampled worlds with immobilisation,
+// with and without entrapment probability, for any share of class uncertainty.
 TEST(RouteRisk, RiskEqualsTheShareOfImmobilisedWorlds) {
   std::mt19937_64 random(8);
   const auto drawn = [&](double low, double high) {
@@ -107,25 +108,27 @@ TEST(RouteRisk, RiskEqualsTheShareOfImmobilisedWorlds) {
     EXPECT_DOUBLE_EQ(riskAlong(route, options).back(), said);
     least = std::min(least, said);
     most = std::max(most, said);
-    // Tolerance: 200 000 worlds tell 1e-4 to a quarter; 400 chosen ones tell anything to 0.15. The goal is 2.
+    // Tolerance: 200 000 worlds estimate 1e-4 to a quarter; the estimate from 400 selected worlds is
+    // accurate to 0.15. The goal is a factor of 2.
     EXPECT_NEAR(said / held, 1.0, 0.15 + 4.0 / std::sqrt(2e5 * held)) << trial << ' ' << held;
   }
   EXPECT_LT(least, 3e-4);
   EXPECT_GT(most, 0.2);
 }
 
-// Closed form: a class that is wholly unsure fails everywhere or nowhere.
+// Closed form: with fully shared class uncertainty the ground fails everywhere or nowhere.
 TEST(RouteRisk, FullySharedClassUncertaintyIsFullyCorrelated) {
   Route route = straight(std::vector<double>(40, 0.01), 5.0, 5.0);
   for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = 1.0;
   EXPECT_NEAR(routeRisk(route).immobilisation, 0.01, 1e-9);
-  // A rover that rescues itself from 99 of 100: fails in one world of a hundred, there at 40 places.
+  // With an entrapment probability of 0.01: the ground fails in one world of a hundred, there at 40 places.
   for (RouteVertex& vertex : route.vertices)
     vertex.hazard_per_m = vertex.hazard_per_m > 0.0 ? -std::log1p(-0.01 * 0.01) / 5.0 : 0.0;
   EXPECT_NEAR(routeRisk(route, {.entrapment = 0.01}).immobilisation, 0.01 * (1.0 - std::pow(0.99, 40)), 1e-9);
 }
 
-// Property: what is handed out instead of a risk that a stop left undrawn is never below it, whatever hangs together.
+// Property: the bound returned instead of a risk that was not computed is never below the risk, for any
+// correlation.
 TEST(RouteRisk, BoundIsAtLeastTheRisk) {
   std::mt19937_64 random(5);
   const auto drawn = [&](double low, double high) {
@@ -139,18 +142,18 @@ TEST(RouteRisk, BoundIsAtLeastTheRisk) {
     Route route = straight(failing, drawn(0.2, 8.0), options.correlation_length_m);
     for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = trial % 3 * 0.4;
     const std::vector<double> along = riskAlong(route, options), bound = riskBoundAlong(route, options);
-    // Tolerance: four sigma of the worlds that are drawn to fail up to there.
+    // Tolerance: four standard deviations of the number of sampled worlds that fail up to the vertex.
     for (std::size_t i = 1; i < along.size(); ++i) {
       const double failing_worlds = options.worlds * bound[i] / bound.back();
       EXPECT_GE(bound[i] * (1.0 + 4.0 / std::sqrt(std::max(failing_worlds, 1.0))), along[i])
           << trial << ' ' << i;
     }
   }
-  // Closed form: one stretch of an unmonitored rover holds it wherever its soil is too weak.
+  // Closed form: without monitoring, one section immobilises the rover whenever its soil is too weak.
   EXPECT_NEAR(riskBoundAlong(straight({0.2}, 1.0, 5.0), {}).back(), 0.2, 1e-12);
 }
 
-// Property: a stop leaves a long route undrawn at once, and changes nothing of a short one.
+// Property: a stop ends the computation for a long route at once, and does not affect a short route.
 TEST(RouteRisk, StopEndsRiskAlongALongRoute) {
   std::stop_source stop;
   stop.request_stop();
@@ -161,7 +164,7 @@ TEST(RouteRisk, StopEndsRiskAlongALongRoute) {
   EXPECT_EQ(riskAlong(brief, options, stopped), riskAlong(brief, options));
 }
 
-// Property: the risk ends with a stop, too, in either of its parts.
+// Property: a stop ends routeRisk() as well, in either of its phases.
 TEST(RouteRisk, StopEndsRouteRiskOfALongRoute) {
   std::stop_source stop;
   stop.request_stop();
@@ -174,7 +177,7 @@ TEST(RouteRisk, StopEndsRouteRiskOfALongRoute) {
   EXPECT_EQ(routeRisk(brief, {}, stopped).immobilisation, routeRisk(brief).immobilisation);
 }
 
-// Property: classes that the route does not meet have no part in its risk.
+// Property: classes that the route does not cross do not affect its risk.
 TEST(RouteRisk, RiskIsIndependentOfClassesNotOnTheRoute) {
   const auto over = [](int first, int second) {
     Route route = straight(std::vector<double>(40, 0.01), 2.0, 5.0);

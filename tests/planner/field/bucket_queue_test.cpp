@@ -10,8 +10,8 @@ namespace bucket_queue_test {
 
 constexpr auto kAlways = [](std::uint64_t) { return true; };
 
-// Property: what lies within reach comes bucket by bucket, within a bucket as it came; also what is queued
-// in work. The ring is small, so it is gone round many times.
+// Property: keys within range are returned bucket by bucket, in insertion order within a bucket, also keys
+// queued during the processing. The ring is small, so that it wraps many times.
 TEST(BucketQueue, KeysWithinRangeAreInBucketOrder) {
   for (const unsigned shift : {0U, 3U, 5U}) {
     std::mt19937 random(shift + 1);
@@ -31,7 +31,7 @@ TEST(BucketQueue, KeysWithinRangeAreInBucketOrder) {
         },
         kAlways);
     ASSERT_EQ(taken.size(), keys.size());
-    // The index counts pushes, so order within a bucket is order of index.
+    // The index counts insertions, so that insertion order within a bucket is the order of the index.
     EXPECT_TRUE(std::ranges::is_sorted(
         taken, {}, [&](std::uint32_t index) { return std::pair(queue.bucketOf(keys[index]), index); }));
   }

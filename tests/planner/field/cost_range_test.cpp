@@ -7,8 +7,9 @@
 namespace talus::planner {
 namespace cost_range_test {
 
-// Closed form: 10 J on the flat, and going down 10 + 400 g^2 never below that; the dearest is five times the
-// steepest climb in the table, 76/256, crossed in the last row that the fifth curve allows, the twelfth.
+// Closed form: 10 J on level ground; downhill 10 + 400 g^2 is never lower. The maximum is five times the
+// cost of the steepest climb in the table, 76/256, crossed in the last row that the fifth curve allows, the
+// twelfth.
 TEST(CostRange, RangeCoversAllAllowedMetres) {
   const CostRange range = costRange(*testing::driveCost());
   const double g = 76.0 / 256;

@@ -9,8 +9,8 @@ namespace cost_to_go_repair_test {
 
 using testing::randomMap;
 
-// Property: however a patch changes, whether the field was whole or in parts, repaired is the same as found
-// anew.
+// Property: for any change of a patch, with a complete or partial field, the repaired field equals the
+// recomputed field.
 TEST(CostToGo, RepairEqualsRecomputation) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);

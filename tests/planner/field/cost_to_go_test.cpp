@@ -20,7 +20,7 @@ std::shared_ptr<const EdgeLayer> edgesOf(const MapPointer& map, int threads = 1)
   return std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), map->grid().resolution_m), threads);
 }
 
-// Dijkstra over a plain priority queue, with the exact cost of the segment between the centres as the edge.
+// Dijkstra with a plain priority queue; an edge is the exact cost of the segment between two centres.
 maps::Raster<double> bruteForce(const MapPointer& map, maps::Cell goal) {
   const MotionCost cost(map);
   const maps::Grid& grid = map->grid();
@@ -46,8 +46,8 @@ maps::Raster<double> bruteForce(const MapPointer& map, maps::Cell goal) {
   return best;
 }
 
-// Property: the field is the brute-force one. Each edge is rounded by at most a unit, of which the cheapest
-// has 512.
+// Property: the field equals that of Dijkstra's algorithm. Each edge is rounded by at most one unit; the
+// cheapest edge has 512 units.
 TEST(CostToGo, MatchesDijkstraOnRandomMaps) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const auto map = randomMap({.width = 23, .height = 17, .seed = seed, .blocked = 0.25, .roughness = 0.35});
@@ -123,7 +123,7 @@ TEST(CostToGo, StopsOnRequest) {
   EXPECT_TRUE(field.settleAll());
 }
 
-// Property: vectors and scalars give the same bits, in the edges and in the field.
+// Property: vector and scalar kernels give bit-identical edges and fields.
 TEST(CostToGo, VectorAndScalarKernelsAreIdentical) {
   const auto map = randomMap({.width = 83, .height = 71, .seed = 6, .blocked = 0.2, .roughness = 0.4});
   const EdgeUnits units(map->cost(), 1.0);

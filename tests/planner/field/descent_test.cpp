@@ -19,8 +19,8 @@ std::vector<maps::Cell> descentOf(const CostToGo& field, maps::Cell from) {
       [&](std::size_t at) { return field.atGoal(at); });
 }
 
-// Property: steps of a descent are neighbours, and their edges sum to what the field says, to the unit; what
-// is left at the goal among it.
+// Property: successive cells of a descent are neighbours, and the sum of their edges, with the cost at the
+// goal, equals the field to the unit.
 TEST(Descent, DescentCostEqualsTheField) {
   int walked = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
@@ -48,7 +48,8 @@ TEST(Descent, DescentCostEqualsTheField) {
   EXPECT_GT(walked, 1'000);
 }
 
-// Closed form: on even ground two steps east and one north-east cost the same in any order; east comes first.
+// Closed form: on level ground two steps east and one north-east cost the same in any order; east comes
+// first.
 TEST(Descent, TiesAreResolvedByHeadingOrder) {
   CostToGo field(edgesOf(drawn({"....", "...."})), {{.cell = {3, 1}}});
   ASSERT_TRUE(field.settleAll());
@@ -57,7 +58,7 @@ TEST(Descent, TiesAreResolvedByHeadingOrder) {
 
 TEST(Descent, UnsettledFieldYieldsNoDescent) {
   CostToGo field(edgesOf(drawn({"....."})), {{.cell = {0, 0}}});
-  EXPECT_TRUE(descentOf(field, {4, 0}).empty());  // no distance known
+  EXPECT_TRUE(descentOf(field, {4, 0}).empty());  // the distance is unknown
   const auto flat = [](std::size_t) { return 5U; };
   EXPECT_TRUE(descent(field.edges(), {4, 0}, flat, [](std::size_t) { return 0U; }).empty());
 }

@@ -18,8 +18,9 @@ std::shared_ptr<const EdgeLayer> edgesOf(const MapPointer& map, int threads = 1)
   return std::make_shared<EdgeLayer>(map, EdgeUnits(map->cost(), map->grid().resolution_m), threads);
 }
 
-// Property: an edge is MotionCost between the centres, off by a unit and by 1/256 of what nodes side by side differ, less than half, a half step; the grid allows nothing
-// that the exact segment does not.
+// Property: an edge equals MotionCost between the centres, to one unit and 1/256 of the difference between
+// neighbouring nodes (less than half a half-edge). The grid allows no motion that the exact segment does
+// not.
 TEST(EdgeLayer, EdgeCostMatchesTheMotionBetweenCentres) {
   int allowed = 0, blocked = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
@@ -44,7 +45,8 @@ TEST(EdgeLayer, EdgeCostMatchesTheMotionBetweenCentres) {
   EXPECT_GT(blocked, 5'000);
 }
 
-// Property: updated for a patch, across the edges of tiles and at the map's border, is built anew.
+// Property: after an update for a patch, across tile edges and at the map's border, the layer equals a
+// rebuilt one.
 TEST(EdgeLayer, UpdateEqualsRebuild) {
   const auto map = randomMap({.width = 100, .height = 90, .seed = 7});
   for (const CellBox box : {CellBox{{60, 60}, {70, 68}}, {{0, 0}, {3, 89}}, {{99, 89}, {99, 89}}}) {

@@ -20,9 +20,9 @@ std::vector<costmap::CellCode> randomCells(unsigned count) {
   return cells;
 }
 
-// Property: half a step costs half the cell's side (or diagonal) at TravelCost's price, and is
-// blocked where TravelCost refuses it; on other resolutions, limits and units too.
-// Tolerance: nodes and sum are each rounded to a unit, shares to 1/128, and nodes side by side differ by less than half.
+// Property: a half edge costs half the cell's side (or diagonal) at TravelCost's value, and is blocked where
+// TravelCost refuses; also for other resolutions, limits and units. Tolerance: nodes and sum are each
+// rounded to a unit, shares to 1/128, and neighbouring nodes differ by less than half.
 TEST(EdgeUnits, HalfEdgesMatchDriveCost) {
   int allowed = 0;
   for (const double limit : {0.2, 0.29, 0.4})
@@ -63,7 +63,7 @@ TEST(EdgeUnits, ExtendsDetectsAppendedCurves) {
   const auto of = [](std::vector<costmap::TravelCurve> some) {
     return EdgeUnits(costmap::TravelCost({}, std::move(some)), 1.0);
   };
-  // The cheapest and the dearest stay in front: the unit hangs on them.
+  // The cheapest and the most expensive curve stay first, because they determine the unit.
   const std::vector<costmap::TravelCurve> two{curves[0], curves[4]}, three{curves[0], curves[4], curves[2]},
       swapped{curves[4], curves[0]};
   EXPECT_TRUE(of(three).extends(of(two)));

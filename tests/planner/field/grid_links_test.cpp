@@ -11,8 +11,8 @@ namespace grid_links_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Property: every cell of the map whose centre is no farther than a cell off in column and row, and which the
-// exact motion reaches, at its cost; there and back are two questions.
+// Property: links are all cells whose centre is at most one cell away in column and row and that the exact
+// motion reaches, at its cost; the cost there and that back are separate.
 TEST(GridLinks, LinksAreTheAllowedMotionsToNeighbours) {
   int found = 0, uneven = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -47,7 +47,8 @@ TEST(GridLinks, PlacesOutsideTheMapHaveNoLinks) {
   EXPECT_TRUE(linksTo(cost, {1.5, 2.0}).empty());
 }
 
-// Property: at no cost the cells whose centres lie in the circle, also around a goal off the map; brute force.
+// Property: the goal cells, with cost 0, are all cells whose centres lie in the circle, also around a goal
+// off the map; by brute force.
 TEST(GridLinks, GoalCellsAreAllAllowedCellsWithinTolerance) {
   const auto map = randomMap({.width = 25, .height = 19, .seed = 3, .blocked = 0.3});
   const MotionCost cost(map);

@@ -43,7 +43,8 @@ TEST(GridRoute, BlockedOrStoppedSearchYieldsNoRoute) {
       gridRoute(open, field, places, ProgressMonitor{.progress = {}, .stop = source.get_token()}).empty());
 }
 
-// Property: from the field before a change, the route is the one of the field found anew, point for point.
+// Property: the route from the patched field is identical, point for point, to that from the recomputed
+// field.
 TEST(GridRoute, PatchedFieldRouteEqualsThatOfTheNewField) {
   int compared = 0, moved = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {

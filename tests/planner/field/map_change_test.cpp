@@ -17,7 +17,8 @@ std::shared_ptr<const costmap::CostGrid> with(const costmap::CostGrid& map,
   return std::make_shared<costmap::CostGrid>(costmap::revised(map, revision));
 }
 
-// Property: the least box that holds the cells changed, over tiles of 64 cells and the map's border.
+// Property: the result is the smallest box that contains the changed cells, across tiles of 64 cells and at
+// the map's border.
 TEST(MapChange, ChangeIsTheMinimalBoxOfDifferingCells) {
   const auto map = randomMap({.width = 150, .height = 140, .seed = 4, .blocked = 0.0});
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -40,7 +41,7 @@ TEST(MapChange, ChangeIsTheMinimalBoxOfDifferingCells) {
 TEST(MapChange, EqualMapsHaveNoChange) {
   const auto map = randomMap({.width = 70, .height = 70, .blocked = 1.0});
   EXPECT_FALSE(changedCells(*map, *map));
-  EXPECT_FALSE(changedCells(*map, *with(*map, {{5, 5}, {68, 2}})));  // written anew, as before
+  EXPECT_FALSE(changedCells(*map, *with(*map, {{5, 5}, {68, 2}})));  // rewritten with the same values
 }
 
 }  // namespace map_change_test

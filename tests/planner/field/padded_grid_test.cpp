@@ -5,7 +5,7 @@
 namespace talus::planner {
 namespace padded_grid_test {
 
-// Property: each cell has an index of its own off the border, and its neighbours lie one offset away.
+// Property: each cell has its own index off the border, and its neighbours lie one offset away.
 TEST(PaddedGrid, IndexAndCellAreInverse) {
   const PaddedGrid grid{.width = 5, .height = 3};
   std::set<std::size_t> seen;
@@ -25,7 +25,7 @@ TEST(PaddedGrid, IndexAndCellAreInverse) {
     }
 }
 
-// Closed form: one cell all around, as far as the grid goes.
+// Closed form: the box grows by one cell on each side, up to the edge of the grid.
 TEST(PaddedGrid, GrownBoxesAreClippedToTheGrid) {
   const PaddedGrid grid{.width = 10, .height = 6};
   const CellBox inner = grown({{4, 2}, {5, 3}}, 1, grid);

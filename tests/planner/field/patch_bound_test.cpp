@@ -10,8 +10,8 @@ using testing::drawn;
 using testing::randomTrial;
 using testing::Trial;
 
-// Property: the bound is never above the field found anew, at any cell; and where nothing became cheaper it
-// is not below the old field, which is what keeps the search narrow.
+// Property: the bound is never above the recomputed field at any cell. If no cell became cheaper, the bound
+// is not below the old field, which keeps the search narrow.
 TEST(PatchBound, BoundIsNeverAboveTheNewField) {
   int held = 0, gained = 0;
   for (const Change change : {Change::Anew, Change::Cheaper, Change::Dearer, Change::Either})
@@ -34,7 +34,7 @@ TEST(PatchBound, BoundIsNeverAboveTheNewField) {
   EXPECT_GT(gained, 10'000);
 }
 
-// A wall that opens lets ground reach the goal that could not before: the old field bounds nothing there.
+// An opened wall connects ground to the goal that was not connected before: the old field is no bound there.
 TEST(PatchBound, InvalidBoundIsReported) {
   const std::vector<std::string> walled(11, ".....#.....");
   auto opened = walled;

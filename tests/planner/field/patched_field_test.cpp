@@ -12,8 +12,8 @@ using testing::Trial;
 
 constexpr std::uint64_t kAll = 1'000'000'000;
 
-// Property: however a patch changes, the distance of the start and the path from it, byte for byte, are those
-// of the field found anew, or both have no way.
+// Property: for any change of a patch, the cost at the start and the path from it are byte-identical to
+// those of the recomputed field, or neither field has a path.
 TEST(PatchedField, PatchedFieldEqualsTheRecomputedField) {
   int compared = 0, without_way = 0, moved = 0;
   for (const Change change : {Change::Anew, Change::Cheaper, Change::Dearer, Change::Either})
@@ -33,7 +33,8 @@ TEST(PatchedField, PatchedFieldEqualsTheRecomputedField) {
   EXPECT_GT(moved, 50);
 }
 
-// Property: of several links the cheapest is the one that the field found anew names, with the same cost.
+// Property: of several links the patched field selects the same cheapest link, with the same cost, as the
+// recomputed field.
 TEST(PatchedField, CheapestLinkEqualsThatOfTheRecomputedField) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const Trial trial = randomTrial(seed, Change::Either);

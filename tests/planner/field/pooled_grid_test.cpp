@@ -27,9 +27,9 @@ TEST(PooledGrid, PoolingKeepsMeanGradientAndCost) {
             map->cost().costPerMetre(map->at({0, 0}), north));
 }
 
-// Closed form: half of the cells cost 10 and half 50 J/m on the flat: 30 on average, which the levels of
-// surcharge round by an eighth at most; mostly blocked ground is blocked, a third blocked costs half as much
-// again.
+// Closed form: half of the cells cost 10 and half 50 J/m on level ground, 30 on average, which the levels of
+// surcharge round by an eighth at most. A pooled cell is blocked if most of its cells are; with a third
+// blocked it costs half as much again.
 TEST(PooledGrid, MixedAndBlockedCellsHaveASurcharge) {
   std::vector<std::string> rows;
   for (int row = 0; row < 8; ++row) rows.push_back("..44..44########.....###");

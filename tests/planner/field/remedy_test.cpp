@@ -17,8 +17,8 @@ TEST(Remedy, InvalidPlaceNamesItsFaultAndTheNearestTraversableCell) {
             "goal 9.00,0.50 lies outside the map; the nearest traversable cell is 4.50,0.50");
 }
 
-// The cause is named: what stands in the cell, what it is kept clear of, or the rim; and a cell that is joined to the
-// other end is offered.
+// Property: the message names the hazard in the cell, the hazard whose clearance covers the cell, or the
+// rim, and offers a cell that is connected to the other end.
 TEST(Remedy, InvalidPlaceNamesItsHazard) {
   using costmap::Hazard;
   const auto map = drawn({"######", "#..#.#", "#....#", "######"});

@@ -34,8 +34,8 @@ TEST(FieldPlanner, RouteDoesNotCutCornersOfAWall) {
   EXPECT_LE(plan.lower_bound_J, plan.cost_J);
 }
 
-// Property: routes over random maps keep every constraint, cost at most the grid's, and NoRoute is said
-// exactly where a flood over the grid says so.
+// Property: routes over random maps satisfy every constraint and cost at most as much as the grid route;
+// NoRoute is returned exactly if a flood fill of the grid does not reach the goal.
 TEST(FieldPlanner, RoutesOnRandomMapsAreValidAndNoRouteIsExact) {
   int found = 0, none = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
@@ -57,7 +57,7 @@ TEST(FieldPlanner, RoutesOnRandomMapsAreValidAndNoRouteIsExact) {
 }
 
 TEST(FieldPlanner, CostDependsOnDirectionOfTravel) {
-  // A ridge with a gentle, long side in the north: up over the steep side is dearer than down it.
+  // A ridge with a steep and a gentle side: up the steep side costs more than down it.
   const auto map = drawn({"..>>..", "..>>..", "..>>.."});
   FieldPlanner planner;
   const double up = planner.plan(problem(map, {0.5, 1.5}, {5.5, 1.5})).cost_J;
@@ -65,7 +65,7 @@ TEST(FieldPlanner, CostDependsOnDirectionOfTravel) {
   EXPECT_GT(up, down + 30.0);
 }
 
-// Property: on flat ground there and back cost the same.
+// Property: on level ground both directions cost the same.
 TEST(FieldPlanner, CostIsSymmetricOnFlatGround) {
   const auto map = randomMap({.width = 30, .height = 30, .seed = 4, .blocked = 0.1, .roughness = 0.0});
   FieldPlanner planner;
@@ -95,7 +95,8 @@ TEST(FieldPlanner, FailureNamesItsReason) {
   EXPECT_THAT(outside.reason, HasSubstr("outside the map"));
 }
 
-// Brute force is the check: planes that only headings near their contour may cross, in directions the grid lacks.
+// Planes on which only headings near the contour are allowed, at angles that are not among the grid's
+// directions.
 TEST(FieldPlanner, HeadingsBetweenGridDirectionsAreUsed) {
   for (int k = 0; k < 24; ++k) {
     const double contour = 0.2 + k * 0.2618;
@@ -126,7 +127,7 @@ TEST(FieldPlanner, RouteEndsAtTheToleranceCircle) {
   FieldPlanner planner;
   auto asked = problem(map, {1.5, 5.5}, {35.5, 5.5});
   asked.goal_tolerance_m = 4.0;
-  const Plan plan = planner.plan(asked);  // Closed form: 34 m less 4 at 10 J
+  const Plan plan = planner.plan(asked);  // Closed form: 34 m less a tolerance of 4 m, at 10 J/m
   EXPECT_NEAR(plan.cost_J, 300.0, 1e-3);
   EXPECT_LE(plan.lower_bound_J, plan.cost_J);
   asked.goal_tolerance_m = 34.5;
@@ -161,7 +162,7 @@ TEST(FieldPlanner, ResultIsIndependentOfThreadCountAndRepetition) {
   EXPECT_EQ(first.points, other.points);
 }
 
-// Property: after a patch changed, the kept field gives the same bytes as a planner that starts from nothing.
+// Property: after a patch changed, the retained field gives the same bytes as a new planner.
 TEST(FieldPlanner, ReplanningEqualsPlanningAnew) {
   const auto map = randomMap({.width = 200, .height = 200, .seed = 3, .blocked = 0.05, .roughness = 0.15});
   auto asked = problem(map, {5.5, 5.5}, {190.5, 180.5});

@@ -19,12 +19,12 @@ std::vector<maps::Point> goalsOf(const Problem& problem) {
   return goals;
 }
 
-// Property: the answer is the cheapest of the plans to each goal alone, by every kind of planner, with and
-// without a via point; its bound holds for every one of them.
+// Property: the result is the cheapest of the plans to each goal alone, for every kind of planner, with and
+// without a via point; its lower bound is valid for each of these plans.
 TEST(GoalChoice, ResultIsTheCheapestOfTheSingleGoalPlans) {
   int not_the_first = 0;
   for (const std::string planner : {"field", "hybrid", "RRTstar"})
-    for (unsigned seed = 1; seed <= (planner == "RRTstar" ? 1 : 6); ++seed) {  // sampling takes its time
+    for (unsigned seed = 1; seed <= (planner == "RRTstar" ? 1 : 6); ++seed) {  // sampling is slow
       Problem problem{.map = randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.05}),
                       .start = {20.5, 20.5},
                       .goal = {3.5, 4.5},
@@ -83,7 +83,7 @@ TEST(GoalChoice, GoalsThatCannotBeCheaperAreNotPlanned) {
     return NamedPlanner().plan(one);
   });
   EXPECT_EQ(plan.goal, 1u);
-  EXPECT_EQ(asked, (std::vector<maps::Point>{{3.5, 0.5}}));  // 54 metres are dearer than 2 on any ground
+  EXPECT_EQ(asked, (std::vector<maps::Point>{{3.5, 0.5}}));  // 54 m cost more than 2 m on any ground
 }
 
 TEST(GoalChoice, StopsOnRequest) {

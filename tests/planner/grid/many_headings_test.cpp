@@ -15,7 +15,7 @@ namespace many_headings_test {
 using testing::drawn;
 using testing::randomMap;
 
-// The cheapest way between centres in the same headings, by Bellman and Ford over MotionCost.
+// The cheapest route between centres in the same headings, by Bellman-Ford over MotionCost.
 double bruteForce(const MotionCost& cost, maps::Cell from, maps::Cell to) {
   const maps::Grid& grid = cost.map().grid();
   std::vector<double> best(grid.size(), kInfinity);

@@ -17,7 +17,7 @@
 namespace talus::planner {
 namespace other_corridors_test {
 
-// Corridors of free ground through a wall that no heading enters, their beginnings and ends open.
+// A wall that no heading enters, with gaps of free ground; the ground on both sides is free.
 std::vector<std::string> wallWithGaps(int width, int height, std::initializer_list<int> gaps) {
   std::vector<std::string> rows(static_cast<std::size_t>(height),
                                 std::string(static_cast<std::size_t>(width), '.'));
@@ -37,7 +37,7 @@ std::vector<Polyline> others(const std::shared_ptr<const costmap::CostGrid>& map
   return otherCorridors(cost, map, field, places, gridRoute(cost, field, places), choice);
 }
 
-// Closed form: of three gaps the one in the middle is on the way; the others are tried, each once.
+// Closed form: the route takes the middle one of three gaps; each of the other two is tried once.
 TEST(OtherCorridors, AlternativesUseTheOtherGapsOfAWall) {
   const auto map = testing::drawn(wallWithGaps(80, 60, {10, 30, 50}));
   const Segment places{{3.5, 30.5}, {76.5, 30.5}};
@@ -57,8 +57,8 @@ TEST(OtherCorridors, AlternativesUseTheOtherGapsOfAWall) {
   EXPECT_TRUE(others(map, places, {.within = 0.01}).empty());
 }
 
-// Property: on ground where each heading has its price, the way back over the ground turned upside down costs what the way
-// there costs: every corridor is allowed and within the share of the best grid route that was asked for, but for the ends.
+// Property: every corridor is allowed and within the requested share of the best grid route. Reversing the
+// heading on inverted ground leaves the cost unchanged, so that both directions can be compared.
 TEST(OtherCorridors, AlternativesAreWithinTheCostShare) {
   int found = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -82,7 +82,7 @@ TEST(OtherCorridors, AlternativesAreWithinTheCostShare) {
   EXPECT_GT(found, 5) << found;
 }
 
-// Flat ground with blocks that no heading enters.
+// Level ground with blocks that no heading enters.
 std::shared_ptr<const costmap::CostGrid> blocks(unsigned seed) {
   std::mt19937 random(seed);
   const auto upTo = [&random](unsigned most) { return static_cast<std::size_t>(random() % most); };
@@ -95,8 +95,8 @@ std::shared_ptr<const costmap::CostGrid> blocks(unsigned seed) {
   return testing::drawn(rows);
 }
 
-// Property: with other corridors a route is never dearer, and sometimes cheaper, where eight headings rank the ways between
-// blocks wrongly.
+// Property: with other corridors a route is never more expensive, and cheaper in some cases in which eight
+// headings rank the corridors between blocks wrongly.
 TEST(OtherCorridors, AlternativesNeverIncreaseTheRouteCost) {
   int cheaper = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {

@@ -19,8 +19,8 @@ using testing::drawn;
 using testing::randomBand;
 using testing::randomMap;
 
-// Property: allowed, from end to end, above the lower bound, and no dearer than the cheapest way in 32 headings by
-// much.
+// Property: the route is allowed from end to end, costs at least the lower bound, and at most 2 % more than
+// the cheapest route in 32 headings.
 TEST(PointRoute, CostIsWithinTwoPercentOfThirtyTwoHeadings) {
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -53,8 +53,8 @@ TEST(PointRoute, RouteEndsWithinTheTolerance) {
   EXPECT_TRUE(std::isfinite(cost.along(route)));
 }
 
-// Property: on ground of two narrow arcs of headings, whose routes tack, no place on the way that is prescribed makes
-// the route that is found cheaper by much.
+// Property: on ground with two narrow arcs of headings, where routes tack, a prescribed via point on the
+// route does not make the route substantially cheaper.
 TEST(PointRoute, ViaPointsDoNotReduceTheCost) {
   int compared = 0;
   double worst = 1.0;

@@ -16,7 +16,8 @@ MapPointer rough(unsigned seed) {
   return randomMap({.width = 320, .height = 300, .seed = seed, .blocked = 0.05, .roughness = 0.12});
 }
 
-// Property: allowed, through every via point, and near what the whole field gives.
+// Property: the route is allowed, passes every via point, and costs at most 3 % more than that of the full
+// field.
 TEST(TubePlanner, CostIsWithinThreePercentOfTheFullField) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Problem problem{.map = rough(seed),
@@ -35,7 +36,8 @@ TEST(TubePlanner, CostIsWithinThreePercentOfTheFullField) {
   }
 }
 
-// Property: the same bytes with two threads, and after a change as when planned anew.
+// Property: the result is byte-identical with two threads, and after a change identical to that of a new
+// planner.
 TEST(TubePlanner, ResultIsIndependentOfThreadCountAndReplanning) {
   const MapPointer map = rough(3);
   Problem problem{.map = map, .start = {10.5, 12.5}, .goal = {300.5, 280.5}, .prove = false};
@@ -56,8 +58,8 @@ TEST(TubePlanner, ResultIsIndependentOfThreadCountAndReplanning) {
   EXPECT_EQ(TubePlanner().plan(problem).points, anew.points);
 }
 
-// A gap that the pooled map does not show: the whole field finds it. Without a gap it proves that there is
-// none.
+// A gap that the pooled map does not show is found by the full field. Without a gap the full field proves
+// that no route exists.
 TEST(TubePlanner, FullFieldIsUsedIfThePooledMapHasNoRoute) {
   std::vector<std::string> rows(200, std::string(200, '.'));
   for (std::string& row : rows) row.replace(96, 8, "########");

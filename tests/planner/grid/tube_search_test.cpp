@@ -25,8 +25,8 @@ Polyline wholeFieldRoute(const Problem& problem) {
 
 constexpr TubeOptions kNarrow{.margin_cells = 8.0, .leg_cells = 100.0, .overlap_cells = 30.0, .widenings = 3};
 
-// Property: beside a guide that is the whole field's own way the tube finds a way as cheap, in one leg, but
-// for the rounding of edges; in several legs never a cheaper one.
+// Property: around a guide that is the full field's own route, the tube finds an equally cheap route in one
+// leg, up to rounding of edges; in several legs never a cheaper one.
 TEST(TubeSearch, RouteInTheTubeMatchesTheFullField) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     Problem problem{
@@ -51,7 +51,7 @@ TEST(TubeSearch, RouteInTheTubeMatchesTheFullField) {
   }
 }
 
-// A wall across the straight guide, with a gap far beside it.
+// A wall across the straight guide, with a gap far aside.
 MapPointer walled(int gap_row) {
   std::vector<std::string> rows(400, std::string(400, '.'));
   for (int row = 0; row < 400; ++row)
@@ -72,8 +72,8 @@ TEST(TubeSearch, TubeWidensUntilARouteExists) {
   EXPECT_NEAR(cost.along(way), cost.along(wholeFieldRoute(problem)), 1e-3 * cost.along(way));
 }
 
-// A patch that gets cheaper northwards draws the way to the wall of the first tube; touching it makes it
-// wider.
+// A patch whose cost decreases northwards draws the route to the border of the first tube, which then
+// widens.
 TEST(TubeSearch, TubeWidensIfTheRouteTouchesItsBorder) {
   std::vector<std::string> rows(400, std::string(400, '.'));
   for (int row = 0; row < 200; ++row)
@@ -88,7 +88,7 @@ TEST(TubeSearch, TubeWidensIfTheRouteTouchesItsBorder) {
   EXPECT_NEAR(cost.along(tubeRoute(problem, guide, options)), best_J, 1e-3 * best_J);
 }
 
-// A leg that would end in a pocket is joined with the next.
+// A leg that would end in a dead end is joined with the next leg.
 TEST(TubeSearch, BlockedLegIsJoinedWithTheNext) {
   std::vector<std::string> rows(100, std::string(400, '.'));
   for (int row = 40; row < 60; ++row)

@@ -10,7 +10,7 @@ namespace windowed_map_test {
 using namespace testing;
 
 TEST(WindowedMap, TilesBesideALineEqualTheFullMap) {
-  // Property: the same cell codes as of the map built as a whole, and the rest unknown.
+  // Property: the cell codes equal those of the whole map, and cells outside the windows are unknown.
   int asked = 0;
   WindowedMap map = windows(asked);
   const std::vector<maps::Point> line{{250.0, 100.0}, {900.0, 400.0}};
@@ -35,7 +35,7 @@ TEST(WindowedMap, TilesBesideALineEqualTheFullMap) {
   EXPECT_FALSE(map.elevation_m({1400.0, -40.0}));
   const int before = asked;
   map.around(line, 64.0);
-  EXPECT_EQ(asked, before);  // what is held is not built again
+  EXPECT_EQ(asked, before);  // cached windows are not built again
 }
 
 TEST(WindowedMap, InvalidOptionsAreRejected) {

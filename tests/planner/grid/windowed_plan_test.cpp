@@ -15,8 +15,8 @@ Problem problemOn(const WindowedMap& map, maps::Point start, maps::Point goal) {
   return {.map = map.overview(), .start = start, .goal = goal, .prove = false};
 }
 
-// Property: the legs meet at the via point, the plan costs what the map of its tiles says, and that map is the
-// whole one's grid, of which only a part was built.
+// Property: the legs meet at the via point, the plan's cost equals that on the map of its tiles, and the map
+// has the grid of the whole map, of which only a portion was built.
 TEST(WindowedPlan, LegsMeetAtViaPointsAndOnlyNearbyTilesAreBuilt) {
   int asked = 0;
   WindowedMap map = windows(asked);

@@ -61,7 +61,7 @@ TEST(MakePlanner, SeedThreadsAndTimeLimitComeFromSettings) {
 }
 
 TEST(MakePlanner, RouteCostEqualsThatOfTheInnerPlanner) {
-  // Property: the door adds checks and annotation, and changes no cost.
+  // Property: makePlanner() adds checks and annotation, and changes no cost.
   const auto map = testing::randomMap({.width = 60, .height = 50, .seed = 11, .blocked = 0.05});
   NamedPlanner inner("field");
   const auto planner = makePlanner("field");
@@ -83,7 +83,7 @@ TEST(MakePlanner, RouteCostEqualsThatOfTheInnerPlanner) {
 }
 
 TEST(MakePlanner, ChassisAndRiskLimitAreEnforced) {
-  // A step of 0.5 m across the map, with a gap in the north that the cost map alone does not know.
+  // A step of 0.5 m across the map with a gap in the north; the step is not in the cost map.
   const maps::Grid grid{.width = 40, .height = 30, .resolution_m = 1.0, .south_west = {}};
   maps::Raster<float> steps(grid, 0.0F);
   for (int row = 0; row < 22; ++row) steps[{20, row}] = 0.5F;

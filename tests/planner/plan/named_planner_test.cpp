@@ -22,12 +22,12 @@ Problem across(unsigned seed) {
 
 TEST(NamedPlanner, DefaultIsTheFieldPlanner) {
   EXPECT_EQ(NamedPlanner().name(), plannerNames().front());
-  EXPECT_EQ(NamedPlanner("rrt*").name(), "RRTstar");  // spelling is forgiven
+  EXPECT_EQ(NamedPlanner("rrt*").name(), "RRTstar");  // names are matched without case and punctuation
   EXPECT_THROW(NamedPlanner("no-such"), std::invalid_argument);
   EXPECT_THROW(NamedPlanner().plan({}), std::invalid_argument);  // no map
 }
 
-// Property: exactly the planners that say so hand out drives.
+// Property: exactly the planners that declare drives return drives.
 TEST(NamedPlanner, DrivesAreReturnedExactlyIfDeclared) {
   int drives = 0;
   for (const std::string name : {"field", "hybrid", "RRTstarSE2"}) {
@@ -41,7 +41,7 @@ TEST(NamedPlanner, DrivesAreReturnedExactlyIfDeclared) {
   EXPECT_EQ(drives, 2);
 }
 
-// Property: what is kept from one plan to the next does not change the next; other maps and goals between.
+// Property: state kept from one plan does not change the next, also with other maps and goals in between.
 TEST(NamedPlanner, ResultIsIndependentOfEarlierPlans) {
   NamedPlanner kept;
   int found = 0;
@@ -57,7 +57,7 @@ TEST(NamedPlanner, ResultIsIndependentOfEarlierPlans) {
   EXPECT_GT(found, 3);
 }
 
-// Property: each cost that is called back with is lower than the one before, and the last is the plan's.
+// Property: each reported cost is lower than the previous one, and the last equals the plan's cost.
 TEST(NamedPlanner, ReportsDecreasingCostsWhileSampling) {
   NamedPlanner planner("InformedRRTstar");
   std::vector<double> costs;

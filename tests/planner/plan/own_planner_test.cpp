@@ -83,7 +83,7 @@ TEST(OwnPlanner, CreatedPlannerHasDefaultSettingsAndNoMap) {
   EXPECT_THROW(another->plan({}), std::logic_error);
 }
 
-// Property: settings that are refused change nothing.
+// Property: rejected settings change nothing.
 TEST(OwnPlanner, RejectedSettingsLeaveThePlannerUnchanged) {
   OwnPlanner planner;
   planner.configure({.planner = "hybrid"});

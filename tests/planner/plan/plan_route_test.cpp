@@ -55,7 +55,7 @@ TEST(PlanRoute, ElevationIsThatOfThePlannedVersion) {
   const Route old_route = planRoute(before, across()), new_route = planRoute(map.published(), across());
   ASSERT_EQ(old_route.status, RouteStatus::Found) << old_route.reason;
   ASSERT_EQ(new_route.status, RouteStatus::Found) << new_route.reason;
-  // Closed form: the whole of the ground lies 3 m higher.
+  // Closed form: all ground lies 3 m higher.
   EXPECT_NEAR(new_route.vertices[0].elevation_m - old_route.vertices[0].elevation_m, 3.0, 1e-5);
 }
 
@@ -99,7 +99,7 @@ TEST(PlanRoute, WindowedRouteIsWithinAFewPercentOfTheFullMap) {
   ASSERT_EQ(route.status, RouteStatus::Found) << route.reason;
   EXPECT_TRUE(
       std::ranges::all_of(route.vertices, [](const auto& v) { return std::isfinite(v.elevation_m); }));
-  // Property: the whole map allows it at the same price.
+  // Property: the route is allowed on the whole map at the same cost.
   std::vector<maps::Point> points;
   for (const RouteVertex& v : route.vertices) points.push_back({v.x_m, v.y_m});
   const double price_J = MotionCost(built(kWhole).published()).along(points);
@@ -116,7 +116,7 @@ TEST(PlanRoute, WindowedPlanningRejectsUnsupportedRequests) {
   EXPECT_THAT([&] { planRoute(map, request); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("start_heading_rad")));
   EXPECT_THROW(planRoute(map, {}, {.threads = 0}), std::invalid_argument);
-  EXPECT_EQ(asked, 0);  // nothing was built for a request that is refused
+  EXPECT_EQ(asked, 0);  // nothing is built for a rejected request
 }
 
 }  // namespace plan_route_test

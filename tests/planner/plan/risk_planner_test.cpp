@@ -14,7 +14,7 @@ namespace risk_planner_test {
 
 using ::testing::HasSubstr;
 
-// Ground 0: dear and safe; 1: cheap and risky; 2: as cheap, slower, half as risky.
+// Ground 0: expensive and safe; 1: cheap and risky; 2: as cheap as 1, slower, with half the risk.
 std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>& rows,
                                                   const costmap::SoilUncertainty& doubt = {}) {
   const auto ground = [](double energy, double time, double risk) {
@@ -33,7 +33,7 @@ std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>
   return costmap::reweighted(costmap::CostGrid(content), {.energy = 1.0, .time_W = 1.0, .risk_J = 1.0});
 }
 
-// Risky ground lies between start and goal; safe ground around it.
+// Risky ground between start and goal, safe ground around it.
 Problem acrossRisk() {
   std::vector<std::string> rows(20, std::string(40, '0'));
   for (std::size_t r = 8; r < 20; ++r) rows[r].replace(5, 30, 30, '1');
@@ -56,7 +56,7 @@ TEST(RiskPlanner, RiskLimitIsMetAtHigherCost) {
   EXPECT_LE(demandOf(*problem.map, safe).risk, 0.05);
   EXPECT_GT(safe.cost_J, free.cost_J);
   EXPECT_GE(safe.cost_J, safe.lower_bound_J);
-  // Property: the price is paid in the map's own cost.
+  // Property: the reported cost is the map's own cost, without the price of risk.
   EXPECT_DOUBLE_EQ(safe.cost_J, MotionCost(problem.map).along(safe.points));
 }
 
@@ -78,8 +78,8 @@ TEST(RiskPlanner, UnsatisfiableLimitReportsTheSafestRoute) {
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
 }
 
-// Property: the risk that is told of the route is what is compared, and the plain route is a candidate: whatever it
-// has is within reach.
+// Property: the limit is compared with the reported risk of the route, and the unconstrained route is a
+// candidate, so that a limit equal to its risk is feasible.
 TEST(RiskPlanner, LimitAtTheRiskOfTheUnconstrainedRouteIsFeasible) {
   for (const int columns : {3, 8, 20, 31}) {
     std::vector<std::string> rows(20, std::string(40, '1'));
@@ -113,7 +113,7 @@ TEST(RiskPlanner, ParetoSetHasNoDominatedRoute) {
   problem.map = withRisk(rows);
   NamedPlanner planner;
   const auto front = paretoSet(problem, planning(planner), 9);
-  ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best at something
+  ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best in one criterion
   for (const ParetoRoute& a : front)
     for (const ParetoRoute& b : front)
       EXPECT_FALSE(a.demand.energy_J < b.demand.energy_J && a.demand.time_s < b.demand.time_s &&
@@ -122,7 +122,7 @@ TEST(RiskPlanner, ParetoSetHasNoDominatedRoute) {
     EXPECT_GE(front[i].demand.energy_J, front[i - 1].demand.energy_J);
 }
 
-// Stops at the n-th report of progress.
+// Requests a stop at the n-th progress report.
 Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
   Problem stopped = problem;
   stopped.watch = {.progress =
@@ -133,7 +133,8 @@ Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
   return stopped;
 }
 
-// Property: a part of the prices makes another set, which nothing would tell from the whole one.
+// Property: a stopped computation returns no set, because a partial set could not be distinguished from the
+// complete one.
 TEST(RiskPlanner, StoppedParetoSetIsEmpty) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
@@ -147,7 +148,7 @@ TEST(RiskPlanner, StoppedParetoSetIsEmpty) {
   }
 }
 
-// Property: of the prices that were not tried nothing is claimed.
+// Property: a stopped search makes no statement about prices that were not tried.
 TEST(RiskPlanner, StoppedSearchIsReportedAsInterrupted) {
   const Problem problem = acrossRisk();
   int stops = 0;

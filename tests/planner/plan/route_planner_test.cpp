@@ -19,7 +19,7 @@ PlanRequest overTheYard() {
   return {.start = {110.0, -40.0}, .goal = {210.0, 40.0}};
 }
 
-// A step across the map with a gap in the north, which the cost of the map does not know.
+// A step across the map with a gap in the north; the step is not in the map's cost.
 std::shared_ptr<const Chassis> stepped(const costmap::TraversabilityMap& map) {
   static const maps::Raster<float> steps = [] {
     maps::Raster<float> made(kYard, 0.0F);
@@ -29,7 +29,7 @@ std::shared_ptr<const Chassis> stepped(const costmap::TraversabilityMap& map) {
   return std::make_shared<const Chassis>(steps, map.model().rover(), Suspension::Rigid);
 }
 
-// Property: a plugin that plans as Talus does gives Talus' route, by the same entry point.
+// Property: a plugin that plans as Talus does gives the same route through the same entry point.
 TEST(RoutePlanner, PluginRouteIsCheckedAndAnnotatedLikeOurs) {
   const costmap::TraversabilityMap map = built(kYard);
   RoutePlanner own, plugin(PluginPlanner(TALUS_PLUGIN));

@@ -60,8 +60,8 @@ TEST(PluginLoader, OtherInterfaceVersionIsRejected) {
                                               HasSubstr("this program has 7"), HasSubstr("rebuild"))));
 }
 
-// Loading one may end the process by a signal: a child finds out.
-// The dynamic linker ends a process by an exit of its own, not by a signal, where the table of relative addresses holds another kind.
+// The dynamic linker ends the process without a signal if the table of relative relocations contains another
+// kind of entry. The library is therefore tried in a child process.
 TEST(PluginLoader, LibraryThatAbortsTheLinkerIsRejected) {
   std::ifstream file(TALUS_OTHER_PLUGIN, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -70,7 +70,7 @@ TEST(PluginLoader, LibraryThatAbortsTheLinkerIsRejected) {
     std::memcpy(&value, bytes.data() + at, sizeof value);
     return value;
   };
-  // Entries of 24 bytes, the kind in the middle: R_X86_64_RELATIVE is 8.
+  // Entries of 24 bytes with the kind in the middle: R_X86_64_RELATIVE is 8.
   std::size_t at = 0;
   while (at + 56 < bytes.size() && !(word(at) == 8 && word(at + 24) == 8 && word(at + 48) == 8)) at += 8;
   if (at + 56 >= bytes.size()) GTEST_SKIP() << "no such table on this machine";
@@ -82,7 +82,7 @@ TEST(PluginLoader, LibraryThatAbortsTheLinkerIsRejected) {
   std::filesystem::remove(path);
 }
 
-// `talus plugins F.so` hung for ever.
+// Property: a library that hangs while it is loaded or unloaded is rejected after a time limit.
 TEST(PluginLoader, LibraryThatHangsOnLoadOrUnloadIsRejected) {
   for (const std::string path : {TALUS_ENDLESS_PLUGIN, TALUS_UNENDING_PLUGIN})
     EXPECT_THAT(
@@ -91,7 +91,7 @@ TEST(PluginLoader, LibraryThatHangsOnLoadOrUnloadIsRejected) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
-// `plan --plugin F.so` ended the process that tried it, and left the child of the trial.
+// Property: if the program is killed during a trial, the trial's child process ends as well.
 TEST(PluginLoader, TrialProcessEndsWithTheProgram) {
   for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
     int ends[2];
@@ -107,7 +107,7 @@ TEST(PluginLoader, TrialProcessEndsWithTheProgram) {
     }
     ::close(ends[1]);
     char byte = 0;
-    ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the constructor waits
+    ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the constructor is running
     ::kill(program, signal);
     ASSERT_EQ(::waitpid(program, nullptr, 0), program);
     pollfd closed{.fd = ends[0], .events = POLLIN, .revents = 0};
@@ -120,7 +120,8 @@ TEST(PluginLoader, TrialProcessEndsWithTheProgram) {
 TEST(PluginLoader, TruncatedLibraryIsRejected) {
   const auto cut = std::filesystem::temp_directory_path() / "talus_cut_plugin_test.so";
   const auto whole = std::filesystem::file_size(TALUS_PLUGIN);
-  // Its end holds symbols that loading does without, with debug information most of the file.
+  // The last bytes of the file hold symbols that loading does not need; with debug information they are most
+  // of the file.
   for (const auto size : {whole / 100, whole / 30, whole / 10}) {
     std::filesystem::copy_file(TALUS_PLUGIN, cut, std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(cut, size);

@@ -10,7 +10,8 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 TEST(RequestCheck, EachUnsupportedFieldIsRejectedByName) {
-  // Property: a request with one field set passes exactly where the capability of that field is stated.
+  // Property: a request with one field set is accepted exactly if the planner declares the capability of
+  // that field.
   struct Case {
     const char* field;
     void (*set)(PlanRequest&);

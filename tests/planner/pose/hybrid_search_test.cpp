@@ -62,7 +62,7 @@ TEST(HybridSearch, GoalHeadingIsReached) {
 }
 
 TEST(HybridSearch, DeadEndIsLeftOnlyInReverse) {
-  // A corridor one cell wide, the rover looking into its closed end.
+  // A corridor one cell wide; the rover faces its closed end.
   HybridSearch search;
   auto dead_end = problem(drawn({"######", "#....#", "######"}));
   dead_end.start = {4.5, 1.5};
@@ -87,8 +87,8 @@ TEST(HybridSearch, TurningInPlaceNegotiatesNarrowCorners) {
 }
 
 TEST(HybridSearch, DriveCostMatchesDenseEvaluation) {
-  // Property: on random sloping maps each drive costs what it says when priced anew in steps of a tenth of a
-  // cell, never enters what is refused, and keeps the radius.
+  // Property: on random sloping maps the stated cost of each drive equals its cost in steps of a tenth of a
+  // cell; the drive never enters refused ground and keeps the turning radius.
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto map = randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.08, .roughness = 0.15});
     auto asked = problem(map);
@@ -107,7 +107,7 @@ TEST(HybridSearch, DriveCostMatchesDenseEvaluation) {
 }
 
 TEST(HybridSearch, SearchIsRefinedBeforeReportingFailure) {
-  // Property: a drive that more headings and shorter motions find is found, too, by those that do not.
+  // Property: a drive found with more headings and shorter motions is also found with the default settings.
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     auto asked =
@@ -125,7 +125,7 @@ TEST(HybridSearch, SearchIsRefinedBeforeReportingFailure) {
 }
 
 TEST(HybridSearch, HeuristicWeightTradesCostForExpansions) {
-  // Property: the less a drive has to be near the estimate, the fewer poses are tried and the dearer it is.
+  // Property: a larger heuristic weight expands fewer poses and gives a more expensive drive.
   std::uint64_t expanded = 0, hasty_expanded = 0;
   double cost_J = 0.0, hasty_cost_J = 0.0;
   for (unsigned seed = 1; seed <= 6; ++seed) {

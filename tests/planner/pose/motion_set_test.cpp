@@ -13,8 +13,8 @@ using testing::randomMap;
 
 constexpr MotionSet::Options kOptions{.headings = 72, .step_cells = 1.5, .offset_rad = 0.3};
 
-// Property: the end that a motion states is where its leg leads, at one of the set's headings; arcs keep the
-// radius, and without reversing none goes back.
+// Property: the stated end of a motion is the end of its leg, in one of the set's headings; arcs keep the
+// radius, and without reversing no motion goes backwards.
 TEST(MotionSet, StatedMotionEndsMatchTheirLegs) {
   const auto map = drawn({".....", "....."});
   for (const double radius_m : {0.0, 0.7, 4.0})
@@ -51,7 +51,8 @@ TEST(MotionSet, WorkIsProportionalToMotionLength) {
   EXPECT_NEAR(static_cast<double>(work(4000.0)) / static_cast<double>(work(400.0)), 10.0, 1.0);
 }
 
-// Closed form: on even ground of 10 J/m a motion costs its length, and its turn in place or on the arc.
+// Closed form: on uniform ground of 10 J/m the cost of a motion is that of its length and of its turn in
+// place or on the arc.
 TEST(MotionSet, MotionCostOnUniformGroundIsLengthPlusTurn) {
   const auto map = drawn(std::vector<std::string>(9, std::string(9, '.')));
   for (const double radius_m : {0.0, 1.5}) {
@@ -70,8 +71,8 @@ TEST(MotionSet, MotionCostOnUniformGroundIsLengthPlusTurn) {
   }
 }
 
-// Closed form: on a ramp that climbs eastwards at 205/1024 (drawn_map.hpp), ahead is up and back is down. Between nodes of the curve a
-// parabola of 400 is off by 400 / 4 / 256^2.
+// Closed form: on a ramp that rises eastwards at 205/1024 (drawn_map.hpp), forward is uphill and reverse
+// downhill. Between the nodes of the curve a parabola of 400 is off by 400 / 4 / 256^2.
 TEST(MotionSet, ReverseCostEqualsDrivingInThatDirection) {
   const auto map = drawn(std::vector<std::string>(9, std::string(9, '>')));
   const MotionSet set(*map, {}, {.headings = 72, .step_cells = 1.5, .offset_rad = 0.0});
@@ -83,8 +84,8 @@ TEST(MotionSet, ReverseCostEqualsDrivingInThatDirection) {
   }
 }
 
-// Property: infinite off the map and over blocked ground; on rough ground near the exact price, which quick
-// cost samples at stretches of half a cell.
+// Property: the quick cost is infinite off the map and over blocked ground. On rough ground it is close to
+// the exact cost; it is sampled at intervals of half a cell.
 TEST(MotionSet, QuickCostApproximatesTheExactCost) {
   const auto map = randomMap({.width = 30, .height = 30, .seed = 5, .blocked = 0.1, .roughness = 0.15});
   const MotionCost motion_cost(map);
@@ -100,14 +101,14 @@ TEST(MotionSet, QuickCostApproximatesTheExactCost) {
                    exact_J = exact({from, set.heading_rad(n % 72)}, motion.leg);
       refused += std::isinf(quick_J);
       if (!std::isfinite(exact_J)) continue;
-      ASSERT_TRUE(std::isfinite(quick_J));  // whatever it looks at the exact motion crosses
+      ASSERT_TRUE(std::isfinite(quick_J));  // every sampled cell is crossed by the exact motion
       quick_sum += quick_J;
       exact_sum += exact_J;
     }
   }
   EXPECT_GT(refused, 50);
   EXPECT_NEAR(quick_sum, exact_sum, 0.02 * exact_sum);
-  // Closed form: half a cell from the western edge every motion that goes back farther leaves the map.
+  // Closed form: half a cell from the western edge, every longer motion westwards leaves the map.
   const MotionSet straight(*map, kinematics, {.headings = 72, .step_cells = 1.5, .offset_rad = 0.0});
   for (const MotionSet::Motion& motion : straight.from(0))
     if (motion.dx_m < -0.9) {

@@ -24,7 +24,7 @@ Problem across(const std::shared_ptr<const costmap::CostGrid>& map, double radiu
                          .cusp = {.cost_J = 3.0, .energy_J = 3.0, .time_s = 0.5}}};
 }
 
-// Hazards laid against the true arc every hundredth of a metre, in the heading that it has there.
+// Whether the exact arcs, sampled every hundredth of a metre, are allowed in the heading of each point.
 bool drivable(const costmap::CostGrid& map, const PosePath& drive) {
   Pose pose = drive.start;
   for (const auto& leg : drive.legs) {
@@ -45,8 +45,8 @@ bool drivable(const costmap::CostGrid& map, const PosePath& drive) {
 }
 
 TEST(PosePlanner, ReturnedDrivesAreValidUnderDenseSampling) {
-  // Property: on random ground, with and without reversing, turning in place and not, each drive stands up to
-  // dense sampling of its arcs, starts and ends where asked, and its cost is not below the bound.
+  // Property: on random ground, with and without reversing and turning in place, each drive passes dense
+  // sampling of its arcs, has the requested start and end, and costs at least the bound.
   int found = 0;
   for (unsigned seed = 1; seed <= 12; ++seed)
     for (const double radius_m : {0.0, 1.5, 3.0})
@@ -77,7 +77,8 @@ TEST(PosePlanner, ReturnedDrivesAreValidUnderDenseSampling) {
   EXPECT_GT(found, 40);
 }
 
-// Curves end in arcs of 1e-8 m, whose ends tell no heading: they were vertices, and their slip was the route's greatest.
+// Property: vertices are distinct except at turns and reversals. (Arcs of 1e-8 m at the end of a curve have
+// no usable heading and must not become vertices.)
 TEST(PosePlanner, VerticesAreDistinctExceptAtTurnsAndReversals) {
   int found = 0, together = 0;
   for (unsigned seed = 1; seed <= 12; ++seed)
@@ -122,21 +123,20 @@ TEST(PosePlanner, HeadingIsContinuousAtViaPoints) {
 }
 
 TEST(PosePlanner, ReportCountsTurns) {
-  // Closed form: on flat ground of 10 J/m a turn in place of a quarter takes 4 J a radian and a second a
-  // radian.
+  // Closed form: on level ground of 10 J/m a quarter turn in place takes 4 J and one second per radian.
   const auto map = testing::drawn(std::vector<std::string>(12, std::string(20, '.')));
   Problem problem = across(map, 0.0);
   problem.goal = {12.5, 2.5};
   problem.start_heading_rad = std::numbers::pi / 2;
   problem.kinematics.may_reverse = false;
-  problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // and for the stop
-  problem.kinematics.turns.on_arc.cost_J = 50.0;                              // so that no arc is worth it
+  problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // cost of the stop as well
+  problem.kinematics.turns.on_arc.cost_J = 50.0;                              // makes every arc too expensive
   const Plan plan = PosePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * std::numbers::pi / 2, 1e-3);
   const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
   EXPECT_NEAR(route.summary.energy_J, 6.0 + 4.0 * std::numbers::pi / 2,
-              1e-9);  // the drawn map has no table of energies
+              1e-9);  // the drawn map has no energy table
   EXPECT_NEAR(route.summary.time_s, 2.0 + std::numbers::pi / 2, 1e-9);
   ASSERT_TRUE(route.summary.drive.has_value());
   EXPECT_EQ(route.summary.drive->turns_in_place, 1);
@@ -146,8 +146,8 @@ TEST(PosePlanner, ReportCountsTurns) {
 }
 
 TEST(PosePlanner, ArcIsPreferredToAStopForACheapBend) {
-  // Property: where a stop costs more than the few cells that an arc is longer, the drive around a corner
-  // bends.
+  // Property: if a stop costs more than the few extra cells of an arc, the drive rounds the corner on an
+  // arc.
   std::vector<std::string> rows(24, std::string(24, '.'));
   for (std::size_t row = 6; row < 18; ++row) rows[row].replace(6, 12, 12, '#');
   Problem problem = across(testing::drawn(rows), 0.0);
@@ -176,7 +176,7 @@ TEST(PosePlanner, ReverseVertexHasTheOppositeHeading) {
 }
 
 TEST(RouteCheckOfDrives, ViolationsMatchDenseSamplingOfRandomArcs) {
-  // Property: an arc that dense sampling finds in a blocked cell is refused, and hardly any other is.
+  // Property: an arc that crosses a blocked cell by dense sampling is refused, and few other arcs are.
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   int refused = 0, allowed = 0, grazing = 0;
@@ -202,8 +202,8 @@ TEST(RouteCheckOfDrives, ViolationsMatchDenseSamplingOfRandomArcs) {
 }
 
 TEST(RouteCheckOfDrives, ArcBeyondItsChordIsChecked) {
-  // The chord of this quarter circle of radius 3 about (4, 1) runs through (1.9, 3.1); the arc bulges into
-  // the blocked corner cell that the chord misses.
+  // The chord of this quarter circle of radius 3 about (4, 1) runs through (1.9, 3.1); the arc crosses the
+  // blocked corner cell that the chord misses.
   const auto map = testing::drawn({".....", ".#...", ".....", ".....", "....."});
   const PosePath arc{.start = {{1.0, 1.0}, std::numbers::pi / 2},
                      .legs = {{{3.0 * std::numbers::pi / 2, -1.0 / 3.0}, 0.0}}};
@@ -225,9 +225,9 @@ TEST(RouteCheckOfDrives, TurnInPlaceRequiresEveryHeading) {
   EXPECT_FALSE(violations(grid, PosePath{.start = {{0.5, 0.5}, 0.0}, .legs = {{{}, 0.2}}}, 1.0).empty());
 }
 
-// Property: on worlds of steep, slippery ground (slip_world.hpp), where a cell may be left in two narrow
-// cones of headings only, a rover that turns in place for free drives whatever route the field finds, and
-// pays hardly more for it: the field's turns may pass headings in which nothing holds, the drive's may not.
+// Property: on steep, slippery worlds (slip_world.hpp), where a cell may be left in two narrow cones of
+// headings only, a rover that turns in place at no cost can drive every route of the field at little extra
+// cost. The turns of a field route may pass infeasible headings, those of a drive may not.
 TEST(PosePlanner, DrivesFollowFieldRoutesWithNarrowHeadingCones) {
   for (const std::uint64_t seed : {1001u, 1008u, 1010u, 1012u, 1014u}) {
     const SlipWorld world = slipWorld({.seed = seed});
@@ -243,7 +243,8 @@ TEST(PosePlanner, DrivesFollowFieldRoutesWithNarrowHeadingCones) {
   }
 }
 
-// What no route joins, whatever the headings, no drive joins: the answer is the field's, not to try another heading.
+// Property: if the field proves that no route exists, no drive exists; the answer is the field's, without
+// advice on the heading.
 TEST(PosePlanner, FieldProofOfNoRouteAppliesToDrives) {
   Problem problem{.map = testing::drawn({"......#......", "......#......", "......#......"}),
                   .start = {1.5, 1.5},
@@ -260,8 +261,8 @@ TEST(PosePlanner, FieldProofOfNoRouteAppliesToDrives) {
   }
 }
 
-// Property: with a tolerance the drive ends within it, costs no more than to the goal itself, and a goal that
-// nobody may stand on is no hindrance.
+// Property: with a tolerance the drive ends within it and costs no more than a drive to the goal itself,
+// also if the goal's own cell is refused.
 TEST(PosePlanner, DriveEndsWithinTheGoalTolerance) {
   int shorter = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {

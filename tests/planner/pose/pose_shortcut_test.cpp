@@ -18,7 +18,7 @@ Pose end(const PosePath& path) {
   return pose;
 }
 
-// Weaves about the x axis: arcs of the smallest radius to either side, as a search's short motions do.
+// A drive that weaves about the x axis in arcs of the smallest radius, as the short motions of a search do.
 PosePath weaving(int bends) {
   PosePath path{.start = {{3.0, 10.0}, 0.4}, .legs = {}};
   for (int k = 0; k < bends; ++k)
@@ -26,8 +26,8 @@ PosePath weaving(int bends) {
   return path;
 }
 
-// Closed form: on flat ground of 10 J/m nothing beats the straight line between the ends, and a weave of
-// small headings comes within a hundredth of it.
+// Closed form: on level ground of 10 J/m the straight line between the ends is optimal, and a weave of small
+// headings is shortened to within 1 % of it.
 TEST(PoseShortcut, WeavingDriveOnFlatGroundIsStraightened) {
   const auto map = drawn(std::vector<std::string>(20, std::string(40, '.')));
   const MotionCost motion(map);
@@ -41,8 +41,8 @@ TEST(PoseShortcut, WeavingDriveOnFlatGroundIsStraightened) {
   EXPECT_GT(cost(weave), 1.02 * straight_J);
 }
 
-// Property: on random ground, with and without reversing, what comes out starts and ends where the drive did,
-// costs no more, and keeps the radius.
+// Property: on random ground, with and without reversing, the result has the ends of the drive, costs no
+// more, and keeps the radius.
 TEST(PoseShortcut, EndsAreKeptAndCostNeverIncreases) {
   int cheaper = 0;
   for (unsigned seed = 1; seed <= 20; ++seed)

@@ -19,7 +19,8 @@ TEST(PoseSpace, InterpolationFollowsTheShortestCurve) {
     PoseSpace::setPose(b.get(), {{14.0, 9.0}, 2.0});
     const double whole = space->distance(a.get(), b.get());
     space->interpolate(a.get(), b.get(), 0.4, middle.get());
-    // Property: what is left from a place on the shortest curve is the rest of it.
+    // Property: the distance from a point on the shortest curve to the end is the length of the rest of the
+    // curve.
     EXPECT_NEAR(space->distance(middle.get(), b.get()), 0.6 * whole, 1e-6);
     space->interpolate(a.get(), b.get(), 1.0, middle.get());
     EXPECT_NEAR(PoseSpace::pose(middle.get()).place.x_m, 14.0, 1e-9);

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace pose_table_test {
 
-// Property: behaves as a map from cell and heading that is infinite where nothing was set.
+// Property: the table equals a map from cell and heading whose missing entries are infinite.
 TEST(PoseTable, TableMatchesAMapKeyedByCellAndHeading) {
   constexpr std::size_t kCells = 300, kHeadings = 7;
   PoseTable table(kCells, kHeadings);

@@ -24,7 +24,7 @@ TEST(TurningDrive, SmallHeadingChangesYieldNoStop) {
 
 TEST(TurningDrive, TurnsInPlaceOnlyWhereRequired) {
   auto rows = std::vector<std::string>(20, std::string(20, '.'));
-  for (std::size_t r = 8; r < 19; ++r) rows[r][10] = '#';  // a wall from the south but for its last row
+  for (std::size_t r = 8; r < 19; ++r) rows[r][10] = '#';  // a wall from the south to the last row but one
   const MotionCost motion(testing::drawn(rows));
   const PoseCost cost(motion,
                       {.turns = {.on_arc = {}, .in_place = {.cost_J = 1.0}}, .stop = {.cost_J = 20.0}});

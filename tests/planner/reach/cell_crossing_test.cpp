@@ -7,7 +7,7 @@
 namespace talus::planner {
 namespace cell_crossing_test {
 
-// Whether every leg of a drive has a heading of the set and every turn lies within the cell.
+// Whether every leg of a path has a heading of the set and every turn lies within the cell.
 bool keeps(const HeadingSet& headings, const std::vector<InCell>& way) {
   for (std::size_t k = 1; k < way.size(); ++k) {
     const InCell leg = way[k] - way[k - 1];
@@ -27,7 +27,8 @@ TEST(CellDrive, PathIsStraightIfTheHeadingIsAllowed) {
   EXPECT_DOUBLE_EQ(way[0].y, 0.5);
 }
 
-// Property: two opposite narrow arcs lead across them in turns; one arc leads nowhere but along it.
+// Property: with two opposite narrow arcs of headings a path tacks across the cell; with one arc it only
+// runs along the arc.
 TEST(CellDrive, PathTacksBetweenTwoHeadingArcs) {
   const HeadingSet both({{6.2, 0.15}, {3.1, 0.15}});
   const auto way = drivenThrough(both, {{0.3, 0.2}, std::nullopt}, {{0.6, 0.8}, std::nullopt});

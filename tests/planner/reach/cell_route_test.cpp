@@ -32,7 +32,8 @@ TEST(CellRoute, RouteFollowsAContourInAnyDirection) {
   }
 }
 
-// Both ways along a contour with some room beside it add up to every direction: the plane is climbed in turns.
+// Property: if the allowed headings lie near both directions of a contour, the route climbs the plane by
+// tacking.
 TEST(CellRoute, RouteTacksUphill) {
   const auto map = testing::contourPlane(0.4);
   const Polyline way = routed(map, {{18.3, 18.2}, {20.4, 22.9}});
@@ -40,7 +41,8 @@ TEST(CellRoute, RouteTacksUphill) {
   EXPECT_TRUE(violations(*map, way).empty());
 }
 
-// Property: on random steep maps a way is allowed, and found nearly wherever the proof leaves one.
+// Property: on random steep maps every route is allowed, and a route is found in nearly all cases without a
+// proof of absence.
 TEST(CellRoute, RouteIsValidAndFoundUnlessProvenAbsent) {
   int found = 0, missed = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
@@ -65,8 +67,8 @@ TEST(CellRoute, RouteIsValidAndFoundUnlessProvenAbsent) {
   EXPECT_LE(missed, 2) << found;
 }
 
-// What brute force reaches on a map of nine by nine cells: every motion by MotionCost between the points of a lattice, four to a
-// cell's side, that lie no more than six apart.
+// Reachability on a map of nine by nine cells by brute force: every motion by MotionCost between points of a
+// lattice, four to a cell's side, at most six points apart.
 constexpr int kFine = 4, kSide = 9 * kFine;
 
 maps::Point latticePlace(int k) {
@@ -93,9 +95,9 @@ std::vector<bool> reachedByForce(const MotionCost& cost, int from) {
 
 struct Answers {
   int found = 0;
-  int out_of_reach = 0;  // proven, beyond what Reach proves
+  int out_of_reach = 0;  // proven although Reach has no proof
   int neither = 0;
-  int wrong = 0;  // a route that breaks a rule, or a proof that brute force refutes
+  int wrong = 0;  // an invalid route, or a proof that brute force refutes
 };
 
 void ask(const std::shared_ptr<const costmap::CostGrid>& map, unsigned seed, int from, Answers& answers) {
@@ -118,8 +120,9 @@ void ask(const std::shared_ptr<const costmap::CostGrid>& map, unsigned seed, int
   }
 }
 
-// Property: where Reach leaves a way, one is found or its absence proven, and brute force agrees: with cones of nearly half a
-// turn that lead down between blocked cells, with one narrow arc on each side of the fall line, with both ways along a contour.
+// Property: where Reach has no proof, a route is found or its absence is proven, and brute force agrees: for
+// cones of nearly half a turn between blocked cells, for a narrow arc on each side of the fall line, and for
+// both directions of a contour.
 TEST(CellRoute, RoutesInNarrowConesMatchBruteForce) {
   Answers descents, arcs, contours;
   for (unsigned seed = 1; seed <= 100; ++seed) {
@@ -133,12 +136,12 @@ TEST(CellRoute, RoutesInNarrowConesMatchBruteForce) {
     EXPECT_GT(answers.found, 100);
   }
   EXPECT_EQ(descents.neither, 0);
-  EXPECT_LE(arcs.neither, 1);  // a goal at the very edge of a narrow cone
+  EXPECT_LE(arcs.neither, 1);  // a goal at the edge of a narrow cone
   EXPECT_EQ(contours.neither, 0);
   EXPECT_GT(descents.out_of_reach, 5);
 }
 
-// The work limit is a count: it is kept, and one step more than the search takes changes nothing.
+// Property: the work limit is enforced, and a limit one above the work of the search changes nothing.
 TEST(CellRoute, WorkLimitIsEnforced) {
   const auto map = testing::contourPlane(0.4);
   const Segment places{{18.3, 18.2}, {20.4, 22.9}};
@@ -154,7 +157,8 @@ TEST(CellRoute, WorkLimitIsEnforced) {
   EXPECT_EQ(cellRoute(cost, headings, places, 0.0, {.ways = whole.ways}).points, whole.points);
 }
 
-// Property: leaving out the cells from which the goal is out of reach changes no answer, and is never more work.
+// Property: excluding the cells from which the goal is unreachable changes no result and never increases the
+// work.
 TEST(CellRoute, PruningUnreachableCellsKeepsTheResult) {
   std::size_t all = 0, some = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {

@@ -17,8 +17,8 @@ namespace lifted_ground_test {
 
 using costmap::Hazard;
 
-// A map as drawn(), with more: 's' steeper than any heading may stand, 'k' keep-out, 'r' rocks, 'n' kept clear, 'e'
-// an edge, 'w' ground of curve 5, whose soil holds nothing.
+// A map as by drawn(), with further symbols: 's' too steep in any heading, 'k' keep-out, 'r' rocks, 'n'
+// inflation, 'e' a step edge, 'w' ground of curve 5, whose soil is too weak.
 struct Site {
   std::shared_ptr<const costmap::CostGrid> map;
   HazardsOf hazards;
@@ -88,8 +88,8 @@ TEST(LiftedGround, EachCauseIsReported) {
   EXPECT_EQ(causeOf(site(wall('w'))), Constraint::Soil);
 }
 
-// The kind of hazard that closes the way alone, also where another stands beside the way; none where each wall is of
-// another kind.
+// Property: the reported hazard is the one that blocks the route alone, also if another hazard stands
+// beside; none if each wall is of another kind.
 TEST(LiftedGround, OnlyBlockingHazardIsReported) {
   EXPECT_EQ(between(site(wall('k'))).hazard, Hazard::KeepOut);
   EXPECT_EQ(between(site(wall('r'))).hazard, Hazard::Rocks);
@@ -107,12 +107,13 @@ TEST(LiftedGround, OnlyBlockingHazardIsReported) {
   EXPECT_FALSE(between(site(rows)).hazard);
 }
 
-// A strip so narrow that all of it in the middle is kept clear of the rim.
+// A strip so narrow that the rim's clearance covers all of it in the middle.
 TEST(LiftedGround, RimClearanceIsReported) {
   EXPECT_EQ(causeOf(site({"..nnnnn..", "..nnnnn.."}), {{0.5, 0.5}, {8.5, 0.5}}), Constraint::Rim);
 }
 
-// Both the limit and the soil refuse a slope: neither alone opens a way.
+// Property: a slope that exceeds both the limit and the soil's capacity is reported, although removing one
+// of them opens no route.
 TEST(LiftedGround, SlopeRefusedByLimitAndSoilIsReported) {
   const std::vector<std::string> plain(5, ".........");
   const Site steep = site(plain, 0.5, 0.1, 0.102);
@@ -134,7 +135,8 @@ TEST(LiftedGround, SlopeRefusedByLimitAndSoilIsReported) {
   EXPECT_EQ(causeOf(weak(0.2)), Constraint::Slope);
 }
 
-// The rim's clearance around a field of weak soil is no way: without it "hazards" would be told.
+// Property: the rim's clearance around a field of weak soil is no passage; otherwise "hazards" would be
+// reported.
 TEST(LiftedGround, RimClearanceIsNoPassage) {
   std::vector<std::string> rows = wall('w');
   EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);
@@ -142,7 +144,8 @@ TEST(LiftedGround, RimClearanceIsNoPassage) {
   EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);
 }
 
-// A slope as steep as the limit refuses, of soil that ends where the table ends; and one whose soil ends before.
+// Property: a slope at the pitch limit is attributed to the limit if the soil's table ends there, and to the
+// soil if its capacity ends before.
 TEST(LiftedGround, PitchLimitIsReportedIfSoilCapacityReachesIt) {
   const std::vector<std::string> plain(5, ".........");
   EXPECT_EQ(causeOf(site(plain, 0.2, 0.1, 0.102)), Constraint::Pitch);
@@ -152,8 +155,8 @@ TEST(LiftedGround, PitchLimitIsReportedIfSoilCapacityReachesIt) {
       << "straight up soil and limit refuse it, in turns they do not";
 }
 
-// Of a rover that tips across the slope a slope straight up within its strength, but above its pitch limit: not for
-// the soil's sake.
+// Property: for a rover that tips on cross slopes, an uphill slope within the soil's capacity but above the
+// pitch limit is not attributed to the soil.
 TEST(LiftedGround, TippingIsNotAttributedToTheSoil) {
   terramech::Rover rover = costmap::testRover();
   rover.wheelbase_m = 2.0;

@@ -33,9 +33,9 @@ TEST(ObstructionSearch, ReportsBothCellSetsAndTheConstraintBetween) {
 
 TEST(ObstructionSearch, EachConstraintIsIdentifiedSeparately) {
   EXPECT_EQ(between(drawn({"..?..", "..?.."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting, Constraint::Unknown);
-  // Two walls of different kinds: neither alone opens a way.
+  // Two walls of different kinds: removing one of them opens no route.
   EXPECT_FALSE(between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting);
-  // A ramp as steep as the pitch limit forbids, of soil that holds to 0.3; one as the soil forbids.
+  // Ramps: one above the pitch limit on soil that allows 0.3, one above the soil's capacity.
   const auto ramp = [](double steep, double pitch) {
     maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                           costmap::CellCode({.dz_dx = steep, .dz_dy = 0.0, .curve = 0}));
@@ -48,7 +48,8 @@ TEST(ObstructionSearch, EachConstraintIsIdentifiedSeparately) {
   EXPECT_EQ(between(ramp(0.4, 0.5), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Soil);
 }
 
-// A stop ends the flood between the sets and the search for a constraint; the places stand for what was not found.
+// Property: a stop ends the flood fill between the sets and the search for a constraint; the result contains
+// the places only.
 TEST(ObstructionSearch, StopEndsTheSearch) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   const Segment places{{0.5, 0.5}, {3.5, 1.5}};

@@ -21,7 +21,7 @@ constexpr int kNarrow = 9;
 
 enum class Cause { KeepOut, Class, Rocks, Cliff, Bank, Across, Soil, Unknown, Rim };
 
-// What the reason of a refusal has to say of each cause, in the order of Cause.
+// Text that the reason of a refusal must contain for each cause, in the order of Cause.
 const char* const kSaid[] = {"keep-out areas, or cells that a layer",
                              "terrain classes declared impassable",
                              "rocks (the layer",
@@ -53,7 +53,7 @@ class Barrier {
     }
   }
 
-  // Metres from the middle of the obstacle, < 0 on the start's side and > 0 on the goal's.
+  // Distance from the centre of the obstacle [m]: negative on the start's side, positive on the goal's side.
   double operator()(Point at) const {
     if (turned_) std::swap(at.x_m, at.y_m);
     const double dx = at.x_m - middle_.x_m, dy = at.y_m - middle_.y_m;
@@ -111,7 +111,7 @@ maps::Raster<T> banded(const maps::Grid& grid, const Barrier& barrier, T there, 
   return made;
 }
 
-// A strip whose floor leans across the way in its middle, to the left or to the right, along x or y.
+// A strip whose ground has a cross slope in the middle, to the left or right, along x or y.
 Site leaningStrip(std::mt19937& random) {
   const bool along_y = random() % 2 == 0;
   const double lean = (random() % 2 == 0 ? 1.0 : -1.0) * (0.62 + 0.01 * static_cast<double>(random() % 8));
@@ -129,7 +129,7 @@ Site leaningStrip(std::mt19937& random) {
   return made;
 }
 
-// Start or goal in the clearance that the rover keeps from the rim.
+// Moves start or goal into the clearance from the rim.
 void moveToRim(Site& site, std::mt19937& random) {
   Point& end = random() % 2 == 0 ? site.start : site.goal;
   (random() % 2 == 0 ? end.x_m : end.y_m) = random() % 2 == 0 ? 0.5 : kSide - 0.5;
@@ -180,7 +180,7 @@ Plan planOn(Site site) {
   return FieldPlanner().plan(problem);
 }
 
-// Property: the reason names the planted cause and no other, whatever its shape and place.
+// Property: the reason names the planted cause and no other, for any shape and place.
 TEST(PlantedCauses, AreNamedAlone) {
   for (int cause = 0; cause < 9; ++cause)
     for (unsigned seed = 1; seed <= 7; ++seed) {
@@ -194,7 +194,7 @@ TEST(PlantedCauses, AreNamedAlone) {
     }
 }
 
-// Two obstacles, a bank and behind it a cliff: neither alone opens the way.
+// Two obstacles, a bank and a cliff behind it: removing one of them opens no route.
 TEST(PlantedCauses, ABankAndACliffAreNamedTogether) {
   Site site = levelSite(gridOf(kSide, kSide));
   site.start = {5.5, 20.5};

@@ -27,11 +27,11 @@ TEST(Reach, WallSeparatesStartFromGoal) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   EXPECT_FALSE(reaches(*map, {0.5, 0.5}, {4.5, 1.5}));
   EXPECT_TRUE(reaches(*map, {0.5, 0.5}, {1.5, 2.5}));
-  // Two cells that meet at a corner between blocked ones are not joined.
+  // Two cells that touch at a corner between blocked cells are not connected.
   EXPECT_FALSE(reaches(*drawn({"#.", ".#"}), {0.5, 0.5}, {1.5, 1.5}));
 }
 
-// A slope that may be descended only, not along its contour either: bin 0 holds climbs of up to 0.002.
+// A slope that may only be descended, and not along its contour: bin 0 contains climbs of up to 0.002.
 TEST(Reach, ReachIsDirectional) {
   costmap::TravelCurve down_only = testing::curve({});
   for (int bin = costmap::TravelCurve::kBins / 2; bin < costmap::TravelCurve::kBins; ++bin)
@@ -48,10 +48,10 @@ TEST(Reach, ReachIsDirectional) {
   EXPECT_FALSE(to.holds({0, 1}));
 }
 
-// Closed form: headings on both sides of the fall line that descend add up to everything below the start.
+// Closed form: descending headings on both sides of the fall line together reach everything below the start.
 TEST(Reach, DescendingHeadingsReachEverythingBelow) {
   const double steep = 0.3;
-  // Down only, and no steeper than 0.1 along: both ways along the contour and a little below it.
+  // Descents of at most 0.1 along the heading: both directions of the contour and slightly below.
   costmap::TravelCurve curve = testing::curve({});
   for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
     const double along = costmap::TravelCurve::gradient(bin);
@@ -65,16 +65,16 @@ TEST(Reach, DescendingHeadingsReachEverythingBelow) {
   EXPECT_FALSE(reaches(map, {6.0, 5.5}, {6.0, 7.5}));
   EXPECT_TRUE(reaches(map, {6.0, 5.5}, {6.0, 3.5}));
   EXPECT_FALSE(reaches(map, {1.0, 5.5}, {11.0, 5.5}));
-  // By 0.3 * 0.2 / 10: the first node of the curve that is allowed lies at 1/256.
+  // The descent is 0.3 * 0.2 / 10; the first allowed node of the curve lies at 1/256.
   EXPECT_TRUE(reaches(map, {1.0, 5.5}, {11.0, 5.3}));
 }
 
-// What brute force reaches from the middle of a map: every motion by MotionCost between the points of a lattice, four to a
-// cell's side, that lie no more than three apart.
+// Reachability from the centre of a map by brute force: every motion by MotionCost between points of a
+// lattice, four to a cell's side, at most three points apart.
 struct Tally {
   int open = 0;    // reached by brute force
-  int wrong = 0;   // of those, proven out of reach
-  int proven = 0;  // not reached by either
+  int wrong = 0;   // number of those that are proven unreachable
+  int proven = 0;  // reached by neither method
 };
 
 void compare(const std::shared_ptr<const costmap::CostGrid>& map, Tally& tally) {
@@ -111,7 +111,8 @@ void compare(const std::shared_ptr<const costmap::CostGrid>& map, Tally& tally) 
   }
 }
 
-// TALUS_RANDOM_MAPS="FIRST COUNT" in place of the 90 and 120 of each run; a campaign is made of such parts.
+// TALUS_RANDOM_MAPS="FIRST COUNT" replaces the 90 and 120 maps of each run; a campaign consists of such
+// runs.
 TEST(Reach, NoFalseProofOnRandomMaps) {
   const CampaignPart part = campaignPart("TALUS_RANDOM_MAPS", 90);
   Tally tally;
@@ -122,8 +123,8 @@ TEST(Reach, NoFalseProofOnRandomMaps) {
   EXPECT_GT(tally.proven, 2000);
 }
 
-// The same where every cell has a cone: driven down only, on ground that falls southwards on the whole. Here sides are
-// entered in several parts, from both sides of what is blocked.
+// The same if every cell has a cone of headings: downhill only, on ground that falls southwards overall.
+// Sides of cells are entered in several sections here, from both sides of a blocked cell.
 TEST(Reach, NoFalseProofOnRandomDescents) {
   const CampaignPart part = campaignPart("TALUS_RANDOM_MAPS", 120);
   Tally tally;

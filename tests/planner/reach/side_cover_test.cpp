@@ -5,7 +5,7 @@
 namespace talus::planner {
 namespace side_cover_test {
 
-// Closed form: what is left of a range behind two parts.
+// Closed form: the remainder of a range after two sections are covered.
 TEST(SideCover, EachPartIsReturnedOnce) {
   SideCover cover;
   EXPECT_EQ(cover.added({0.2, 0.4}, 0.0).size(), 1U);
@@ -21,7 +21,7 @@ TEST(SideCover, EachPartIsReturnedOnce) {
   EXPECT_TRUE(cover.added({0.0, 1.0}, 0.0).empty());
 }
 
-// Growth in steps too small to be followed is followed once it adds up.
+// Property: increments below the threshold are returned together once their sum exceeds the threshold.
 TEST(SideCover, SmallIncrementsAreReturnedOnceTheyAddUp) {
   SideCover cover;
   EXPECT_EQ(cover.added({0.2, 0.4}, 0.05).size(), 1U);

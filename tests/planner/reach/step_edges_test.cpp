@@ -12,7 +12,7 @@ namespace step_edges_test {
 using costmap::Hazard;
 using maps::Cell;
 
-// A map whose heights depend on x alone, and which gradients it refuses.
+// A map whose heights depend on x alone, with the gradients that its ground refuses.
 struct Site {
   costmap::TraversabilityMap map;
   HazardsOf hazards = [this](Cell cell) { return map.surface().hazards(cell); };
@@ -29,7 +29,8 @@ std::unique_ptr<Site> site(Height height_m) {
   return std::unique_ptr<Site>(new Site{{std::move(layers), costmap::testGround(), {}}});
 }
 
-// Closed form: a sheer step of 0.9 m on a plane of gradient 0.1. Without it the plane is left.
+// Closed form: a vertical step of 0.9 m on a plane of gradient 0.1. The plane remains after the step is
+// removed.
 TEST(StepEdges, ASheerStepIsFoundOnAPlane) {
   const auto at = site([](int column) { return 0.1 * column + (column > 10 ? 0.9 : 0.0); });
   for (const int column : {10, 11}) {
@@ -42,7 +43,8 @@ TEST(StepEdges, ASheerStepIsFoundOnAPlane) {
   EXPECT_EQ(at->edges.at({4, 4}), StepEdges::Kind::None);
 }
 
-// The edges of a bank bend as much as a step may be high, but at none of them is the rise higher than on both sides.
+// Property: the edges of a bank bend as much as a step may be high, but are attributed to the slope, because
+// no rise exceeds those on both sides.
 TEST(StepEdges, EdgesOfABankAreOfItsSlope) {
   const auto at = site([](int column) { return 0.6 * std::clamp(column - 7, 0, 6); });
   for (const int column : {7, 13}) {
@@ -51,7 +53,7 @@ TEST(StepEdges, EdgesOfABankAreOfItsSlope) {
   }
 }
 
-// A bend between gradients that the ground allows is no edge of a slope: it stays a step.
+// Property: a bend between gradients that the ground allows is not the edge of a slope and remains a step.
 TEST(StepEdges, ABendOfAllowedGradientsIsNoSlope) {
   const auto at = site([](int column) { return 0.3 * std::abs(column - 10); });
   ASSERT_TRUE(has(at->map.surface().hazards({10, 4}), Hazard::Step));

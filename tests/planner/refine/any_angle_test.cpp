@@ -20,7 +20,8 @@ TEST(AnyAngle, RouteIsStraightOnFlatGround) {
 }
 
 TEST(AnyAngle, RouteRefractsByTheLawOfSnell) {
-  // Two half planes, 10 and 30 J/m: sin of the angles to the normal stand as 3 to 1 (Snell).
+  // Closed form: at the border of 10 and 30 J/m the sines of the angles to the normal have the ratio 3 to 1
+  // (Snell).
   std::vector<std::string> rows(60, std::string(120, '.'));
   for (auto& row : rows) row.replace(60, 60, std::string(60, '2'));
   const MotionCost cost(drawn(rows));
@@ -32,7 +33,7 @@ TEST(AnyAngle, RouteRefractsByTheLawOfSnell) {
   EXPECT_NEAR(cost.along(route), best, 5e-4 * best);
 }
 
-// Property: never dearer, ends kept, allowed.
+// Property: the cost never increases, the ends are kept, and the route is allowed.
 TEST(AnyAngle, CostNeverIncreases) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const MotionCost cost(

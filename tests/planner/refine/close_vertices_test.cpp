@@ -17,7 +17,7 @@ TEST(CloseVertices, VerticesCloserThanAHundredthOfACellAreMerged) {
   EXPECT_EQ(ends, (Polyline{{0.5, 0.5}, {4.5, 0.5}}));
 }
 
-// The corner of a wall: a vertex on its edge may not move into it.
+// Property: a vertex at the corner of a wall is not moved into the wall.
 TEST(CloseVertices, MergedRouteIsValid) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto map =

@@ -14,7 +14,7 @@ using testing::randomMap;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Whether the heading of a motion may be had in every cell that a point on an edge touches.
+// Whether every cell that touches a point on an edge allows the heading of a motion.
 bool mayTurn(const MotionCost& cost, Point from, Point to, Point turn) {
   const double length = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
   const costmap::Direction heading{(to.x_m - from.x_m) / length, (to.y_m - from.y_m) / length};
@@ -25,11 +25,11 @@ bool mayTurn(const MotionCost& cost, Point from, Point to, Point turn) {
   return true;
 }
 
-// The cheapest way over the points of all edges, by trying every pair of points of a cell until nothing gets
-// cheaper. The expected answer, found in another way.
+// The cheapest path over the points of all edges, by relaxing every pair of points of a cell until no cost
+// decreases; an independent computation of the expected result.
 struct ByHand {
   double cost_J = kInfinity;
-  bool bounces = false;  // off an edge, back into the cell that it came from
+  bool bounces = false;  // at an edge, back into the same cell
 };
 
 ByHand cheapestByHand(const MotionCost& cost, Point from, Point to, int points) {
@@ -67,7 +67,7 @@ ByHand cheapestByHand(const MotionCost& cost, Point from, Point to, int points) 
       }
   }
   ByHand found{label[1]};
-  const auto cellOf = [&](std::size_t place) {  // of the motion that ends there
+  const auto cellOf = [&](std::size_t place) {  // cell of the motion that ends at the point
     const Point a = places[before[place]], b = places[place];
     return grid.cellAt({0.5 * (a.x_m + b.x_m), 0.5 * (a.y_m + b.y_m)});
   };
@@ -102,7 +102,7 @@ TEST(CorridorSearch, FindsTheCheapestPathOverEdgePoints) {
       EXPECT_NEAR(priced(cost, path), expected.cost_J, 1e-5 * expected.cost_J) << seed;
       ++same;
     }
-    // Property: nothing is found that is not cheaper than asked.
+    // Property: no path is returned if none is cheaper than the given cost.
     EXPECT_TRUE(
         searchCorridor(cost, {from, to}, 0.999 * expected.cost_J, {.reach_cells = 6, .points_per_edge = 2})
             .empty());
@@ -111,7 +111,7 @@ TEST(CorridorSearch, FindsTheCheapestPathOverEdgePoints) {
   EXPECT_GT(bouncing, 0);
 }
 
-// Property: vectors and scalars find the same way.
+// Property: vector and scalar kernels find the same path.
 TEST(CorridorSearch, VectorAndScalarKernelsAreIdentical) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const MotionCost cost(randomMap({.width = 30, .height = 30, .seed = seed, .roughness = 0.3}));
@@ -126,8 +126,8 @@ TEST(CorridorSearch, VectorAndScalarKernelsAreIdentical) {
   }
 }
 
-// Ends on edges and corners, at the map's border, with no reach at all: the search looks at the cells they
-// touch.
+// Ends on edges and corners, at the map's border, with zero reach: the search includes the cells that touch
+// the ends.
 TEST(CorridorSearch, EndsMayLieOnMapEdges) {
   const MotionCost cost(drawn(std::vector<std::string>(6, std::string(7, '.'))));
   for (const Point from : {Point{0.0, 2.0}, Point{3.0, 0.0}, Point{0.0, 0.0}, Point{7.0, 6.0}})

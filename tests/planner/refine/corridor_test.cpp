@@ -11,8 +11,8 @@ namespace corridor_test {
 using maps::Cell;
 using testing::randomMap;
 
-// Property: a cell is copied from the map where a cell passed by the way lies within reach in column and row,
-// and unknown elsewhere. The way is sampled densely; its ends lie off edges and corners.
+// Property: the corridor contains the cells within reach, in column and row, of a cell on the path, and
+// other cells are unknown. The path is sampled densely; its ends lie off edges and corners.
 TEST(Corridor, CorridorContainsCellsWithinReachOfTheRoute) {
   const auto map = randomMap({.width = 40, .height = 30, .seed = 2, .blocked = 0.0, .roughness = 0.35});
   const EdgeCrossings crossings(map->cost(), 3);
@@ -30,7 +30,7 @@ TEST(Corridor, CorridorContainsCellsWithinReachOfTheRoute) {
         bool near = false;
         for (const auto& [x, y] : passed)
           near = near || (std::abs(x - column) <= reach && std::abs(y - row) <= reach);
-        // Its box: outside nothing may be looked up.
+        // Cells outside the corridor's box may not be read.
         if (row < 3 - reach - 2 || row > 27 + reach + 2 || column < 2 - reach - 2 || column > 36 + reach + 2)
           continue;
         const std::size_t at = corridor.local({column, row});
@@ -47,14 +47,14 @@ TEST(Corridor, CorridorContainsCellsWithinReachOfTheRoute) {
     EXPECT_GT(open, 40);
     EXPECT_GT(free, 10);
     EXPECT_GT(open - free, 10);
-    // Steps of less than a cell pass over a cell that the way cuts at its corner; its neighbours are there.
+    // Steps of less than a cell miss a cell whose corner the path cuts; its neighbours are included.
     EXPECT_LE(missed, reach == 0 ? static_cast<int>(passed.size()) / 2 : open / 10) << reach;
   }
 }
 
-// Property: numbers of cells and their coordinates are each other's inverse, and beyond a side lies the
-// neighbour there; every cell of the corridor and its neighbours in the east and north have a holder of
-// their own.
+// Property: numbers and coordinates of cells are inverse to each other, and beyond a side lies the
+// neighbour. Every cell of the corridor and its neighbours in the east and north have their own edge
+// numbers.
 TEST(Corridor, CellAndEdgeNumbersAreConsistent) {
   const auto map = randomMap({.width = 20, .height = 20, .seed = 3, .blocked = 0.0});
   const EdgeCrossings crossings(map->cost(), 2);

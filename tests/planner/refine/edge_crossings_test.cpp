@@ -21,7 +21,7 @@ std::vector<CellCode> randomCells() {
   return cells;
 }
 
-// Closed form: the points of a side stand in the middles of equal parts, from south or west on.
+// Closed form: the points of a side are the centres of equal parts, from south or west on.
 TEST(EdgeCrossings, EdgePointsAreCentredInEqualParts) {
   EXPECT_EQ(edgeSpot(kWestSide, 0, 2).y, 0.25);
   EXPECT_EQ(edgeSpot(kEastSide, 1, 2).x, 1.0);
@@ -29,8 +29,8 @@ TEST(EdgeCrossings, EdgePointsAreCentredInEqualParts) {
   EXPECT_EQ(edgeSpot(kNorthSide, 0, 1).y, 1.0);
 }
 
-// Property: the price of each motion is TravelCost in its heading times its length, to the rounding of floats;
-// each of the other sides' points is met once.
+// Property: the cost of each motion is TravelCost in its heading times its length, to float rounding; each
+// point of the other sides occurs once.
 TEST(EdgeCrossings, CostIsDriveCostTimesLength) {
   const auto cost = testing::driveCost({.max_along = 0.3, .max_across = 0.25});
   for (const int points : {1, 2, 3, 5}) {
@@ -65,7 +65,7 @@ TEST(EdgeCrossings, CostIsDriveCostTimesLength) {
   }
 }
 
-// Property: a cell called free allows every heading; and most cells that allow all are called so.
+// Property: a cell marked free allows every heading; most cells that allow every heading are marked free.
 TEST(EdgeCrossings, FreeCellsAllowEveryHeading) {
   const auto cost = testing::driveCost({.max_along = 0.3, .max_across = 0.25});
   const EdgeCrossings crossings(*cost, 2);

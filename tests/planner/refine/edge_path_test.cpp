@@ -19,7 +19,7 @@ double priced(const MotionCost& cost, const EdgePath& path) {
   return sum;
 }
 
-// Property: turns slid along their edges stay such that both cells beside them allow both headings.
+// Property: after turns are shifted along their edges, both adjacent cells allow both headings.
 TEST(EdgePath, ShiftedTurnsAreValid) {
   int slid = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
@@ -35,7 +35,7 @@ TEST(EdgePath, ShiftedTurnsAreValid) {
   EXPECT_GT(slid, 10);
 }
 
-// Property: sliding makes no way dearer, keeps its ends and its cells, and bends it as light is bent.
+// Property: shifting never increases the cost, keeps ends and cells, and yields refraction by Snell's law.
 TEST(EdgePath, ShiftingReducesCostAndKeepsEndsAndCells) {
   std::vector<std::string> rows(40, std::string(40, '.'));
   for (auto& row : rows) row.replace(20, 20, std::string(20, '2'));

@@ -19,7 +19,8 @@ TEST(FewerTurns, CollinearVerticesAreRemoved) {
   EXPECT_EQ(route.size(), 3U);
 }
 
-// Every other point of a way around a dear field: what the least of all choices of points costs, by brute force.
+// Closed form, by brute force: the least cost over all subsets of the vertices of a path around an expensive
+// area.
 TEST(FewerTurns, CostMatchesTheBestSubsetOfVertices) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> place(0.6, 19.4);
@@ -43,7 +44,7 @@ TEST(FewerTurns, CostMatchesTheBestSubsetOfVertices) {
   EXPECT_EQ(fewer, 60) << "on even ground the straight line is best";
 }
 
-// A detour that saves less than its turns cost is left out, one that saves more is kept.
+// Property: a detour is removed if it saves less than its turns cost, and kept if it saves more.
 TEST(FewerTurns, DetourIsKeptOnlyIfItSavesMoreThanItsTurnsCost) {
   std::vector<std::string> rows(5, std::string(20, '.'));
   rows[4].replace(8, 4, "2222");

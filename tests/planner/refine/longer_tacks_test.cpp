@@ -20,7 +20,8 @@ Polyline zigzag(int tacks) {
   return points;
 }
 
-// Closed form: on even ground two legs that add up to the zigzag's own remain, and one turn; length is unchanged.
+// Closed form: on level ground two legs that add up to the zigzag and one turn remain; the length is
+// unchanged.
 TEST(LongerTacks, ZigzagOnUniformGroundIsReducedToOneTurn) {
   const MotionCost cost(withTurns(drawn(std::vector<std::string>(20, std::string(30, '.'))), 5.0));
   const Polyline route = zigzag(24), made = withLongerTacks(cost, route);
@@ -33,7 +34,8 @@ TEST(LongerTacks, ZigzagOnUniformGroundIsReducedToOneTurn) {
   EXPECT_NEAR(after_m, before_m, 1e-9);
 }
 
-// Property: never dearer, ends kept, and allowed, among blocked cells and over cells of many costs.
+// Property: the cost never increases, the ends are kept, and the route is allowed, among blocked cells and
+// cells of many costs.
 TEST(LongerTacks, CostNeverIncreases) {
   std::mt19937 random(5);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };

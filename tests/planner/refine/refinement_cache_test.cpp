@@ -15,7 +15,7 @@ TEST(RefinementCache, WindowIsFoundOnlyForIdenticalPoints) {
   Polyline other = kWindow;
   other[1].y_m = std::nextafter(4.0, 5.0);
   EXPECT_FALSE(cache.find(other));
-  cache.keep(kWindow, kWindow, 1.0);  // kept anew replaces
+  cache.keep(kWindow, kWindow, 1.0);  // a second result replaces the first
   EXPECT_EQ(cache.find(kWindow), kWindow);
   cache.clear();
   EXPECT_FALSE(cache.find(kWindow));

@@ -15,7 +15,7 @@ Polyline wave(double from_m, double to_m) {
   return line;
 }
 
-// Work that leaves a trace on every window: its middle point is lifted.
+// A refinement that marks every window by moving its middle point.
 Polyline lifted(const Polyline& window) {
   Polyline made = window;
   if (made.size() > 2) made[made.size() / 2].y_m += 1.0;
@@ -49,7 +49,7 @@ TEST(RouteWindows, UnchangedWindowsAreNotRecomputed) {
   EXPECT_GT(whole, 12);
   byWindows(route, kCut, work, memo, 2);
   EXPECT_EQ(worked.exchange(0), 0);
-  memo.forget({{100.0, 0.0}, {101.0, 0.0}});  // inside one window, maybe within reach of a joint
+  memo.forget({{100.0, 0.0}, {101.0, 0.0}});  // inside one window, possibly within reach of a joint
   byWindows(route, kCut, work, memo, 2);
   const int part = worked.exchange(0);
   EXPECT_GE(part, 1);

@@ -13,7 +13,7 @@ namespace settled_vertices_test {
 using testing::drawn;
 using testing::withTurns;
 
-// Closed form: over even ground the straight line is the cheapest.
+// Closed form: over level ground the straight line is the cheapest.
 TEST(SettledVertices, RouteIsStraightOnUniformGround) {
   const MotionCost cost(drawn(std::vector<std::string>(8, std::string(20, '.'))));
   const Polyline made =
@@ -23,7 +23,8 @@ TEST(SettledVertices, RouteIsStraightOnUniformGround) {
   EXPECT_NEAR(cost.along(made), 150.0, 1e-2);  // straight: 15 m at 10 J; steps end at 0.0125 cells
 }
 
-// Property: never dearer, allowed, ends kept, where turns are paid and cells refuse headings.
+// Property: the cost never increases, the route is allowed and the ends are kept, with turn costs and
+// refused headings.
 TEST(SettledVertices, CostNeverIncreases) {
   std::mt19937 random(7);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
@@ -44,7 +45,7 @@ TEST(SettledVertices, CostNeverIncreases) {
   EXPECT_GT(cheaper, 10);
 }
 
-// Closed form: on even ground the nearest place of a circle is on the line to its middle.
+// Closed form: on level ground the nearest point of a circle lies on the line to its centre.
 TEST(SettledVertices, EndMovesToTheNearestPointWithinTolerance) {
   const MotionCost cost(drawn(std::vector<std::string>(12, std::string(20, '.'))));
   const maps::Point goal{15.0, 6.0};
@@ -57,8 +58,8 @@ TEST(SettledVertices, EndMovesToTheNearestPointWithinTolerance) {
   EXPECT_EQ(withSettledEnd(cost, elsewhere, goal, 3.0), elsewhere);
 }
 
-// A slope in the east that may be driven down only, southwards: the leg in the cell before it turns on its side,
-// where both cells must allow both headings; just off the side only one must be allowed by both.
+// A slope in the east that may only be driven down, southwards. A turn on the cell side needs both headings
+// in both cells; just off the side, both headings are needed in one cell only.
 TEST(SettledVertices, TurnsAreMovedOffCellSides) {
   maps::Raster<costmap::CellCode> cells({.width = 2, .height = 2, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = 0.0, .curve = 0}));

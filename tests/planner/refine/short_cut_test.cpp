@@ -12,7 +12,8 @@ namespace short_cut_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Closed form: on even ground the straight line is best, and a motion over all pieces is among those tried.
+// Closed form: on level ground the straight line is optimal, and a motion over all sections is among the
+// candidates.
 TEST(ShortCut, ZigzagOnUniformGroundBecomesStraight) {
   const MotionCost cost(drawn(std::vector<std::string>(20, std::string(70, '.'))));
   Polyline zigzag;
@@ -22,7 +23,8 @@ TEST(ShortCut, ZigzagOnUniformGroundBecomesStraight) {
   EXPECT_EQ(made, (Polyline{zigzag.front(), zigzag.back()}));
 }
 
-// Property: never dearer, ends kept, and cheaper on some ground; a cheap detour is not cut.
+// Property: the cost never increases, the ends are kept, and the cost decreases on some ground; a cheap
+// detour is kept.
 TEST(ShortCut, CostNeverIncreases) {
   double saved = 0.0;
   for (unsigned seed = 1; seed <= 30; ++seed) {

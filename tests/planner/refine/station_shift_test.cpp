@@ -12,7 +12,8 @@ namespace station_shift_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Property: never dearer, allowed, ends kept; and cheaper on some ground.
+// Property: the cost never increases, the route is allowed, the ends are kept, and the cost decreases on
+// some ground.
 TEST(StationShift, CostNeverIncreases) {
   double saved = 0.0;
   int shifted_routes = 0;
@@ -33,8 +34,8 @@ TEST(StationShift, CostNeverIncreases) {
   EXPECT_GT(saved, 10.0);
 }
 
-// Property: a road of 10 J/m beside ground of 50 J/m is taken, no more than candidates * 0.98 * piece /
-// candidates to the side.
+// Property: the route moves onto a road of 10 J/m beside ground of 50 J/m, at most candidates * 0.98 * piece
+// / candidates to the side.
 TEST(StationShift, RouteMovesOntoAdjacentCheapGround) {
   std::vector<std::string> rows(21, std::string(60, '4'));
   rows[6] = rows[7] = std::string(60, '.');  // 3 to 5 m north of the route
@@ -43,7 +44,7 @@ TEST(StationShift, RouteMovesOntoAdjacentCheapGround) {
   const Polyline made = shifted(cost, route, 8.0, {.candidates = 8, .swing = 8});
   EXPECT_LT(cost.along(made), 0.5 * cost.along(route));
   for (const maps::Point p : made) EXPECT_LE(std::abs(p.y_m - 10.5), 8.0);
-  // Closed form: with no step sideways allowed nothing moves.
+  // Closed form: without sideways candidates the cost is unchanged.
   EXPECT_NEAR(cost.along(shifted(cost, route, 8.0, {.candidates = 8, .swing = 0})), cost.along(route), 1e-6);
 }
 

@@ -17,14 +17,14 @@ TEST(Arc, QuarterCircleEndMatchesClosedForm) {
   EXPECT_NEAR(left.heading_rad, std::numbers::pi / 2, 1e-12);
 }
 
-// Property: the end is where short straight steps along the turning heading lead (midpoint rule: the error of
-// n steps is below (length curvature)^2 length / (24 n^2)); reverse undoes the arc.
+// Property: the end of an arc equals the integral of its heading by the midpoint rule (error of n steps
+// below (length curvature)^2 length / (24 n^2)); the reversed arc returns to the start.
 TEST(Arc, EndIsTheIntegralOfTheHeading) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (int k = 0; k < 100; ++k) {
     const Pose from{{5 * unit(random), 5 * unit(random)}, 3 * unit(random)};
-    // Nearly straight ones too, down to no curvature at all.
+    // The sample includes nearly straight arcs and zero curvature.
     const Arc arc{4 * unit(random), k % 5 == 0 ? 0.0 : unit(random) * std::pow(10.0, -(k % 12))};
     constexpr int kSteps = 4'000;
     Pose walked = from;

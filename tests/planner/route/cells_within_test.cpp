@@ -10,7 +10,7 @@ namespace cells_within_test {
 
 constexpr maps::Grid kGrid{.width = 7, .height = 5, .resolution_m = 0.5, .south_west = {10.0, 20.0}};
 
-// Brute force: a cell counts where its nearest place is no further than the radius.
+// Closed form, by brute force: a cell counts if its nearest point is within the radius.
 TEST(CellsWithin, MatchesBruteForceOverCells) {
   for (double x = 9.113; x < 14.5; x += 0.37)
     for (double y = 19.2; y < 23.4; y += 0.41)

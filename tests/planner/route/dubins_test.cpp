@@ -33,7 +33,8 @@ Between drawn(std::mt19937_64& random, double reach_m) {
 }
 
 TEST(Dubins, CurvesReachTheTargetWithoutReversing) {
-  // Property: over random poses from a third of a radius to thousands apart the arcs end where they should.
+  // Property: for random poses from a third of a radius to thousands of radii apart the arcs end at the
+  // target.
   std::mt19937_64 random(1);
   for (const double reach_m : {0.5, 3.0, 50.0, 5000.0})
     for (int k = 0; k < 2000; ++k) {
@@ -51,7 +52,7 @@ TEST(Dubins, CurvesReachTheTargetWithoutReversing) {
 }
 
 TEST(Dubins, LengthMatchesOmpl) {
-  // Independent: OMPL's, on ways short enough for its own bounds.
+  // Closed form: OMPL's independent implementation, on paths short enough for its own bounds.
   const auto space = std::make_shared<ompl::base::DubinsStateSpace>(1.5);
   ompl::base::ScopedState<ompl::base::DubinsStateSpace> a(space), b(space);
   std::mt19937_64 random(2);
@@ -66,7 +67,7 @@ TEST(Dubins, LengthMatchesOmpl) {
 }
 
 TEST(Dubins, StraightTargetYieldsOneArc) {
-  // Closed form: a hundred kilometres dead ahead; the heading's rounding must not add a circle.
+  // Closed form: a target 100 km straight ahead; rounding of the heading must not add a circle.
   const double heading = 0.3;
   const Pose to{{1e5 * std::cos(heading), 1e5 * std::sin(heading)}, heading};
   EXPECT_NEAR(length_m(shortestForward({{0.0, 0.0}, heading}, to, 1.0)), 1e5, 1e-3);

@@ -9,7 +9,8 @@
 namespace talus::planner {
 namespace heading_cost_test {
 
-// Property: same bits as TravelCost for random cells and headings, ties between bins among them.
+// Property: the cost is bit-identical to TravelCost for random cells and headings, including ties between
+// bins.
 TEST(HeadingCost, CostIsBitIdenticalToDriveCost) {
   const auto cost = testing::driveCost({.max_along = 0.25, .max_across = 0.3});
   std::mt19937 random(3);

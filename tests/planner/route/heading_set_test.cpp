@@ -23,7 +23,8 @@ TEST(HeadingSet, TouchingArcsAreMerged) {
   EXPECT_NEAR(set.widestGap().width_rad, 3.9, 1e-12);
 }
 
-// Independent derivation: each heading by itself, on the drive cost of random cells, half of them gentle ones.
+// Closed form, by brute force: each heading is evaluated separately on the cost of random cells, half of
+// them gentle.
 TEST(HeadingSet, ContainsExactlyTheAllowedHeadings) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> gradient(-0.6, 0.6), angle(0.0, HeadingSet::kTurn);

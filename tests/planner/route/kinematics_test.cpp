@@ -17,7 +17,8 @@ Pose end(Pose pose, const std::vector<Arc>& arcs) {
 }
 
 TEST(Kinematics, ShortestCurvesReachTheTargetAndKeepTheRadius) {
-  // Property: over random poses both families end at the target, and reversing never makes the way longer.
+  // Property: for random poses both families of curves end at the target, and reversing never makes the path
+  // longer.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-5.0, 5.0), heading(-4.0, 4.0);
   for (int k = 0; k < 500; ++k) {
@@ -42,12 +43,13 @@ TEST(Kinematics, ShortestCurvesReachTheTargetAndKeepTheRadius) {
   }
 }
 
-// Below a millimetre OMPL's Reeds-Shepp curves no longer close, and its assertion ended the process.
+// Below a radius of a millimetre OMPL's Reeds-Shepp curves do not reach the target, and an assertion ends
+// the process.
 TEST(Kinematics, TurningRadiusHasALowerBound) {
   const Pose from{{0.0, 0.0}, 0.3}, to{{80.0, 17.0}, -2.0};
   for (const double bad : {0.0, 1e-15, 1e-9, 1e-4, 2000.0, std::nan("")})
     EXPECT_THROW(shortestArcs(from, to, {.turning_radius_m = bad}), std::invalid_argument) << bad;
-  // Property: the least arrives across the longest map.
+  // Property: with the smallest radius a path across the longest map ends at its target.
   const Pose far{{130000.0, 900.0}, 2.0};
   for (const bool reverse : {false, true}) {
     const Pose reached =

@@ -8,8 +8,8 @@
 namespace talus::planner {
 namespace large_array_test {
 
-// Property: every element can be written, arrays of a cache line and more begin on one, and from two huge
-// pages on they begin on a huge page of 2 MiB.
+// Property: every element is writable. Arrays of a cache line and more are aligned to a cache line, and
+// arrays from two huge pages on to a huge page of 2 MiB.
 TEST(LargeArray, ArrayIsAlignedAndFullyWritable) {
   for (const std::size_t count : {1UL, 15UL, 16UL, 17UL, (1UL << 20) - 1, 1UL << 20, (1UL << 20) + 1}) {
     const auto array = makeLargeArray<std::uint32_t>(count);

@@ -23,7 +23,7 @@ TEST(Legs, EachLegStartsAtTheEndOfThePreviousLeg) {
   problem.watch.progress = [&](double done) { progress.push_back(done); };
   const Plan whole = planByLegs(problem, [&](const Problem& leg) {
     asked.push_back(leg);
-    // The last leg stops short, as its tolerance lets it.
+    // The last leg ends within its tolerance, short of the goal.
     const maps::Point end = asked.size() == 3 ? maps::Point{1.8, 1.8} : leg.goal;
     return Plan{RouteStatus::Found, {}, {leg.start, end}, 10.0, 7.0};
   });
@@ -57,7 +57,8 @@ TEST(Legs, FirstFailedLegIsTheResult) {
   EXPECT_EQ(calls, 2);
 }
 
-// Where a leg fails for one of its ends, a via point is called by its number: the user knows no other start or goal.
+// Property: if a leg fails at one of its ends, a via point is named by its number, because the user's start
+// and goal are others.
 TEST(Legs, FailingViaPointIsNamedByItsNumber) {
   const auto reason = [](int failing, const char* why) {
     int calls = 0;

@@ -69,7 +69,8 @@ TEST(MotionCost, TurnCostIsProportionalToAngle) {
       << "a point given twice";
 }
 
-// A square rover that holds a plane of 0.6 diagonally tips in the headings between: its limit is half / height = 0.5 by an axis.
+// A square rover that is stable on a plane of 0.6 in diagonal headings tips in the headings between; the
+// limit along an axis is half / height = 0.5.
 TEST(MotionCost, TurnThroughTippingHeadingsIsInfeasible) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = rover.track_m = 1.0;
@@ -100,8 +101,8 @@ TEST(MotionCost, UnknownCellsAreInfeasible) {
   EXPECT_TRUE(cost.allowed({0.5, 0.5}));
 }
 
-// Property: the integral is what fine sampling tends to; with cells at least 1e-2 m long on the segment and
-// 1e5 samples over at most 30 m the sum is off by less than 40 crossings of 3e-4 m at 300 J/m.
+// Property: the integral is the limit of fine sampling; with 1e5 samples over at most 30 m and cells of at
+// least 1e-2 m on the segment, the sum is off by less than 40 crossings of 3e-4 m at 300 J/m.
 TEST(MotionCost, MatchesFineSampling) {
   const auto map = randomMap({.blocked = 0.0, .roughness = 0.13});
   const MotionCost cost(map);
@@ -127,7 +128,7 @@ TEST(MotionCost, MatchesFineSampling) {
   EXPECT_GT(allowed, 20);
 }
 
-// Property: cutting a motion in two does not change its cost.
+// Property: the cost of a motion is the sum of the costs of its two sections.
 TEST(MotionCost, CostIsAdditiveOverParts) {
   const MotionCost cost(randomMap({.blocked = 0.0, .roughness = 0.1}));
   const double whole = cost({{0.3, 0.7}, {18.1, 13.9}});

@@ -17,7 +17,7 @@ TEST(PlanEnd, FailedPlanHasItsReasonAndNoRoute) {
   EXPECT_TRUE(std::isinf(plan.cost_J));
 }
 
-// Property: a request to stop counts more than a time limit that has passed as well.
+// Property: a stop request takes precedence over an elapsed time limit.
 TEST(PlanEnd, StoppedPlanNamesItsCause) {
   std::stop_source source;
   const StopCheck late(ProgressMonitor{.progress = {}, .stop = source.get_token()}, 0.0);

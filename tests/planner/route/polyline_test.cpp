@@ -20,7 +20,7 @@ Polyline wandering(unsigned seed, int points) {
   return line;
 }
 
-// Property: pieces join up, keep the length, and end where the way left is a multiple of the piece.
+// Property: the pieces join, keep the length, and end where the remaining length is a multiple of the piece.
 TEST(Polyline, PiecesAreMeasuredFromTheEnd) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Polyline line = wandering(seed, 30);
@@ -39,7 +39,7 @@ TEST(Polyline, PiecesAreMeasuredFromTheEnd) {
   }
 }
 
-// Property: what lies before a cut does not move it, to the bit.
+// Property: a change before a cut does not move the cut, to the bit.
 TEST(Polyline, CutsBehindAChangeAreUnaffected) {
   Polyline line = wandering(5, 40);
   const auto before = cutFromEnd(line, 9.0, 9.0);
@@ -71,13 +71,13 @@ TEST(Polyline, LineIsCutWhereItEntersACircle) {
   };
   near(cutWithin(line, {10, 10}, 4.0), {{0, 0}, {10, 0}, {10, 6}});
   near(cutWithin(line, {5, 3}, 5.0), {{0, 0}, {1, 0}});  // 3-4-5, between two places outside
-  near(cutWithin(line, {5, 3}, 2.9), line);              // passes it by
+  near(cutWithin(line, {5, 3}, 2.9), line);              // outside the circle
   near(cutWithin(line, {-1, 0}, 1.5), {{0, 0}});         // begins inside
   near(cutWithin(line, {10, 10}, 0.0), line);
 }
 
-// Property: the pieces are the line, lie far enough apart, and a line that differs in one place is cut at the
-// same points elsewhere.
+// Property: the pieces together are the line and long enough, and a line with one changed point is cut at
+// the same points elsewhere.
 TEST(Polyline, CutPointsDependOnTheNeighbourhoodOnly) {
   constexpr double kApart = 40.0;
   std::size_t common = 0, all = 0;

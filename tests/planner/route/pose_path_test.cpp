@@ -20,7 +20,7 @@ TEST(PosePath, StraightLegCostEqualsMotionCost) {
 TEST(PosePath, ReverseCostEqualsDrivingInThatDirection) {
   const MotionCost motion(drawn({">>>>"}));
   const PoseCost cost(motion, {.turning_radius_m = 1.0});
-  // Looking east, backing west goes downhill.
+  // A rover that faces east and reverses west goes downhill.
   EXPECT_DOUBLE_EQ(cost({{3.5, 0.5}, 0.0}, {{-3.0, 0.0}, 0.0}), motion({{3.5, 0.5}, {0.5, 0.5}}));
 }
 
@@ -34,7 +34,7 @@ TEST(PosePath, ArcCostOnUniformGroundIsLengthPlusTurn) {
 }
 
 TEST(PosePath, TurnInPlaceRequiresEveryHeading) {
-  // The steep cell may be crossed east and west at 0.2, but a limit of 0.1 across forbids looking north.
+  // The steep cell may be crossed east and west at 0.2; a cross limit of 0.1 forbids the heading north.
   const auto steep = testing::drawn({">"});
   const costmap::CostGrid grid({.grid = steep->grid(),
                                 .tiles = steep->content().tiles,

@@ -10,7 +10,7 @@ namespace route_json_test {
 using cli::exampleMap;
 using cli::exampleRoute;
 
-// The fields that the interface promises of a route.
+// The fields that the documented interface guarantees.
 constexpr const char* kSummary[] = {"status",   "cost",          "energy_J",    "time_s", "length_m",
                                     "max_slip", "max_slope_rad", "lower_bound", "gap",    "planner"};
 constexpr const char* kArrays[] = {"x_m",
@@ -28,7 +28,8 @@ constexpr const char* kArrays[] = {"x_m",
                                    "time_s",
                                    "immobilisation_risk"};
 
-// Property: every promised field is there, one value a vertex, and a vertex's numbers come back to the bit.
+// Property: every documented field exists with one value for each vertex, and the values are restored to the
+// bit.
 TEST(RouteJson, DocumentedFieldsArePresentWithOneValuePerVertex) {
   const Route route = exampleRoute();
   const auto document = nlohmann::json::parse(routeGeoJson(route, exampleMap(), {.seed = 7}).dump());
@@ -47,8 +48,8 @@ TEST(RouteJson, DocumentedFieldsArePresentWithOneValuePerVertex) {
   EXPECT_EQ(properties["category"][50], "marginal");
 }
 
-// Closed form: RFC 7946 wants two positions of a line, so a standstill is there twice; what is not known is
-// null, and an elevation that is not known is left out of the position.
+// Closed form: RFC 7946 requires two positions in a line, so that a route of zero length repeats its
+// position. Unknown values are null, and an unknown elevation is omitted from the position.
 TEST(RouteJson, ZeroLengthRouteIsALineAndUnknownValuesAreNull) {
   Route route = exampleRoute();
   route.vertices.resize(1);
@@ -69,7 +70,7 @@ TEST(RouteJson, InputsAreListedWithTheirDigest) {
   EXPECT_EQ(file["sha256"], "ba7816bf");
 }
 
-// Property: what a controller would notice is there for drives alone.
+// Property: fields for controllers exist for drives only.
 TEST(RouteJson, DriveFieldsArePresentForDrivesOnly) {
   Route route = exampleRoute();
   EXPECT_FALSE(summaryJson(route).contains("drive"));

@@ -9,7 +9,7 @@
 namespace talus::planner {
 namespace route_test {
 
-// The spellings are a promise to programs that read the output.
+// The names are part of the documented output format.
 TEST(Route, StatusNamesMatchTheFileFormat) {
   const std::pair<RouteStatus, const char*> promised[] = {{RouteStatus::Found, "found"},
                                                           {RouteStatus::NoRoute, "no_route"},
@@ -21,8 +21,8 @@ TEST(Route, StatusNamesMatchTheFileFormat) {
   for (const auto& [status, word] : promised) EXPECT_EQ(name(status), word);
 }
 
-// Property: what a layer does not know is told by NaN, which no comparison takes for a value; a route that
-// was not planned is none.
+// Property: an unknown value is NaN, which compares false with any value; a route that was not planned has
+// no vertices.
 TEST(Route, UnknownValuesAreNan) {
   const RouteVertex vertex;
   for (const double value :

@@ -14,7 +14,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 TEST(StopCheck, WithoutLimitNothingStops) {
   EXPECT_FALSE(StopCheck()());
   EXPECT_FALSE(StopCheck(ProgressMonitor{}, kNever)());
-  EXPECT_FALSE(StopCheck(ProgressMonitor{}, 1e300)());  // longer than a clock counts: no overflow
+  EXPECT_FALSE(StopCheck(ProgressMonitor{}, 1e300)());  // longer than the clock's range: no overflow
 }
 
 TEST(StopCheck, StopRequestAffectsEveryCopy) {
@@ -26,7 +26,7 @@ TEST(StopCheck, StopRequestAffectsEveryCopy) {
   EXPECT_FALSE(copy.timedOut());
 }
 
-// Closed form: a limit of no time has passed at once.
+// Closed form: a time limit of zero has elapsed at once.
 TEST(StopCheck, ElapsedTimeLimitIsNotACancellation) {
   const StopCheck check(ProgressMonitor{}, 0.0);
   EXPECT_TRUE(check() && check.timedOut());

@@ -11,8 +11,8 @@ namespace map_space_test {
 
 const maps::Grid kGrid{.width = 40, .height = 30, .resolution_m = 2.5, .south_west = {-7.0, 1000.0}};
 
-// Property: every place within the bounds lies in a cell of the map, their corners too; what is outside is
-// moved onto the nearest of them.
+// Property: every place within the bounds, including the corners, lies in a cell of the map; a place outside
+// is moved to the nearest of them.
 TEST(MapSpace, PlacesWithinBoundsLieOnTheMap) {
   const auto space = std::make_shared<MapSpace>(kGrid);
   space->setup();

@@ -13,8 +13,8 @@ namespace ob = ompl::base;
 
 const Segment kEnds{{0.5, 0.5}, {1.5, 0.5}};
 
-// Property: OMPL is told what the one cost function allows, place by place and motion by motion, and counts
-// what it asked.
+// Property: OMPL's validity equals that of the one cost function for each place and motion, and the checks
+// are counted.
 TEST(MapValidity, ValidityEqualsFiniteMotionCost) {
   const testing::OmplGround ground(testing::randomMap({.seed = 11, .blocked = 0.2, .roughness = 0.3}), kEnds);
   std::mt19937 random(3);
@@ -34,7 +34,8 @@ TEST(MapValidity, ValidityEqualsFiniteMotionCost) {
   EXPECT_EQ(ground.motions->getInvalidMotionCount(), invalid);
 }
 
-// Closed form: from 0.5 m east a wall at 6 m shuts the way after 5.5 of 10 m; bisection finds it to 1/256.
+// Closed form: from x = 0.5 m eastwards a wall at 6 m blocks the motion after 5.5 of 10 m; bisection is
+// accurate to 1/256.
 TEST(MapValidity, LastValidStateIsFoundByBisection) {
   const testing::OmplGround ground(testing::drawn({"......#....", "......#...."}), kEnds);
   const auto from = ground.at({0.5, 0.5}), to = ground.at({10.5, 0.5});

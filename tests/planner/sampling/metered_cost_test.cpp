@@ -11,14 +11,14 @@ namespace metered_cost_test {
 using testing::drawn;
 using testing::randomMap;
 
-// Property: MotionCost's value wherever a route may turn at both ends, else infinite: joined at any place that
-// a route turns on, finite motions make an allowed route.
+// Property: the value is that of MotionCost if a route may turn at both ends, else infinite. Finite motions
+// joined at any such place form an allowed route.
 TEST(MeteredCost, CostEqualsMotionCostAtValidTurns) {
   const auto map = randomMap({.seed = 4, .blocked = 0.1, .roughness = 0.3});
   const MotionCost exact(map);
   const MeteredCost cost(map, {{0.5, 0.5}, {19.5, 19.5}});
   std::mt19937 random(2);
-  // Half metres: one place in two lies on an edge, one in four on a corner.
+  // Multiples of half a metre: half of the places lie on an edge, a quarter on a corner.
   const auto place = [&random] {
     return maps::Point{0.5 * static_cast<double>(random() % 41), 0.5 * static_cast<double>(random() % 41)};
   };
@@ -38,8 +38,8 @@ TEST(MeteredCost, CostEqualsMotionCostAtValidTurns) {
   EXPECT_GT(joined, 20);
 }
 
-// Closed form: one and a cell's length each, so 1 + 3 for 3.5 m; asked again at once nothing; an iteration
-// counts a hundred.
+// Closed form: a call counts one plus the cells of its length, 1 + 3 for 3.5 m; an immediate repetition
+// counts nothing, an iteration a hundred.
 TEST(MeteredCost, WorkCountsCellLengths) {
   const MeteredCost cost(drawn({".....", "....."}), {{0.5, 0.5}, {4.5, 0.5}});
   EXPECT_EQ(cost.work(), 0U);
@@ -52,7 +52,7 @@ TEST(MeteredCost, WorkCountsCellLengths) {
   EXPECT_EQ(cost.work(), 108U);
 }
 
-// The ends of the problem turn nothing: they may lie on an edge beside blocked ground.
+// Property: start and goal of the problem are no turns and may lie on an edge beside blocked ground.
 TEST(MeteredCost, StartAndGoalAreNotTreatedAsTurns) {
   const auto map = drawn({"##", ".."});
   const Segment up{{0.5, 1.0}, {1.5, 0.5}};

@@ -16,7 +16,8 @@ class Counter : public ompl::msg::OutputHandler {
   int lines = 0;
 };
 
-// Property: silent from the first guard to the last, however they are nested; then the host's handler is back.
+// Property: OMPL is silent while any guard exists, with any nesting; afterwards the host's handler is
+// restored.
 TEST(OmplGuard, HostOutputHandlerIsRestored) {
   Counter counter;
   ompl::msg::OutputHandler* const host = ompl::msg::getOutputHandler();
@@ -44,8 +45,8 @@ std::vector<double> drawnWith(std::uint64_t seed) {
   return numbers;
 }
 
-// Property: the same numbers whatever was drawn before, others for another seed; seeds of more than 32 bits
-// and zero, which OMPL ignores, are seeds as well.
+// Property: the random numbers depend on the seed only, not on earlier draws. Seeds above 32 bits and zero,
+// which OMPL ignores, are valid.
 TEST(OmplGuard, RandomNumbersDependOnTheSeedOnly) {
   const auto first = drawnWith(1);
   EXPECT_NE(first, drawnWith(2));
@@ -54,7 +55,7 @@ TEST(OmplGuard, RandomNumbersDependOnTheSeedOnly) {
   EXPECT_NE(drawnWith(0), first);
   EXPECT_NE(drawnWith(std::uint64_t{1} << 40), first);
   EXPECT_THROW(withOmplSeed(1, [] { throw std::runtime_error("made nothing"); }), std::runtime_error);
-  EXPECT_EQ(first, drawnWith(1));  // not locked for ever
+  EXPECT_EQ(first, drawnWith(1));  // the seed is not locked
 }
 
 }  // namespace ompl_guard_test

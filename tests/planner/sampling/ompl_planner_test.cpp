@@ -10,8 +10,7 @@ namespace ompl_planner_test {
 
 const Segment kEnds{{2.5, 10.5}, {27.5, 10.5}};
 
-// Property: of the names on offer exactly OMPL's own planners come from here, with the question and the
-// range that were given.
+// Property: exactly the names of OMPL's planners create an OMPL planner, with the given problem and range.
 TEST(OmplPlanner, CreatesExactlyTheOmplPlanners) {
   const QuietOmpl quiet;
   const testing::OmplGround ground(testing::drawn(std::vector<std::string>(20, std::string(30, '.'))), kEnds);
@@ -30,7 +29,8 @@ TEST(OmplPlanner, CreatesExactlyTheOmplPlanners) {
   EXPECT_EQ(makeOmplPlanner("field", {.space = ground.space, .definition = ground.definition}), nullptr);
 }
 
-// FMT* is begun anew until it is stopped: its first samples do not show the gap of one cell in a wall of 80.
+// Property: FMT* restarts until it is stopped, because its first samples miss a gap of one cell in a wall of
+// 80.
 TEST(OmplPlanner, FmtRestartsUntilItFindsANarrowGap) {
   const QuietOmpl quiet;
   std::vector<std::string> rows(80, std::string(120, '.'));

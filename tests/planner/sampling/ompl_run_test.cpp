@@ -25,8 +25,8 @@ Plan straight(const Problem& leg) {
   return known;
 }
 
-// Closed form: on even ground the straight line, 23 m at 10 J/m, is the best there is; the known bound is kept
-// where it is higher than the straight one.
+// Closed form: on level ground the straight line, 23 m at 10 J/m, is optimal; a known lower bound is kept if
+// it is higher than the straight-line bound.
 TEST(OmplRun, BestRouteAndHigherBoundAreReturned) {
   const Problem leg = across();
   const Plan plan = runOmpl(leg, {.planner = "RRTstar", .work = 100'000}, straight(leg));
@@ -36,7 +36,7 @@ TEST(OmplRun, BestRouteAndHigherBoundAreReturned) {
   Plan bound = straight(leg);
   bound.lower_bound_J = 229.0;
   Problem near = leg;
-  near.goal_tolerance_m = 5.0;  // the straight bound is 180 J now
+  near.goal_tolerance_m = 5.0;  // the straight-line bound is 180 J now
   EXPECT_NEAR(runOmpl(near, {.planner = "RRTstar", .work = 100'000}, bound).lower_bound_J, 229.0, 1e-9);
 }
 

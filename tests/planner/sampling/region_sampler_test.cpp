@@ -22,7 +22,7 @@ std::shared_ptr<const ImprovableRegion> regionOf(bool hand_out) {
                               .hand_out_route = hand_out});
 }
 
-// Property: the known route's points first, in order, where asked for; then samples of the region.
+// Property: on request the points of the known route come first, in order, then samples of the region.
 TEST(RegionSampler, KnownRouteIsSampledFirst) {
   const auto region = regionOf(true);
   RegionSource source(region, 1), plain(regionOf(false), 1);
@@ -37,8 +37,8 @@ TEST(RegionSampler, KnownRouteIsSampledFirst) {
   EXPECT_TRUE(region->improves(place, 250.0));
 }
 
-// Property: the same seed gives the same states, another seed others; all lie within the bounds, and those
-// near another state within the distance of it in x and y.
+// Property: equal seeds give equal states, other seeds others. All states lie within the bounds, and states
+// near another state lie within the given distance in x and y.
 TEST(RegionSampler, SamplesAreReproducibleAndWithinBounds) {
   const auto space = std::make_shared<MapSpace>(regionOf(false)->parts().map->grid());
   space->setup();
@@ -70,7 +70,7 @@ TEST(RegionSampler, SamplesAreReproducibleAndWithinBounds) {
   EXPECT_NEAR(spread_m2 / 2'000, 8.0, 5 * 0.18);
 }
 
-// Closed form: at 10 J/m the heuristic of a state is ten times its way over both foci.
+// Closed form: at 10 J/m the heuristic of a state is ten times the length over both foci.
 TEST(RegionSampler, InformedSamplesLieBetweenTheRequestedCosts) {
   const auto region = regionOf(false);
   const testing::OmplGround ground(region->parts().map, {{10.5, 15.5}, {30.5, 15.5}});

@@ -16,7 +16,7 @@ namespace sampling_planner_test {
 
 using testing::drawn;
 
-// A wall with a gap near its south end; the direct way from west to east is shut.
+// A wall with a gap near its south end that blocks the direct route from west to east.
 std::shared_ptr<const costmap::CostGrid> wall() {
   std::vector<std::string> rows(40, std::string(60, '.'));
   for (std::size_t r = 0; r < 34; ++r) rows[r][30] = '#';
@@ -31,7 +31,7 @@ Problem across(std::shared_ptr<const costmap::CostGrid> map) {
   return problem;
 }
 
-// A scout that knows one way round the wall, not the best.
+// An initial-path provider that returns one route around the wall, not the best.
 Plan detour(const Problem& leg) {
   Plan known;
   known.points = {leg.start, {15.5, 2.5}, {45.5, 2.5}, leg.goal};
@@ -40,7 +40,7 @@ Plan detour(const Problem& leg) {
   return known;
 }
 
-// The same map under a cost that forbids climbing.
+// The same map with a cost that forbids climbing.
 std::shared_ptr<const costmap::CostGrid> drivenDownOnly(const std::shared_ptr<const costmap::CostGrid>& map) {
   costmap::TravelCurve curve;
   for (std::size_t bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
@@ -65,17 +65,18 @@ TEST_P(EveryPlanner, PlanCostEqualsMotionCostAroundAWall) {
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_EQ(plan.points.front(), problem.start);
   EXPECT_EQ(plan.points.back(), problem.goal);
-  // Property: the plan's cost is what the one cost function says of its points.
+  // Property: the plan's cost equals that of its points by the one cost function.
   EXPECT_DOUBLE_EQ(plan.cost_J, MotionCost(problem.map).along(plan.points));
-  // Closed form: no way is shorter than over the wall's south end, (30, 6) to (31, 6), at 10 J/m on the flat.
+  // Closed form: the shortest route passes the wall's south end, (30, 6) to (31, 6), at 10 J/m.
   const double best_J = 10 * (std::hypot(24.5, 14.5) + 1 + std::hypot(23.5, 14.5));
   EXPECT_GE(plan.cost_J, best_J * (1 - 1e-12));
-  // Asymptotically optimal planners stopped early; SST is so only up to its pruning radius.
+  // Tolerance: asymptotically optimal planners stopped early; SST is near-optimal up to its pruning radius.
   EXPECT_LE(plan.cost_J, best_J * (GetParam() == "SST" ? 1.3 : 1.1));
   EXPECT_LE(plan.lower_bound_J, best_J);
 }
 
-// Property: on hills whose crossing costs, no planner and no random polyline is cheaper than what is proven.
+// Property: on hills with costs for cross slopes, no planner and no random polyline is cheaper than the
+// proven bound.
 TEST(SamplingPlanner, NoRouteIsCheaperThanTheLowerBound) {
   int routes = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -95,7 +96,7 @@ TEST(SamplingPlanner, NoRouteIsCheaperThanTheLowerBound) {
     problem.prove = true;
     const Plan best = FieldPlanner().plan(problem);
     if (best.status != RouteStatus::Found) continue;
-    EXPECT_GT(best.lower_bound_J, 0.8 * best.cost_J);  // cells have little to do with each other
+    EXPECT_GT(best.lower_bound_J, 0.8 * best.cost_J);  // cells are uncorrelated
     for (const char* name : {"RRTstar", "BITstar"}) {
       const Plan plan = planBySampling(problem, {.planner = name, .work = 2'000'000});
       if (plan.status != RouteStatus::Found) continue;
@@ -131,7 +132,7 @@ TEST_P(EveryPlanner, SameSeedReproducesTheRoute) {
   EXPECT_NE(planBySampling(problem, settings, detour).points, first.points);
 }
 
-// Property: a time limit is used up, beyond the work that would end it else.
+// Property: a time limit is used up, even if the work limit would end the search earlier.
 TEST_P(EveryPlanner, TimeLimitOverridesTheWorkLimit) {
   Problem problem = across(wall());
   problem.time_limit_s = 0.3;
@@ -141,7 +142,7 @@ TEST_P(EveryPlanner, TimeLimitOverridesTheWorkLimit) {
 }
 
 TEST_P(EveryPlanner, ForbiddenClimbsAreNeverUsed) {
-  // Ground that rises eastwards and may be driven down but not up: west to east there is no route.
+  // Ground that rises eastwards and may only be driven down: no route exists from west to east.
   const auto map = drivenDownOnly(drawn(std::vector<std::string>(20, kLevel + ">>>>" + kLevel)));
   Problem up{.map = map, .start = {5.5, 10.5}, .goal = {38.5, 10.5}};
   Problem down{.map = map, .start = {38.5, 10.5}, .goal = {5.5, 10.5}};
@@ -165,7 +166,7 @@ TEST_P(EveryPlanner, StopYieldsCancelled) {
   EXPECT_EQ(planBySampling(problem, {.planner = GetParam()}).status, RouteStatus::Cancelled);
 }
 
-// A route that is known when the work is stopped is not lost.
+// Property: a route known at the time of a stop is returned.
 TEST_P(EveryPlanner, StopReturnsTheBestRouteSoFar) {
   std::stop_source stop;
   Problem problem = across(wall());
@@ -206,8 +207,8 @@ TEST_P(EveryPlanner, ViaPointsArePassedInOrder) {
   EXPECT_LT(first, second);
 }
 
-// Property: what a planner says that it found is what it hands out, also where the route that it was given
-// turns on edges between cells and headings are forbidden cell by cell.
+// Property: the returned route costs no more than the reported cost, also if the given route turns on edges
+// between cells and headings are forbidden cell by cell.
 TEST(SamplingPlanner, ReturnedCostIsAtMostTheReportedCost) {
   for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"})
     for (const std::uint64_t seed : {std::uint64_t{1001}, std::uint64_t{1002}}) {

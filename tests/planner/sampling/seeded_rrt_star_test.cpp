@@ -15,7 +15,7 @@ namespace ob = ompl::base;
 
 const Segment kEnds{{2.5, 10.5}, {27.5, 10.5}};
 
-// A planner with this seed after so many rounds; the cost of its answer.
+// Cost of the solution of a planner with this seed route after a number of iterations.
 double costAfter(int rounds, const SeededRRTstar::Seed& seed) {
   const QuietOmpl quiet;
   const testing::OmplGround ground(testing::drawn(std::vector<std::string>(20, std::string(30, '.'))), kEnds);
@@ -34,7 +34,8 @@ double costAfter(int rounds, const SeededRRTstar::Seed& seed) {
   return cost_J;
 }
 
-// Closed form: the seed's three legs at 10 J/m, from the first moment; then never dearer, and in time better.
+// Closed form: the seed's three legs at 10 J/m are the first solution; the cost never increases, and
+// decreases with time.
 TEST(SeededRRTstar, SeedRouteIsAvailableImmediatelyAndImproved) {
   const std::vector<maps::Point> known{kEnds.from, {10.5, 18.5}, {20.5, 3.5}, kEnds.to};
   double seed_J = 0.0;
@@ -50,7 +51,7 @@ TEST(SeededRRTstar, SeedRouteIsAvailableImmediatelyAndImproved) {
   EXPECT_TRUE(std::isinf(costAfter(1, {})));  // without a seed nothing is known yet
 }
 
-// Property: a seed that does not reach the goal is grown from, and is no answer.
+// Property: a seed that does not reach the goal is extended, and is no solution.
 TEST(SeededRRTstar, SeedThatMissesTheGoalIsNoSolution) {
   EXPECT_TRUE(std::isinf(costAfter(1, {.route = {kEnds.from, {20.5, 10.5}}, .spacing_m = 2.0})));
 }

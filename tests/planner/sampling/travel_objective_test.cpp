@@ -8,7 +8,8 @@
 namespace talus::planner {
 namespace travel_objective_test {
 
-// Closed form: up at 205/1024 (drawn_map.hpp), where a parabola of 400 is off by 400 / 4 / 256^2 between nodes, costs 100 g more a metre than down; a wall costs the most there is.
+// Closed form: uphill at 205/1024 (drawn_map.hpp) a metre costs 100 g more than downhill; between nodes a
+// parabola of 400 is off by 400 / 4 / 256^2. A blocked motion has the maximum cost.
 TEST(TravelObjective, CostDependsOnDirectionAndBlockedMotionIsMaximal) {
   const testing::OmplGround ramp(testing::drawn({">>>>#", ">>>>#"}), {{0.5, 0.5}, {3.5, 0.5}});
   const auto low = ramp.at({0.5, 0.5}), high = ramp.at({2.5, 0.5}), wall = ramp.at({4.5, 0.5});
@@ -20,8 +21,8 @@ TEST(TravelObjective, CostDependsOnDirectionAndBlockedMotionIsMaximal) {
   EXPECT_EQ(ramp.objective->stateCost(low.get()).value(), 0.0);
 }
 
-// Property: the heuristics are admissible, and no motion costs more than a blocked one, so that every sum of
-// allowed motions is below it.
+// Property: the heuristics are admissible, and every sum of allowed motions is below the cost of a blocked
+// motion.
 TEST(TravelObjective, HeuristicsAreAdmissible) {
   const Segment ends{{1.5, 1.5}, {17.5, 16.5}};
   const testing::OmplGround on(testing::randomMap({.seed = 6, .blocked = 0.05, .roughness = 0.2}), ends);

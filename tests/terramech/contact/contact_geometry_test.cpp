@@ -25,7 +25,7 @@ TEST(ContactGeometry, EntryAngleIsAccurateAtSmallSinkage) {
 }
 
 TEST(ContactGeometry, SinkageInvertsEntryAngle) {
-  // Property.
+  // Property: sinkage and entry angle are inverse to each other.
   for (const double z : {1e-9, 1e-3, 0.03, 0.15}) {
     EXPECT_NEAR(sinkage_m(kWheel, entryAngle_rad(kWheel, z)), z, 1e-14 * (z + 1e-9));
   }

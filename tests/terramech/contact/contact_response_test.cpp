@@ -41,7 +41,8 @@ TEST(ContactResponse, MatchesTheExactContactIntegrals) {
 }
 
 TEST(ContactResponse, DerivativeMatchesCentralDifferences) {
-  // Property: central differences with a relative step of 1e-5 err by about 1e-9 of the scale.
+  // Property: the derivatives equal central differences with a relative step of 1e-5, whose error is about
+  // 1e-9 of the scale.
   for (const ContactSoil& s : soils()) {
     const ContactState at{.sinkage_m = 0.02, .slip = 0.4};
     ContactDerivative d;

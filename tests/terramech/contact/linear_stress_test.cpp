@@ -17,7 +17,7 @@ double integral(F&& f, double a, double b) {
 }
 
 TEST(LinearStressMoments, MomentsEqualTheirIntegrals) {
-  // Closed form against quadrature; the last one is Eq. 2.3's offset term, corrected.
+  // Closed form, checked by quadrature; the last moment is the corrected offset term of Eq. 2.3.
   for (const double theta_1 : {0.01, 0.3, 0.9, 1.5}) {
     const LinearStressMoments m(theta_1);
     const double h = 0.5 * theta_1;

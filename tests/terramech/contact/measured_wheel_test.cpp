@@ -19,7 +19,8 @@ struct Errors {
   int runs = 0;
 };
 
-// Of the smooth wheel's driven runs at a slip angle (cmu_testbed, Pavlov and Johnson), about its slip along the wheel's plane.
+// RMS errors over the driven runs of the smooth wheel at a slip angle (cmu_testbed, Pavlov and Johnson),
+// with the slip in the wheel's plane.
 Errors errorsAt(double angle_deg, const Soil& soil, const std::string& path) {
   std::ifstream runs(path);
   Errors errors;
@@ -46,8 +47,9 @@ Errors errorsAt(double angle_deg, const Soil& soil, const std::string& path) {
   return errors;
 }
 
-// The authors' soil (cohesion by hand, friction measured, k and n of their plates) with three numbers fitted to the runs at 0 degrees
-// alone: K, c1 and the slip sinkage. docs/slopes.md has what they give at 45 degrees, where the goals are missed.
+// Measured by others: the authors' soil (cohesion by hand, friction measured, k and n of their plates).
+// Three parameters are fitted to the runs at 0 degrees alone: K, c1 and the slip sinkage. docs/slopes.md
+// states the errors at 45 degrees, where the goals are missed.
 TEST(MeasuredWheel, ThreeParametersFittedStraightPredictRunsAt15Degrees) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";
@@ -67,7 +69,7 @@ TEST(MeasuredWheel, ThreeParametersFittedStraightPredictRunsAt15Degrees) {
     EXPECT_LT(errors.pull, 0.04) << angle_deg;
     EXPECT_LT(errors.sinkage, 0.03) << angle_deg;
   }
-  // Property: without slip sinkage the wheel sinks too little.
+  // Property: without slip sinkage the predicted sinkage is too small.
   soil.slip_sinkage_exponent = 0.0;
   for (const double angle_deg : {0.0, 15.0, 45.0})
     EXPECT_GT(errorsAt(angle_deg, soil, runs).sinkage, 0.07) << angle_deg;

@@ -57,8 +57,8 @@ TEST(PneumaticTyre, HighInflationIsRigidModeAndLowInflationIsFlattenedMode) {
 }
 
 TEST(PneumaticTyre, ForcesEqualTheIntegratedStresses) {
-  // Property: load, torque and pull by the midpoint rule over the round part and the flat, from the laws as
-  // the header states them.
+  // Property: load, torque and pull equal midpoint-rule integrals over the round part and the flat, by the
+  // laws in the header.
   const double r = 0.4, b = 0.25;
   const Soil soil = loam();
   for (const double slip : {0.0, 0.3}) {
@@ -95,7 +95,7 @@ TEST(PneumaticTyre, ForcesEqualTheIntegratedStresses) {
 
 TEST(PneumaticTyre, SinkageRisesAndDeflectionFallsWithInflationPressure) {
   TyreForces last = tyreOnSoftGround(tyre(2.2e4), loam(), {.load_N = 1500.0, .slip = 0.2});
-  for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: monotone.
+  for (const double p : {1.8e4, 1.4e4, 1e4, 5e3}) {  // Property: the result is monotone in the pressure.
     const TyreForces forces = tyreOnSoftGround(tyre(p), loam(), {.load_N = 1500.0, .slip = 0.2});
     EXPECT_LT(forces.sinkage_m, last.sinkage_m);
     EXPECT_GT(forces.deflection_m, last.deflection_m);

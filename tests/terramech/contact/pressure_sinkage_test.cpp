@@ -30,7 +30,8 @@ TEST(PressureSinkage, DepthInvertsPressure) {
                         .cohesive_factor = 20.0,
                         .frictional_factor = 300.0,
                         .sinkage_exponent = 0.8};
-  for (const double z : {0.0, 1e-4, 0.01, 0.2}) {  // Property: inverse.
+  for (const double z :
+       {0.0, 1e-4, 0.01, 0.2}) {  // Property: pressure and sinkage are inverse to each other.
     EXPECT_NEAR(bekkerDepth_m(drySand(), 0.1, bekkerPressure_Pa(drySand(), 0.1, z)), z, 1e-15);
     EXPECT_NEAR(reeceDepth_m(reece, 0.1, reecePressure_Pa(reece, 0.1, z)), z, 1e-15);
   }
@@ -38,7 +39,7 @@ TEST(PressureSinkage, DepthInvertsPressure) {
 
 TEST(PressureSinkage, ReecePressureDependsOnDepthOverWidthOnly) {
   const ReeceSoil clay{.cohesion_Pa = 5000.0, .cohesive_factor = 15.0, .sinkage_exponent = 0.5};
-  // Property: a cohesive soil gives the same pressure at the same z/b.
+  // Property: a purely cohesive soil has the same pressure at the same z/b.
   EXPECT_DOUBLE_EQ(reecePressure_Pa(clay, 0.1, 0.02), reecePressure_Pa(clay, 0.3, 0.06));
 }
 
@@ -61,7 +62,7 @@ TEST(PressureSinkage, ReeceSoilConvertsToAnEquivalentBekkerSoil) {
                         .sinkage_exponent = 0.8};
   const Soil twin = bekkerOf(reece, 0.12, drySand());
   EXPECT_EQ(twin.cohesion_Pa, 500.0);
-  EXPECT_EQ(twin.friction_angle_rad, drySand().friction_angle_rad);  // Reece says nothing of it
+  EXPECT_EQ(twin.friction_angle_rad, drySand().friction_angle_rad);  // not a parameter of Reece's law
   for (const double z : {0.001, 0.03})
     EXPECT_NEAR(bekkerPressure_Pa(twin, 0.12, z) / reecePressure_Pa(reece, 0.12, z), 1.0, 1e-14);
   EXPECT_GT(equilibrium(twin, {.radius_m = 0.15, .width_m = 0.12}, {.load_N = 60.0, .slip = 0.2}).sinkage_m,

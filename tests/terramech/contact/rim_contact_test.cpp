@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace rim_contact_test {
 
-/// Even pressure, no shear, contact from theta_1 to theta_2 = -theta_1: everything has a closed form.
+/// Uniform pressure, no shear, contact from theta_1 to theta_2 = -theta_1; all integrals have closed forms.
 struct EvenPressure {
   double pressure_Pa(double) const { return 5e3; }
   double shear_Pa(double, double) const { return 0.0; }
@@ -15,7 +15,7 @@ struct EvenPressure {
   double exit_rad(double entry) const { return -entry; }
 };
 
-/// Even shear on top.
+/// Uniform shear in addition.
 struct EvenShear : EvenPressure {
   double shear_Pa(double, double) const { return 2e3; }
 };

@@ -13,7 +13,7 @@ TEST(ShearDisplacement, IsEquationC6ForDrivenWheels) {
   const double entry = 0.6, theta = 0.1;
   // Closed form: C.6.
   EXPECT_DOUBLE_EQ(at(0.3).at_m(theta), 0.2 * ((entry - theta) - 0.7 * (std::sin(entry) - std::sin(theta))));
-  EXPECT_DOUBLE_EQ(at(1.0).at_m(theta), 0.2 * (entry - theta));  // spun in place: the rolled arc
+  EXPECT_DOUBLE_EQ(at(1.0).at_m(theta), 0.2 * (entry - theta));  // spinning in place: the arc rolled
 }
 
 TEST(ShearDisplacement, IntegratesTheSlidingVelocityOfARimPoint) {
@@ -38,7 +38,7 @@ TEST(ShearDisplacement, LockedWheelHasInfiniteShearDisplacement) {
 
 TEST(ShearDisplacement, SignChangesOnlyForTowedWheelsAtSmallNegativeSlip) {
   EXPECT_TRUE(std::isnan(at(0.0).signChange_rad(0.0)));
-  EXPECT_TRUE(std::isnan(at(-0.5).signChange_rad(0.0)));  // lags behind the soil from the entry on
+  EXPECT_TRUE(std::isnan(at(-0.5).signChange_rad(0.0)));  // the rim lags behind the soil from the entry on
   const double zero = at(-0.1).signChange_rad(0.0);
   ASSERT_GT(zero, 0.0);
   EXPECT_NEAR(at(-0.1).at_m(zero), 0.0, 1e-15);

@@ -30,7 +30,7 @@ TEST(ShearStress, BothLawsShareInitialStiffnessAndStrength) {
 }
 
 TEST(ShearStress, IsOddInTheDisplacement) {
-  for (const double j : {0.001, 0.01, 0.1}) {  // Property: symmetry.
+  for (const double j : {0.001, 0.01, 0.1}) {  // Property: odd symmetry.
     EXPECT_EQ(janosiHanamoto_Pa(loam(), 5e3, -j), -janosiHanamoto_Pa(loam(), 5e3, j));
     EXPECT_EQ(elastoPlastic_Pa(loam(), 5e3, -j), -elastoPlastic_Pa(loam(), 5e3, j));
   }
@@ -59,7 +59,7 @@ TEST(ShearStress, ElastoPlasticLawPullsMoreAndSinksLessThanJanosi) {
   const RimEquilibrium rim = rimEquilibrium(law, Wheel{}, {.load_N = 80.0, .slip = 0.4});
   const WheelForces janosi = equilibrium(loam(), Wheel{}, operation);
   EXPECT_NEAR(rim.forces.load_N, 80.0, 1e-9);
-  // Property: min(x, 1) > 1 - e^-x, so the sharp law pulls more and sinks less.
+  // Property: min(x, 1) > 1 - e^-x, so that the elasto-plastic law gives more pull and less sinkage.
   EXPECT_GT(rim.forces.drawbar_pull_N, janosi.drawbar_pull_N);
   EXPECT_LT(rim.entry_angle_rad, janosi.entry_angle_rad);
 }

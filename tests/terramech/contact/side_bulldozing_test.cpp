@@ -33,7 +33,8 @@ TEST(SideBulldozing, FaceResistanceIsTheIntegralOverTheChord) {
       const double h = 2.0 * r * std::sin(0.5 * (theta_1 + theta)) * std::sin(0.5 * (theta_1 - theta));
       sum += 2.0 * soil.resistance_N_m(h) * r * std::cos(theta) * theta_1 / n;
     }
-    // Property: the closed form is the integral; the midpoint rule of 20000 is right to 1e-8.
+    // Property: the closed form equals the integral; the midpoint rule with 20000 intervals is accurate to
+    // 1e-8.
     EXPECT_NEAR(faceResistance_N(soil, {r, theta_1}) / sum, 1.0, 1e-7) << theta_1;
   }
 }

@@ -7,7 +7,7 @@
 #include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
-/// wong_reece.hpp of a wheel that travels at an angle to its plane.
+/// Tests of wong_reece.hpp for a wheel that travels at an angle to its plane.
 namespace talus::terramech {
 namespace side_slip_test {
 
@@ -42,7 +42,8 @@ TEST(SideSlip, ConvergesToTheStraightWheelAtZeroAngle) {
   for (const double slip : {-1.0, -0.6, -0.1, 0.0, 0.05, 0.4, 1.0}) {
     const WheelForces straight = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip});
     const WheelForces askew = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip, .slip_angle_rad = 1e-9});
-    // Property: continuous in the angle; 1e-9 rad moves soil by 1e-9 of its way.
+    // Property: the forces are continuous in the angle; at 1e-9 rad the soil moves sideways by 1e-9 of the
+    // path.
     EXPECT_NEAR(askew.drawbar_pull_N, straight.drawbar_pull_N, 1e-6) << slip;
     EXPECT_NEAR(askew.torque_Nm, straight.torque_Nm, 1e-7) << slip;
     EXPECT_NEAR(askew.sinkage_m / straight.sinkage_m, 1.0, 1e-7) << slip;
@@ -105,7 +106,7 @@ TEST(SideSlip, ShearForceNeverExceedsSoilStrength) {
     try {
       f = equilibrium(soil, wheel, how);
     } catch (const std::domain_error&) {
-      continue;  // it sinks to its axle
+      continue;  // the wheel sinks to its axle
     }
     ++answered;
     double strength_N = 0.0;

@@ -32,7 +32,7 @@ TEST(Soil, ErrorNamesSoilFieldValueAndBound) {
                   Property(&std::exception::what, HasSubstr("soil 'sand': cohesion_Pa = -1, must be >= 0"))));
 }
 
-// Property: magnitudes that no ground has are refused, be they in range of a formula or not.
+// Property: physically implausible magnitudes are rejected, even if the formulas accept them.
 TEST(Soil, ImplausibleMagnitudesAreRejected) {
   for (const auto& [field, value, text] :
        {std::tuple{&Soil::cohesion_Pa, 1e15, "cohesion_Pa = 1e+15, must be in [0, 1e+09]"},

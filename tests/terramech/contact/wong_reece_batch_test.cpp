@@ -23,7 +23,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Over Table 2.1 of the thesis and well beyond it.
+/// Random cases over the ranges of Table 2.1 of the thesis and well beyond.
 std::vector<WheelCase> wideCases(std::size_t count) {
   Random random{7};
   std::vector<WheelCase> cases(count);
@@ -73,7 +73,7 @@ TEST(WongReeceBatch, MatchesTheGeneralSolver) {
   EXPECT_GT(answered, 3500);
 }
 
-/// The same at slip angles, braked more often.
+/// The same cases at slip angles, with more braked wheels.
 std::vector<WheelCase> slidingCases(std::size_t count) {
   Random random{13};
   std::vector<WheelCase> cases = wideCases(count);

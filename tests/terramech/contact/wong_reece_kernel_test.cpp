@@ -23,7 +23,7 @@ struct Rim {
   double exponent, modulus, cohesion, tan_friction, radius_over_k, slip, peak, entry;
 };
 
-// Thesis C.3 and C.6 to C.10 written out, over r b (torque: r^2 b), by the midpoint rule.
+// Integrals of thesis C.3 and C.6 to C.10 over r b (torque: r^2 b), by the midpoint rule.
 Sums<double> bruteForce(const Rim& rim) {
   constexpr int kSteps = 400000;
   const double middle = rim.peak * rim.entry;
@@ -62,14 +62,15 @@ TEST(WongReeceKernel, SumsEqualTheStressIntegrals) {
         sumsAt<false>(Constants<double>{rim.exponent, std::log(rim.modulus), rim.cohesion, rim.tan_friction,
                                         rim.radius_over_k, 1.0 - rim.slip, rim.peak, 0.0},
                       rim.entry, kFine);
-    // Tolerance: 1e-7 as stated of the rule, and the midpoint rule where sigma ~ s^n leaves zero.
+    // Tolerance: 1e-7 of the quadrature rule, and the error of the midpoint rule near zero, where sigma ~
+    // s^n.
     EXPECT_NEAR(seen.load, expected.load, 2e-7 * expected.load) << i;
     EXPECT_NEAR(seen.torque, expected.torque, 2e-7 * expected.load) << i;
     EXPECT_NEAR(seen.pull, expected.pull, 2e-7 * expected.load) << i;
   }
 }
 
-// Property: the load of a known entry leads back to it, from a start half as deep.
+// Property: solving for the load of a known entry angle returns the angle, from a start at half the angle.
 TEST(WongReeceKernel, SolveRecoversTheEntryAngleOfALoad) {
   for (const double entry : {0.2, 0.45, 0.9}) {
     Constants<double> c{1.0, std::log(5e4), 500.0, 0.4, 6.0, 0.7, 0.5, 0.0};

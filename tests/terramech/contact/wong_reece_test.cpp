@@ -33,7 +33,8 @@ Soil sand() {
           .shear_modulus_m = 0.018};
 }
 
-// Property: lugs of a straight wheel are a soil with c and tan phi so much greater, by Bekker's formula for the sides of what they hold.
+// Property: lugs of a straight wheel are equivalent to a soil with larger c and tan phi, by Bekker's formula
+// for the sides of the soil between the lugs.
 TEST(WongReece, GrouserSideShearScalesCohesionAndFriction) {
   const Wheel smooth{.radius_m = 0.13, .width_m = 0.2};
   Wheel lugged = smooth;
@@ -56,7 +57,8 @@ TEST(WongReece, GrouserSideShearScalesCohesionAndFriction) {
             equilibrium(sand(), smooth, {.load_N = 120.0, .slip = 0.3}).drawbar_pull_N);
 }
 
-// Property: at each slip the wheel stands on a soil whose exponent has grown by so much, straight on and at an angle.
+// Property: slip sinkage at each slip is equivalent to a larger sinkage exponent, without and with a slip
+// angle.
 TEST(WongReece, SlipSinkageEqualsAnIncreasedSinkageExponent) {
   const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
   Soil digging = sand();
@@ -73,7 +75,8 @@ TEST(WongReece, SlipSinkageEqualsAnIncreasedSinkageExponent) {
     }
 }
 
-// Property (kobayashi_2010, wong_kobayashi_2012): the same mass sinks as deep, and pulls as large a part of its weight, under any gravity.
+// Property (kobayashi_2010, wong_kobayashi_2012): sinkage and pull over weight of a given mass are
+// independent of gravity.
 TEST(WongReece, SinkageAndPullRatioOfAMassAreIndependentOfGravity) {
   const Wheel wheel{.radius_m = 0.13, .width_m = 0.2};
   Soil tested = sand();
@@ -91,7 +94,7 @@ TEST(WongReece, SinkageAndPullRatioOfAMassAreIndependentOfGravity) {
   EXPECT_EQ(underGravity(sand(), 1.62).frictional_modulus, sand().frictional_modulus);
 }
 
-// Independent of the code under test: C.4 to C.10 as printed, adaptive quadrature over the angle itself.
+// Independent of the code under test: C.4 to C.10 as printed, with adaptive quadrature over the angle.
 ImposedContact adaptive(const Soil& soil, const Wheel& wheel, const WheelOperation& operation, double entry) {
   const double r = wheel.radius_m, k = soil.cohesive_modulus / wheel.width_m + soil.frictional_modulus;
   const double peak = (soil.c1 + soil.c2 * operation.slip) * entry;
@@ -173,14 +176,14 @@ TEST(WongReece, EquilibriumCarriesTheGivenLoad) {
     const WheelOperation operation{.load_N = load(random), .slip = slip(random), .rebound = 0.1 * (k % 2)};
     const WheelForces forces = equilibrium(sand(), Wheel{}, operation);
     const ImposedContact contact = forcesAtEntry(sand(), Wheel{}, operation, forces.entry_angle_rad);
-    // Property: equilibrium.
+    // Property: the contact carries the load.
     EXPECT_NEAR(contact.load_N / operation.load_N, 1.0, 1e-11);
   }
 }
 
 TEST(WongReece, BrakedAndDrivenBranchesAreContinuousAtZeroSlip) {
   const auto at = [](double slip) { return equilibrium(sand(), Wheel{}, {.load_N = 80.0, .slip = slip}); };
-  // Property: both slip definitions agree to first order at 0.
+  // Property: both definitions of slip agree to first order at slip 0.
   EXPECT_NEAR(at(-1e-9).drawbar_pull_N, at(1e-9).drawbar_pull_N, 1e-5);
   EXPECT_NEAR(at(-1e-9).torque_Nm, at(0.0).torque_Nm, 1e-6);
 }
@@ -209,7 +212,7 @@ TEST(WongReece, StressIsZeroAtContactEndsAndPeaksAtTheC1C2Angle) {
   EXPECT_NEAR(highest->angle_rad / stresses.back().angle_rad, 0.43 + 0.32 * 0.5, 2e-3);  // Closed form: C.2
 }
 
-// A soil, wheel and operation from the far ends of what is allowed.
+// A soil, wheel and operation from the limits of the allowed ranges.
 struct Extreme {
   Soil soil;
   Wheel wheel;
@@ -234,7 +237,8 @@ Extreme extreme(std::mt19937_64& random) {
 }
 
 TEST(WongReece, RandomInputsYieldFiniteEquilibriumOrDomainError) {
-  // Property: numbers that carry the load, or std::domain_error; never NaN, never a search without end.
+  // Property: the result carries the load, or std::domain_error is thrown; no NaN and no endless search
+  // occur.
   std::mt19937_64 random{7};
   int answered = 0;
   for (int k = 0; k < 5000; ++k) {
@@ -254,8 +258,8 @@ TEST(WongReece, RandomInputsYieldFiniteEquilibriumOrDomainError) {
 }
 
 TEST(WongReece, ForcesScaleWithUnits) {
-  // Property: lengths times a, stresses times s (k_phi of N/m^(n+2) times s/a^n): forces times s a^2, torque
-  // s a^3, the same angle.
+  // Property: lengths scaled by a and stresses by s (k_phi in N/m^(n+2) by s/a^n) scale forces by s a^2 and
+  // torque by s a^3, and leave the angle unchanged.
   std::mt19937_64 random{8};
   for (int k = 0; k < 300; ++k) {
     const Extreme e = extreme(random);
@@ -277,8 +281,9 @@ TEST(WongReece, ForcesScaleWithUnits) {
 }
 
 TEST(WongReece, WheelPowerEqualsShearAndCompactionWork) {
-  // Property: T omega - DP v = r b int tau (r omega - v cos) + sigma v sin, the rates at which rim and soil
-  // rub and the soil is pressed down; stresses taken apart from the integrals, by the trapezoid.
+  // Property: T omega - DP v = r b int tau (r omega - v cos) + sigma v sin: power equals the rates of
+  // friction between rim and soil and of compression. The stresses are integrated separately by the
+  // trapezoidal rule.
   for (const double slip : {-0.4, 0.0, 0.2, 0.7}) {
     const Wheel wheel{.radius_m = 0.12, .width_m = 0.08};
     const WheelOperation operation{.load_N = 70.0, .slip = slip, .rebound = 0.1};
@@ -299,8 +304,8 @@ TEST(WongReece, WheelPowerEqualsShearAndCompactionWork) {
 }
 
 TEST(WongReece, PullIncreasesWithSlipForAFixedPeakAngle) {
-  // Property: with c2 = 0 the normal stress at a sinkage does not depend on slip, j grows with slip
-  // everywhere, and so do torque and pull.
+  // Property: with c2 = 0 the normal stress at a sinkage is independent of slip, and j, torque and pull
+  // increase with slip.
   std::mt19937_64 random{9};
   for (int k = 0; k < 100; ++k) {
     Extreme e = extreme(random);

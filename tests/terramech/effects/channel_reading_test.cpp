@@ -23,7 +23,7 @@ TEST(ChannelReading, ChannelsAreScaledByLoadAndRadius) {
   EXPECT_DOUBLE_EQ(reading.scaled(Channel::SideForce), -0.1);
 }
 
-// Property: what is added to one ratio is found there and nowhere else.
+// Property: a value added to one ratio changes that ratio and no other.
 TEST(ChannelReading, AddScaledChangesOneChannelOnly) {
   for (const Channel channel : kAll) {
     const Reading before{.load_N = 50.0,

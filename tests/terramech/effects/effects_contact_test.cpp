@@ -22,9 +22,9 @@ TEST(EffectsContact, SideForceIsContinuousAtNinetyDegrees) {
     WheelState s = state(slip);
     s.slip_angle_rad = 1.55;
     const double before = predict(model, s).scaled(Channel::SideForce);
-    s.slip_angle_rad = 0.5 * std::numbers::pi + 0.003;  // as a test bed reads its 90 deg
+    s.slip_angle_rad = 0.5 * std::numbers::pi + 0.003;  // 90 deg as a test bed measures it
     const double at = predict(model, s).scaled(Channel::SideForce);
-    // Property: the travel across shears the soil where there is none along.
+    // Property: sideways travel shears the soil even if the longitudinal displacement is zero.
     EXPECT_LT(at, -0.1) << slip;
     EXPECT_NEAR(at, before, 0.05 * std::abs(before)) << slip;
   }
@@ -43,7 +43,7 @@ TEST(EffectsContact, RateEffectsAreAPowerOrLogarithmOfSpeed) {
   s.rim_speed_mps = WheelState::kUnknown;
   EXPECT_NEAR(acted("rate_shear_slip_velocity", {0.1, 0.1 / std::exp(1.0)}, 0.1, s).cohesion_Pa, 1100.0,
               1e-9);
-  // Property: no speed takes all strength away.
+  // Property: the strength remains positive at any speed.
   EXPECT_GT(acted("rate_shear", {0.5, 10.0}, 0.0).cohesion_Pa, 0.0);
 }
 
@@ -100,7 +100,8 @@ TEST(EffectsContact, DingExponentGrowsWithAbsoluteSlip) {
   EXPECT_EQ(acted("slip_sinkage_ding_quadratic", {-1.0, -3.0}, 1.0, {.slip = 1.0}).sinkage_exponent, 0.1);
 }
 
-// Property: the base's slip sinkage and Ding's effect are one law, and both together have the sum of their sizes.
+// Property: the base's slip sinkage and Ding's effect are one law; together they act as the sum of their
+// parameters.
 TEST(EffectsContact, BaseSlipSinkageEqualsTheDingEffect) {
   for (const double slip : {-0.4, 0.2, 0.7}) {
     RefinedModel effect = base(), soil = base(), both = base();

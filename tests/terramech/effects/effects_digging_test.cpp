@@ -30,8 +30,8 @@ TEST(EffectsDigging, PloughingIsOddInSlipAngleAndZeroStraightAhead) {
     const Reading right = predict(model, s);
     s.slip_angle_rad = -angle;
     const Reading left = predict(model, s);
-    // Property: the side force is odd, the rest even, and sinkage grows with the angle (at small ones the
-    // contact behind carries a little more).
+    // Property: the side force is odd in the slip angle, the other quantities are even. The sinkage grows
+    // with the angle (at small angles the rear contact carries slightly more).
     EXPECT_LT(right.side_force_N, 0.0);
     EXPECT_NEAR(right.side_force_N, -left.side_force_N, 1e-9);
     EXPECT_NEAR(right.drawbar_pull_N, left.drawbar_pull_N, 1e-9);
@@ -61,7 +61,7 @@ TEST(EffectsDigging, RearFillIncreasesPullAndDugDepthIsExcludedFromBulldozing) {
   const Reading digs = predict(model, straightOn(0.6));
   model.effects.push_back(with("rear_fill", {1.0}));
   const Reading filled = predict(model, straightOn(0.6));
-  // Property: contact behind the axle bears the wheel and pushes it forward, at the same depth.
+  // Property: contact behind the axle supports the wheel and adds thrust at the same sinkage.
   EXPECT_GT(filled.drawbar_pull_N, digs.drawbar_pull_N);
   EXPECT_EQ(filled.sinkage_m, digs.sinkage_m);
   EXPECT_NEAR(filled.dug_m, 0.6 / 1.6 * filled.sinkage_m, 1e-12);  // Closed form: z0 (1 + a i).

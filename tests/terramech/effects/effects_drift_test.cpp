@@ -6,7 +6,7 @@
 namespace talus::terramech {
 namespace effects_drift_test {
 
-// A drift from time 100 s on, over a span of 50 s.
+// A drift that begins at 100 s and has a span of 50 s.
 constexpr double kStart = 100.0, kSpan = 50.0;
 
 TEST(EffectsDrift, LinearDriftReachesItsSizeOverItsSpan) {
@@ -50,7 +50,7 @@ TEST(EffectsDrift, SensorZeroDriftChangesItsChannelOnly) {
   EXPECT_EQ(sinkage.drawbar_pull_N, 20.0);
 }
 
-// Property: however far a line is followed, the soil keeps physical numbers.
+// Property: an extrapolated drift leaves every soil parameter in its physical range.
 TEST(EffectsDrift, ExtrapolatedDriftKeepsSoilPhysical) {
   const double far = kStart + 1000 * kSpan;
   EXPECT_EQ(acted("drift_cohesion", {-0.5, kStart, kSpan}, far).cohesion_Pa, 0.0);
@@ -64,10 +64,10 @@ TEST(EffectsDrift, OnlyZeroDriftsAreSensorFaults) {
     if (std::string(form.family) != "drift") continue;
     ++forms;
     EXPECT_EQ(form.of_sensor, std::string(form.name).find("_zero") != std::string::npos) << form.name;
-    EXPECT_FALSE(form.parameters[1].fitted) << form.name;  // start and span are the data's
+    EXPECT_FALSE(form.parameters[1].fitted) << form.name;  // start and span follow from the data
     EXPECT_FALSE(form.parameters[2].fitted) << form.name;
   }
-  EXPECT_EQ(forms, 18);  // three targets of soil and three of sensors, in three shapes
+  EXPECT_EQ(forms, 18);  // three soil targets and three sensor targets, in three shapes
 }
 
 }  // namespace effects_drift_test

@@ -36,10 +36,10 @@ TEST(EffectsForce, RoughFaceFrictionOpposesSlidingAndReducesSideForce) {
     s.slip_angle_rad = 1.2;
     return predict(rough, s).scaled(channel) - predict(model, s).scaled(channel);
   };
-  // Property: friction acts against the way that the face slides over the soil.
+  // Property: friction acts against the sliding of the face over the soil.
   EXPECT_LT(added(-1.0, Channel::DrawbarPull), -0.01);
   EXPECT_GT(added(0.8, Channel::DrawbarPull), 0.01);
-  // Property: what friction does along is lost to what it holds down (side force < 0 against the motion).
+  // Property: friction along the face reduces the resistance sideways (side force < 0 against the motion).
   EXPECT_LT(added(-0.7, Channel::SideForce), added(0.8, Channel::SideForce));
   EXPECT_LT(added(0.8, Channel::SideForce), 0.0);
 }
@@ -67,10 +67,10 @@ TEST(EffectsForce, BulldozingMatchesThePassiveWedge) {
               -(3.0 * friction + 0.5 * cohesion), 1e-9);
   // Closed form: X = 45 deg at phi = 0, so b 2 (z c + gamma z^2 / 2).
   EXPECT_NEAR(readWith("bulldozing_hegedus", {1.0}, 0.02, {}, soilOf(0.0), sunk(0.02)).drawbar_pull_N,
-              -0.2 * (0.02 * 1000.0 + 0.5 * 15000.0 * 0.0004), 0.02);  // tan phi is taken as 0.001 at least
+              -0.2 * (0.02 * 1000.0 + 0.5 * 15000.0 * 0.0004), 0.02);  // tan phi is at least 0.001
 }
 
-// Property: a wheel that moves across its plane pushes nothing ahead of itself.
+// Property: a wheel that moves normal to its plane pushes no soil ahead.
 TEST(EffectsForce, BulldozingAheadIsZeroAtNinetyDegrees) {
   const WheelState across{.slip_angle_rad = std::numbers::pi / 2};
   for (const char* name : {"bulldozing", "bulldozing_hegedus", "bulldozing_ahead"})
@@ -121,7 +121,7 @@ TEST(EffectsForce, SideEffectsReplaceTheSideTermsOfTheBase) {
   const Reading plain = predict(model, state());
   RefinedModel bare = model;
   bare.soil.digging_exponent = bare.soil.side_bulldozing = 0.0;
-  // Property: a form that adds nothing takes the base's term of its kind out, and no other.
+  // Property: a form with parameter 0 replaces the base's term of its kind, and no other term.
   model.effects = {with("side_bulldozing", {0.0}), with("side_slip_sinkage", {0.0})};
   const Reading none = predict(model, state()), want = predict(bare, state());
   EXPECT_EQ(none.side_force_N, want.side_force_N);
@@ -137,7 +137,7 @@ TEST(EffectsForce, BaseAtSlipAngleMatchesTheEquilibrium) {
     const Reading r = predict(base(), s);
     const WheelForces f = equilibrium(base().soil, s.wheel,
                                       {.load_N = s.load_N, .slip = slip, .slip_angle_rad = s.slip_angle_rad});
-    // Property: two solvers of one wheel; 1e-4 for the quicker rule of a dragged one.
+    // Property: two solvers of one wheel agree; 1e-4 for the faster rule of a dragged wheel.
     EXPECT_NEAR(r.side_force_N / s.load_N, f.side_force_N / s.load_N, 1e-4) << slip;
     EXPECT_NEAR(r.drawbar_pull_N / s.load_N, f.drawbar_pull_N / s.load_N, 1e-4) << slip;
     EXPECT_NEAR(r.sinkage_m / f.sinkage_m, 1.0, 1e-4) << slip;

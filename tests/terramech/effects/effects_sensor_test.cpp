@@ -28,7 +28,7 @@ TEST(EffectsSensor, DrawbarZeroSinkageDatumAndCellTiltMatchClosedForm) {
               1e-12);
 }
 
-// Closed form: 1 - i = (1 - i_m)/(1 + e); a radius read 25 % too small turns 0.2 into 0.36 of slip.
+// Closed form: 1 - i = (1 - i_m)/(1 + e); a radius taken 25 % too small turns a slip of 0.2 into 0.36.
 TEST(EffectsSensor, SlipBiasEqualsARadiusError) {
   const auto slip = [](double measured, double e) {
     WheelContact c = plainContact();
@@ -39,7 +39,7 @@ TEST(EffectsSensor, SlipBiasEqualsARadiusError) {
   EXPECT_NEAR(slip(0.2, 0.25), 0.36, 1e-12);
   EXPECT_NEAR(slip(0.2, -0.2), 0.0, 1e-12);
   EXPECT_EQ(slip(1.0, 0.25), 1.0);
-  EXPECT_EQ(slip(-0.3, 0.25), -0.3);  // of a braked wheel nothing is known
+  EXPECT_EQ(slip(-0.3, 0.25), -0.3);  // no correction for a braked wheel
 }
 
 TEST(EffectsSensor, OnlySensorEffectsAreMarkedAsSensorFaults) {

@@ -22,14 +22,14 @@ TEST(Effects, NamesAreUniqueAndEveryFormIsDocumented) {
 }
 
 TEST(Effects, EveryFormHasAFiniteEffectAtItsTypicalSize) {
-  // Property: none is dead; the change stays finite and below ten loads.
+  // Property: every form changes the prediction, by a finite amount below ten loads.
   for (const EffectForm& form : effectLibrary()) {
     RefinedModel model = base();
     model.effects = {typical(form)};
     const WheelState at = state(std::string(form.name) == "skid_sinkage" ? -0.5 : 0.5);
     const double moved = change(predict(model, at), predict(base(), at));
-    if (std::string(form.name) == "layered_hardpan") continue;  // its depth is beyond this sinkage or not
-    if (std::string(form.name) == "rear_fill") continue;        // of what other forms dig
+    if (std::string(form.name) == "layered_hardpan") continue;  // acts only if the layer is above the sinkage
+    if (std::string(form.name) == "rear_fill") continue;        // acts only on soil dug by other forms
     EXPECT_GT(moved, 1e-6) << form.name;
     EXPECT_LT(moved, 10.0) << form.name;
   }

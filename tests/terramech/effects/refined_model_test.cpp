@@ -35,8 +35,8 @@ TEST(RefinedModel, SlipInTheWheelPlaneGrowsWithTheSlipAngle) {
 }
 
 TEST(RefinedModel, SideForceIsOddAndOtherChannelsEvenInSlipAngle) {
-  // Property: no force of the ground and no curve knows left from right, so that the side force is odd in the slip angle
-  // and the rest even.
+  // Property: forces and curves are symmetric in left and right: the side force is odd in the slip angle,
+  // all other channels are even.
   std::vector<Effect> effects;
   for (const EffectForm& form : effectLibrary())
     if (!form.of_sensor) effects.push_back(typical(form));
@@ -63,14 +63,15 @@ TEST(RefinedModel, SideForceIsOddAndOtherChannelsEvenInSlipAngle) {
 }
 
 TEST(RefinedModel, SlipStdIsLimitedNearALockedWheel) {
-  // Closed form: |i| e, no more than what is left to i = -1, where r omega = 0.
+  // Closed form: |i| e, limited to the distance from i = -1, where r omega = 0.
   const SensorNoise noise{.slip_absolute = 0.03, .slip_relative = 0.04};
   EXPECT_DOUBLE_EQ(noise.slipStd(-1.0), 0.03);
   EXPECT_DOUBLE_EQ(noise.slipStd(-0.99), std::hypot(0.03, 0.01));
   EXPECT_DOUBLE_EQ(noise.slipStd(-0.5), std::hypot(0.03, 0.02));
   EXPECT_DOUBLE_EQ(noise.slipStd(0.0), 0.03);
   EXPECT_DOUBLE_EQ(noise.slipStd(1.0), 0.05);
-  // Locked and dragged along its axle, a little slip would turn the wheel forwards and dig it in: no error of it is read.
+  // A locked wheel dragged along its axle would dig in if a slip error turned it forwards; no slip error is
+  // therefore propagated.
   RefinedModel model = base();
   WheelState locked = state();
   locked.slip = -1.0;
@@ -103,7 +104,8 @@ TEST(RefinedModel, EffectOfOneGroupLeavesOtherGroupsUnchanged) {
 }
 
 TEST(RefinedModel, BatchPredictionMatchesSinglePredictions) {
-  // Property: to the kernel's accuracy, 1e-6 of the load, with effects and without.
+  // Property: batch and single predictions agree to the kernel's accuracy, 1e-6 of the load, with and
+  // without effects.
   RefinedModel refined = base();
   refined.effects = {typical(*findEffect("slip_sinkage_linear")), typical(*findEffect("bulldozing")),
                      typical(*findEffect("torque_offset"))};
@@ -155,7 +157,8 @@ TEST(RefinedModel, FittedParametersRoundTripThroughSetValue) {
 }
 
 TEST(RefinedModel, StdIncludesFittedParameters) {
-  // Closed form: DP_m = DP + F0, so the std of DP/W is that of F0 over W; nothing else is moved.
+  // Closed form: DP_m = DP + F0, so that the standard deviation of DP/W is that of F0 over W; other channels
+  // have none.
   RefinedModel model = base();
   model.effects = {with("drawbar_zero", {1.0})};
   model.fitted = {{.effect = 0, .index = 0}};

@@ -16,7 +16,7 @@ WheelContact loaded(double load_N, double slip) {
 }
 
 TEST(WheelContact, WithoutEffectsMatchesWongReece) {
-  // Property: two integrators of one model, 8 points here and 24 there, differ by their quadrature alone.
+  // Property: two integrators of one model, with 8 and 24 points, differ by their quadrature error only.
   for (const double load : {15.0, 80.0, 250.0})
     for (const double slip : {-0.9, -0.3, 0.0, 0.1, 0.4, 0.9}) {
       const auto exact = equilibrium(madeSand(), Wheel{}, {.load_N = load, .slip = slip});
@@ -29,7 +29,8 @@ TEST(WheelContact, WithoutEffectsMatchesWongReece) {
 }
 
 TEST(WheelContact, BatchSolutionMatchesSingleSolutions) {
-  // Property: the kernel's wheels, the quick rule's and mixtures of both agree with one at a time.
+  // Property: a batch of wheels for the kernel, the fast rule, or both agrees with the same wheels solved
+  // one at a time.
   std::vector<WheelContact> contacts;
   for (const double slip : {-0.5, 0.0, 0.05, 0.3, 0.6, 0.95}) {
     contacts.push_back(loaded(60.0, slip));
@@ -49,7 +50,7 @@ TEST(WheelContact, BatchSolutionMatchesSingleSolutions) {
 }
 
 TEST(WheelContact, UnchangedContactsAreNotSolvedAgain) {
-  // Property: forces kept under a contact come back untouched, another contact in its place is solved anew.
+  // Property: stored forces of an unchanged contact are returned; a changed contact is solved again.
   SolvedContacts solved;
   solveContacts({loaded(60.0, 0.3), loaded(80.0, 0.3)}, solved);
   solved.forces[0].torque_Nm = solved.forces[1].torque_Nm = -1.0;
@@ -68,7 +69,7 @@ TEST(WheelContact, ImposedSinkageIsReachedAtTheGivenLoad) {
   contact.extra_sinkage_m = 0.003;
   const auto deep = solveContact(contact);
   EXPECT_NEAR(deep.sinkage_m, 2.0 * z0 + 0.003, 1e-12);
-  // Property: more sinkage under the same load costs drawbar pull.
+  // Property: more sinkage under the same load reduces the drawbar pull.
   EXPECT_LT(deep.drawbar_pull_N, solveContact(loaded(80.0, 0.4)).drawbar_pull_N);
 }
 
@@ -88,7 +89,7 @@ TEST(WheelContact, HardLayerLimitsSinkage) {
   const double soft = solveContact(contact).sinkage_m;
   contact.hard_depth_m = 0.5 * soft;
   contact.hard_modulus_Pa_m = 1e9;
-  // Property: between the layer's depth and the sinkage without it.
+  // Property: the sinkage is between the layer's depth and the sinkage without the layer.
   EXPECT_GT(solveContact(contact).sinkage_m, 0.5 * soft);
   EXPECT_LT(solveContact(contact).sinkage_m, 0.75 * soft);
 }
@@ -108,7 +109,7 @@ TEST(WheelContact, LongitudinalAndLateralDiggingCombineByPath) {
   c.extra_sinkage_m = 0.001;
   const ContactForces forces = solveContact(c);
   EXPECT_NEAR(forces.sinkage_m, z0 + 0.005 + 0.001, 1e-12);  // Closed form: hypot(3, 4) = 5.
-  EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: its share of the square.
+  EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: the share of the squares.
 }
 
 }  // namespace wheel_contact_test

@@ -37,19 +37,19 @@ TEST(WheelState, ExtraColumnsAndGroupsAreCovariatesAndUnknownOnesNan) {
   EXPECT_EQ(s.label("source"), "a");
   EXPECT_EQ(s.label("moisture"), "");
   EXPECT_TRUE(std::isnan(s.covariate("no_such_column")));
-  EXPECT_TRUE(std::isnan(s.covariate("speed_mps")));  // not known unless it is set
+  EXPECT_TRUE(std::isnan(s.covariate("speed_mps")));  // NaN until it is set
 }
 
 TEST(WheelState, ProductOfTwoColumnsIsACovariate) {
   WheelState s{.load_N = 40.0};
   s.extra = {{"moisture", 3.5}, {"a*b", 7.0}};
   EXPECT_EQ(s.covariate("moisture*load_N"), 140.0);
-  EXPECT_EQ(s.covariate("a*b"), 7.0);  // a column of that name comes first
+  EXPECT_EQ(s.covariate("a*b"), 7.0);  // a column of that name takes precedence
   EXPECT_TRUE(std::isnan(s.covariate("moisture*no_such_column")));
 }
 
 TEST(WheelState, SetCovariateRoundTrips) {
-  // Property: every column, and no other.
+  // Property: setCovariate() accepts every column and no other.
   WheelState s;
   s.extra = {{"moisture", 3.5}};
   double value = 1.0;

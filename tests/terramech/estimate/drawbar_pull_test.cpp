@@ -23,7 +23,7 @@ TEST(DrawbarPull, SingleForceEqualsItsComponents) {
 }
 
 TEST(DrawbarPull, TriangularStressAsPrintedEqualsTheStableForm) {
-  // Printed in: thesis Eq. 3.12, evaluated as it stands.
+  // Printed in: thesis Eq. 3.12, evaluated as printed.
   const double t1 = entryAngle_rad(kThesisWheel, kSample.sinkage_m);
   const double p = 2.0 * std::cos(t1 / 2.0) - std::cos(t1) - 1.0;
   const double q = 2.0 * std::sin(t1 / 2.0) - std::sin(t1);
@@ -96,7 +96,7 @@ TEST(DrawbarPull, PlaneFitRejectsCollinearSamples) {
   EXPECT_REFUSED(fitter.estimate(), std::domain_error, "the samples lie on a line; vary load and slip");
 }
 
-// rms error of ours over soils of Table 2.1 on a wheel.
+// RMS error of our formula over soils of Table 2.1 on a wheel.
 double rms(const Wheel& wheel) {
   ThesisRuns runs(77);
   double squares = 0.0;
@@ -136,8 +136,8 @@ TEST(DrawbarPull, StdEqualsScatterOfNoisyReadings) {
 }
 
 TEST(DrawbarPull, StdPropagatesEachReadingError) {
-  // Property: one error alone gives half the difference at plus and minus it, and the model's own in
-  // quadrature.
+  // Property: a single error gives half the difference between the results at plus and minus the error,
+  // combined in quadrature with the model error.
   const auto check = [](double WheelSample::*field, ReadingError ReadingErrors::*which) {
     ReadingErrors noise = ReadingErrors::relative(0.0);
     (noise.*which).relative = 0.02;
@@ -156,7 +156,7 @@ TEST(DrawbarPull, StdPropagatesEachReadingError) {
 }
 
 TEST(DrawbarPull, ClimbableSlopeIsArctanOfPullOverLoad) {
-  // Closed form.
+  // Closed form: slope = atan(DP/W), with the standard deviation multiplied by cos^2.
   const Estimate slope = climbableSlope_rad({.value = std::tan(0.3), .std = 0.01});
   EXPECT_NEAR(slope.value, 0.3, 1e-15);
   EXPECT_NEAR(slope.std, 0.01 * std::pow(std::cos(0.3), 2), 1e-15);

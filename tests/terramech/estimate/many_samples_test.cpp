@@ -16,9 +16,9 @@ std::vector<WheelReading> numbered(std::size_t count) {
 }
 
 TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
-  // Property: over twelve soils of known class with 600 samples each, c, phi and K err by about what the
-  // posterior says, rms within a factor of two. A search that leaves out the slope of the normalisation errs
-  // by more than five times of it.
+  // Property: over twelve soils of known class with 600 samples each, the RMS errors of c, phi and K are
+  // within a factor of two of the posterior standard deviations. A search without the slope of the
+  // normalisation exceeds them five times.
   ThesisRuns runs(71);
   double squares[3] = {};
   constexpr int kSoils = 12;
@@ -40,7 +40,7 @@ TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
 }
 
 TEST(ManySamples, QuadraticAndWeightedPosteriorsAgreeAtTheSwitch) {
-  // Property: the 301st sample changes the way, not the answer.
+  // Property: from the 301st sample on another method is used, which gives the same result.
   ThesisRuns runs(72);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 301});
   const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
@@ -56,7 +56,8 @@ TEST(ManySamples, QuadraticAndWeightedPosteriorsAgreeAtTheSwitch) {
 }
 
 TEST(ManySamples, StdIsBoundedBelowByModelError) {
-  // Property: from 4000 samples on the standard deviation stays; counting them all it would shrink by 1.4.
+  // Property: from 4000 samples on the standard deviation is constant; with all samples counted it would
+  // shrink by 1.4.
   ThesisRuns runs(74);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 8000});
   const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
@@ -67,7 +68,7 @@ TEST(ManySamples, StdIsBoundedBelowByModelError) {
 }
 
 TEST(ManySamples, ReportsProgressAndStopsOnRequest) {
-  // Property: what is reported grows from 0 to 1; a stop asked for on the way leaves no draws.
+  // Property: reported progress grows from 0 to 1; a stop request leaves no draws.
   ThesisRuns runs(73);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 5000});
   const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
@@ -91,8 +92,8 @@ TEST(ManySamples, ReportsProgressAndStopsOnRequest) {
 }
 
 TEST(ManySamples, SubsampleIsStratifiedWithoutPeriodicAliasing) {
-  // Property: in order, none twice, every stretch has one; of a pattern that repeats with the stretch all
-  // parts come up.
+  // Property: the selection is in order, without repetition, with one element of every section; a pattern
+  // with the period of the sections is sampled in all phases.
   const auto all = numbered(4096);
   const auto part = spreadEvenly(all, 512);
   ASSERT_EQ(part.size(), 512u);

@@ -41,7 +41,8 @@ TEST(ModelPull, PullOnPlainSoilEqualsTheEquilibrium) {
 }
 
 TEST(ModelPull, ExcludesSensorEffects) {
-  // Property: an offset of the load cell moves predict() and not the pull; an effect on the soil moves both.
+  // Property: an offset of the load cell changes predict() and not the pull; an effect on the soil changes
+  // both.
   const double plain = pullOf(groundTruthOf(sandModel()), kState).pull_over_load.value;
   RefinedModel tilted = sandModel();
   tilted.effects = {effect("load_cell_tilt", {0.1})};
@@ -69,7 +70,8 @@ TEST(ModelPull, KeepsTheCovarianceOfGroundEffects) {
 }
 
 TEST(ModelPull, StdPropagatesSoilUncertainty) {
-  // Property: one parameter's standard deviation gives the half difference of the pull at +- that deviation.
+  // Property: the standard deviation of one parameter gives half the difference of the pull at plus and
+  // minus that deviation.
   RefinedModel model = sandModel();
   model.soil_prior_std = {{"friction_angle_rad", 0.02}};
   const auto at = [&](double phi) {
@@ -83,7 +85,7 @@ TEST(ModelPull, StdPropagatesSoilUncertainty) {
 }
 
 TEST(ModelPull, StdPropagatesSlipAndLoadErrors) {
-  // Property: the half difference of the pull over twice the stated deviation of the reading.
+  // Property: half the difference of the pull over twice the stated standard deviation of the reading.
   const auto pull = [](double load_N, double slip) {
     const WheelState state{.wheel = kWheel, .load_N = load_N, .slip = slip};
     return predict(sandModel(), state).drawbar_pull_N / 80.0;  // over the load as read
@@ -101,7 +103,7 @@ TEST(ModelPull, StdPropagatesSlipAndLoadErrors) {
 
 TEST(ModelPull, ForecastsReferenceSlipAndMaximumPull) {
   RefinedModel model = sandModel();
-  model.noise.slip_absolute = 0.1;  // the forecast's slip is chosen, not read
+  model.noise.slip_absolute = 0.1;  // the slip of the forecast is given, not measured
   const RefinedModel truth = groundTruthOf(model);
   EXPECT_GT(pullOf(truth, kState).pull_over_load.std, 0.01);
   const PullForecast f = forecastPull(truth, kState, 0.5);

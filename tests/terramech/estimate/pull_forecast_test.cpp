@@ -8,7 +8,7 @@ namespace talus::terramech {
 namespace pull_forecast_test {
 
 TEST(PullForecast, PullAtTheSamplesMatchesTheTruth) {
-  // Property: with 2 % errors the rms over 12 soils stays below 0.012 (goal over 500 soils 0.008).
+  // Property: with 2 % errors the RMS error over 12 soils is below 0.012 (goal over 500 soils: 0.008).
   ThesisRuns runs(31);
   const ReadingErrors noise = ReadingErrors::relative(0.02);
   double squares = 0.0;
@@ -25,8 +25,8 @@ TEST(PullForecast, PullAtTheSamplesMatchesTheTruth) {
 }
 
 TEST(PullForecast, PullUsesTheMostLikelyStateInsteadOfTheRawReading) {
-  // Property: on the soil itself, a sinkage read 10 % high moves the pull by less than half of what it would
-  // move were it taken as read: load and torque speak against it.
+  // Property: on a known soil a sinkage read 10 % too high changes the pull by less than half of the
+  // uncorrected change, because load and torque contradict the sinkage.
   ThesisRuns runs(33);
   for (int k = 0; k < 6; ++k) {
     const ThesisRun run = runs.next({.noise = 0.0});
@@ -41,8 +41,8 @@ TEST(PullForecast, PullUsesTheMostLikelyStateInsteadOfTheRawReading) {
 }
 
 TEST(PullForecast, ExtrapolatesToSlipsNotDriven) {
-  // Property: from slips below 0.4, exact readings give DP/W at 0.5 and its maximum within 0.02 of the soil's
-  // own.
+  // Property: from exact readings at slips below 0.4, DP/W at slip 0.5 and its maximum are within 0.02 of
+  // the soil's values.
   ThesisRuns runs(6);
   const ThesisRun run = runs.next({.noise = 0.0, .samples = 3});
   const SoilPosterior p =

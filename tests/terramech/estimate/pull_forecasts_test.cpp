@@ -5,7 +5,8 @@ namespace talus::terramech {
 namespace pull_forecasts_test {
 
 TEST(PullForecasts, ForecastsMatchTheExactForecastPerLoadAndWheel) {
-  // Property: a line between loads 1 % apart leaves less than 1e-4; another wheel has forecasts of its own.
+  // Property: linear interpolation between loads 1 % apart has an error below 1e-4; each wheel has its own
+  // forecasts.
   ThesisRuns runs(31);
   const SoilPosterior soil = fitSoil(kThesisWheel, runs.next({.noise = 0.05}).samples, thesisSoils());
   PullForecasts forecasts(soil, 0.4);

@@ -7,7 +7,8 @@ namespace talus::terramech {
 namespace soil_filter_test {
 
 TEST(SoilFilter, EqualsTheBatchEstimateWithinTheWindow) {
-  // Property: same modes to the tolerance of the search, hence almost the same draws.
+  // Property: filter and batch fit find the same modes to the tolerance of the search, hence almost the same
+  // draws.
   ThesisRuns runs(8);
   const ThesisRun run = runs.next({.noise = 0.05});
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
@@ -20,7 +21,8 @@ TEST(SoilFilter, EqualsTheBatchEstimateWithinTheWindow) {
 }
 
 TEST(SoilFilter, MatchesTheBatchEstimateBeyondTheWindow) {
-  // Property: 40 samples, 12 kept: within half a standard deviation of the fit of all 40.
+  // Property: with 40 samples, 12 of them kept, the result is within half a standard deviation of the fit of
+  // all 40.
   ThesisRuns runs(12);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 40});
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
@@ -45,8 +47,8 @@ TEST(SoilFilter, RejectedSampleLeavesTheStateUnchanged) {
 }
 
 TEST(SoilFilter, SinkageExponentHasNoBiasOverManySamples) {
-  // Property: over eight runs of sixty samples n departs from the batch's without a sign: on average by less
-  // than 0.3 standard deviations. Without the slope of the normalisation it lies 0.7 low.
+  // Property: over eight runs of sixty samples the mean departure of n from the batch fit is below 0.3
+  // standard deviations. Without the slope of the normalisation n is 0.7 too low.
   ThesisRuns runs(44);
   double departure = 0.0;
   for (int k = 0; k < 8; ++k) {
@@ -62,7 +64,8 @@ TEST(SoilFilter, SinkageExponentHasNoBiasOverManySamples) {
 }
 
 TEST(SoilFilter, RetainsInformationOfSamplesOutsideTheWindow) {
-  // Property: sixty samples on a known class narrow phi and K more than the last twelve alone.
+  // Property: sixty samples on a known class give smaller standard deviations of phi and K than the last
+  // twelve alone.
   ThesisRuns runs(44);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 60});
   const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};

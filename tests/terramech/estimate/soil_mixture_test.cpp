@@ -29,7 +29,7 @@ TEST(SoilMixture, ProbabilitiesSumToOne) {
 }
 
 TEST(Marginal, SlopeIsTheDerivative) {
-  // Property: central differences.
+  // Property: slope() equals central differences.
   for (const Marginal& m :
        {Marginal::uniform(2.0, 5.0), Marginal::logUniform(0.1, 10.0), Marginal::normal(1.0, 0.3, 0.0)}) {
     for (const double y : {0.2, 0.5, 0.9}) {

@@ -8,7 +8,7 @@
 namespace talus::terramech {
 namespace soil_objective_test {
 
-// A class of one soil.
+// A class with one soil only.
 SoilClass known(const ContactSoil& soil) {
   SoilClass exact;
   exact.parameters = {Marginal::fixed(soil.cohesion_Pa), Marginal::fixed(soil.friction_angle_rad),
@@ -18,7 +18,8 @@ SoilClass known(const ContactSoil& soil) {
 }
 
 TEST(SoilObjective, ResidualsVanishForTheTrueSoil) {
-  // Property: exact readings, the 10-point quadrature within 1e-4 of the load against errors of 5 %.
+  // Property: for exact readings the residuals are small; the 10-point quadrature is within 1e-4 of the
+  // load, errors are 5 %.
   ThesisRuns runs(3);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilClass exact = known(run.soil);
@@ -31,8 +32,8 @@ TEST(SoilObjective, ResidualsVanishForTheTrueSoil) {
 }
 
 TEST(SoilObjective, CostIsTheMarginalLikelihoodOverSinkageAndSlipErrors) {
-  // Property: with errors of 2 % the linearised likelihood is the exact one, soil by soil and reading by
-  // reading, to the second order that it leaves out: 0.04 at the median, more in the tails. z turns d/dz into
+  // Property: with errors of 2 % the linearised likelihood equals the exact one for each soil and reading,
+  // up to the neglected second order: 0.04 at the median, more in the tails. The factor z converts d/dz to
   // d/d ln z.
   ThesisRuns runs(8);
   double sum = 0.0, squares = 0.0;
@@ -53,7 +54,7 @@ TEST(SoilObjective, CostIsTheMarginalLikelihoodOverSinkageAndSlipErrors) {
 }
 
 TEST(SoilObjective, LikelyStateCorrectsAReadingTowardsTheTruth) {
-  // Property: a sinkage read 10 % high is brought back by the load that it does not fit.
+  // Property: a sinkage read 10 % too high is corrected by the load, which contradicts it.
   ThesisRuns runs(4);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilMixture classes = thesisSoils();
@@ -66,7 +67,7 @@ TEST(SoilObjective, LikelyStateCorrectsAReadingTowardsTheTruth) {
 }
 
 TEST(SoilObjective, QuadraticIsInvariantUnderShiftOfItsOrigin) {
-  // Closed form.
+  // Closed form: minimum of a quadratic function.
   SoilQuadratic q;
   q.cost = 2.0;
   q.gradient << 1, -2, 3, 0, 0.5;
@@ -77,7 +78,8 @@ TEST(SoilObjective, QuadraticIsInvariantUnderShiftOfItsOrigin) {
 }
 
 TEST(SoilObjective, OutliersHaveReducedWeight) {
-  // Property: an exact reading weighs nearly 1, a torque read at four times its value a hundredth.
+  // Property: an exact reading has a weight near 1; a torque read at four times its value has a weight of
+  // 0.01.
   ThesisRuns runs(5);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilClass exact = known(run.soil);

@@ -16,9 +16,9 @@ namespace talus::terramech {
 namespace soil_posterior_test {
 
 TEST(SoilPosterior, MatchesImportanceSamplingFromThePrior) {
-  // Property: means, standard deviations and class probabilities are those of soils drawn from the prior and
-  // weighed by the likelihood itself, to what so many draws can tell. Three readings, so that enough draws
-  // count.
+  // Property: means, standard deviations and class probabilities equal those of draws from the prior,
+  // weighted by the likelihood, within the sampling error. Three readings are used, so that enough draws
+  // have weight.
   ThesisRuns runs(17);
   for (int k = 0; k < 2; ++k) {
     const ThesisRun run = runs.next({.noise = 0.05, .samples = 2});
@@ -51,8 +51,8 @@ TEST(SoilPosterior, MatchesImportanceSamplingFromThePrior) {
 }
 
 TEST(SoilPosterior, EllipseCoverageIs95PercentIncludingTruncatedClasses) {
-  // Property: within one class the posterior fills a box, whose covariance ellipse at chi-squared's 5.99
-  // would hold all of it; at the stated level the truth lies in 90 to 99 of 100.
+  // Property: within one class the posterior fills a box, all of which lies in the covariance ellipse at
+  // chi-squared 5.99. At the stated level the ellipse contains the truth in 90 to 99 of 100 cases.
   ThesisRuns runs(41);
   int held = 0, held_by_chi_squared = 0;
   for (int k = 0; k < 100; ++k) {
@@ -80,8 +80,8 @@ TEST(SoilPosterior, FixedParametersDoNotContributeToDistance) {
 }
 
 TEST(SoilPosterior, ExactReadingsRecoverTheSoil) {
-  // Property: with 0.1 % errors assumed and none made, c within 0.1 kPa and phi within 0.5 deg (worst of
-  // eight soils).
+  // Property: with exact readings and assumed errors of 0.1 %, c is within 0.1 kPa and phi within 0.5 deg
+  // (worst of eight soils).
   ThesisRuns runs(5);
   for (int k = 0; k < 8; ++k) {
     const ThesisRun run = runs.next({.noise = 0.0});
@@ -96,9 +96,8 @@ TEST(SoilPosterior, ExactReadingsRecoverTheSoil) {
 }
 
 TEST(SoilPosterior, BeatsThePriorMeanAndIsCalibrated) {
-  // Property: over 60 soils with 5 % errors the rms error is below that of always answering the prior mean
-  // (2.3 kPa, 4.9 deg), agrees with the posterior's own standard deviation to a third, and 95 % intervals
-  // hold the truth 85 to 100 %.
+  // Property: over 60 soils with 5 % errors the RMS error is below that of the prior mean (2.3 kPa, 4.9 deg)
+  // and within a third of the posterior standard deviation; 95 % intervals contain the truth in 85 to 100 %.
   ThesisRuns runs(9);
   double c2 = 0.0, phi2 = 0.0, own_c2 = 0.0, own_phi2 = 0.0;
   int inside = 0;
@@ -120,7 +119,7 @@ TEST(SoilPosterior, BeatsThePriorMeanAndIsCalibrated) {
 }
 
 TEST(SoilPosterior, IntervalsExcludeTwoPointFivePercentPerSide) {
-  // Property: of the draws' weight, to that of the heaviest draw.
+  // Property: quantiles of the weighted draws, to the weight of the heaviest draw.
   ThesisRuns runs(43);
   const ThesisRun run = runs.next({.noise = 0.05});
   const SoilPosterior p = fitSoil(kThesisWheel, run.samples, thesisSoils());
@@ -136,7 +135,7 @@ TEST(SoilPosterior, IntervalsExcludeTwoPointFivePercentPerSide) {
 }
 
 TEST(SoilPosterior, OneOutlierMovesTheMeanByLessThanOneStd) {
-  // Property: one torque read at twice its value moves the answer by less than its own standard deviation.
+  // Property: one torque read at twice its value changes the result by less than its standard deviation.
   ThesisRuns runs(21);
   ThesisRun run = runs.next({.noise = 0.02});
   const SoilFitOptions options{.noise = ReadingErrors::relative(0.02)};
@@ -150,8 +149,7 @@ TEST(SoilPosterior, OneOutlierMovesTheMeanByLessThanOneStd) {
 }
 
 TEST(SoilPosterior, FindsASoilFarFromThePriorCentre) {
-  // Property: at 1 % errors every sample is an outlier at the prior's middle; the soil must be found all the
-  // same.
+  // Property: at 1 % errors every sample is an outlier at the prior mean; the soil is nevertheless found.
   ThesisRuns runs(14);
   const ThesisRun run = runs.next({.noise = 0.01});
   const SoilMixture wide{thesisSoilsOrOther(0.5).back()};
@@ -163,7 +161,8 @@ TEST(SoilPosterior, FindsASoilFarFromThePriorCentre) {
 }
 
 TEST(SoilPosterior, ReportsParametersUnidentifiableFromRepeatedSamples) {
-  // Property: twelve samples at one slip of 0.8, where the shear is nearly developed, say little of K.
+  // Property: twelve samples at slip 0.8, where the shear stress is nearly developed, leave K poorly
+  // determined.
   ThesisRuns runs(2);
   ThesisRun run = runs.next({.noise = 0.05});
   const std::vector<WheelSample> same(3, run.samples[6]);

@@ -21,8 +21,9 @@ TEST(StatePopulation, FewSamplesLeaveReadingsUnchanged) {
 }
 
 TEST(StatePopulation, ShrinksReadingsTowardsThePopulation) {
-  // Closed form: true ln W and slip Gaussian with known spread, errors as stated: what remains of an error is
-  // sqrt(V / (V + s^2)) of it, and its standard deviation says so. 4000 readings tell the spread to 2 %.
+  // Closed form: with true ln W and slip Gaussian with known spread, and errors as stated, an error is
+  // reduced by the factor sqrt(V / (V + s^2)), as is its standard deviation. 4000 readings determine the
+  // spread to 2 %.
   constexpr int kCount = 4000;
   constexpr double kSpread = 0.08;  // of ln W
   StatePopulation population;
@@ -48,7 +49,7 @@ TEST(StatePopulation, ShrinksReadingsTowardsThePopulation) {
   const double share = kSpread * kSpread / (kSpread * kSpread + 0.05 * 0.05);
   EXPECT_NEAR(std::sqrt(squares), 0.05 * std::sqrt(share), 0.002);
   EXPECT_NEAR(std::sqrt(stated), 0.05 * std::sqrt(share), 0.002);
-  EXPECT_LT(std::sqrt(slip_squares), 0.005);  // one slip, read with 0.02
+  EXPECT_LT(std::sqrt(slip_squares), 0.005);  // all at one slip, read with an error of 0.02
 }
 
 }  // namespace state_population_test

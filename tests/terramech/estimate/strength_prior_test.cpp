@@ -32,7 +32,8 @@ double normal(double away, double variance) {
 }
 
 TEST(StrengthPrior, MatchesIntegrationOverAGrid) {
-  // Property: mean and covariance of prior times likelihood, summed over a fine grid of (c, tan phi).
+  // Property: the result equals mean and covariance of prior times likelihood, summed over a fine grid of
+  // (c, tan phi).
   const ShearStrength fit = fitOf(2200.0, 0.52, {900.0, 0.09}, -0.8);
   const std::vector<StrengthPrior> priors{priorOf(1000.0, 0.6, {400.0, 0.05}, 0.7),
                                           priorOf(4000.0, 0.4, {800.0, 0.04}, 0.3)};

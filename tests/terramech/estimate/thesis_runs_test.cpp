@@ -19,7 +19,8 @@ TEST(ThesisRuns, FollowTheThesisPattern) {
 }
 
 TEST(ThesisRuns, NoiseHasTheStatedStd) {
-  // Property: 2000 relative errors have the standard deviation asked for, to 5 % (three of its own).
+  // Property: 2000 relative errors have the requested standard deviation, to 5 % (three of its standard
+  // errors).
   ThesisRuns runs(2);
   double squares = 0.0;
   for (int k = 0; k < 50; ++k) {

@@ -17,7 +17,7 @@ SoilMatrix correlated() {
 }
 
 TEST(TruncatedGaussian, EveryDrawLiesWithinBounds) {
-  // Property: also when the mean lies far outside.
+  // Property: draws lie in the box, also if the mean is far outside.
   for (const double mean : {0.5, -40.0, 900.0}) {
     const TruncatedGaussian g(SoilVector::Constant(mean), correlated(), kUnit);
     const auto points = evenPoints(kSoilParameters, 200);
@@ -40,7 +40,7 @@ TEST(TruncatedGaussian, InverseDensityIntegratesToTheBoxVolume) {
 }
 
 TEST(TruncatedGaussian, WithoutBoundsItIsTheGaussian) {
-  // Closed form: density at the draw.
+  // Closed form: the density of the untruncated Gaussian at the draw.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TruncatedGaussian g(SoilVector::Zero(), SoilMatrix::Identity(),
                             {SoilVector::Constant(-kInfinity), SoilVector::Constant(kInfinity)});

@@ -60,7 +60,7 @@ TEST(BevameterTable, TrialsAndSoilsFormSeparateTests) {
       "soil,trial,note,plate_width_m,pressure_Pa,sinkage_m\n"
       "sand,1,a,0.1,5000,0.01\nsand,1,b,0.1,7000,0.02\nsand,2,c,0.1,5000,0.01\nclay,1,d,0.1,9000,0.02\n");
   ASSERT_EQ(table.plates.size(), 3U);
-  EXPECT_EQ(table.plates[0].readings.size(), 2U);  // a note of its own for each row makes no trial
+  EXPECT_EQ(table.plates[0].readings.size(), 2U);  // a different note in each row does not separate trials
   EXPECT_EQ(table.plates[1].soil, "sand");
   EXPECT_EQ(table.plates[2].soil, "clay");
 }

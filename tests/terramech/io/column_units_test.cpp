@@ -26,7 +26,7 @@ std::string errorOf(const std::vector<std::string>& header) {
   return "";
 }
 
-// Property: nor for a letter; another word is the user's own.
+// Property: a misspelled known column is rejected with a suggestion; any other word is a user's own column.
 TEST(ColumnUnits, MisspelledKnownColumnIsRejectedWithASuggestion) {
   EXPECT_THAT(errorOf({"drawbar_pul_N"}), HasSubstr("write column drawbar_pull_N"));
   EXPECT_THAT(errorOf({"torqe_Nm"}), HasSubstr("write column torque_Nm"));
@@ -34,7 +34,7 @@ TEST(ColumnUnits, MisspelledKnownColumnIsRejectedWithASuggestion) {
   EXPECT_EQ(errorOf({"draw_bar_tension_N", "Fx", "dust_index"}), "");
 }
 
-// Property: what a file measured is never dropped for its unit.
+// Property: a known quantity in another unit is rejected, never ignored.
 TEST(ColumnUnits, KnownColumnInAnotherUnitIsRejected) {
   for (const auto& [name, write] : std::initializer_list<std::pair<const char*, const char*>>{
            {"sinkage_mm", "sinkage_m, in m (sinkage_mm times 0.001)"},
@@ -105,7 +105,7 @@ TEST(ColumnUnits, KnownColumnWithOtherCaseOrPunctuationIsRejected) {
   EXPECT_THAT(errorOf({"speed [m/s]"}), HasSubstr("write column speed_mps"));
 }
 
-// Property: every known name passes, and so do names of one's own that only resemble one.
+// Property: every known name is accepted, and so are own names that resemble a known one.
 TEST(ColumnUnits, UserColumnsAreAccepted) {
   EXPECT_EQ(errorOf(knownTelemetryColumns()), "");
   for (const char* name : {"",
@@ -183,7 +183,8 @@ TEST(ColumnUnits, MeasuredDataFilesAreAccepted) {
     if (entry.path().extension() != ".csv") continue;
     ++files;
     std::vector<std::string> header = CsvReader(entry.path()).header();
-    // Points digitised from figures over the slope in degrees: no table of wheels, and refused as one.
+    // These tables hold digitised points over the slope in degrees; as wheel telemetry the column is
+    // rejected.
     if (entry.path().parent_path().filename() == "slope_slip") std::erase(header, "slope_deg");
     EXPECT_EQ(errorOf(header), "") << entry.path();
   }

@@ -37,7 +37,7 @@ TEST(CsvReader, ReadsEveryLineEndingQuotesAndByteOrderMark) {
   }
 }
 
-// A second mark, of a tool that adds one to a file that has one, was part of the first column's name, which then was missing.
+// Property: a repeated byte order mark is skipped; otherwise it would be part of the first column's name.
 TEST(CsvReader, RepeatedByteOrderMarksAreSkipped) {
   const test::TemporaryFile file{"\xEF\xBB\xBF\xEF\xBB\xBFslip,load_N\n0.1,20\n"};
   EXPECT_THAT(CsvReader{file.path()}.header(), ElementsAre("slip", "load_N"));
@@ -73,7 +73,7 @@ std::string errorOf(const std::string& path) {
   return "no error";
 }
 
-// Property: rows behind a stray quote are not lost without a word, be it closed by another one or by none.
+// Property: rows after an unbalanced quote are reported, whether another quote closes it or none.
 TEST(CsvReader, UnbalancedQuoteSpanningRowsIsRejected) {
   std::string many = "a,b\n1,2\n3,\"4\n";
   for (int k = 0; k < 20000; ++k) many += "5,6\n";
@@ -101,7 +101,7 @@ TEST(CsvReader, MissingEmptyAndAmbiguousFilesAreRejected) {
   EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));
 }
 
-// As spreadsheets of many countries write them.
+// Formats that spreadsheets write in many countries.
 TEST(CsvReader, ReadsSemicolonsTabsAndDecimalCommas) {
   for (const std::string part : {";", "\t"}) {
     const auto rows = rowsOf("a" + part + "b" + part + "c\n1,5" + part + "-2,25e1" + part + "some, words\n" +
@@ -110,7 +110,7 @@ TEST(CsvReader, ReadsSemicolonsTabsAndDecimalCommas) {
     EXPECT_THAT(rows[0].fields, ElementsAre("1.5", "-2.25e1", "some, words"));
     EXPECT_THAT(rows[1].fields, ElementsAre("3", "4.5", "1,2,3"));
   }
-  // Commas part the fields where the header has them.
+  // The header determines the separator: commas separate fields if they do so in the header.
   EXPECT_THAT(rowsOf("a,b;c\n1,5\n").front().fields, ElementsAre("1", "5"));
 }
 

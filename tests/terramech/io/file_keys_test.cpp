@@ -19,7 +19,7 @@ TEST(FileKeys, KeyNamesAreUniqueAndDocumented) {
   }
 }
 
-// Property: a rover and a soil with every key are read.
+// Property: a rover and a soil with every key are accepted.
 TEST(FileKeys, EveryRoverAndSoilKeyIsAccepted) {
   const std::string wheels =
       "{count: 6, radius_m: 0.1, width_m: 0.1, grouser_height_m: 0, grouser_count: 0, lug_thrust: 0}";

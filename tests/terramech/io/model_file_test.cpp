@@ -44,7 +44,7 @@ RefinedModel refined() {
   return model;
 }
 
-// Property: a fit that leaves a parameter or a variance at next to nothing is read back, as nothing.
+// Property: a parameter or variance below the file's minimum is written and read as 0.
 TEST(ModelFile, NumbersBelowTheFileMinimumAreWrittenAsZero) {
   RefinedModel model = refined();
   model.effects[0].parameters = {1.6e-115};
@@ -72,7 +72,7 @@ TEST(ModelFile, TrainedRangesRoundTrip) {
   ASSERT_EQ(back.scope.trained.size(), 1U);
   EXPECT_EQ(back.scope.trained[0].high, slip.high);
   EXPECT_EQ(back.scope.trained[0].above, slip.above);
-  // Closed form: 0.5 below -0.5 at 0.1 a unit; nothing inside.
+  // Closed form: 0.5 below -0.5 at 0.1 per unit; 0 inside the range.
   EXPECT_DOUBLE_EQ(back.scope.trained[0].stdAt(-1.0, 0), 0.05);
   EXPECT_EQ(back.scope.trained[0].stdAt(0.0, 0), 0.0);
   std::filesystem::remove(path);
@@ -120,7 +120,8 @@ std::string faultOf(const std::string& yaml) {
   return "no error";
 }
 
-// Property: what is no covariance would be read as certainty (a std of 0), and is refused by its line.
+// Property: an invalid covariance would be read as certainty (standard deviation 0) and is rejected with its
+// line.
 TEST(ModelFile, InvalidCovarianceIsRejected) {
   const auto fault = [](const std::string& covariance) {
     return faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}]\ncovariance: [" +
@@ -133,7 +134,7 @@ TEST(ModelFile, InvalidCovarianceIsRejected) {
   EXPECT_THAT(fault("1e4, 0.5, 0.4, 1e-3"), HasSubstr("is not symmetric in row 1"));
   EXPECT_THAT(fault("1e4, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
   EXPECT_THAT(fault("0, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
-  // Each pair may be so correlated, the three together not.
+  // Each pair of correlations is possible, the three together are not.
   EXPECT_THAT(
       faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}, {effect: -1, index: 2}]\n"
               "covariance: [1, 0.9, 0.9, 0.9, 1, -0.9, 0.9, -0.9, 1]\n"),

@@ -85,7 +85,7 @@ TEST(SoilLibrary, SoilErrorsNameTheirLine) {
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
         Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
         Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be > 0"},
-        // Taken for a value without a deviation it got the default: dearer than one with a deviation of 0.5.
+        // A std of 0 must not be taken for a missing one, which would be replaced by the default.
         Case{"cohesion_kPa: {mean: 2, std: 0}\n", ":1: cohesion_Pa.std must be > 0; no measurement is exact"},
         Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is a text, no mapping"},
         Case{"a: [1\n", "not YAML"}, Case{"", "is empty"}}) {
@@ -158,7 +158,7 @@ TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverIsMobileOnMostSoils) {
       EXPECT_EQ(soil.name, soil_name);
       drivable += MobilityCurve{soil, rover}.at(0.0).feasible;
     }
-    EXPECT_GE(drivable, 14) << rover_name;  // Property: these rovers drove on such ground.
+    EXPECT_GE(drivable, 14) << rover_name;  // Property: these rovers have driven on such ground.
   }
 }
 
@@ -209,7 +209,8 @@ TEST(TerrainClasses, AcceptsLibraryNamesInlineSoilsAndOwnList) {
   EXPECT_EQ(loadTerrainClasses(bare.path()).at(3).mean.name, "clay");
 }
 
-// Property: numbers and count are checked before any soil is read; the first of these names none.
+// Property: numbers and count of classes are checked before any soil is read; the first class names an
+// unknown soil.
 TEST(TerrainClasses, ClassCountIsCheckedBeforeSoilsAreRead) {
   std::string all = "classes:\n  0: no_such_soil\n";
   for (int i = 1; i <= 254; ++i) all += "  " + std::to_string(i) + ": sand\n";
@@ -223,7 +224,7 @@ TEST(TerrainClasses, ClassCountIsCheckedBeforeSoilsAreRead) {
               testing::ThrowsMessage<InputError>(HasSubstr(":257: class 255 is beyond 254")));
 }
 
-// Property: a message tells of a file that is none of soils that it is none, and nothing that stands in it.
+// Property: the error for a file without soils states that fact and quotes nothing of its content.
 TEST(TerrainClasses, ErrorsDoNotDiscloseContentOfForeignFiles) {
   for (const char* foreign : {"root:x:0:0:secret:/root:/bin/sh\nsync:x:4:secret\n", "secret\n", "- secret\n",
                               "secret: word\n", "secret: {word: secret}\n", "a: [secret\n"}) {
@@ -258,7 +259,8 @@ TEST(TerrainClasses, ErrorsNameTheirLine) {
   EXPECT_THAT(error("1: sand\n2: loan\n"), HasSubstr(":2: class 2: no soil 'loan'; did you mean loam?"));
   EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is not a class number"));
   EXPECT_THAT(error("classes: {}\n"), HasSubstr("names no terrain class"));
-  // One spelling for each number: of 1 and 01 the later soil, bedrock, counted in silence.
+  // Each number has one spelling; otherwise 1 and 01 would be one class, and the later soil would replace
+  // the earlier.
   for (const char* key : {"01", "+1", "-1", "1.0", "0x1", "1e0", "\" 1\"", "00"})
     EXPECT_THAT(error("classes:\n  1: mars_drift\n  " + std::string(key) + ": bedrock\n"), HasSubstr(":3: '"))
         << key;

@@ -38,7 +38,7 @@ TEST(SoilPriors, MixtureModulusAccountsForWheelWidth) {
   EXPECT_NEAR(mixture[0].parameters[3].at(0.0), 205000.0, 1e-6);
   EXPECT_NEAR(mixture[0].parameters[3].slope(0.0), 500.0, 1e-6);
   EXPECT_NEAR(mixture[0].parameters[0].at(2.0), 1200.0, 1e-9);
-  // Property: what has no standard deviation is fixed, and cohesion is never negative.
+  // Property: a parameter without a standard deviation is fixed, and cohesion is never negative.
   EXPECT_EQ(mixture[0].parameters[1].at(0.3), 0.5);
   EXPECT_EQ(mixture[0].parameters[0].at(-20.0), 0.0);
 }

@@ -11,7 +11,7 @@ namespace table_columns_test {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// A student's table.
+// A table with other names, units and separators.
 constexpr const char* kStudent = "Fz;slip_pct;Mx;Fx;sinkage_mm\n80,5;20;2,25;12;12,5\n90;30;3;15;15\n";
 
 std::string refusal(const std::string& content, const std::vector<MappedColumn>& columns,
@@ -53,7 +53,7 @@ TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
                   "drawbar_pull_N=Fx"));
 }
 
-// Nobody would be told: what is converted in silence may be wrong in silence.
+// An unmapped unit is rejected, because an unnoticed conversion could be wrong.
 TEST(TableColumns, OtherUnitWithoutMappingIsRejected) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.2,12\n"};
   EXPECT_THROW(readTelemetry(file.path()), InputError);

@@ -37,7 +37,7 @@ TEST(TelemetryReader, KeepsEveryColumnInAnyOrder) {
   EXPECT_THAT(t.lines, ElementsAre(2, 3));
 }
 
-// Property: what no rover on no ground reads is no reading.
+// Property: physically impossible readings are rejected.
 TEST(TelemetryReader, RejectsPhysicallyImpossibleValues) {
   for (const char* column :
        {"slope_rad=1.5708", "slope_rad=-10", "roll_rad=2", "pass_index=-1", "pass_index=0.5",
@@ -169,17 +169,17 @@ TEST(TelemetryReader, ReportsProgressAndStopsOnRequest) {
   EXPECT_GT(last, 0.3);
 }
 
-// A log copied together from overlapping parts taught its rows twice.
+// Property: on request, repeated rows of a log with overlapping parts count once.
 TEST(TelemetryReader, RepeatedRowsAreCountedOnceOnRequest) {
   const std::string part = "1,80,0.1\n2,81,0.2\n2,81,0.2\n3,-82,0.3\n", header = "time_s,load_N,slip\n";
   const Telemetry once = read(header + part + part + "1,80,0.4\n", {.once = true});
-  // Of one moment two rows may be two wheels'.
+  // Two different rows of one time may belong to two wheels.
   EXPECT_THAT(once.at("slip"), ElementsAre(0.1, 0.2, 0.2, 0.4));
   EXPECT_THAT(once.lines, ElementsAre(2, 3, 4, 10));
   EXPECT_EQ(once.rejected.size(), 1U);
   EXPECT_EQ(once.repeated, 4U);
   EXPECT_EQ(read(header + part + part).size(), 6U);
-  // Without a time any row may be measured again.
+  // Without a time column any row may be a repeated measurement.
   EXPECT_EQ(read("load_N,slip\n80,0.1\n81,0.2\n80,0.1\n", {.once = true}).size(), 3U);
   const std::string named = "time_s,wheel,load_N,slip\n1,a,80,0.1\n1,b,80,0.1\n1,a,80,0.1\n";
   EXPECT_THAT(read(named, {.once = true}).lines, ElementsAre(2, 3));

@@ -84,7 +84,7 @@ TEST(YamlFields, ErrorsNameFileAndLine) {
   EXPECT_THAT([] { YamlFields::file("/tmp"); }, ThrowsMessage<InputError>(HasSubstr("is a directory")));
 }
 
-// Property: 017 is 15 to YAML 1.1 and 17 to YAML 1.2; it stands for neither here.
+// Property: 017, which is 15 in YAML 1.1 and 17 in YAML 1.2, is rejected.
 TEST(YamlFields, OctalAndHexadecimalNumbersAreRejected) {
   for (const char* octal : {"017", "-017", "+00", "0x10", "0o17"})
     EXPECT_THAT([&] { of(std::string("mass_kg: ") + octal).number("mass_kg"); },
@@ -96,7 +96,8 @@ TEST(YamlFields, OctalAndHexadecimalNumbersAreRejected) {
     EXPECT_EQ(of(std::string("a: ") + text).number("a"), value) << text;
 }
 
-// Property: a word is text of one letter or more; NUL and bytes that are no UTF-8 would break what is written of it.
+// Property: text has at least one letter; NUL and bytes that are not UTF-8 are rejected, because they would
+// invalidate output.
 TEST(YamlFields, TextMustBeNonEmptyValidUtf8) {
   for (const char* empty : {"a: ''", "a: ' '", "a: \"\\t\""})
     EXPECT_THAT([&] { of(empty).word("a"); },
@@ -108,7 +109,7 @@ TEST(YamlFields, TextMustBeNonEmptyValidUtf8) {
   EXPECT_THROW(of("\"m\\0r\": 1"), InputError);
   EXPECT_THAT([] { of(std::string("b: 1\na: m\0r", 11)); },
               ThrowsMessage<InputError>(HasSubstr("f.yaml:2: holds a NUL")));
-  // Closed form: RFC 3629, section 4: the first and last letters of each length, and what lies outside of them.
+  // Closed form: RFC 3629, section 4: the first and last letters of each length, and the bytes just outside.
   for (const char* letter :
        {"\xC2\x80", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
     EXPECT_EQ(of(std::string("a: x") + letter).word("a"), std::string("x") + letter);
@@ -118,7 +119,7 @@ TEST(YamlFields, TextMustBeNonEmptyValidUtf8) {
                 ThrowsMessage<InputError>(HasSubstr("a holds bytes that are no UTF-8 text")));
 }
 
-// Property: one document is read with its markers, of several none is passed over.
+// Property: one document with its markers is read; a file with several documents is rejected.
 TEST(YamlFields, AcceptsExactlyOneDocument) {
   for (const char* one : {"---\na: 1\n", "# soil\n%YAML 1.2\n--- # begins\na: 1\n...\n# end\n",
                           "--- {a: 1}\n...\n", "a: 1 # ---\nb: '\n  ---'\n", "a: 1\nc---: 2\n"})
@@ -133,7 +134,7 @@ TEST(YamlFields, NearestNameUsesEditDistance) {
   EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
 }
 
-// Its tree takes up to 360 bytes for each byte of text.
+// The parsed tree takes up to 360 bytes for each byte of text.
 TEST(YamlFields, FileLargerThan256KilobytesIsRejected) {
   const std::string path = testing::TempDir() + "talus_large.yaml";
   std::ofstream(path) << "a: 1\n#" << std::string(262'144, ' ') << "\n";
@@ -141,7 +142,7 @@ TEST(YamlFields, FileLargerThan256KilobytesIsRejected) {
   std::remove(path.c_str());
 }
 
-// Property: of a field that is given twice, by whatever spelling, none counts.
+// Property: a field given twice, in any spelling, is rejected.
 TEST(YamlFields, DuplicateFieldIsRejected) {
   const auto read = [](const std::string& yaml) {
     return [yaml] {

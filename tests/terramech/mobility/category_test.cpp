@@ -69,7 +69,7 @@ TEST(Category, NanIsUnknown) {
 }
 
 TEST(Category, IsMonotoneInPullSinkageAndTorque) {
-  // Property: monotone in each number.
+  // Property: the category is monotone in each quantity.
   for (double dp = -0.5; dp < 1.0; dp += 0.0625)
     for (double z = 0.0; z < 1.0; z += 0.0625)
       for (double t = 0.0; t < 2.0; t += 0.125) {

@@ -13,8 +13,8 @@
 namespace talus::terramech {
 namespace measured_slope_test {
 
-// NASA Glenn's MGRU3 on a tilt bed of loose GRC-1 (88 kg, wheels of 0.25 by 0.20 m with 24 lugs of 25 mm; 2022, digitised second hand);
-// what the file does not say is ours.
+// NASA Glenn's MGRU3 on a tilt bed of loose GRC-1 (88 kg, wheels of 0.25 by 0.20 m with 24 lugs of 25 mm;
+// 2022, digitised from a secondary source). Values that the source lacks are ours.
 Rover mgru3(double lug_thrust) {
   Rover rover{.name = "mgru3",
               .mass_kg = 88.0,
@@ -32,7 +32,8 @@ Rover mgru3(double lug_thrust) {
   return rover;
 }
 
-// The lunar soil recommended by wong_asnani_2008: GRC-1 was made to be like it; its own parameters were not at hand.
+// The lunar soil recommended by wong_asnani_2008, which GRC-1 simulates; parameters of GRC-1 itself were not
+// available.
 Soil lunar() {
   return {.name = "lunar_nominal",
           .cohesion_Pa = 170.0,
@@ -44,7 +45,8 @@ Soil lunar() {
           .density_kg_m3 = 1500.0};
 }
 
-// Nothing is fitted to what it is held against: slip within 0.101 up to 15.3 degrees; steeper, Talus errs towards danger.
+// Measured by others: nothing is fitted to these measurements. The slip is within 0.101 up to 15.3 degrees;
+// on steeper slopes Talus predicts more slip than measured.
 TEST(MeasuredSlope, GrouserWheelSlipOnSlopesMatchesMeasurements) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";

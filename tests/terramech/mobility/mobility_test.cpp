@@ -83,7 +83,7 @@ TEST(Mobility, SlipAndEnergyIncreaseWithSlope) {
   const MobilityCurve curve{loam(), rover()};
   MobilityState last = curve.at(curve.minSlope_rad());
   for (double slope = curve.minSlope_rad(); slope < curve.maxSlope_rad(); slope += 1e-3) {
-    const MobilityState state = curve.at(slope);  // Property: monotone.
+    const MobilityState state = curve.at(slope);  // Property: monotone in the slope.
     EXPECT_GE(state.slip, last.slip);
     EXPECT_GE(state.energy_J_per_m, last.energy_J_per_m - 1e-9);
     EXPECT_LE(state.speed_mps, last.speed_mps);
@@ -97,7 +97,7 @@ TEST(Mobility, EnergyOnFlatGroundIsTorqueWorkPlusHotelEnergy) {
   EXPECT_NEAR(flat.energy_J_per_m,
               6.0 * flat.torque_Nm / 0.1 * rolled_per_m + 8.0 / (0.06 * (1.0 - flat.slip)), 1e-9);
   EXPECT_TRUE(flat.feasible);
-  EXPECT_GT(flat.slip, 0.0);  // Property: rolling resistance must be pulled.
+  EXPECT_GT(flat.slip, 0.0);  // Property: rolling resistance requires pull.
 }
 
 TEST(Mobility, BrakingRecoversNoEnergy) {
@@ -135,7 +135,8 @@ TEST(Mobility, ReferenceIsTheWheelAtReferenceSlipUnderItsLoad) {
   EXPECT_GE(curve.strongest().drawbar_pull_over_load, curve.reference().drawbar_pull_over_load);
 }
 
-// Property: to the bit, on soils that carry the wheel and on one that does not, with effects and without.
+// Property: both are bit-identical, on soils that carry the wheel and on one that does not, with and without
+// effects.
 TEST(Mobility, ReferenceFunctionEqualsThatOfTheCurve) {
   Soil bottomless = loam();
   bottomless.frictional_modulus = 1e3;
@@ -193,7 +194,7 @@ TEST(Mobility, ModelWithoutEffectsEqualsItsSoil) {
   model.soil = loam();
   const MobilityCurve of_model{model, rover()};
   for (const double slope : {-0.15, -0.05, 0.0, 0.1}) {
-    // Property: two rules of one integral, 1e-6 of the load apart.
+    // Property: two quadrature rules of one integral, 1e-6 of the load apart.
     EXPECT_NEAR(of_model.at(slope).slip, of_soil.at(slope).slip, 1e-5) << slope;
     EXPECT_NEAR(of_model.at(slope).energy_J_per_m, of_soil.at(slope).energy_J_per_m, 1e-3) << slope;
   }
@@ -209,10 +210,10 @@ TEST(Mobility, EffectsApplyOnEverySlope) {
     wheel.wheel = rover().wheel;
     wheel.load_N = wheelLoad_N(rover()) * std::cos(slope);
     wheel.slip = s.slip;
-    // Closed form: DP/N = tan(slope) at the slip that the table gives, by the model itself.
+    // Closed form: DP/N = tan(slope) by the model at the slip of the table.
     EXPECT_NEAR(predict(model, wheel).drawbar_pull_N / wheel.load_N, std::tan(slope), 1e-3) << slope;
     EXPECT_NEAR(predict(model, wheel).sinkage_m, s.sinkage_m, 1e-5) << slope;
-    // Property: at that slip it lies deeper than the soil alone would let it.
+    // Property: at that slip the sinkage is larger than on the soil without the effect.
     EXPECT_GT(s.sinkage_m,
               equilibrium(loam(), rover().wheel, {.load_N = wheel.load_N, .slip = s.slip}).sinkage_m);
   }
@@ -244,11 +245,12 @@ TEST(Mobility, AxlesInOneRutShareThePull) {
       pull_N += predict(model, wheel).drawbar_pull_N;
       torque_Nm += predict(model, wheel).torque_Nm;
     }
-    // Closed form: one wheel of each axle at its own pass, by the model itself; the table's stated accuracy.
+    // Closed form: one wheel of each axle at its own pass, by the model; tolerance: the table's stated
+    // accuracy.
     EXPECT_NEAR(pull_N / (3.0 * wheel.load_N), std::tan(slope), 1e-3) << slope;
     EXPECT_NEAR(torque_Nm / 3.0, s.torque_Nm, 1e-3) << slope;
-    // Property: it sinks as its first wheel does and drives better than on fresh ground alone, worse than in
-    // a rut.
+    // Property: the rover sinks as its first wheel does; its slip is lower than on fresh ground and higher
+    // than in a rut.
     EXPECT_GT(s.sinkage_m, rut.at(slope).sinkage_m) << slope;
     EXPECT_LT(s.slip, first.at(slope).slip) << slope;
     EXPECT_GT(s.slip, rut.at(slope).slip) << slope;

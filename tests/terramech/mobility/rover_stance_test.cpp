@@ -23,7 +23,7 @@ Rover rover(int wheels = 4) {
 TEST(RoverStance, PitchAndRollTransferLoad) {
   const RoverStance stance{rover()};
   const auto n = stance.shares({0.2, 0.1});
-  // Closed form: the textbook's h/L tan and h/T tan, by halves.
+  // Closed form: load transfer h/L tan and h/T tan, half of it at each wheel.
   const double back = 0.3 / 0.8 * 0.2 / 2.0, right = 0.3 / 0.6 * 0.1 / 2.0;
   EXPECT_NEAR(n[0], 0.25 - back - right, 1e-12);  // front left, uphill in both
   EXPECT_NEAR(n[1], 0.25 - back + right, 1e-12);
@@ -47,7 +47,8 @@ TEST(RoverStance, ForcesAndMomentsBalance) {
         x += share * stance.position_m(k).x;
         y += share * stance.position_m(k).y;
       }
-      // Closed form: the normal forces meet the weight's line in the plane, lifted wheels or not.
+      // Closed form: the resultant of the normal forces meets the line of the weight in the plane, with or
+      // without lifted wheels.
       EXPECT_NEAR(sum, 1.0, 1e-12);
       EXPECT_NEAR(x, 0.1 - 0.3 * demand.x, 1e-9) << wheels << ' ' << demand.x;
       EXPECT_NEAR(y, -0.05 - 0.3 * demand.y, 1e-9) << wheels << ' ' << demand.y;

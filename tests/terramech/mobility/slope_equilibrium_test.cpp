@@ -36,8 +36,8 @@ Rover rover(Steering steering = Steering::AllWheel) {
 
 constexpr Steering kSteerings[] = {Steering::Skid, Steering::Ackermann, Steering::AllWheel};
 
-/// Net force [N] and yaw moment [Nm] on a rover, in three dimensions and in the map's axes, from wheels each
-/// solved anew.
+/// Net force [N] and moment [Nm] on a rover in three dimensions, in the map's axes, with each wheel solved
+/// separately.
 struct Net {
   double along, across, normal, yaw, pitch, roll;
 };
@@ -101,13 +101,13 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
         if (!state.holds()) continue;
         ++held;
         const Net net = netOf(sand(), r, {a, c}, state, equilibrium.wheels({a, c}, state));
-        // Property: forces and moments in three dimensions vanish; 0.005 of the weight for the table of wheel
-        // forces.
+        // Property: forces and moments in three dimensions are balanced; tolerance 0.005 of the weight for
+        // the table of wheel forces.
         EXPECT_NEAR(net.along / weight, 0.0, 0.005) << a << ' ' << c;
         EXPECT_NEAR(net.across / weight, 0.0, 0.005) << a << ' ' << c;
         EXPECT_NEAR(net.normal / weight, 0.0, 1e-9);
         EXPECT_NEAR(net.yaw / (weight * r.wheelbase_m), 0.0, 0.004) << a << ' ' << c;
-        // The loads carry the moments that the height makes of the wheels' forces.
+        // The wheel loads balance the moments of the wheel forces about the centre of mass.
         EXPECT_NEAR(net.pitch / (weight * r.wheelbase_m), 0.0, 0.004);
         EXPECT_NEAR(net.roll / (weight * r.track_m), 0.0, 0.004);
       }
@@ -117,7 +117,7 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
 
 TEST(SlopeEquilibrium, StraightUpSlopeMatchesTheMobilityCurve) {
   Rover r = rover();
-  r.centre_of_mass_height_m = 0.0;  // the curve moves no load
+  r.centre_of_mass_height_m = 0.0;  // without load transfer, as in the mobility curve
   const SlopeEquilibrium equilibrium{sand(), r};
   const MobilityCurve curve{sand(), r};
   for (double slope = -0.3; slope <= 0.3; slope += 0.05) {
@@ -125,7 +125,8 @@ TEST(SlopeEquilibrium, StraightUpSlopeMatchesTheMobilityCurve) {
     const MobilityState want = curve.at(slope);
     ASSERT_EQ(state.holds(), want.feasible) << slope;
     if (!want.feasible) continue;
-    // Property: two codes; the tables are off by up to 0.004 in DP/N, times the slope of slip over DP/N.
+    // Property: two implementations agree; the tables are off by up to 0.004 in DP/N, times the slope of
+    // slip over DP/N.
     EXPECT_NEAR(state.slip, want.slip, 0.006) << slope;
     EXPECT_NEAR(state.energy_J_per_m, want.energy_J_per_m, 0.02 * want.energy_J_per_m + 0.5) << slope;
     EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
@@ -138,7 +139,8 @@ TEST(SlopeEquilibrium, IsSymmetricLeftAndRight) {
     for (const double a : {-0.2, 0.0, 0.15})
       for (const double c : {0.05, 0.2, 0.3}) {
         const SlopeState left = equilibrium.at({a, c}), right = equilibrium.at({a, -c});
-        // Property: a plane and its mirror; rounding of the Newton steps.
+        // Property: a plane and its mirror image have mirrored equilibria; tolerance: rounding of the Newton
+        // steps.
         EXPECT_EQ(left.failure, right.failure);
         EXPECT_NEAR(left.slip, right.slip, 1e-8);
         EXPECT_NEAR(left.slip_angle_rad, -right.slip_angle_rad, 1e-8);
@@ -155,7 +157,7 @@ TEST(SlopeEquilibrium, SlipAngleAndEnergyIncreaseWithCrossSlope) {
     for (double c = 0.0; c < 0.6; c += 0.02) {
       const SlopeState state = equilibrium.at({0.0, c});
       if (!state.holds()) break;
-      // Property: what must be held grows, and what it costs to crab or turn.
+      // Property: the slip angle grows with the cross slope, and so does the energy.
       EXPECT_GT(-state.slip_angle_rad, last) << c;
       EXPECT_GE(state.energy_J_per_m, energy * (1.0 - 1e-3)) << c;
       last = -state.slip_angle_rad;
@@ -172,9 +174,9 @@ TEST(SlopeEquilibrium, BodyYawsUphillUnlessAllWheelsSteer) {
   EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
 }
 
-/// Whether any slip and slip angle within the limits give the force wanted along and at least that wanted
-/// across, all wheels alike under even loads: what an equilibrium without load transfer must find, by trying
-/// them.
+/// Whether some slip and slip angle within the limits give the required force along and at least the
+/// required force across, with all wheels equal under equal loads: existence of an equilibrium without load
+/// transfer, by brute force.
 bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
   const double steep = std::sqrt(1.0 + g.along * g.along + g.across * g.across);
   const double load = wheelLoad_N(r) / steep;
@@ -211,7 +213,8 @@ TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
   for (int k = 0; k < 40; ++k) {
     const Gradient g{any(engine), std::abs(any(engine))};
     const bool want = anyHolds(sand(), r, g);
-    // Property: existence by brute force; where the two differ the edge lies within 0.02 of gradient.
+    // Property: existence agrees with brute force; where the two differ, the limit lies within 0.02 of
+    // gradient.
     if (equilibrium.at(g).holds() != want) {
       const auto holds = [&](double a, double c) {
         return equilibrium.at({g.along + a, g.across + c}).holds();
@@ -237,7 +240,8 @@ TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
   Rover low = rover();
   low.clearance_m = 0.9 * SlopeEquilibrium(sand(), rover()).at({}).sinkage_m;
   EXPECT_EQ(SlopeEquilibrium(sand(), low).at({}).failure, SlopeFailure::Sinks);
-  // Straight up, where loads move so that no slip pulls it up though even loads would: nothing slides.
+  // Straight uphill, where the load transfer prevents a sufficient pull that equal loads would give: the
+  // rover does not slide.
   Rover tall = rover();
   tall.centre_of_mass_height_m = 0.5 * tall.wheelbase_m / 0.3;
   for (double along = 0.05; along < 0.5; along += 0.01) {
@@ -254,13 +258,13 @@ TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
   const double even = wheelLoad_N(rover());
   const WheelForces locked = terramech::equilibrium(sand(), rover().wheel, {.load_N = even, .slip = -1.0});
   const double steepest = -locked.drawbar_pull_N / even;
-  // Closed form: locked wheels hold tan(slope) = -DP/N; 0.03 for the load that moves and the cosine.
+  // Closed form: locked wheels hold tan(slope) = -DP/N; tolerance 0.03 for load transfer and the cosine.
   EXPECT_TRUE(equilibrium.at({-(steepest - 0.04), 0.0}).holds());
   EXPECT_FALSE(equilibrium.at({-(steepest + 0.06), 0.0}).holds());
 }
 
-// Independent: the point where the weight meets the plane, in the body's own axes and in three dimensions, against the rectangle of the
-// wheels. A rover that is short, wide and tall, and turns uphill where the slope pushes it aside.
+// Closed form: the point where the line of the weight meets the plane, in the body's axes, against the
+// rectangle of the wheels. The rover is short, wide and tall, and turns uphill on cross slopes.
 TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
   int tipped = 0, turned = 0;  // the turn of the body alone tips these
   for (const auto& [steering, cohesion_Pa] : {std::pair{Steering::Skid, 4000.0},
@@ -282,7 +286,7 @@ TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
         const Vec ahead = unit({1.0, 0.0, a}), up = unit({-a, -c, 1.0}), left = cross(up, ahead);
         const double turn = state.body_turn_rad;
         const Vec body = std::cos(turn) * ahead + std::sin(turn) * left, side = cross(up, body);
-        // From the centre of mass straight down to the plane: h / up.z metres.
+        // From the centre of mass vertically down to the plane: h / up.z metres.
         const Vec down{0.0, 0.0, -r.centre_of_mass_height_m / up.z};
         const auto beyond = [&](const Vec& x, const Vec& y) {
           return std::max(std::abs(dot(down, x)) - 0.25, std::abs(dot(down, y)) - 0.75);

@@ -46,7 +46,8 @@ TEST(SlopeTable, IsNeverLessRestrictiveThanTheEquilibrium) {
     for (int k = 0; k < 2000; ++k) {
       const Gradient g{any(engine), any(engine)};
       const SlopeState exact = equilibrium.at(g), read = table.at(g);
-      // Property: conservative; what it refuses lies within one step of what fails.
+      // Property: the table is conservative; a state that it refuses wrongly lies within one step of an
+      // infeasible one.
       EXPECT_TRUE(exact.holds() || !read.holds()) << g.along << ' ' << g.across;
       if (exact.holds() && !read.holds()) {
         ++wary;
@@ -63,9 +64,9 @@ TEST(SlopeTable, IsNeverLessRestrictiveThanTheEquilibrium) {
     ASSERT_GT(angle_errors.size(), 300u);
     std::ranges::sort(angle_errors);
     std::ranges::sort(slip_errors);
-    // Property: slip angle grows ever faster up to the edge, where two equilibria meet and its slope is
-    // infinite, so that straight lines between nodes err towards more of it; half of all points lie within
-    // the numbers stated here.
+    // Property: the slip angle grows with increasing slope up to the limit, where two equilibria meet and
+    // its derivative is infinite. Linear interpolation therefore errs towards larger angles; half of all
+    // points lie within the stated numbers.
     EXPECT_GT(angle_errors.front(), -0.005);
     EXPECT_LT(angle_errors[angle_errors.size() / 2], 0.004);
     EXPECT_LT(slip_errors[slip_errors.size() / 2], 0.005);

@@ -34,7 +34,7 @@ TEST(SteeringLimit, DecreasesWithDemandAndIncreasesWithSlipAngle) {
     return steeringSlipLimit(sand(), Wheel{},
                              {.load_N = 80.0, .slip_angle_rad = angle, .side_force_over_load = demand});
   };
-  EXPECT_GT(limit(0.05, 0.26), limit(0.1, 0.26));  // Property: monotone.
+  EXPECT_GT(limit(0.05, 0.26), limit(0.1, 0.26));  // Property: monotone in the side force.
   EXPECT_GT(limit(0.1, 0.4), limit(0.1, 0.26));
   EXPECT_EQ(limit(5.0, 0.26), 0.0);
 }

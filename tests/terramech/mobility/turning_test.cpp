@@ -27,9 +27,9 @@ Rover fourWheels(Steering steering) {
 TEST(Turning, SkidSteeringEnergyIsLateralFrictionWork) {
   const TurnEfforts efforts =
       turnEfforts(fourWheels(Steering::Skid), {.lateral_resistance = 0.5, .rolling_J_per_m = 40.0});
-  // Closed form: 4 wheels of 50 N, each 0.6 m from the middle, at 0.5 lateral force over load.
+  // Closed form: 4 wheels of 50 N, each 0.6 m from the centre, at a lateral force over load of 0.5.
   EXPECT_DOUBLE_EQ(efforts.on_arc.energy_J, 0.5 * 4 * 50.0 * 0.6);
-  // Closed form: in place the rows, 0.45 m from the middle, also roll against each other.
+  // Closed form: in place, the rows at 0.45 m from the centre also roll in opposite directions.
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 60.0 + 40.0 * 0.45);
 }
 
@@ -65,7 +65,7 @@ TEST(Turning, BulldozingForceMatchesPassiveEarthPressure) {
   sand.cohesion_Pa = 1000.0;
   EXPECT_NEAR(bulldozing_N(sand, rover, 0.02), 0.216 + 2.0 * 1000.0 * 0.02 * std::sqrt(3.0) * 0.12, 1e-9);
   EXPECT_DOUBLE_EQ(bulldozing_N(sand, rover, 0.0), 0.0);
-  // Property: turning grows dearer with the force beside the wheels.
+  // Property: the energy of turning increases with the bulldozing force.
   EXPECT_GT(turnEfforts(rover, {.bulldozing_N = 5.0}).on_arc.energy_J,
             turnEfforts(rover, {}).on_arc.energy_J);
 }

@@ -56,7 +56,7 @@ TEST(WheelForcesTable, IsTheWheel) {
                                  std::abs(t.value[kSinkageRatio] - f.sinkage_m / r)}));
     }
     std::sort(errors.begin(), errors.end());
-    // Property: what the header states.
+    // Property: the errors are within those stated in the header.
     EXPECT_LT(errors.back(), 0.015) << kind;
     EXPECT_LT(errors[errors.size() / 2], 0.001) << kind;
   }
@@ -70,7 +70,7 @@ TEST(WheelForcesTable, DerivativesMatchFiniteDifferences) {
       const WheelRatios at = table.at({30.0, slip, angle});
       const WheelRatios more = table.at({30.0, slip + h, angle}), left = table.at({30.0, slip, angle + h});
       for (std::size_t c = 0; c < kWheelChannels; ++c) {
-        // Property: derivatives of the same cubic, by differences.
+        // Property: the derivatives equal finite differences of the same cubic.
         EXPECT_NEAR(at.by_slip[c], (more.value[c] - at.value[c]) / h, 1e-4);
         EXPECT_NEAR(at.by_angle[c], (left.value[c] - at.value[c]) / h, 1e-4);
       }
@@ -84,7 +84,7 @@ TEST(WheelForcesTable, ModelWithoutEffectsEqualsItsSoil) {
   for (const double slip : {-0.5, 0.2})
     for (const double angle : {0.0, 0.3})
       for (std::size_t c = 0; c < kWheelChannels; ++c)
-        // Property: two solvers of one wheel, 1e-5 of the quicker rule of effects.
+        // Property: two solvers of one wheel agree; 1e-5 for the faster rule of effects.
         EXPECT_NEAR(a.at({30.0, slip, angle}).value[c], b.at({30.0, slip, angle}).value[c], 1e-4);
 }
 

@@ -7,10 +7,10 @@ namespace talus::terramech {
 namespace normal_distribution_test {
 
 TEST(NormalDistribution, QuantileInvertsTheDistribution) {
-  // Property, over the whole range down to the far tail.
+  // Property: quantile and probability are inverse to each other, from the far tail to the upper range.
   for (const double x : {-30.0, -8.0, -2.0, -0.3, 0.0, 0.7, 3.0, 6.0}) {
     const double p = normalProbability(x);
-    // Above the median p itself is rounded to 1e-16.
+    // Above the median p is rounded to 1e-16.
     const double tolerance = 1e-10 + (x > 0.0 ? 1e-16 / normalDensity(x) : 0.0);
     EXPECT_NEAR(normalQuantile(p), x, tolerance);
   }

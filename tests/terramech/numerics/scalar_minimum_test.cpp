@@ -14,7 +14,7 @@ TEST(ScalarMinimum, FindsTheGlobalMinimum) {
   const Minimum least = globalMinimum(f, 0.01, 100.0);
   const double u = std::log(least.at);
   EXPECT_NEAR(6.0 * std::sin(6.0 * u), (u - 1.0) / 5.0, 1e-5);
-  // Property: nothing on a fine scan is lower by more than rounding.
+  // Property: no value of a fine scan is lower by more than rounding.
   for (double v = -4.6; v < 4.6; v += 1e-3) EXPECT_GE(f(std::exp(v)), least.value - 1e-12);
 }
 

@@ -24,7 +24,7 @@ TEST(CategoryReference, MatchesTheReferenceOnEveryThreshold) {
                                      .sinkage_over_radius = row["sinkage_over_radius"],
                                      .torque_over_load_radius = numberOrNone(row, "torque_over_load_radius")},
                                     limits);
-    EXPECT_EQ(name(got), row.text("category")) << "row " << k;  // Closed form: the rule by another hand.
+    EXPECT_EQ(name(got), row.text("category")) << "row " << k;  // Closed form: an independent implementation.
   }
 }
 

@@ -9,7 +9,8 @@
 
 namespace talus::terramech::test {
 
-/// Ten readings of one soil, what the linear estimators make of each (rows) and of all (results).
+/// Ten readings of one soil, with the results of the linear estimators for each reading (rows) and for all
+/// (results).
 struct EstimatorCase {
   ReferenceRow results;
   std::vector<ReferenceRow> rows;

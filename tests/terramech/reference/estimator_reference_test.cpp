@@ -89,7 +89,7 @@ TEST(EstimatorReference, ErrorMinimisationModulusMatchesTheReference) {
     for (const auto& row : c.modulus_errors)
       expectClose(modulusError_Pa(c.wheel(), samplesOf(c), row["shear_modulus_m"]), row["error_Pa"], 1e-7);
     const ModulusEstimate best = modulusByErrorMinimisation(c.wheel(), samplesOf(c));
-    // The reference searched to 1e-5 or so; the criterion's value is flat there.
+    // The reference search has an accuracy of about 1e-5; the criterion is flat near its minimum.
     EXPECT_NEAR(best.shear_modulus_m, c.results["error_modulus_m"], 1e-5 * c.results["error_modulus_m"]);
     expectClose(best.error, c.results["error_minimum_Pa"], 1e-5);
   }

@@ -19,7 +19,7 @@ class ReferenceRow {
   std::map<std::string, std::string> cells_;
 };
 
-/// The rows of tests/terramech/reference/NAME.csv. Throws std::runtime_error when there are none.
+/// The rows of tests/terramech/reference/NAME.csv. Throws std::runtime_error if the file has none.
 std::vector<ReferenceRow> referenceTable(const std::string& name);
 
 }  // namespace talus::terramech::test

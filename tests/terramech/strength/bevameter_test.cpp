@@ -42,15 +42,15 @@ TEST(PressureSinkageFit, ModuliAreNotSeparatedForOneOrSimilarPlateWidths) {
 }
 
 TEST(PressureSinkageFit, ResidualStdEqualsTheAddedNoise) {
-  // Property: 5 % of noise on each pressure shows as a scatter of 0.05 (1200 readings: +- 4 %, two standard
-  // deviations).
+  // Property: 5 % noise on each pressure gives a residual standard deviation of 0.05 (1200 readings: +- 4 %,
+  // two standard deviations).
   const PressureSinkage fit = pressed({0.05, 0.1, 0.2}, 0.05).estimate();
   EXPECT_NEAR(fit.residual_std, 0.05, 0.002);
   EXPECT_NEAR(fit.sinkage_exponent, 0.5, 0.01);
 }
 
 TEST(PressureSinkageFit, MinimisesWongsCriterion) {
-  // Property: any step from the answer makes the sum of sigma^2 (ln sigma - ln k - n ln z)^2 larger
+  // Property: any change of the result increases the sum of sigma^2 (ln sigma - ln k - n ln z)^2
   // (wong_1980).
   std::mt19937_64 random(13);
   std::normal_distribution<double> normal;
@@ -107,7 +107,7 @@ TEST(FitShear, RecoversCohesionFrictionAndModulusOfExactReadings) {
 }
 
 TEST(FitShear, MinimisesTheSquaredStressResiduals) {
-  // Property: any step from the answer makes the sum of squares of tau - (c + sigma t)(1 - e^(-j/K)) larger.
+  // Property: any change of the result increases the sum of squares of tau - (c + sigma t)(1 - e^(-j/K)).
   std::mt19937_64 random(12);
   std::normal_distribution<double> normal;
   auto readings = sheared(0.013, 0.05);

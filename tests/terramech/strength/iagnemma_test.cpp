@@ -19,14 +19,15 @@ ShearStrength estimated(const LinearWorld& world) {
 }
 
 TEST(Iagnemma, IsExactIfShearVanishesAtTheBottom) {
-  // Property: the method's own assumption, Eq. B.2.
+  // Property: exact under the method's own assumption, Eq. B.2.
   const ShearStrength fit = estimated({.cohesion_Pa = 1000.0, .tan_friction = 0.6, .offset = false});
   EXPECT_NEAR(fit.cohesion_Pa, 1000.0, 1.0);
   EXPECT_NEAR(fit.tan_friction, 0.6, 1e-4);
 }
 
 TEST(Iagnemma, OverestimatesCohesionIfShearActsAtTheBottom) {
-  // Property: the weakness that the linear-offset method was made for (thesis Fig. 2.3).
+  // Property: in a world with shear at the bottom the method overestimates cohesion, the reason for the
+  // linear-offset method (thesis Fig. 2.3).
   EXPECT_GT(estimated({.cohesion_Pa = 6000.0, .tan_friction = 0.4}).cohesion_Pa, 7500.0);
 }
 

@@ -27,7 +27,7 @@ TEST(LinearOffset, WholeEquationIsExactForLinearStresses) {
 }
 
 TEST(LinearOffset, StressesAreRecoveredFromLoadAndTorque) {
-  // Property: the inverse of the world.
+  // Property: the estimated stresses equal those of the world.
   const LinearWorld world;
   const WheelSample s = sampleOf(kWheel, world, {.sinkage_m = 0.02, .slip = 0.5});
   const ShearSoil soil{.cohesion_Pa = world.cohesion_Pa, .shear_modulus_m = world.shear_modulus_m};
@@ -46,7 +46,7 @@ TEST(LinearOffset, M1MatchesItsSmallAngleLimit) {
 }
 
 TEST(LinearOffset, RecursiveFitEqualsTheFitOfAllSamplesInAnyOrder) {
-  // Property.
+  // Property: the fit does not depend on the order of the samples.
   auto samples = linearSamples(kWheel, {});
   LinearOffsetFit forward;
   for (const auto& s : samples) forward.add(linearOffset(kWheel, s, 0.015));

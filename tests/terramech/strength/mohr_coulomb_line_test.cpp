@@ -40,7 +40,7 @@ TEST(MohrCoulombLine, RecursionEqualsTheBatchNormalEquations) {
   const Eigen::Vector2d solution = inverse * (k1.transpose() * k2);
   const double variance = (k2 - k1 * solution).squaredNorm() / (static_cast<double>(pairs.size()) - 2.0);
   const ShearStrength fit = fitOf(pairs);
-  // Normal equations lose about half the digits: 1e-8 relative.
+  // Tolerance: the normal equations lose about half the digits, 1e-8 relative.
   EXPECT_NEAR(fit.cohesion_Pa, solution[0], 1e-8 * std::abs(solution[0]));
   EXPECT_NEAR(fit.tan_friction, solution[1], 1e-8);
   EXPECT_LT((fit.covariance - variance * inverse).norm(), 1e-8 * fit.covariance.norm());
@@ -71,7 +71,7 @@ TEST(MohrCoulombLine, CovarianceIsCalibrated) {
 }
 
 TEST(MohrCoulombLine, WeightTwoEqualsARepeatedSample) {
-  // Property.
+  // Property: a sample of weight 2 equals two samples.
   MohrCoulombLine weighted;
   MohrCoulombLine repeated;
   for (const StressPair& p : noisyLine(10, 0.1)) {

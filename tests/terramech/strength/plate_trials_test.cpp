@@ -35,7 +35,7 @@ TEST(PlateTrials, ExponentIsFittedWithinTrialsOfDifferentModulus) {
   EXPECT_NEAR(soils[0].fit.sinkage_exponent, 1.2, 1e-9);
   EXPECT_NEAR(soils[0].exponent.spread, 0.0, 1e-6);
   EXPECT_LT(pooled.estimate().sinkage_exponent, 0.8);
-  // Closed form: ln k of the three is 0, ln 2, 2 ln 2 apart: a standard deviation of ln 2.
+  // Closed form: ln k of the three trials is 0, ln 2, 2 ln 2: a standard deviation of ln 2.
   EXPECT_NEAR(soils[0].pressure_spread, std::log(2.0), 1e-5);  // weights of exact trials round
   EXPECT_NEAR(soils[0].fit.plates.at(0).sinkage_modulus, 2e6, 1.0);
 }

@@ -18,7 +18,7 @@ ShearModulusGrid ladderOver(std::span<const WheelSample> samples, const ShearMod
   return ladder;
 }
 
-// What App. D.8 assumes: one load, one sinkage, no cohesion.
+// Samples under the assumptions of App. D.8: one load, one sinkage, no cohesion.
 std::vector<WheelSample> steadyRun(double modulus) {
   std::vector<WheelSample> samples;
   for (int k = 1; k <= 8; ++k) {
@@ -30,7 +30,7 @@ std::vector<WheelSample> steadyRun(double modulus) {
 }
 
 TEST(ShearModulusGrid, JointFitMatchesTheBatchFitWithinGridSpacing) {
-  // Property: the ladder refines between rungs 28 % apart by a parabola.
+  // Property: the grid, refined by a parabola between values 28 % apart, equals the joint estimate.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 1000.0});
   EXPECT_NEAR(
       ladderOver(samples, {}).modulus().shear_modulus_m / modulusJointly(kWheel, samples).shear_modulus_m,
@@ -38,7 +38,7 @@ TEST(ShearModulusGrid, JointFitMatchesTheBatchFitWithinGridSpacing) {
 }
 
 TEST(ShearModulusGrid, ErrorMinimisationMatchesTheBatchFitWithinGridSpacing) {
-  // Property: both have their minimum where the points lie on a line.
+  // Property: both criteria have their minimum where the points lie on a line.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 500.0});
   const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::ErrorMinimisation});
   EXPECT_NEAR(ladder.modulus().shear_modulus_m / modulusByErrorMinimisation(kWheel, samples).shear_modulus_m,
@@ -48,15 +48,15 @@ TEST(ShearModulusGrid, ErrorMinimisationMatchesTheBatchFitWithinGridSpacing) {
 TEST(ShearModulusGrid, TorqueRatioIsExactUnderItsAssumptions) {
   for (const double truth : {0.006, 0.02, 0.05}) {
     const auto ladder = ladderOver(steadyRun(truth), {.criterion = ModulusCriterion::TorqueRatio});
-    // To what the parabola through rungs 28 % apart can tell.
+    // Tolerance: accuracy of the parabola through values 28 % apart.
     EXPECT_NEAR(ladder.modulus().shear_modulus_m / truth, 1.0, 0.03) << truth;
     EXPECT_FALSE(ladder.modulus().at_bound);
   }
 }
 
 TEST(ShearModulusGrid, EffectiveTorqueIsAccurateOnlyAtFullMobilisation) {
-  // Property: where A(i_max) is 1, that is K far below j, both forms of D.8 agree; elsewhere the printed one
-  // lies low.
+  // Property: if A(i_max) is 1, that is for K far below j, both forms of D.8 agree; otherwise the printed
+  // form is too low.
   const auto at = [](double truth, ModulusCriterion c) {
     return ladderOver(steadyRun(truth), {.criterion = c}).modulus().shear_modulus_m;
   };
@@ -65,8 +65,8 @@ TEST(ShearModulusGrid, EffectiveTorqueIsAccurateOnlyAtFullMobilisation) {
 }
 
 TEST(ShearModulusGrid, MaximumSlipSampleIsExcludedFromItsOwnEquation) {
-  // Property: one slower sample beside the fastest, at three times: K solves its equation A(i) = T/T_max
-  // alone, K = -j / ln(1 - T/T_max), as the batch form has it (thesis D.8 as printed).
+  // Property: with one slower slip, sampled three times, beside the fastest, K is the solution of A(i) =
+  // T/T_max, K = -j / ln(1 - T/T_max), as in the batch form (thesis D.8 as printed).
   const auto run = steadyRun(0.02);
   const std::vector<WheelSample> samples{run[2], run[2], run[2], run.back()};
   const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::EffectiveTorque});
@@ -75,7 +75,7 @@ TEST(ShearModulusGrid, MaximumSlipSampleIsExcludedFromItsOwnEquation) {
 }
 
 TEST(ShearModulusGrid, ResultIsIndependentOfSampleOrder) {
-  // Property: the highest slip may come first, last or between.
+  // Property: the result does not depend on the position of the highest slip.
   const auto samples = steadyRun(0.02);
   const std::vector<WheelSample> back(samples.rbegin(), samples.rend());
   for (const auto c : {ModulusCriterion::EffectiveTorque, ModulusCriterion::TorqueRatio}) {
@@ -85,7 +85,7 @@ TEST(ShearModulusGrid, ResultIsIndependentOfSampleOrder) {
 }
 
 TEST(ShearModulusGrid, StrengthIsThatOfTheRequestedMethod) {
-  // Property: in a world without shear at the bottom Iagnemma's line is the truth, at the true K.
+  // Property: in a world without shear at the bottom, Iagnemma's line at the true K is exact.
   const LinearWorld world{.cohesion_Pa = 1500.0, .offset = false};
   const auto samples = linearSamples(kWheel, world);
   MohrCoulombLine line;

@@ -11,7 +11,7 @@ namespace shear_modulus_test {
 
 const Wheel kWheel{.radius_m = 0.1, .width_m = 0.1};
 
-// One load, one sinkage, slip from 0.1 to 0.8, cohesionless: what D.8 assumes.
+// Samples under the assumptions of D.8: one load, one sinkage, slip from 0.1 to 0.8, no cohesion.
 std::vector<WheelSample> steadyRun(double modulus) {
   std::vector<WheelSample> samples;
   for (int k = 1; k <= 8; ++k) {
@@ -24,19 +24,19 @@ std::vector<WheelSample> steadyRun(double modulus) {
 }
 
 TEST(ShearModulus, TorqueRatioIsExactUnderItsAssumptions) {
-  // Property: A(i)/A(i_max) = T/T_max when load and sinkage stay and c = 0.
+  // Property: A(i)/A(i_max) = T/T_max for constant load and sinkage and c = 0.
   EXPECT_NEAR(modulusByTorqueRatio(kWheel, steadyRun(0.02)).shear_modulus_m, 0.02, 1e-5);
 }
 
 TEST(ShearModulus, EffectiveTorqueAsPrintedUnderestimatesTheModulus) {
-  // Property: it takes A(i_max), here 0.6, for 1 (thesis D.8).
+  // Property: the result is too low, because the method takes A(i_max), here 0.6, as 1 (thesis D.8).
   const double k = modulusByEffectiveTorque(kWheel, steadyRun(0.02)).shear_modulus_m;
   EXPECT_LT(k, 0.75 * 0.02);
   EXPECT_GT(k, 0.3 * 0.02);
 }
 
 TEST(ShearModulus, ErrorMinimisationIsAccurateForLinearStresses) {
-  // Property: at the true K the points lie on a line but for M1 (6 %).
+  // Property: at the true K the points lie on a line except for M1 (6 %).
   const auto estimate = modulusByErrorMinimisation(kWheel, linearSamples(kWheel, {.cohesion_Pa = 500.0}));
   EXPECT_NEAR(estimate.shear_modulus_m, 0.02, 0.002);
   EXPECT_FALSE(estimate.at_bound);

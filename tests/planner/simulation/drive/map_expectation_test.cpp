@@ -12,7 +12,7 @@ namespace map_expectation_test {
 using costmap::testRover;
 using costmap::testSand;
 
-// Level ground of sand, known well.
+// Level ground of sand with a small standard deviation.
 costmap::TraversabilityMap levelMap() {
   costmap::MapLayers layers;
   layers.elevation.elevation_m =
@@ -26,7 +26,7 @@ costmap::CellCode slope(double dz_dx, double dz_dy) {
   return costmap::CellCode({.dz_dx = dz_dx, .dz_dy = dz_dy, .curve = 0});
 }
 
-// Independent: the equilibrium on the plane that the rover stands on, not on that of the map there.
+// Closed form: the equilibrium on the plane under the rover, not on the map's plane at the place.
 TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
   const costmap::TraversabilityMap map = levelMap();
   const terramech::SlopeEquilibrium plane(testSand(), testRover());
@@ -35,12 +35,12 @@ TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
         MapExpectation(map, slope(0.0, across)).ofWheel({20.5, 20.5}, {20.0, 20.5}, {1.0, 0.0});
     const auto want = plane.at({0.0, across});
     EXPECT_NEAR(said.slip_angle_rad, std::abs(want.slip_angle_rad), 0.03) << across;
-    EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: never less than what it takes
+    EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: never below the required slip
     EXPECT_GT(said.sinkage_over_radius, 0.0);
   }
 }
 
-// Property: ground that was just refused, or lies off the map, is spoken of all the same.
+// Property: refused ground and ground off the map have an expectation as well.
 TEST(MapExpectation, RefusedGroundHasTheExpectationOfItsClass) {
   costmap::TraversabilityMap map = levelMap();
   const MapExpectation before(map, slope(0.05, 0.0));

@@ -9,7 +9,7 @@ namespace talus::planner {
 namespace simulation_rates_test {
 
 TEST(Share, IntervalIsWilsons) {
-  // Closed form: Wilson (1927) for 0 and 10 of 10, 5 of 10, worked out by hand
+  // Closed form: Wilson (1927) for 0 and 10 of 10, 5 of 10, computed by hand
   EXPECT_NEAR(share(0, 10).interval_95[1], 0.27753, 1e-5);
   EXPECT_NEAR(share(10, 10).interval_95[0], 0.72247, 1e-5);
   EXPECT_NEAR(share(5, 10).interval_95[0], 0.23659, 1e-5);
@@ -17,7 +17,8 @@ TEST(Share, IntervalIsWilsons) {
   EXPECT_TRUE(std::isnan(share(0, 0).value));
 }
 
-// Closed form: of 1, 2, 3, 6 the mean is 3, the standard deviation sqrt(14 / 3), its error half of that.
+// Closed form: for 1, 2, 3, 6 the mean is 3, the standard deviation sqrt(14 / 3), the standard error half of
+// it.
 TEST(Mean, IntervalFollowsFromTheStandardError) {
   const Sampled of = mean({1.0, 2.0, 3.0, 6.0});
   EXPECT_DOUBLE_EQ(of.value, 3.0);

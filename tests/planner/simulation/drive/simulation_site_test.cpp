@@ -18,7 +18,7 @@ terramech::Soil rock() {
   return soil;
 }
 
-// A drawing starts at 100,200.
+// The south-west corner of a drawn map is 100,200.
 SimulationSite::Parts across(Truth truth) {
   return {
       .truth = std::move(truth), .start = {105.5, 215.5}, .goal = {135.5, 215.5}, .firm = rock(), .seed = 7};
@@ -61,7 +61,7 @@ TEST(SimulationSite, PerfectKnowledgeUsesTheTrueSoilOfEveryPatch) {
   const auto believed = site.believed(SoilKnowledge::PerfectKnowledge, world);
   const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.value; };
   const auto model = costmap::testGround();
-  // Closed form: the soil's own pull, each patch its own
+  // Closed form: the pull of the soil of each patch
   EXPECT_NEAR(pull({112.5, 215.5}), model->prior(1).pull.value, 1e-9);
   EXPECT_NEAR(pull({105.5, 215.5}), model->prior(0).pull.value, 1e-9);
   EXPECT_GT(pull({125.5, 215.5}), model->prior(0).pull.value + 0.05);
@@ -78,7 +78,8 @@ TEST(SimulationSite, GeometricBeliefAssumesFirmGround) {
             site.believed(SoilKnowledge::Prior, world).ground({5, 5})->pull.value + 0.2);
 }
 
-// A plane too steep to be held across: who knows slopes along the heading only follows a contour and slides.
+// Property: on a plane too steep across, planning on longitudinal slopes alone follows a contour, and the
+// rover slides.
 TEST(SimulationSite, LongitudinalOnlyPlanningSlidesOnCrossSlopes) {
   costmap::GroundModel::Parts parts = costmap::testGround()->parts();
   parts.classes.front().soil.cohesion_Pa = 200.0;

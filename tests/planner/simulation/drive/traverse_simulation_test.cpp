@@ -22,8 +22,9 @@ maps::Grid grid() {
   return {.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}};
 }
 
-// A plane that rises eastwards, taken for sand, which is known well as a class: else the planner goes to and fro up a
-// slope, for its risk grows faster with the gradient than its length, and never meets a trap on the straight line.
+// A plane that rises eastwards, classified as sand with a small class standard deviation. With a larger one
+// the planner would tack up the slope, because risk grows faster with the gradient than the length does, and
+// would not meet a trap on the straight line.
 costmap::TraversabilityMap planeMap(double rise) {
   costmap::MapLayers layers;
   layers.elevation.elevation_m = maps::Raster<float>(grid());
@@ -78,7 +79,7 @@ TEST(TraverseSimulation, RoverWithAlarmReversesAndReplansAroundATrap) {
   }
 }
 
-// Property: a pose that drifts costs detours about ground that was noted in the wrong place, never the rover.
+// Property: drift of the pose causes detours around misplaced evidence, but no immobilisation.
 TEST(TraverseSimulation, PoseDriftCausesNoImmobilisation) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TraverseSimulation drive = over(trapped(), true, {.pose_drift = 0.01, .seed = seed});
@@ -88,7 +89,7 @@ TEST(TraverseSimulation, PoseDriftCausesNoImmobilisation) {
   }
 }
 
-// A plane that rises to the right of the way, with ground on it that pulls but does not hold it across.
+// A plane that rises to the right of the route, with ground that provides pull but too little side force.
 TEST(TraverseSimulation, RoverWithAlarmDoesNotSlideOnACrossSlope) {
   terramech::Soil slippery = testSand();
   slippery.cohesion_Pa = 100.0;
@@ -100,18 +101,19 @@ TEST(TraverseSimulation, RoverWithAlarmDoesNotSlideOnACrossSlope) {
   const TraverseSimulation drive = over(site, true);
   EXPECT_NE(drive.outcome, Outcome::Slid);
   EXPECT_NE(drive.outcome, Outcome::Immobilised);
-  EXPECT_GE(drive.replans, 1);  // by an alarm, or since the soil shows itself weaker on the way
+  EXPECT_GE(drive.replans, 1);  // by an alarm, or because the soil is found to be weaker on the way
 }
 
 TEST(TraverseSimulation, ImpassableTrapEndsInGivingUp) {
   const Site wall{{.classes = {testSand()}, .patches = {{{1030.0, 20.5}, 1000.0, testDust()}}}, 0.0};
   const TraverseSimulation drive = over(wall, true);
   EXPECT_EQ(drive.outcome, Outcome::GaveUp);
-  for (const TrackPoint& at : drive.track) EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were in
+  for (const TrackPoint& at : drive.track)
+    EXPECT_LT(at.place.x_m, 30.5);  // at most the front wheels were on it
 }
 
-// Ground that slips more but holds, and a trap behind it: who backs out of the trap by its own length alone
-// would turn on ground that it has just felt to be weak.
+// Weaker ground with sufficient pull, and a trap behind it. A rover that reverses out of the trap by its own
+// length only would turn on ground found to be weak.
 TEST(TraverseSimulation, RoverReversesUntilOnSoundGround) {
   terramech::Soil weak = testSand();
   weak.friction_angle_rad = 0.44;
@@ -120,15 +122,15 @@ TEST(TraverseSimulation, RoverReversesUntilOnSoundGround) {
       0.0};
   const TraverseSimulation drive = over(site, true);
   EXPECT_EQ(drive.outcome, Outcome::Reached);
-  ASSERT_GE(drive.replans, 1);  // the weak ground shows before the trap does
+  ASSERT_GE(drive.replans, 1);  // the weak ground is detected before the trap
   const auto out = std::find_if(drive.events.begin(), drive.events.end(),
                                 [](const TraverseEvent& e) { return e.text == "reversed"; });
   ASSERT_NE(out, drive.events.end());
   const auto at = std::find_if(drive.track.begin(), drive.track.end(),
                                [&](const TrackPoint& t) { return t.time_s >= out->time_s; });
   ASSERT_NE(at, drive.track.end());
-  // Closed form: the weak ground begins 8 m, the trap 4 m before its middle at x = 30; a rover of 0.8 m by
-  // 0.6 m that stands before the former has its middle at least half a metre off.
+  // Closed form: the weak ground begins 8 m and the trap 4 m before their centre at x = 30; the centre of a
+  // rover of 0.8 m by 0.6 m before the weak ground is at least half a metre away from it.
   EXPECT_LT(at->place.x_m, 23.0);
 }
 
@@ -164,13 +166,14 @@ TraverseSimulation along(const std::vector<maps::Point>& route) {
   return simulateTraverse(map, world, options);
 }
 
-// Independent derivation: turning.hpp with sinkage and rolling resistance from the mobility curve; the simulation takes them from its wheel table.
+// Closed form: turning.hpp with sinkage and rolling resistance from the mobility curve; the simulation uses
+// its wheel table.
 TEST(TraverseSimulation, TurnCostIsThatOfTheTrueGround) {
   const TraverseSimulation straight = along({{5.5, 20.5}, {15.5, 20.5}, {25.5, 20.5}}),
                            bent = along({{5.5, 20.5}, {15.5, 20.5}, {15.5, 30.5}});
   ASSERT_EQ(straight.outcome, Outcome::Reached);
   ASSERT_EQ(bent.outcome, Outcome::Reached);
-  // Whichever way it sets off, the first heading is no turn.
+  // For any initial direction the first heading is no turn.
   const TraverseSimulation north = along({{15.5, 5.5}, {15.5, 15.5}, {15.5, 25.5}});
   EXPECT_NEAR(north.time_s, straight.time_s, 0.01 * straight.time_s);
   EXPECT_NEAR(north.energy_J, straight.energy_J, 0.01 * straight.energy_J);
@@ -182,7 +185,7 @@ TEST(TraverseSimulation, TurnCostIsThatOfTheTrueGround) {
               .rolling_J_per_m = flat.energy_J_per_m - rover.hotel_power_W / flat.speed_mps});
   const terramech::TurnEffort radian = rover.turning_radius_m > 0.0 ? efforts.on_arc : efforts.in_place;
   const double quarter = 0.5 * std::numbers::pi;
-  // Behind the turn the rear wheels leave the ruts of the front ones for the rover's own length.
+  // After the turn the rear wheels leave the ruts of the front wheels for the length of the rover.
   const double energy = (bent.energy_J - straight.energy_J) / (quarter * radian.energy_J),
                time = (bent.time_s - straight.time_s) / (quarter * radian.time_s);
   EXPECT_GE(energy, 0.99);

@@ -7,7 +7,7 @@ namespace wheel_alarm_test {
 
 constexpr double kRadius_m = 0.1;
 
-// Six wheels, the middle and rear ones in ruts.
+// Six wheels; the middle and rear wheels run in ruts.
 WheelMeasurements quiet() {
   WheelMeasurements look;
   for (int w = 0; w < 6; ++w) look.wheels.push_back({.slip = 0.1, .sinkage_m = 0.01, .pass = w / 2 + 1});
@@ -45,7 +45,8 @@ TEST(WheelAlarm, SlipAngleAboveExpectationTriggersTheAlarm) {
   EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // nothing known: as on level ground
 }
 
-// A sensor that stuck on the level reads more than a descent should: who stops for that must climb back.
+// Property: less braking than expected downhill is no alarm; a sensor stuck at its level-ground value would
+// otherwise stop the rover.
 TEST(WheelAlarm, LowSlipDownhillIsNoAlarm) {
   const std::vector<WheelExpectation> downhill(6, {.slip = -0.2, .sinkage_over_radius = 0.1});
   WheelAlarm alarm({}, kRadius_m);
@@ -63,7 +64,7 @@ TEST(WheelAlarm, SinkageOfOneWheelTriggersTheAlarm) {
   const WheelAlarm::AlarmCheck heard = alarm.hear(look, kExpected);
   EXPECT_EQ(heard.reason, "sinks");
   EXPECT_EQ(heard.sank, (std::vector<bool>{false, true, false, false, false, false}));
-  look.wheels[1].pass = 2;  // in a rut of its own fellow nothing is known of fresh ground
+  look.wheels[1].pass = 2;  // a rut of another wheel gives no evidence on fresh ground
   EXPECT_FALSE(alarm.hear(look, kExpected).reason);
 }
 

@@ -13,7 +13,7 @@ namespace simulated_sensors_test {
 
 using costmap::testRover;
 
-// A rover of four wheels that slips 0.3 and sinks 0.2 of its radius.
+// A step of a four-wheeled rover at slip 0.3 with a sinkage of 0.2 of the wheel radius.
 TrueWorld::Step step() {
   TrueWorld::Step made;
   made.slip = 0.3;
@@ -37,7 +37,7 @@ TEST(SimulatedSensors, WithoutNoiseReadingsEqualTheTruth) {
   const double radius_m = testRover().wheel.radius_m;
   ASSERT_EQ(look.wheels.size(), 4U);
   for (std::size_t w = 0; w < 4; ++w) {
-    // Closed form: the step itself.
+    // Closed form: without noise the readings equal the step.
     EXPECT_DOUBLE_EQ(look.wheels[w].slip, 0.3);
     EXPECT_DOUBLE_EQ(look.wheels[w].torque_Nm, 0.4 * 50.0 * radius_m);
     EXPECT_DOUBLE_EQ(look.wheels[w].sinkage_m, 0.2 * radius_m);
@@ -58,7 +58,8 @@ TEST(SimulatedSensors, NoiseHasTheStatedStd) {
     squares += std::pow(look.wheels[0].slip - 0.3, 2);
     for (const auto& wheel : look.wheels) missing += std::isnan(wheel.torque_Nm) ? 1U : 0U;
   }
-  // Property: 0.02 of the rover and 0.005 of the wheel; four standard errors of 2000 draws.
+  // Property: standard deviations of 0.02 (rover) and 0.005 (wheel); tolerance four standard errors of 2000
+  // draws.
   EXPECT_NEAR(std::sqrt(squares / kLooks), std::hypot(0.02, 0.005), 0.0014);
   EXPECT_NEAR(static_cast<double>(missing) / (4.0 * kLooks), 0.02, 0.0063);
 }
@@ -72,7 +73,7 @@ TEST(SimulatedSensors, PoseErrorGrowsWithDistance) {
   EXPECT_NEAR(std::hypot(there.x_m - 7.0, there.y_m - 8.0), 1.0, 1e-9);  // Closed form: 2 % of 50 m
 }
 
-// What a fault changes at the faulty wheel and at the others.
+// Effect of a fault on the faulty wheel and on the others.
 TEST(SimulatedSensors, FaultAffectsOneSensorOnly) {
   const double radius_m = testRover().wheel.radius_m;
   for (const SensorFault fault : {SensorFault::SlipBiased, SensorFault::TorqueOffset,
@@ -111,7 +112,7 @@ TEST(TelemetryOf, TelemetryHasOneRowPerWheelWithSlip) {
   EXPECT_EQ(rows.findWords("wheel")->size(), 3U);
 }
 
-// With a drift of 1 a rover that drives to its goal never takes itself to be there: the simulation did not end.
+// With a drift of 1 the rover would never estimate itself at its goal, and the simulation would not end.
 TEST(SimulatedSensors, PoseDriftOutOfRangeIsRejected) {
   for (const double drift : {-0.1, 0.6, 1.0, std::nan("")})
     EXPECT_REFUSED(SimulatedSensors({.pose_drift = drift}, testRover()), std::invalid_argument,

@@ -16,22 +16,22 @@ TEST(SimulatedWheelTable, NodesMatchTheForwardModel) {
   const SimulatedWheelTable table(testSand(), rover);
   for (std::size_t layer = 0; layer < SimulatedWheelTable::kLoads; ++layer)
     for (const double slip : {-0.5, 0.0, 0.3, 0.5}) {
-      // Closed form: the table's own nodes, which lie at every 0.025 of slip
+      // Closed form: the forward model at the table's nodes, at every 0.025 of slip
       const double load = SimulatedWheelTable::load(layer), load_N = load * terramech::wheelLoad_N(rover);
       const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
       const SimulatedWheelTable::Row row = table.at(slip, load);
-      EXPECT_NEAR(row.pull, wheel.drawbar_pull_N / load_N, 1e-7);  // what the batch promises
+      EXPECT_NEAR(row.pull, wheel.drawbar_pull_N / load_N, 1e-7);  // stated accuracy of the batch
       EXPECT_NEAR(row.sinkage, wheel.sinkage_m / rover.wheel.radius_m, 1e-7);
       EXPECT_NEAR(row.torque, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 1e-7);
       EXPECT_EQ(row.hold, 0.0);
     }
-  // Property: between two nodes it lies between them, beyond the last it stays.
+  // Property: between two nodes a value lies between theirs, and beyond the last node it is constant.
   EXPECT_GT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.0).sinkage);
   EXPECT_LT(table.at(0.3, 1.05).sinkage, table.at(0.3, 1.15).sinkage);
   EXPECT_NEAR(table.at(0.3, 2.5).sinkage, table.at(0.3, 1.9).sinkage, 1e-12);
 }
 
-// Property: a wheel that travels at an angle, at the table's nodes; the hold is a size, either way.
+// Property: at slip angles the nodes equal the forward model; the side force is a magnitude.
 TEST(SimulatedWheelTable, NodesMatchTheForwardModelAtSlipAngles) {
   const terramech::Rover rover = testRover();
   const SimulatedWheelTable table(testSand(), rover);
@@ -49,7 +49,7 @@ TEST(SimulatedWheelTable, NodesMatchTheForwardModelAtSlipAngles) {
     }
 }
 
-// Property: between its nodes the table is the forward model to a hundredth of the load, where slip is no jump.
+// Property: between nodes the table equals the forward model to 1 % of the load, away from slip 0.
 TEST(SimulatedWheelTable, InterpolationMatchesTheForwardModelWithinOnePercent) {
   const terramech::Rover rover = testRover();
   const SimulatedWheelTable table(testSand(), rover);
@@ -61,7 +61,7 @@ TEST(SimulatedWheelTable, InterpolationMatchesTheForwardModelWithinOnePercent) {
     }
 }
 
-// Closed form: the slip of rows and the load of layers are even, and slip beyond a locked wheel is that of one.
+// Closed form: rows are equidistant in slip and layers in load; slip beyond a locked wheel is clamped.
 TEST(SimulatedWheelTable, NodesAreEquidistantAndEndsClamped) {
   EXPECT_EQ(SimulatedWheelTable::slip(0), -1.0);
   EXPECT_EQ(SimulatedWheelTable::slip(SimulatedWheelTable::kRows - 1), 1.0);
@@ -71,7 +71,7 @@ TEST(SimulatedWheelTable, NodesAreEquidistantAndEndsClamped) {
   EXPECT_EQ(table.at(-3.0, 1.0).torque, table.row(0, 1.0).torque);
 }
 
-// A soil without strength or stiffness carries nothing: no pull, so that no slip helps.
+// A soil without strength or stiffness carries no load: no pull at any slip.
 TEST(SimulatedWheelTable, SoilWithoutBearingCapacityYieldsNoPull) {
   terramech::Soil mud = testSand();
   mud.cohesive_modulus = 0.0;

@@ -18,7 +18,7 @@ maps::Raster<std::uint8_t> oneClass() {
   return maps::Raster<std::uint8_t>({.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}}, 0);
 }
 
-// Sand, but for dust east of x = 30.
+// Sand, with dust east of x = 30.
 TrueWorld dustInTheEast() {
   return {
       {.classes = {testSand()}, .patches = {{{1030.0, 20.0}, 1000.0, testDust()}}}, testRover(), oneClass()};
@@ -36,7 +36,8 @@ TEST(TrueWorld, WheelPullBalancesTheSlope) {
       pull_N += wheel.forces.pull * wheel.load_N;
       load_N += wheel.load_N;
     }
-    EXPECT_NEAR(pull_N / load_N, gradient, 2e-3);  // Property: balance, to the table's interpolation
+    EXPECT_NEAR(pull_N / load_N, gradient,
+                2e-3);  // Property: equilibrium, to the table's interpolation error
   }
 }
 
@@ -68,7 +69,7 @@ TEST(TrueWorld, RoverAtThePatchEdgeCanReverseInItsRuts) {
       world.drive({.place = {29.8, 20.0}, .heading = {-1.0, 0.0}, .dug_m = 0.003, .ruts = &ruts});
   EXPECT_FALSE(back.stuck);
   for (const auto& wheel : back.wheels) EXPECT_GT(wheel.passes, 0);
-  // Property: holes cost slip.
+  // Property: digging increases the slip.
   EXPECT_GT(back.slip, world.drive({.place = {29.8, 20.0}, .heading = {-1.0, 0.0}, .ruts = &ruts}).slip);
 }
 
@@ -86,7 +87,7 @@ TEST(TrueWorld, SecondPassPullsMoreThanTheFirst) {
   EXPECT_GT(step.wheels[2].forces.pull, step.wheels[0].forces.pull);
 }
 
-// Independent: SlopeEquilibrium, with its own tables, solver and balance of yaw, on one soil.
+// Closed form: SlopeEquilibrium on one soil, with independent tables, solver and yaw balance.
 TEST(TrueWorld, CrossSlopeStateMatchesTheEquilibrium) {
   terramech::Rover crab = testRover();
   crab.steering = terramech::Steering::AllWheel;
@@ -119,7 +120,7 @@ TEST(TrueWorld, CrossSlopeStateIsMirrorSymmetric) {
         world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05, .across = across});
     const auto right =
         world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05, .across = -across});
-    EXPECT_LT(left.slip_angle_rad, 0.0);  // the wheels point uphill of the way made good
+    EXPECT_LT(left.slip_angle_rad, 0.0);  // the wheels point uphill of the direction of travel
     EXPECT_NEAR(left.slip_angle_rad, -right.slip_angle_rad, 1e-12);
     EXPECT_NEAR(left.energy_J_per_m, right.energy_J_per_m, 1e-9);
     EXPECT_NEAR(left.wheels[0].load_N, right.wheels[1].load_N, 1e-9);
@@ -136,7 +137,7 @@ TEST(TrueWorld, RoverSlidesIfNoEquilibriumExists) {
       world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = -0.1, .across = 0.6});
   EXPECT_TRUE(across.slides && across.stuck);
   const auto down = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = -1.2});
-  EXPECT_TRUE(down.slides && down.stuck);  // steeper than locked wheels brake
+  EXPECT_TRUE(down.slides && down.stuck);  // too steep for locked wheels
 }
 
 TEST(TrueWorld, SoilsAreListedOnceAndPatchesSelectTheirSoil) {

@@ -59,7 +59,7 @@ TEST(DrawWorld, SpreadEqualsTheStatedStd) {
   EXPECT_NEAR(std, 0.1, 0.007);
 }
 
-// Property: the same draw gives the same world, and declared patches and true classes are in every one.
+// Property: the same seed gives the same world; declared patches and true classes occur in every world.
 TEST(DrawWorld, WorldDependsOnTheSeedOnly) {
   const auto map = costmap::mapOf(plain());
   const auto& classes = map.model().parts().classes;
@@ -74,14 +74,15 @@ TEST(DrawWorld, WorldDependsOnTheSeedOnly) {
   EXPECT_EQ(one.classes[0].cohesion_Pa, same.classes[0].cohesion_Pa);
   EXPECT_NE(one.classes[0].cohesion_Pa, other.classes[0].cohesion_Pa);
   EXPECT_NEAR(one.classes[0].cohesion_Pa, testDust().cohesion_Pa,
-              0.6 * testDust().cohesion_Pa);  // six deviations
+              0.6 * testDust().cohesion_Pa);  // six standard deviations
   for (const WorldSoils* world : {&one, &other})
     EXPECT_TRUE(std::ranges::any_of(world->patches, [](const SoilPatch& p) {
       return p.centre == maps::Point{110.5, 205.5} && p.radius_m == 1.5;
     }));
 }
 
-// Property: a class and the random patches are drawn the same, whatever else is declared and in whatever order.
+// Property: the draw of a class and of the random patches does not depend on other declarations or their
+// order.
 TEST(DrawWorld, ClassDrawDependsOnItsNumberOnly) {
   const auto map = costmap::mapOf(plain());
   std::vector<costmap::GroundClass> classes = map.model().parts().classes;
