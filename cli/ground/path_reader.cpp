@@ -44,7 +44,8 @@ std::vector<Point> readCsv(const std::string& path) {
   return points;
 }
 
-// The map coordinates in the properties x_m, y_m of a route file; empty if there are none.
+// Returns the map coordinates in the properties x_m, y_m of a route file. Without these properties the list
+// is empty.
 std::vector<Point> ownMetres(const json& document) {
   std::vector<Point> points;
   if (document.value("type", "") != "FeatureCollection" || !document.contains("features")) return points;

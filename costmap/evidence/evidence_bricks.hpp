@@ -29,13 +29,13 @@ class EvidenceBricks {
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
   /// The same evidence for modification, created if absent; the block must lie inside the map.
   BlockEvidence& at(const BlockLevel& block);
-  /// Readings of a block, sorted by kind, value and drive; empty if there are none.
+  /// Returns the readings of a block, sorted by kind, value and drive; an unread block has an empty list.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
   /// Adds reading.count readings of one kind, value and drive to a block that at() created; the count saturates at
   /// 65535.
   void count(const BlockLevel& block, const ReadingCount& reading);
-  /// Removes reading.count readings from a block that at() created; no effect if there are none. A saturated count
-  /// (65535) stays.
+  /// Removes reading.count readings from a block that at() created. A block without readings is not changed.
+  /// A saturated count (65535) stays.
   void uncount(const BlockLevel& block, const ReadingCount& reading);
 
   using Visit = std::function<void(const BlockLevel&, const BlockEvidence&)>;

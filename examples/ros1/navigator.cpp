@@ -50,7 +50,7 @@ std::string inFolder(const Settings& s, const char* name) {
   return s.state_folder.empty() ? std::string() : (fs::path(s.state_folder) / name).string();
 }
 
-// Returns the heights stored in the state folder; all unobserved if there are none.
+// Returns the heights stored in the state folder. Without such a file every cell is unobserved.
 talus::costmap::MapLayers keptHeights(const Settings& s, std::string& restored) {
   const talus::maps::Grid grid = gridOf(s);
   talus::costmap::MapLayers layers;
