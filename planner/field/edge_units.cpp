@@ -124,8 +124,7 @@ __attribute__((target("avx2"))) void EdgeUnits::halvesByVector(const CellCode* c
                                                                Halves* out) const noexcept {
   const __m128i blocked = _mm_set1_epi32(-1);
   const __m128i headings_first = _mm_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
-  // Shuffles (ahead, back) of a node and the next node to (ahead, ahead, back, back), and repeats the weights
-  // of bin and row four times.
+  // Arranges (ahead, back) of two nodes as (ahead, ahead, back, back); repeats the weights four times.
   const __m256i by_direction = _mm256_broadcastsi128_si256(
                     _mm_setr_epi8(0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15)),
                 of_bin = _mm256_broadcastsi128_si256(
