@@ -137,7 +137,7 @@ terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::Trav
   for (const auto& row : telemetry.rejected)
     context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
   if (telemetry.repeated > 0)
-    context.warn(fmt::format("{}: {} rows are earlier ones again, in every field; they count once",
+    context.warn(fmt::format("{}: {} rows repeat earlier rows in every field and are ignored",
                              options.telemetry, telemetry.repeated));
   return telemetry;
 }
@@ -148,10 +148,11 @@ void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
                   const Context& context, costmap::DriveReport& report) {
   const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
   if (drive.repeated == telemetry.size())
-    context.warn(options.telemetry + ": the map holds this drive already; it counts once");
+    context.warn(options.telemetry + ": all rows of this drive are in the map already; no row is added");
   else if (drive.repeated > 0)
-    context.warn(fmt::format("{}: the map holds its first {} rows already; they count once",
-                             options.telemetry, drive.repeated));
+    context.warn(
+        fmt::format("{}: the first {} rows of this drive are in the map already; the later rows are added",
+                    options.telemetry, drive.repeated));
   else if (drive.used == 0 && drive.heard == 0)
     throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
                       "first reason: " + drive.first_reason});
@@ -203,7 +204,7 @@ void tell(const costmap::DriveReport& report, const Difference& difference, cons
                {"findings", report.findings}});
   else
     print(
-        fmt::format("rows        {} used, {} rejected; {} may raise the estimate\n"
+        fmt::format("rows        {} used, {} rejected; {} able to raise the estimate\n"
                     "cells       {} changed, {} with a new category\n{}",
                     report.used, report.rejected, report.raising, difference.cells, difference.categories,
                     learnedText(report)));

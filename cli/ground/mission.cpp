@@ -145,8 +145,8 @@ std::span<const FileKey> thresholdKeys() {
       {"allow_marginal", "default true"},
       {"allow_dangerous", "default false"},
       {"allow_unknown", "default false"},
-      {"time_weight_W", "joules that a second counts, default 1"},
-      {"risk_weight_J", "joules that the loss of the rover counts, default 1e8"},
+      {"time_weight_W", "cost of one second [J], default 1"},
+      {"risk_weight_J", "cost of losing the rover [J], default 1e8"},
   };
   return kKeys;
 }

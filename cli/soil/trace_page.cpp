@@ -171,10 +171,10 @@ void agreement(HtmlReport& page, const Trial& trial, const Eigen::MatrixXd& base
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
-  page.heading("What each candidate would gain over the base model");
+  page.heading("Gain of each candidate over the base model");
   page.paragraph(fmt::format(
-      "The strongest of {} candidates, each to first order: log-likelihood gained on held-out rows. p: how "
-      "often a table drawn from the base model's noise gives any candidate that gain.",
+      "The strongest of {} candidates, each to first order: log-likelihood gained on held-out rows. p: "
+      "probability that the largest gain in a table of the base model's noise is at least that large.",
       r.first_promises.size()));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < r.first_promises.size() && k < 15; ++k) {

@@ -355,11 +355,11 @@ std::string traceText(const TableTrace& trace) {
       fmt::format("{}: {} rows used, {} rejected\n", trace.source, trace.rowsUsed(), trace.rejected.size()) +
       searchedText(r);
   if (!trace.answer.unstated.empty())
-    out += fmt::format("no error declared (sensors: in the base file), the fitted one is used: {}\n",
+    out += fmt::format("no standard deviation declared under sensors: in the base file; fitted instead: {}\n",
                        fmt::join(trace.answer.unstated, ", "));
   for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
   for (const std::string& name : soilAtBounds(r.refined))
-    out += "warning: " + name + " of the soil is at the bound of its range\n";
+    out += "warning: " + name + " (soil) is at the bound of its range\n";
   const std::vector<EffectRole> roles = rolesOf(r);
   for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.trial, r.effects[k], roles[k]);
   for (const HeldOut& held : trace.held_out) {

@@ -73,7 +73,6 @@ class MeshSearch {
   void fromCorner(maps::Cell cell, std::size_t corner);
   void fromMiddle(maps::Cell cell);
   void changeAround(std::uint32_t node);
-  void changed(std::uint32_t slot);
 
   MeshCosts& prices_;
   Options options_;

@@ -48,9 +48,9 @@ struct Errand {
   std::string planner;
 };
 
-/// Number of start-goal pairs of a site. Each pair is the first of six draws for which the field planner
-/// finds a route, or else the last draw.
-inline constexpr std::size_t kPairs = 2;
+/// Number of start-goal pairs of a site. Each pair is the first of 16 draws for which the field planner finds
+/// a route, or else the last draw. More pairs share the cost of making the site.
+inline constexpr std::size_t kPairs = 4;
 
 /// Errand number k of a site: all planners for the first pair, then for the next pair.
 Errand errand(const ProvingGround& ground, std::uint64_t k);

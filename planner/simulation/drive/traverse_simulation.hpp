@@ -61,7 +61,6 @@ struct SimulationOptions {
   double step_m = 0.03;             ///< distance between two readings of the wheels, > 0
   double sensing_interval_m = 0.5;  ///< distance between two updates of the map from readings, > 0
   int max_replans = 60;             ///< more replans end the drive with GaveUp
-  std::uint64_t seed = 1;           ///< not used; SensorOptions::seed seeds the sensors
   std::function<void(const TraverseStep&)> on_step = {};  ///< called before every step driven forward
   bool record = false;                                    ///< keep the wheels' readings
   std::function<void(double time_s)> on_learned = {};     ///< called after the map changed

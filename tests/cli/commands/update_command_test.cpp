@@ -179,12 +179,14 @@ TEST(UpdateCommand, RowsOfAGrownOrRepeatedLogCountOnce) {
   EXPECT_EQ(further["rows_counted_before"], 40);
   EXPECT_EQ(further["rows_used"].get<int>() + further["rows_rejected"].get<int>() + 40,
             whole["rows_used"].get<int>() + whole["rows_rejected"].get<int>());
-  EXPECT_THAT(site.warnings,
-              testing::HasSubstr("all.csv: the map holds its first 40 rows already; they count once"));
+  EXPECT_THAT(
+      site.warnings,
+      testing::HasSubstr(
+          "all.csv: the first 40 rows of this drive are in the map already; the later rows are added"));
   const json doubled = site.run({"update", "map.ot", "twice.csv", "-o", "twice.ot", "--json"});
   EXPECT_EQ(doubled["rows_used"], whole["rows_used"]);
   EXPECT_EQ(doubled["rows_counted_before"], 80);
-  EXPECT_THAT(site.warnings, testing::HasSubstr("twice.csv: 80 rows are earlier ones again"));
+  EXPECT_THAT(site.warnings, testing::HasSubstr("twice.csv: 80 rows repeat earlier rows in every field"));
   EXPECT_EQ(fileContent(site.folder / "twice.ot"), fileContent(site.folder / "whole.ot"));
 }
 
