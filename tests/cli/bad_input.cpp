@@ -13,7 +13,7 @@ double hills(int column, int row) {
   return 0.3 * std::sin(column / 5.0) + 0.2 * std::cos(row / 6.0);
 }
 
-/// Flat, with a wall too steep for anything around the cells 30..33 of both axes.
+/// Flat terrain with a ring of walls, too steep for any rover, around the cells 30..33 of both axes.
 double fortress(int column, int row) {
   const int ring = std::max(std::abs(column - 31), std::abs(row - 31));
   return ring >= 4 && ring <= 6 ? 8.0 : 0.0;
@@ -23,7 +23,7 @@ double nothing(int, int) {
   return -9999.0;
 }
 
-/// Bytes that look like no format; the same every time.
+/// Reproducible pseudo-random bytes that match no file format.
 std::string garbage() {
   std::string bytes;
   unsigned state = 12345;

@@ -8,15 +8,16 @@
 
 namespace talus::cli {
 
-/// A call of the program that must end with one line on stderr.
+/// A program call that must fail with one line on stderr.
 struct BadCall {
   std::vector<std::string> words;
   int code;          ///< exit code
   std::string says;  ///< part of the line
 };
 
-/// Files that no command should stand: maps and tables that are empty, garbage, cut, without data, huge by
-/// their word.
+/// Files that every subcommand must refuse: maps and tables that are empty, random, truncated, without data,
+/// or
+/// whose header states a huge size.
 class BadFiles {
  public:
   BadFiles();
@@ -27,11 +28,11 @@ class BadFiles {
   Folder folder_;
 };
 
-/// Runs each call in the folder and expects its code, one line that says it, nothing on stdout and no file
-/// more or less.
+/// Runs each call in the folder; expects its exit code, one line on stderr that contains `says`, no output on
+/// stdout, and no file added or removed.
 void expectRefused(const BadFiles& files, const std::vector<BadCall>& calls);
 
-/// An ESRI ASCII grid of one metre cells with the lower left corner at 0,0.
+/// An ESRI ASCII grid of 1 m cells with the lower left corner at (0, 0).
 std::string asciiGrid(int columns, int rows, const std::function<double(int column, int row)>& height_m);
 
 }  // namespace talus::cli

@@ -1,4 +1,4 @@
-// Maps that cannot be used, told in one line by every command that reads one.
+// Unusable maps: every subcommand that reads a map reports the error in one line.
 #include <sys/stat.h>
 
 #include "bad_input.hpp"
@@ -44,7 +44,7 @@ TEST(BadInput, InvalidElevationMapsAreRejectedWithOneLine) {
       });
 }
 
-// Nobody writes into it: whoever opened it would wait.
+// A FIFO without a writer would block the process that opens the file.
 TEST(BadInput, FifosAndDevicesAreRejected) {
   const BadFiles files;
   ASSERT_EQ(::mkfifo((files.folder() / "pipe").c_str(), 0600), 0);

@@ -1,4 +1,4 @@
-// Calls of plan, bench and view that cannot be answered.
+// Invalid calls of plan, bench and view.
 #include "bad_input.hpp"
 
 namespace talus::cli {
@@ -6,7 +6,7 @@ namespace bad_route_test {
 
 using Words = std::vector<std::string>;
 
-/// A plan over a map of the folder.
+/// A call of `talus plan` on a map of the folder.
 Words plan(const std::string& map, const Words& more) {
   Words words{"plan", map, "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};
   words.insert(words.end(), more.begin(), more.end());

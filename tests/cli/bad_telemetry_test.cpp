@@ -1,5 +1,5 @@
-// Tables of measurements, models and maps of beliefs that cannot be used, told in one line by every command
-// that reads them.
+// Unusable telemetry tables, models and traversability maps: every subcommand that reads such a file reports
+// the error in one line.
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ TEST(BadInput, InvalidTelemetryIsRejectedWithOneLine) {
   expectRefused(BadFiles(), calls);
 }
 
-// Property: every table of wheels is read in the units of its columns, and says so; nothing is written of one that cannot be.
+// Property: a unit conversion of a column is reported. A column in an unknown unit is refused without output.
 TEST(BadInput, KnownColumnInAnotherUnitIsRejectedByEveryCommand) {
   const Folder folder;
   folder.write("t.csv",

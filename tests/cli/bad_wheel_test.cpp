@@ -1,4 +1,4 @@
-// Calls of wheel that cannot be answered.
+// Invalid calls of wheel.
 #include "bad_input.hpp"
 
 namespace talus::cli {

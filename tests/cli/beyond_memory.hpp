@@ -2,7 +2,8 @@
 
 namespace talus::cli {
 
-/// What is told of a plugin that takes too much memory. A sanitizer's allocator ends the process instead.
+/// Message about a plugin that exceeds the memory limit. The allocator of a sanitizer ends the process
+/// instead.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr const char* kBeyondMemory = "ended its process";
 #else

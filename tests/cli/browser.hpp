@@ -6,19 +6,19 @@
 
 namespace talus::cli {
 
-/// What Chromium makes of a page: its DOM after the scripts ran, and what it wrote on its console.
+/// A page loaded in Chromium: its DOM (document tree) after the scripts ran, and the console output.
 struct Shown {
   std::string dom;
   std::string console;
 };
 
-/// Opens a page without a window, with these switches for its graphics.
+/// Opens a page in headless Chromium; `graphics` are the command line switches for rendering.
 Shown show(const std::string& html, const std::string& graphics = "--disable-gpu");
 
-/// Whether the page's scripts ended well.
+/// Returns true if the scripts of the page completed.
 bool ready(const Shown& shown);
 
-/// The page with a script behind it that plays the user.
+/// Returns the page with an appended script that simulates user input.
 std::string played(std::string html, const std::string& script);
 std::string played(const Scene& scene, const std::string& script);
 

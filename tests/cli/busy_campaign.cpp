@@ -20,7 +20,7 @@ struct Process {
   double cpu_s = 0.0;
 };
 
-// All processes, as proc(5) describes /proc/PID/stat: the name in brackets, the parent, times used at 14 and 15.
+// Running processes. Fields of /proc/PID/stat by proc(5): 2 name in brackets, 4 parent, 14 and 15 CPU ticks.
 std::map<int, Process> processes() {
   std::map<int, Process> all;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -28,7 +28,7 @@ std::map<int, Process> processes() {
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     std::ifstream file(entry.path() / "stat");
     std::string line;
-    if (!std::getline(file, line)) continue;  // it has ended
+    if (!std::getline(file, line)) continue;  // the process has ended
     const std::size_t open = line.find('('), close = line.rfind(')');
     if (open == std::string::npos || close == std::string::npos) continue;
     std::istringstream rest(line.substr(close + 1));

@@ -4,11 +4,12 @@
 
 namespace talus::cli {
 
-/// Runs a line of shell, which ends in the program or in mpirun, and interrupts that (SIGINT) as soon as so many of the campaign's runs,
-/// processes of their own, are at work that takes long: each has used half a second of processor time. The exit code.
+/// Runs a shell line that executes talus or mpirun and sends SIGINT once `runs` runs of the campaign
+/// (processes)
+/// have used 0.5 s of CPU time each. Returns the exit code.
 int interruptedWhenBusy(const std::string& line, int runs);
 
-/// The same, interrupted as soon as the file is there.
+/// Runs a shell line and sends SIGINT as soon as the file exists. Returns the exit code.
 int interruptedWhenWritten(const std::string& line, const std::string& file);
 
 }  // namespace talus::cli

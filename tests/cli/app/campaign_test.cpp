@@ -13,8 +13,8 @@ TEST(Campaign, WithoutMpiThereIsOneLeadingRank) {
   EXPECT_TRUE(campaign.leads());
 }
 
-// Property: outcomes are in the order of their jobs for any number of workers, a job that throws stops none,
-// and progress ends whole.
+// Property: outcomes are in job order for any number of workers, a job that throws does not stop the other
+// jobs, and progress never decreases.
 TEST(Campaign, OutcomesAreInJobOrderIncludingFailures) {
   const Campaign campaign;
   for (const std::size_t workers : {1U, 2U, 5U}) {
@@ -46,8 +46,8 @@ TEST(Campaign, OutcomesAreInJobOrderIncludingFailures) {
   }
 }
 
-// Property: what is done when the stop comes stays; a job that answers with nothing was stopped, and so is all
-// behind it.
+// Property: jobs completed before a stop keep their results; a job that returns an empty text after a stop,
+// and all later jobs, are marked as stopped.
 TEST(Campaign, StopKeepsCompletedJobs) {
   const Campaign campaign;
   std::stop_source source;

@@ -33,7 +33,7 @@ struct Program {
   }
 };
 
-// Closed form: the exit code is what run() answered for the options of the line: 10 and the count.
+// Closed form: run() returns 10 + count, which becomes the exit code of the program.
 TEST(Command, ParsedOptionsAreUsedAndTheExitCodeKept) {
   Program program;
   program.app.parse("greet --name x --count 5");

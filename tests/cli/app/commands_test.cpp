@@ -6,7 +6,7 @@
 namespace talus::cli {
 namespace commands_test {
 
-// Property: every subcommand has a name of its own, a group that --help knows, and parses its own --help.
+// Property: every subcommand has a unique name, a group known to --help, and parses its own --help.
 TEST(Commands, EachCommandHasANameGroupAndExamples) {
   CLI::App app("talus");
   Context context;
@@ -18,7 +18,7 @@ TEST(Commands, EachCommandHasANameGroupAndExamples) {
     EXPECT_TRUE(groups.contains(command->get_group())) << command->get_name();
     EXPECT_THAT(command->get_footer(), testing::HasSubstr("talus " + command->get_name()));
   }
-  // The calls that the interface promises.
+  // Subcommands of the stable interface.
   for (const char* promised : {"info", "wheel", "estimate", "assess", "trace", "predict", "costmap", "update",
                                "plan", "score", "explain", "drive", "bench", "view", "plugins"})
     EXPECT_TRUE(names.contains(promised)) << promised;

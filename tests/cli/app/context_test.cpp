@@ -12,7 +12,7 @@ TEST(Context, OneLineRemovesControlCharacters) {
   EXPECT_EQ(oneLine("first\nsecond"), "first; second");
   EXPECT_EQ(oneLine("tab\there\x1b[31m"), "tab here [31m");
   EXPECT_EQ(oneLine("trailing \r\n\n"), "trailing");
-  EXPECT_EQ(oneLine("\xc3\xa9t\xc3\xa9"), "\xc3\xa9t\xc3\xa9");  // letters beyond ASCII stay
+  EXPECT_EQ(oneLine("\xc3\xa9t\xc3\xa9"), "\xc3\xa9t\xc3\xa9");  // valid UTF-8 is unchanged
   EXPECT_EQ(oneLine(""), "");
 }
 
@@ -27,8 +27,7 @@ TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// Property: what is printed parses again; what JSON has no number for is null, bytes that are no text are
-// replaced.
+// Property: printed JSON parses again; NaN and infinity become null, and invalid UTF-8 bytes are replaced.
 TEST(Context, PrintedJsonIsValid) {
   testing::internal::CaptureStdout();
   printJson({{"cost", NAN}, {"bound", INFINITY}, {"name", "a\xff"}, {"length_m", 0.1}});
@@ -39,7 +38,7 @@ TEST(Context, PrintedJsonIsValid) {
   EXPECT_EQ(printed.back(), '\n');
 }
 
-// Closed form: the byte that begins no letter becomes U+FFFD, in routes and pages as on stdout.
+// Closed form: a byte that begins no UTF-8 character becomes U+FFFD.
 TEST(Context, JsonTextIsValidUtf8) {
   EXPECT_EQ(jsonText({{"file", "d\xff.tif"}}), "{\"file\":\"d\xEF\xBF\xBD.tif\"}");
   EXPECT_EQ(jsonText({{"file", "\xc3\xa9"}}, 1), "{\n \"file\": \"\xc3\xa9\"\n}");
@@ -59,7 +58,7 @@ TEST(Context, WorkerCountIsTheRequestedOneAndAtLeastOne) {
   EXPECT_EQ(context.workers(), 3);
 }
 
-// Property: work is stopped by Ctrl-C, and in a pipe no bar is drawn.
+// Property: the monitor reports a requested stop, and has no progress bar in quiet mode.
 TEST(Context, MonitorForwardsTheStopRequest) {
   std::stop_source source;
   Context context;

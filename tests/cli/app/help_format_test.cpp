@@ -9,7 +9,7 @@ namespace help_format_test {
 
 using testing::HasSubstr;
 
-// Property: the words stay, in order, on lines of no more than the width, and no two lines would fit on one.
+// Property: word order is kept, no line exceeds the width unless a single word does, and each line is full.
 TEST(HelpFormat, TextIsWrappedAtSpaces) {
   const std::string text =
       "a rover drives over  soft ground\nand an-overlong-word-stays-whole on its own line";

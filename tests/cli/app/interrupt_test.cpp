@@ -17,7 +17,7 @@ void waitFor(const Interrupt& interrupt) {
   while (!interrupt.requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-// Runs in a process of its own: first `signal` is a request, which the work sees through its token.
+// Runs in its own process: the first `signal` becomes a stop request, visible through the token.
 [[noreturn]] void interruptedOnce(int signal) {
   const Interrupt interrupt;
   if (interrupt.token().stop_requested()) std::exit(1);
@@ -44,7 +44,7 @@ TEST(InterruptDeathTest, SecondSignalEndsTheProcessWithTheDocumentedCode) {
   EXPECT_EXIT(interruptedTwice(), testing::ExitedWithCode(Exit::kCancelled), "");
 }
 
-// Work that does not look at its token is ended, after CPU time of its own and no wall-clock time.
+// Work that never reads its stop token; terminated by the limit of CPU time, not of wall time.
 [[noreturn]] void deaf(int signal) {
   const Interrupt interrupt;
   kill(getpid(), signal);
@@ -57,7 +57,7 @@ TEST(InterruptDeathTest, UnresponsiveWorkIsEnded) {
   EXPECT_EXIT(deaf(SIGTERM), testing::ExitedWithCode(143), "cancelled");
 }
 
-// What waits for another process, as for the writer of a FIFO, takes no CPU time: it is ended before it would wake.
+// Work blocked on another process, such as the writer of a FIFO, uses no CPU time and is terminated early.
 TEST(InterruptDeathTest, BlockedWorkIsEnded) {
   EXPECT_EXIT(
       {
@@ -70,7 +70,7 @@ TEST(InterruptDeathTest, BlockedWorkIsEnded) {
       testing::ExitedWithCode(130), "cancelled");
 }
 
-// Who says that it answers may take its time: here twice the CPU time after which others are ended.
+// Work that sets answered() is not terminated, here within twice the limit of CPU time.
 TEST(InterruptDeathTest, ResponsiveWorkIsNotEnded) {
   EXPECT_EXIT(
       {
@@ -85,7 +85,7 @@ TEST(InterruptDeathTest, ResponsiveWorkIsNotEnded) {
       testing::ExitedWithCode(7), "");
 }
 
-// Property: its destructor wakes the listener by a signal that is not taken for the user's.
+// Property: the signal by which the destructor wakes the listener is not treated as an interrupt by the user.
 TEST(InterruptDeathTest, DestructionIsNotTreatedAsAnInterrupt) {
   EXPECT_EXIT(
       {

@@ -14,7 +14,7 @@ namespace mpi_launch_test {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A plan over pairs of places with words before the call, its table and what it said.
+/// Result of `talus plan --pairs`: exit status, result table, and text on stderr.
 struct Campaigned {
   int status = 0;
   std::string table;
@@ -35,8 +35,8 @@ Campaigned planned(const std::string& before) {
   return campaigned;
 }
 
-// Property: four processes that do not know of each other would write one file; whatever the program was
-// built with, the ranks that these variables speak of are not there to be joined.
+// Property: four processes that cannot communicate would write the same file. The variables of a launcher
+// without a running MPI are refused in builds with and without MPI.
 TEST(MpiLaunch, RanksWithoutMpiSupportAreRejected) {
   for (const std::string variable : {"OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const Campaigned refused = planned("OMPI_ALLOW_RUN_AS_ROOT=1 " + variable + "=4 ");

@@ -16,7 +16,7 @@ TEST(NumberCheck, NanInfinityAndOutOfRangeAreRejected) {
   EXPECT_EQ(within(1e-12, 1.0 - 1e-12)(one), "1, must be 1e-12 to 0.999999999999");
 }
 
-// Whatever the option, and also where a test of its range lets NaN pass.
+// Implausible numbers are refused for every option, because range tests accept NaN.
 TEST(NumberCheck, ImpossibleNumbersAreRejectedForAnyOption) {
   const auto said = [](const std::string& word) -> std::string {
     CLI::App app;
@@ -40,7 +40,8 @@ TEST(NumberCheck, ImpossibleNumbersAreRejectedForAnyOption) {
     EXPECT_EQ(said(good), "") << good;
 }
 
-// A number where a number is wanted is no file's name.
+// A file may be named like a number, so the remedy for a path option names the file; other options need a
+// number.
 TEST(NumberCheck, RemedyDependsOnTheOptionType) {
   const auto said = [](const std::string& option) -> std::string {
     CLI::App app;
@@ -60,7 +61,7 @@ TEST(NumberCheck, RemedyDependsOnTheOptionType) {
   EXPECT_THAT(said("--map 1e300"), testing::EndsWith("a file of that name is ./1e300"));
 }
 
-// Property: `--risk-weight ""` was 0 to the parser, and `--map ""` as if no map had been named.
+// Property: without this check the parser reads `--risk-weight ""` as 0 and `--map ""` as no map.
 TEST(NumberCheck, EmptyValuesAreRejectedForEveryOption) {
   using Words = std::vector<std::string>;
   Context context;

@@ -46,7 +46,7 @@ TEST(CheckOutput, InputsJournalsDevicesAndForeignLinksAreProtected) {
   EXPECT_EQ(refusal(folder / "in.csv", {folder / "e.db"}), "");
 }
 
-// `update -o e.db-wal --journal e.db` ended by 0, and SQLite had overwritten its output.
+// Regression: `update -o e.db-wal --journal e.db` returned 0, but SQLite had overwritten the output file.
 TEST(CheckOutput, SqliteFilesOfAJournalAreProtected) {
   const Folder folder;
   folder.write("e.db", "SQLite format 3 and more");
@@ -59,7 +59,7 @@ TEST(CheckOutput, SqliteFilesOfAJournalAreProtected) {
     EXPECT_EQ(refusal(folder / name), "") << name;
 }
 
-// Of a journal that does not exist yet, too; whatever way either is spelled.
+// The check also covers a journal that does not exist yet, in any spelling of both paths.
 TEST(CheckOutput, OutputMustNotBePartOfTheJournal) {
   const Folder folder;
   fs::create_directory(folder / "f");
@@ -109,7 +109,7 @@ TEST(CheckOutput, EveryCommandProtectsItsInputs) {
        {{"plan", "mission.yaml"}, 2, "is no route"}});
 }
 
-// `generate -o site.asc` wrote a GeoTIFF of that name.
+// Regression: `generate -o site.asc` wrote a GeoTIFF under that name.
 TEST(CheckOutput, ExtensionOfAnotherFormatIsRejected) {
   const BadFiles files;
   expectRefused(
@@ -145,7 +145,7 @@ TEST(CheckOutput, ExtensionOfAnotherFormatIsRejected) {
       0);
 }
 
-// A mission names its output in a file that may come from anywhere.
+// The output path of a mission file may come from an untrusted source.
 TEST(CheckOutput, MissionOutputIsProtected) {
   const BadFiles files;
   const Folder other;
@@ -175,7 +175,7 @@ TEST(CheckOutput, MissionOutputIsProtected) {
   expectRefused(files, calls);
 }
 
-// Files beyond the limit fail as on a full disk.
+// Limits the file size of this process: a write beyond the limit fails as on a full disk.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) {

@@ -12,7 +12,7 @@ namespace sha256_test {
 
 TEST(Sha256, DigestsMatchKnownMessages) {
   const Folder folder;
-  // Printed in: FIPS 180-4's examples (NIST, SHA256.pdf), one block, two blocks, and a million letters.
+  // Printed in: examples of FIPS 180-4 (NIST, SHA256.pdf): one block, two blocks, one million letters.
   EXPECT_EQ(sha256OfFile(folder.write("abc", "abc")),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256OfFile(folder.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
@@ -22,7 +22,7 @@ TEST(Sha256, DigestsMatchKnownMessages) {
   EXPECT_EQ(sha256OfFile(folder / "none"), "");
 }
 
-// A file with a checksum beside it is the file that was summed, whichever option names it, and in a mission.
+// The checksum file is compared for every option and for files of a mission.
 TEST(Sha256, FileThatDiffersFromItsChecksumIsRejected) {
   const Folder folder;
   const std::string dem = folder.write(

@@ -41,7 +41,7 @@ TEST(AssessCommand, JsonHasTheDocumentedFields) {
   EXPECT_EQ(rows[2]["category"], "safe");
 }
 
-// Property: the page of a long table counts all of its rows and is small; a list of 24 665 rows made 11.5 MB of it.
+// Property: the page of a long table states the count of all rows but lists only 500 rows, to limit its size.
 TEST(AssessCommand, ThePageOfALongTableIsSmall) {
   const Folder folder;
   std::string drive = std::string(kDrive).substr(0, std::string(kDrive).find('\n') + 1);
@@ -60,8 +60,8 @@ TEST(AssessCommand, ThePageOfALongTableIsSmall) {
 }
 
 TEST(AssessCommand, PlaneFormulaIsEquation321AndBothPrintedPairsAreDangerous) {
-  // Printed in: thesis 3.5, pairs (0.1, 0.2) and (0.3, 0.4) at 10 deg; it calls the second safe, which
-  // Eq. 3.21 does not give: -0.2 for both.
+  // Printed in: thesis 3.5, pairs (0.1, 0.2) and (0.3, 0.4) at 10 deg. The thesis calls the second pair safe,
+  // but Eq. 3.21 gives -0.2 for both pairs.
   const json rows = assessed({"--formula", "plane"});
   for (int k : {0, 1}) {
     EXPECT_NEAR(rows[static_cast<std::size_t>(k)]["drawbar_pull_over_load"].get<double>(), -0.2, 1e-12);
@@ -78,7 +78,8 @@ constexpr const char* kSoil =
     "frictional_modulus: 1.7e6, shear_modulus_m: 0.015}\nmodel: wong-reece\n";
 
 TEST(AssessCommand, ModelDeterminesPullAndReadingsDetermineSinkage) {
-  // Property: the same soil in `talus wheel` gives the same pull, whatever torque was read.
+  // Property: `talus wheel` with the same soil gives the same drawbar pull, independent of the measured
+  // torque.
   const Folder folder;
   const std::string model = folder.write("model.yaml", kSoil);
   const json rows = assessed({"--model", model});
@@ -128,8 +129,8 @@ TEST(AssessCommand, ModelAssessmentNeedsNeitherTorqueNorSinkage) {
 }
 
 TEST(AssessCommand, ExtrapolationUsesTheFittedSoilOrTheModel) {
-  // Property: the greatest pull is not below that at the reference slip; rows of the same load foretell the
-  // same; a model without doubt has none.
+  // Property: the greatest pull is not below the pull at the reference slip; rows of equal load have equal
+  // predictions; a model without parameter uncertainty has a standard deviation of 0.
   const Folder folder;
   const json own = assessed({"--extrapolate"});
   const json model =
@@ -145,7 +146,7 @@ TEST(AssessCommand, ExtrapolationUsesTheFittedSoilOrTheModel) {
   }
   EXPECT_DOUBLE_EQ(model[0]["at_reference_slip"]["slip"], 0.3);
   EXPECT_LT(model[0]["at_reference_slip"]["drawbar_pull_over_load"].get<double>(),
-            model[0]["drawbar_pull_over_load"].get<double>());  // driven at 0.5
+            model[0]["drawbar_pull_over_load"].get<double>());  // measured at slip 0.5
   EXPECT_DOUBLE_EQ(model[0]["greatest"]["std"], 0.0);
   EXPECT_FALSE(assessed({})[0].contains("greatest"));
 }

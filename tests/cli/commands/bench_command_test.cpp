@@ -12,7 +12,7 @@ namespace bench_command_test {
 
 using testing::HasSubstr;
 
-// A room with a block in it, as MovingAI draws one.
+// A room with an obstacle, in the MovingAI map format.
 std::string room(const Folder& folder) {
   folder.write(
       "room.map",
@@ -22,7 +22,7 @@ std::string room(const Folder& folder) {
                       "0\troom.map\t8\t6\t0\t0\t7\t5\t10\n");
 }
 
-// What must not depend on the clock or on how many processes there were.
+// Results that must not depend on the clock or on the number of processes.
 nlohmann::json lasting(const std::string& text) {
   auto lines = nlohmann::json::parse(text);
   for (auto& line : lines) {
@@ -67,7 +67,7 @@ TEST(BenchCommand, SeveralSuitesAreRunAndDrivenOverTrueSlip) {
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto line = nlohmann::json::parse(ran.out)[0];
   EXPECT_EQ(line["runs"],
-            2 * 2 + 2 * 2 + 2);  // two worlds under two beliefs, two pairs of blocks and rooms, two
+            2 * 2 + 2 * 2 + 2);  // slip worlds x beliefs + two pairs each of blocks and rooms + room.scen
   EXPECT_EQ(line["breached"], 0);
   ASSERT_EQ(line["drives"].size(), 2u);
   EXPECT_EQ(line["drives"][0]["belief"], "slip mean");
@@ -77,7 +77,7 @@ TEST(BenchCommand, SeveralSuitesAreRunAndDrivenOverTrueSlip) {
   EXPECT_THAT(fileContent(folder / "out/index.html"), HasSubstr("Simulated drives over the true slip"));
 }
 
-// Measured by others: OMPL's own reader, from Debian's ompl-demos, makes its database of the logs.
+// Measured by others: the reader of OMPL (package ompl-demos of Debian) builds its database from the logs.
 TEST(BenchCommand, OmplReadsTheLogs) {
   if (std::system("command -v ompl_benchmark_statistics > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "ompl_benchmark_statistics (package ompl-demos) is not installed";
@@ -107,7 +107,7 @@ TEST(BenchCommand, MpiRanksReproduceTheSingleProcessResult) {
   expectRanksAgree(answer, one);
 }
 
-// The runs of a fast planner, then six that would take minutes, cut short once they are at work.
+// A campaign of six short runs and six runs of up to 600 s, which is interrupted during the long runs.
 std::string longCampaign(const Folder& folder) {
   return std::string(TALUS_PROGRAM) + " bench " + room(folder) +
          " --planners 'field,BIT*' --runs 2 --time 600 --json -o " + folder / "out" + " > " +
@@ -126,7 +126,7 @@ void expectTheFastRunsKept(const Folder& folder) {
 TEST(BenchCommand, CancelledCampaignKeepsCompletedRuns) {
   const Folder folder;
   EXPECT_EQ(interruptedWhenBusy("exec " + longCampaign(folder), 1), 130);
-  EXPECT_EQ(fileContent(folder / "out.txt"), "");  // a reader of stdout gets the whole or nothing
+  EXPECT_EQ(fileContent(folder / "out.txt"), "");  // stdout contains a complete table or nothing
   EXPECT_THAT(fileContent(folder / "err.txt"), HasSubstr("cancelled after 6 of 12 runs"));
   expectTheFastRunsKept(folder);
 }
@@ -149,7 +149,7 @@ TEST(BenchCommand, ErrorsAreOneLineWithCodeTwo) {
     const Ran ran = runTalus(words, folder.path());
     EXPECT_EQ(ran.code, 2) << ran.err;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-    EXPECT_TRUE(folder.names().empty());  // no folder for results that never come
+    EXPECT_TRUE(folder.names().empty());  // no folder is created for an invalid call
   }
 }
 

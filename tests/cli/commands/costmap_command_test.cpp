@@ -7,7 +7,7 @@ namespace costmap_command_test {
 
 using nlohmann::json;
 
-// Level, with a block of two metres that no rover climbs.
+// Level terrain with a block of 2 m height, which no rover can climb.
 double block(int column, int row) {
   return column >= 20 && column < 24 && row >= 10 && row < 14 ? 2.0 : 0.0;
 }
@@ -19,8 +19,8 @@ json run(const Folder& folder, std::vector<std::string> words) {
   return json::parse(ran.out, nullptr, false);
 }
 
-// Property: categories count every cell, a map that is read back counts the same, and stricter thresholds never
-// make more ground safe.
+// Property: the categories sum to the number of cells, a map read from its file has the same counts, and
+// stricter thresholds do not increase the safe area.
 TEST(CostmapCommand, CategoriesCountEveryCellAndRoundTrip) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(50, 40, block));
@@ -40,12 +40,12 @@ TEST(CostmapCommand, CategoriesCountEveryCellAndRoundTrip) {
       count(built, "safe") + count(built, "marginal") + count(built, "dangerous") + count(built, "unknown"),
       2000);
   EXPECT_GT(count(built, "safe"), 1500);
-  EXPECT_GT(count(built, "dangerous"), 16);  // the block and what the footprint touches
+  EXPECT_GT(count(built, "dangerous"), 16);  // the block and the cells whose footprint touches it
   EXPECT_EQ(built["rover"], "mer");
   EXPECT_EQ(run(folder, {"map.ot"})["categories"], built["categories"]);
   const json strict = run(folder, with({"--slope-uncertainty-deg", "20"}));
   EXPECT_LE(count(strict, "safe"), count(built, "safe"));
-  // Printed in: the OctoMap file format and TIFF 6.0, their first bytes.
+  // Printed in: specifications of OctoMap files and TIFF 6.0, first bytes of a file.
   EXPECT_THAT(fileContent(folder / "colour.ot"), testing::HasSubstr("id ColorOcTree"));
   EXPECT_THAT(fileContent(folder / "map.ot"), testing::HasSubstr("id TraversabilityTree"));
   EXPECT_THAT(fileContent(folder / "layers.tif"), testing::StartsWith("II"));

@@ -10,7 +10,7 @@ namespace drive_command_test {
 
 using nlohmann::json;
 
-// A flat site of 40 m by 30 m, taken for sandy loam.
+// A drive on a flat site of 40 m x 30 m whose map states sandy loam.
 std::vector<std::string> drive(const Folder& folder, const std::string& truth,
                                const std::vector<std::string>& more = {}) {
   folder.write("flat.asc", asciiGrid(40, 30, [](int, int) { return 0.0; }));
@@ -22,7 +22,7 @@ std::vector<std::string> drive(const Folder& folder, const std::string& truth,
   return words;
 }
 
-// Dust across the direct way, which no class raster shows.
+// A patch of weak soil on the direct path; the map has no class raster.
 const char* const kTrap = R"(soils:
   - {name: trap, cohesion_kPa: 0, friction_angle_deg: 22, sinkage_exponent: 1, cohesive_modulus: 0,
      frictional_modulus: 300000, shear_modulus_mm: 20}
@@ -43,7 +43,7 @@ TEST(DriveCommand, CorrectlyMappedGroundIsTraversedUnderEveryBelief) {
     ASSERT_EQ(ran.code, 0) << ran.err;
     const json out = json::parse(ran.out);
     EXPECT_EQ(out["outcome"], "reached") << belief;
-    // Closed form: straight to a metre from the goal, where the believed pose is off by at most 1 % of the way.
+    // Closed form: straight line up to 1 m before the goal; the pose error is at most 1 % of the distance.
     EXPECT_NEAR(out["length_m"].get<double>(), 29.0, 0.3) << belief;
     EXPECT_GT(out["energy_J"].get<double>(), 0.0);
     EXPECT_EQ(out["replans"], 0);
@@ -52,8 +52,8 @@ TEST(DriveCommand, CorrectlyMappedGroundIsTraversedUnderEveryBelief) {
   }
 }
 
-// What bottomless traps refuse may leave the rover on ground that nothing but its own track leads away from: it goes
-// back along that. Perfect knowledge finds a way in both worlds.
+// Detected soft patches may enclose the rover; the rover then returns along its own track. A route exists in
+// both worlds.
 TEST(DriveCommand, RoverEnclosedByItsFindingsReachesTheGoal) {
   const Folder folder;
   folder.write("truth.yaml", R"(random: {spread: 0.1, patches: 10, patch_radius_m: 3, patch_soil: trap}
@@ -132,7 +132,7 @@ TEST(DriveCommand, PageShowsTheDrive) {
 }
 
 TEST(DriveCommand, TruthFileAcceptsAllPartsTogether) {
-  // Property: a class whose true soil is the one believed changes nothing.
+  // Property: declaring the true soil of a class equal to the mapped soil does not change the result.
   const Folder folder;
   const std::string others =
       "patches:\n  - {x_m: 10, y_m: 10, radius_m: 1, soil: dry_sand}\nrandom: {spread: 0.1}\n"

@@ -13,13 +13,13 @@ namespace estimate_command_test {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Ten readings on loam (c 2436 Pa, phi 24.9 deg, K 20.3 mm), by an independent Wong-Reece implementation,
-// rounded.
+// Ten readings on loam (cohesion c = 2436 Pa, friction angle phi = 24.9 deg, shear modulus K = 20.3 mm) of an
+// independent Wong-Reece implementation, rounded.
 constexpr const char* kHeader = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n";
 
 std::string drive() {
   std::string text = kHeader;
-  // Printed by talus wheel on the library's loam; exact digits do not matter here.
+  // Values of talus wheel for the library's loam; the last digits do not affect the test.
   const double rows[][4] = {{80.95, 2.40, 0.0159, 0.2}, {66.59, 2.35, 0.0150, 0.3},
                             {82.55, 3.15, 0.0178, 0.4}, {71.49, 3.05, 0.0171, 0.5},
                             {63.35, 2.93, 0.0166, 0.6}, {93.83, 4.15, 0.0210, 0.7},
@@ -82,8 +82,9 @@ TEST(EstimateCommand, PriorNarrowsWongReece) {
 }
 
 TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
-  // Property: a prior without width is the answer; one of great width changes nothing. Its K is taken where
-  // none is stated.
+  // Property: a prior of zero variance determines the result; a very wide prior has no effect. The shear
+  // modulus
+  // K of the prior is used if the call states none.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   const auto prior = [&](const char* name, const char* cohesion, const char* friction) {
@@ -106,8 +107,9 @@ TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
 }
 
 TEST(EstimateCommand, RecursiveEstimateEqualsBatchEstimate) {
-  // Property: with K stated the recursion is the same least squares; wong-reece keeps the ten rows in its
-  // window.
+  // Property: with K given, recursive and batch least squares are equal; the window of wong-reece contains
+  // all ten
+  // rows.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   for (const char* method : {"iagnemma", "linear-offset", "wong-reece"}) {
@@ -133,7 +135,7 @@ TEST(EstimateCommand, RecursiveEstimateSupportsEveryModulusCriterion) {
   for (const char* how : {"error-minimisation", "effective-torque", "effective-torque-printed", "joint"}) {
     const json result =
         estimated({"--method", "linear-offset", "--shear-modulus", how, "--recursive"}, table);
-    EXPECT_TRUE(result["running"][0]["cohesion_Pa"].is_null()) << how;  // one row tells nothing yet
+    EXPECT_TRUE(result["running"][0]["cohesion_Pa"].is_null()) << how;  // one row does not determine the soil
     EXPECT_TRUE(result["running"][9]["cohesion_Pa"].is_number()) << how;
     const double k = result["shear_modulus_m"];
     EXPECT_GE(k, 0.002) << how;
@@ -163,7 +165,7 @@ TEST(EstimateCommand, IllConditionedDataIsReported) {
 }
 
 TEST(EstimateCommand, SinglePlateYieldsOnlyItsModulus) {
-  // Closed form: p = 2e6 z^0.8 under one plate: k is seen, k_c and k_phi are not.
+  // Closed form: p = 2e6 z^0.8 of one plate determines the modulus k = 2e6, but not k_c and k_phi separately.
   const Folder folder;
   std::string text = "plate_width_m,pressure_Pa,sinkage_m\n";
   for (int k = 1; k <= 6; ++k)
@@ -180,7 +182,7 @@ TEST(EstimateCommand, SinglePlateYieldsOnlyItsModulus) {
 }
 
 TEST(EstimateCommand, M1IsKeptOnRequest) {
-  // Property: M1 makes a difference of some per cent on cohesive soil, alike in the recursion.
+  // Property: the term M1 changes the cohesion by less than 500 Pa; recursive and batch results are equal.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   const std::vector<std::string> plain{"--method", "linear-offset", "--shear-modulus", "0.015"};
@@ -195,7 +197,7 @@ TEST(EstimateCommand, M1IsKeptOnRequest) {
 }
 
 TEST(EstimateCommand, ImplausibleSoilIsReported) {
-  // Property: sinkage that grows threefold with slip at one load is no Wong-Reece wheel.
+  // Property: the Wong-Reece model does not describe a sinkage that triples with slip at constant load.
   const Folder folder;
   const std::string table = folder.write("sinking.csv", std::string(kHeader) +
                                                             "80,3.0,0.0055,0.1,0.157,0.165\n"
@@ -296,7 +298,7 @@ TEST(EstimateCommand, ModelEffectsAreAppliedAndListed) {
   EXPECT_FALSE(plain.contains("effects"));
   EXPECT_EQ(dug.at("effects"), json({"slip_sinkage_ding", "torque_offset"}));
   EXPECT_EQ(dug.at("rows_used"), 10);
-  // Property: torque that the sensor adds is not laid to the soil's strength.
+  // Property: a torque offset of the sensor is not attributed to the soil strength.
   const auto strength = [](const json& e) {
     return e.at("cohesion_Pa").get<double>() + 10e3 * e.at("tan_friction").get<double>();
   };

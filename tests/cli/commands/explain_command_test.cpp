@@ -21,8 +21,8 @@ std::vector<std::string> explain(const std::vector<std::string>& more) {
   return words;
 }
 
-// Closed form: a plane that rises by 0.1 eastwards: slope atan 0.1 along east, the same downwards along west, and
-// none along north.
+// Closed form: a plane rising eastwards by 0.1: slope atan 0.1 uphill to the east, the same downhill to the
+// west, 0 to the north.
 TEST(ExplainCommand, CellAndSlopeAlongTheHeadingMatchTheMap) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, ramp));
@@ -43,7 +43,7 @@ TEST(ExplainCommand, CellAndSlopeAlongTheHeadingMatchTheMap) {
   EXPECT_NEAR(slopes("1.57079633"), 0.0, 1e-3);
 }
 
-// Property: text and JSON list the same causes.
+// Property: text and JSON output list the same causes.
 TEST(ExplainCommand, TextListsTheCausesOfTheJson) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, ramp));

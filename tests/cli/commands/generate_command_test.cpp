@@ -30,8 +30,7 @@ TEST(GenerateCommand, GeneratedSiteIsReadByOtherCommands) {
   EXPECT_EQ(fileContent(folder / "site.tif"), first) << "same seed, same bytes";
 }
 
-// Property: of a site's own layer of rocks nothing counts as lost but single cells without rocks among many, and those around them:
-// one in a thousand at most.
+// Property: at most one cell in a thousand of a generated rock layer is treated as lost data.
 TEST(GenerateCommand, GeneratedRocksAreNotTreatedAsLostData) {
   const Folder folder;
   for (const std::string kind : {"craters", "dunes", "rocks"}) {

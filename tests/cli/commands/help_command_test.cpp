@@ -34,7 +34,7 @@ TEST(HelpCommand, SoilsAndRoversListTheLibrary) {
     EXPECT_THAT(rovers, HasSubstr("\n" + name + " ")) << name;
 }
 
-// Property: what the option tree has is in both, and bash takes the script.
+// Property: manual and completion script contain every subcommand and option; bash accepts the script.
 TEST(HelpCommand, ManualAndCompletionCoverEveryCommand) {
   const Folder folder;
   const std::string manual = runTalus({"help", "man"}).out,
@@ -43,7 +43,7 @@ TEST(HelpCommand, ManualAndCompletionCoverEveryCommand) {
     EXPECT_THAT(manual, HasSubstr(std::string("\n.SS talus ") + call + "\n")) << call;
     EXPECT_THAT(script, HasSubstr(std::string("\n    ") + call + ") options='--")) << call;
   }
-  // What mandoc -Tlint objects to: no date, and lines longer than 80 bytes.
+  // Requirements of mandoc -Tlint: a date, and no line longer than 80 bytes.
   EXPECT_TRUE(std::regex_search(manual, std::regex("^\\.TH TALUS 1 [0-9]{4}-[0-9]{2}-[0-9]{2} ")));
   std::istringstream lines(manual);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;

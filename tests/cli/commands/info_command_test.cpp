@@ -10,7 +10,7 @@ namespace info_command_test {
 
 using testing::HasSubstr;
 
-// A plane that rises 1 m in 4 to the north-east corner of a map without a CRS: GDAL's ASCII grid.
+// A plane that rises by 1 m in 4 m to the north-east, as an ASCII grid without a coordinate reference system.
 std::string plane(const Folder& folder) {
   std::string text = "ncols 6\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 2\nnodata_value -9999\n";
   for (int row = 4; row >= 0; --row) {
@@ -31,14 +31,14 @@ TEST(InfoCommand, JsonHasTheDocumentedFields) {
   EXPECT_EQ(json["crs"], "local");
   EXPECT_TRUE(json["body"].is_null());
   EXPECT_EQ(json["valid_fraction"], 1.0);
-  // Closed form: atan(1 / 4).
+  // Closed form: slope atan(1 / 4).
   for (const char* quantile : {"p50", "p90", "p99"})
     EXPECT_NEAR(json["slope_deg"][quantile].get<double>(), 14.0362, 1e-3);
   EXPECT_THAT(ran.err, HasSubstr("warning"));
   EXPECT_EQ(runTalus({"--json", "--quiet", "info", folder / "plane.asc", "--resolution", "2"}).err, "");
 }
 
-// Property: a point cloud stands wherever a DEM does.
+// Property: every DEM argument also accepts a point cloud.
 TEST(InfoCommand, PointCloudIsAcceptedAsAMap) {
   const Folder folder;
   octomap::OcTree tree(0.5);

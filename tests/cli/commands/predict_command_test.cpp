@@ -22,7 +22,8 @@ double value(const std::string& table, const std::string& column) {
   return 0.0;
 }
 
-// Property: a model that is a soil alone predicts what `talus wheel` computes, and never reads the answer.
+// Property: a model that consists of a soil predicts the results of `talus wheel` and ignores measured
+// values.
 TEST(PredictCommand, PlainSoilPredictsTheWheelEquilibrium) {
   const Folder folder;
   const json wheel = json::parse(runTalus({"--json", "--quiet", "wheel", "--soil", "sandy_loam", "--rover",

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// A wrong call: its words, and what its one line must say.
+/// An invalid call: its arguments, and a part of the error line.
 struct WrongCall {
   std::vector<std::string> words;
   std::string says;
@@ -56,7 +56,7 @@ TEST(Program, HelpAndVersionGoToStandardOutput) {
   EXPECT_THAT(help.err, IsEmpty());
 }
 
-// The reader has gone before the first word is written, as behind `head`, and it is no full disk.
+// If stdout is a closed pipe, as behind `head`, the program ends silently; a full device is an error.
 TEST(Program, ClosedPipeIsNoErrorAndFullDeviceIs) {
   const Folder folder;
   const std::string call = "cd '" + folder.path().string() + "' && { sleep 0.3; '" + TALUS_PROGRAM +

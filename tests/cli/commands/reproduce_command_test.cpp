@@ -11,7 +11,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 TEST(ReproduceCommand, GoalsAreReproducibleForTheSameSeed) {
-  // Property: all but the lines of time.
+  // Property: all lines but those of processor time are reproducible.
   const auto measured = [] {
     const Ran ran = runTalus({"--json", "--seed", "5", "reproduce", "--goals", "--soils", "8"});
     EXPECT_EQ(ran.code, 0) << ran.err;
@@ -51,7 +51,7 @@ TEST(ReproduceCommand, MissingValidationProgramIsReportedWithARemedy) {
   const Folder folder;
   std::filesystem::copy_file(TALUS_PROGRAM, folder / "talus");
   const std::string line = "cd '" + folder.path().string() + "' && ./talus reproduce --goals >out 2>err";
-  const int status = std::system(line.c_str());  // NOLINT(cert-env33-c): a shell gives redirection for free
+  const int status = std::system(line.c_str());  // NOLINT(cert-env33-c): the shell redirects the output
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_EQ(fileContent(folder / "out"), "");
   EXPECT_EQ(fileContent(folder / "err"),

@@ -12,8 +12,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Swells as long as two wheelbases, level over the footprint that the map's slopes are taken over: score
-// refuses under --chassis what it takes without, and takes what plan --chassis drives.
+// Undulations with a wavelength of two wheelbases, whose mean slope over the footprint is zero: score refuses
+// the path only with --chassis, and accepts the route of plan --chassis.
 TEST(ScoreCommand, ChassisCheckIsAppliedOnRequest) {
   const Folder folder;
   std::string text = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 0.2\nNODATA_value -9999\n";
@@ -49,7 +49,7 @@ TEST(ScoreCommand, ChassisCheckIsAppliedOnRequest) {
   ASSERT_EQ(around.code, 0) << around.err;
   EXPECT_GT(json::parse(around.out)["length_m"], 10.0);
   EXPECT_EQ(run("score", {"--path", "r.geojson", "--chassis", "rigid"}).code, 0);
-  // Property: those of the Pareto set drive around, too; the straight one takes 8 m of level ground.
+  // Property: routes of the Pareto set also avoid the undulations, unlike the straight path of 8 m.
   const Ran straight = run("plan", {"--start", "2,2", "--goal", "10,2"});
   run("plan", {"--start", "2,2", "--goal", "10,2", "--chassis", "rigid", "--pareto", "p.html"});
   const std::string page = fileContent(folder / "p.html");
