@@ -16,8 +16,7 @@ struct BadCall {
 };
 
 /// Files that every subcommand must refuse: maps and tables that are empty, random, truncated, without data,
-/// or
-/// whose header states a huge size.
+/// or whose header states a huge size.
 class BadFiles {
  public:
   BadFiles();

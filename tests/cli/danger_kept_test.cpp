@@ -1,5 +1,5 @@
-// Telemetry that could make ground look safe, through the program as a user runs it: each case keeps danger where it
-// was, and takes danger from the file where the file shows it. Several rovers, soils, orders and missing columns.
+// Ground with measured danger must not become safe by telemetry, tested through the program for several
+// rovers, soils, row orders and missing columns.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,7 @@ using nlohmann::json;
 const double kSilent = std::nan("");
 constexpr int kWidth = 60, kHeight = 40;
 
-// A rover and the soil that its map knows.
+// A rover, and the soil stated in its map.
 struct Given {
   const char* rover;
   const char* soil;
@@ -51,7 +51,7 @@ class Ground {
     EXPECT_EQ(ran.code, 0) << ran.err;
   }
 
-  // Without a route, or with a violation, the program ends with 1.
+  // A violation found by `talus score` gives exit code 1.
   json run(const std::vector<std::string>& words) const {
     const Ran ran = runTalus(words, folder.path());
     EXPECT_TRUE(ran.code == 0 || (ran.code == 1 && words[0] == "score")) << ran.err;
@@ -64,7 +64,7 @@ class Ground {
     return run({"update", from, "t.csv", "-o", to, "--json"});
   }
 
-  // What is said of a place: its category, drawbar pull over load, sinkage over radius.
+  // Estimate of a place: category, drawbar pull over load, sinkage over radius.
   struct Said {
     std::string category;
     double pull = std::nan(""), sinkage = std::nan("");
@@ -79,7 +79,7 @@ class Ground {
     return out;
   }
 
-  // Whether a place is said to be no better than before: neither its category nor its pull.
+  // Succeeds if neither the category nor the drawbar pull of a place has improved after the update.
   ::testing::AssertionResult noBetter(const std::string& place) const {
     static const std::vector<std::string> order{"safe", "marginal", "dangerous"};
     const auto rank = [&](const Said& s) {
@@ -91,7 +91,7 @@ class Ground {
                                          << after.category << ' ' << after.pull;
   }
 
-  // Whether a line is refused by `score`, with a violation and exit code 1 or 0.
+  // Returns true if `talus score` reports a violation of the path.
   bool refused(const std::string& map, const std::string& csv) const {
     folder.write("path.csv", csv);
     const json out = run({"score", "site.asc", "--ignore-crs", "--resolution", "1", "--map", map, "--path",
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Of, DangerKept,
                          ::testing::Values(Given{"sojourner", "sandy_loam"}, Given{"fido", "mars_crusty"}),
                          [](const auto& one) { return std::string(one.param.rover); });
 
-// Rows of a test stand: DP/W at slip 0.5, on the level.
+// Rows of drawbar pull over load (DP/W) at slip 0.5 on level ground.
 std::string pulls(const Ground& ground, double x_m, double y_m, double pull, int times, int& time_s) {
   std::string text;
   for (int i = 0; i < times; ++i, ++time_s)
@@ -147,8 +147,8 @@ TEST_P(DangerKept, ClassesInOneBlockHaveSeparateReadings) {
   }
 }
 
-// Of a map file (docs/map_file.md): blocks of 20 bytes, the last four their number of counts, then counts of 6, the last two their
-// drive.
+// Sets the drive number of all counts to 0. Map file format (docs/map_file.md): a block has 20 bytes, the
+// last four being its number of counts; a count has 6 bytes, the last two being its drive.
 void clearDrives(std::string& map) {
   const auto number = [&](std::size_t at, auto zero) {
     std::memcpy(&zero, map.data() + at, sizeof zero);
@@ -176,7 +176,7 @@ TEST_P(DangerKept, FewWeakReadingsOutweighManyStrongOnesInEitherOrder) {
     ground.update(text);
     EXPECT_EQ(ground.said("new.ot", "20.5,20.5").category, "dangerous") << first;
     files[first] = fileContent(ground.folder / "new.ot");
-    // What names the file that was read: the drive of each count; its id (tag, size, 16 digits and a line end); the checksum.
+    // Removes data that identify the input file: drive numbers, the drive's id and the checksum.
     clearDrives(files[first]);
     files[first].erase(files[first].rfind("DRIV"), 4 + 8 + 17);
     files[first].resize(files[first].size() - 8);
@@ -186,7 +186,7 @@ TEST_P(DangerKept, FewWeakReadingsOutweighManyStrongOnesInEitherOrder) {
 
 const std::string kDrive = "wheel,time_s,x_m,y_m,heading_rad,slope_rad,load_N,slip,torque_Nm,sinkage_m\n";
 
-// A row of one wheel; what is NaN is left empty.
+// A row of one wheel; NaN is written as an empty field.
 struct Reading {
   double x_m, y_m, slope_rad, slip, torque = std::nan(""), sinkage = std::nan("");  // T/(rW), z/r
 };
@@ -197,7 +197,7 @@ std::string rowOf(const Ground& ground, const Reading& r, double time_s, double 
                      cell(r.sinkage * ground.radius_m()));
 }
 
-// Up or down a slope of 14 degrees: no ground of the map becomes better by slip that hardly changes.
+// On a 14 deg slope, a nearly constant slip signal (stuck sensor) must not improve any cell.
 TEST_P(DangerKept, StuckSlipSensorOnAClimbRaisesNothing) {
   const double gradient = std::tan(14.0 * std::numbers::pi / 180.0);
   const Ground ground(GetParam(), gradient);
@@ -214,7 +214,7 @@ TEST_P(DangerKept, StuckSlipSensorOnAClimbRaisesNothing) {
     }
 }
 
-// Two rows in a trap within a quiet drive: no spike, for whichever of the columns are there.
+// Two rows of high slip within a steady drive lower the estimate, with or without torque and sinkage.
 TEST_P(DangerKept, TrapOfTwoRowsLowersTheEstimate) {
   const Ground ground(GetParam(), 0.0);
   for (const bool with_torque : {true, false})
@@ -238,7 +238,7 @@ TEST_P(DangerKept, TrapOfTwoRowsLowersTheEstimate) {
     }
 }
 
-// Wheels sunk nearly to the axle at little slip, everywhere: a datum that is off, or drift.
+// Sinkage of 0.85 r at low slip on the whole drive, as by a sinkage offset or sensor drift.
 TEST_P(DangerKept, DeepSinkageAtLowSlipIsNotSafe) {
   const Ground ground(GetParam(), 0.0);
   for (const double heading : {0.0, std::numbers::pi})
@@ -269,7 +269,7 @@ TEST_P(DangerKept, SingleDeepSinkageReadingIsNotSafe) {
   }
 }
 
-// Five rows at one place, weak or strong: what they change lies within two correlation lengths.
+// Five rows at one place change only cells within two correlation lengths.
 TEST_P(DangerKept, ReadingsOfOneBlockAffectOnlyItsSurroundings) {
   const Ground ground(GetParam(), 0.1);
   for (const double pull : {-0.3, 0.0, 0.6}) {
@@ -280,7 +280,7 @@ TEST_P(DangerKept, ReadingsOfOneBlockAffectOnlyItsSurroundings) {
   }
 }
 
-// A jump of the pose onto weaker ground: sand, on which nobody drove.
+// A pose jump places rows on weaker ground (soil mars_drift) that the rover never reached.
 TEST_P(DangerKept, PoseJumpOntoWeakGroundRaisesNothing) {
   const Ground ground(GetParam(), 0.22, "mars_drift");
   for (const double jump_m : {20.0, 12.0})
@@ -298,7 +298,7 @@ TEST_P(DangerKept, PoseJumpOntoWeakGroundRaisesNothing) {
     }
 }
 
-// A rover that stood: slip 0.98 on a slope that the soil does not hold, no column slope_rad.
+// A rover without progress: slip 0.98 on a slope, table without the column slope_rad.
 TEST_P(DangerKept, StationaryRoverRaisesNothing) {
   for (const double gradient : {0.15, 0.3, 0.45}) {
     const Ground ground(GetParam(), gradient);

@@ -1,4 +1,4 @@
-// Tables that are not one wheel on one soil, or not quite as documented.
+// Tables with several wheels or soils, or with columns that differ from the documentation.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ Soil soilOf(double cohesion_Pa, double friction_rad, double modulus) {
           .shear_modulus_m = 0.015};
 }
 
-// Exact rows of a wheel on a soil, at loads about one that suits its size.
+// Exact rows of a wheel on a soil; the loads are proportional to radius times width of the wheel.
 std::string rowsOf(const std::string& name, const Soil& soil, const Wheel& wheel) {
   std::string text;
   for (int k = 0; k < 9; ++k) {
@@ -42,8 +42,8 @@ std::string rowsOf(const std::string& name, const Soil& soil, const Wheel& wheel
 }
 
 TEST(EstimateTables, RowsOfTwoWheelSizesUseTheirOwnSize) {
-  // Property: exact rows of a small and a large wheel give the soil; each read with the other's size would
-  // not.
+  // Property: exact rows of a small and a large wheel yield the soil, because each row uses its own wheel
+  // size.
   const Folder folder;
   const Soil soil = soilOf(1500.0, 0.45, 8e5);
   const std::string both = kHeader + rowsOf("a", soil, {.radius_m = 0.1, .width_m = 0.1}) +
@@ -75,8 +75,8 @@ TEST(EstimateTables, RowsOfTwoWheelSizesUseTheirOwnSize) {
 }
 
 TEST(EstimateTables, RowsOfSeveralSoilsNameTheSeparatingColumn) {
-  // Property: two soils of unlike stiffness and strength are told apart by the column of words that divides
-  // them; one soil under two names is not.
+  // Property: for rows of two soils, the column of text that separates the soils is reported; for one soil
+  // under two names no column is reported.
   const Folder folder;
   const Wheel wheel{.radius_m = 0.15, .width_m = 0.12};
   const Soil firm = soilOf(500.0, 0.6, 3e6), soft = soilOf(3000.0, 0.4, 3e5);
@@ -92,8 +92,8 @@ TEST(EstimateTables, RowsOfSeveralSoilsNameTheSeparatingColumn) {
 }
 
 TEST(EstimateTables, PlatesWithoutWidthAreRoundWithAreaFromForce) {
-  // Closed form: F = p pi d^2/4 of plates of 60 and 100 mm on k_c = 5e3, k_phi = 1e6, n = 1.1; a wheel
-  // pressed in has no such area.
+  // Closed form: F = p pi d^2/4 for round plates of diameter d = 60 and 100 mm with k_c = 5e3, k_phi = 1e6, n
+  // = 1.1; rows of a wheel are refused.
   const Folder folder;
   std::string text = "plate,z_m,F_N,p_Pa\n";
   for (int k = 1; k <= 8; ++k) {

@@ -12,10 +12,11 @@ maps::ElevationMap exampleMap();
 /// A route of 61 vertices across the hills.
 planner::Route exampleRoute();
 
-/// Both together, with categories.
+/// The map and the route, with categories.
 Scene exampleScene();
 
-/// Keeps what a test drew where the environment variable TALUS_TEST_PICTURES names a folder, to be looked at.
+/// Writes the picture to the folder named by the environment variable TALUS_TEST_PICTURES, if set, for
+/// inspection.
 void keep(const std::string& name, const std::string& bytes);
 
 }  // namespace talus::cli

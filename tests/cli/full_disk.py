@@ -20,7 +20,7 @@ CASES = ("cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_
          "500,0.6,1,820000,0.02,0.3,0,0.15,0.15,50,0.3\n")
 GROUND = ["dem.asc", "--rover", "sojourner", "--soil", "sandy_loam"]
 PLAN = ["plan", *GROUND, "--start", "500005,4000005", "--goal", "500025,4000025", "--no-proof"]
-# The call without its output, and the files that it writes.
+# The arguments of the call without its output, and the files that the call writes.
 CALLS = [
     (["generate", "craters", "--size", "20", "-o"], ["s.tif", "s_classes.tif", "s_rocks.tif", "s_soils.yaml"]),
     (["costmap", *GROUND, "-o"], ["m.ot"]),
@@ -54,7 +54,7 @@ def mount(pages):
 
 
 def limit(pages):
-    # Beside the pages a byte, so that no file ends where a page does.
+    # One byte more than whole memory pages, so that no file ends at the limit.
     resource.setrlimit(resource.RLIMIT_FSIZE, (pages * PAGE + 1, resource.RLIM_INFINITY))
 
 

@@ -1,4 +1,4 @@
-// What other programs rely on: every subcommand's fields, by name and kind, and the columns of its tables.
+// Stable interface for other programs: JSON fields of every subcommand by name and type, and table columns.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ namespace interface_test {
 
 using nlohmann::json;
 
-// A gentle slope with a bump, 40 x 30 cells of a metre.
+// A gentle slope with a bump, 40 x 30 cells of 1 m.
 std::string dem() {
   std::string text = "ncols 40\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   for (int row = 0; row < 30; ++row) {
@@ -29,7 +29,7 @@ std::string dem() {
   return text;
 }
 
-// A drive along y = 15 in six runs of six levels of slip, by the forward model, two percent off.
+// A drive along y = 15 at six levels of slip, six rows each, by the forward model with 2 % noise.
 std::string telemetry() {
   std::string text =
       "run,wheel,time_s,x_m,y_m,heading_rad,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,"
@@ -54,7 +54,7 @@ constexpr const char* kCases =
     "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"
     "wheel_width_m,load_N,slip\n1000,0.5,1,500000,0.01,0.4,0.1,0.1,0.1,80,0.3\n";
 
-// The files that the calls below need, made once.
+// Input files of the calls below, written once.
 const Folder& site() {
   static const Folder* const folder = [] {
     auto* made = new Folder;
@@ -88,7 +88,7 @@ const std::vector<std::string> kRouteFields{
     "number /length_m", "number /max_slip", "number /max_slope_rad", "number /lower_bound",
     "number /gap",      "string /planner",  "number /seconds/load",  "number /seconds/costmap"};
 
-// In an order in which each finds what those before it wrote.
+// Ordered so that each call finds the output files of the calls before.
 std::vector<Call> calls() {
   const std::vector<std::string> route = words(kGround, kEnds);
   return {
@@ -178,7 +178,7 @@ TEST(Interface, TablesKeepTheirColumnsAndGetTheDocumentedOnes) {
     EXPECT_THAT(header, testing::HasSubstr(column));
 }
 
-// Property: whoever presses Ctrl-C gets 130 and no half file, whatever was going on.
+// Property: after SIGINT every subcommand ends with exit code 130 and leaves no partial file.
 TEST(Interface, InterruptEndsWithCode130AndWritesNoFile) {
   std::string drive = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n";
   for (int k = 0; k < 60000; ++k)

@@ -52,4 +52,4 @@ application.initQgis()
 for site in SITES:
     look(sys.argv[1], *site)
 sys.stdout.flush()
-os._exit(0)  # QGIS frees its layers after itself
+os._exit(0)  # skips QGIS' clean-up, which would free the layers a second time

@@ -1,4 +1,4 @@
-// From residual to route: a model refined by `talus trace` and taken by the commands that plan.
+// From residual to route: `talus trace` refines a model, and planning subcommands use the refined model.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ constexpr const char* kSoil =
     "cohesive_modulus: 0, "
     "frictional_modulus: 1.0e6, shear_modulus_m: 0.015, c1: 0.43, c2: 0.32, density_kg_m3: 1600}\n";
 
-/// Gentle hills, 60 x 60 m, as an ESRI grid.
+/// Gentle hills of 60 m x 60 m as an ESRI ASCII grid.
 std::string hills() {
   std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   for (int row = 0; row < 60; ++row) {
@@ -52,7 +52,7 @@ TEST_F(RefinedModelCommands, PlanAndCostmapApplyAndStoreAModel) {
   };
   const double plain = energy({"--rover", "fido", "--soil", "soil.yaml"});
   const double refined = energy({"--rover", "fido", "--model", "model.yaml"});
-  EXPECT_GT(refined, 1.02 * plain);  // Property: pushing soil costs energy.
+  EXPECT_GT(refined, 1.02 * plain);  // Property: pushing soil costs energy
   ASSERT_EQ(talus({"costmap", "dem.asc", "--resolution", "1", "--rover", "fido", "--model", "model.yaml",
                    "-o", "map.ot"})
                 .code,
@@ -63,7 +63,7 @@ TEST_F(RefinedModelCommands, PlanAndCostmapApplyAndStoreAModel) {
   EXPECT_NE(why.out.find("bulldozing"), std::string::npos);
 }
 
-// a simulated drive over the hills, blind to what acts on the ground; `ground`: what the rover believes.
+// A simulated drive over the hills with effects unknown to the rover; `ground` are the options of its soil.
 std::vector<std::string> simulatedTraverse(const std::vector<std::string>& ground) {
   std::vector<std::string> words{"drive",  "dem.asc", "--resolution", "1",       "--rover",
                                  "fido",   "--truth", "truth.yaml",   "--start", "5,5",
@@ -75,7 +75,7 @@ std::vector<std::string> simulatedTraverse(const std::vector<std::string>& groun
 TEST_F(RefinedModelCommands, TracedEffectImprovesPredictionOfTheNextTraverse) {
   folder_.write("base.yaml", std::string(kSoil) + "model: wong-reece\nsensors: {slip: 0.02}\n");
   folder_.write("truth.yaml", "effects: [{name: slip_sinkage_ding, parameters: [0.3]}]\n");
-  // Who does not know the effect may be held on the way (exit 1); its rows show it all the same.
+  // Without the effect in its model the rover may fail (exit code 1), but telemetry up to there is written.
   const auto errors = [&](const std::vector<std::string>& ground) {
     const Ran ran = talus(simulatedTraverse(ground));
     EXPECT_LE(ran.code, ground.front() == "--model" ? 0 : 1) << ran.err;
@@ -89,10 +89,10 @@ TEST_F(RefinedModelCommands, TracedEffectImprovesPredictionOfTheNextTraverse) {
   ASSERT_EQ(effects.size(), 1u) << traced.out;
   EXPECT_EQ(effects[0]["family"], "slip_sinkage");
   const auto after = errors({"--model", "m.yaml"});
-  // Property: what was learned on one traverse foretells the next one better: half the error at least.
+  // Property: the model traced on one traverse at least halves the prediction errors of the next traverse.
   EXPECT_LT(after["slip_rmse"].get<double>(), 0.5 * before["slip_rmse"].get<double>());
   EXPECT_LT(after["energy_rmse"].get<double>(), 0.5 * before["energy_rmse"].get<double>());
-  // An effect that the base states stays, whatever is found beside it.
+  // An effect stated in the base model is kept, whichever effects are found.
   folder_.write("stated.yaml", std::string(kSoil) +
                                    "model: wong-reece\nsensors: {slip: 0.02}\n"
                                    "effects: [{name: bulldozing, parameters: [0.05]}]\n");

@@ -6,19 +6,19 @@
 
 namespace talus::cli {
 
-/// What a run of the program left behind.
+/// Exit code, standard output and standard error of a run of the program.
 struct Ran {
   int code = -1;  ///< exit code; 128 + signal where a signal ended it
   std::string out;
   std::string err;
 };
 
-/// Runs the built program with the words as its arguments, in a folder of the caller's; with an interrupt
-/// (SIGINT) after so many seconds, 0 for none.
+/// Runs the built program with the arguments in `words` in the given folder. Sends SIGINT after the given
+/// time [s]; 0 means no signal.
 Ran runTalus(const std::vector<std::string>& words, const std::filesystem::path& folder = ".",
              double interrupt_s = 0.0);
 
-/// A fresh folder, gone with the object.
+/// A new temporary folder, removed by the destructor.
 class Folder {
  public:
   Folder();
@@ -32,14 +32,14 @@ class Folder {
   /// Writes a file into the folder and returns its path.
   std::string write(const std::string& name, const std::string& content) const;
 
-  /// Names of what lies in the folder, sorted.
+  /// Sorted names of the files in the folder.
   std::vector<std::string> names() const;
 
  private:
   std::filesystem::path path_;
 };
 
-/// Content of a file; empty where it does not exist.
+/// Content of a file; empty if the file does not exist.
 std::string fileContent(const std::filesystem::path& path);
 
 }  // namespace talus::cli

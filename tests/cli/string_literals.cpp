@@ -5,11 +5,11 @@
 namespace talus::cli {
 
 std::vector<std::string> stringLiterals(const std::string& source) {
-  // What is skipped comes first, so that a quote within it opens nothing.
+  // Alternatives that are skipped come first, so that a quote within them does not begin a literal.
   static const std::regex piece(R"re(//[^\n]*|/\*[^]*?\*/|#include[^\n]*|'(?:\\.|[^'\\])'|\d'(?=\d))re"
                                 R"re(|R"\(([^]*?)\)"|"((?:\\.|[^"\\])*)"|[^\s"'/]+|/)re");
   std::vector<std::string> literals;
-  bool joined = false;  // whether a literal directly before goes on in the next
+  bool joined = false;  // whether a directly following literal continues the last one
   for (auto at = source.cbegin(); at != source.cend();) {
     std::smatch found;
     if (!std::regex_search(at, source.cend(), found, piece)) break;

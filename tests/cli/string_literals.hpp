@@ -5,8 +5,8 @@
 
 namespace talus::cli {
 
-/// The string literals of a C++ source as the compiler joins them, in order; those of comments and of include
-/// lines are left out. An escaped quote stays escaped.
+/// String literals of a C++ source in order, adjacent literals joined; literals in comments and include lines
+/// are omitted. Escape sequences are kept as written.
 std::vector<std::string> stringLiterals(const std::string& source);
 
 }  // namespace talus::cli

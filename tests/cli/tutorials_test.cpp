@@ -1,5 +1,5 @@
-// The pages of docs/tutorials, run as a reader would: a block "LANGUAGE NAME" is a file, a block "console" commands behind "$ "
-// with lines that their output must have, in that order; "exit N" where a command fails.
+// Runs the pages of docs/tutorials: a block "LANGUAGE NAME" is a file; a block "console" lists commands after
+// "$ ", lines expected in their output in that order, and "exit N" for a command that fails.
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -19,7 +19,7 @@ struct Command {
   std::vector<std::string> says;
 };
 
-/// Writes the files of a page and gives its commands.
+/// Writes the files of a page and returns its commands.
 std::vector<Command> commandsOf(const fs::path& page, const Folder& folder) {
   std::vector<Command> commands;
   std::istringstream text(fileContent(page.string()));
@@ -43,7 +43,7 @@ std::vector<Command> commandsOf(const fs::path& page, const Folder& folder) {
   return commands;
 }
 
-/// What a command writes, and "exit N" where it fails.
+/// Output of a command, followed by "exit N" if the command fails.
 std::string outputOf(const Command& command, const Folder& folder) {
   folder.write("command.sh", "cd '" + folder.path().string() + "'\nexport PATH='" + folder.path().string() +
                                  "/bin':$PATH PKG_CONFIG_PATH='" + folder.path().string() + "/bin'\n" +
@@ -83,7 +83,8 @@ INSTANTIATE_TEST_SUITE_P(Docs, Tutorial,
                                          "own_layer", "teaching"),
                          [](const auto& one) { return one.param; });
 
-// Property: each option that a page of the repository gives a call of the program is one that the call's --help has.
+// Property: --help of a subcommand lists every option with which a page of the repository uses the
+// subcommand.
 TEST(Documents, DocumentedOptionsExist) {
   const std::regex call("talus ([a-z]+)( [^`\n]*)?"), option("--[a-z][a-z-]*");
   std::map<std::string, std::string> helps;
@@ -96,7 +97,7 @@ TEST(Documents, DocumentedOptionsExist) {
       const std::string name = (*found)[1], words = (*found)[2];
       if (!helps.contains(name)) helps[name] = runTalus({name, "--help"}).out + runTalus({"--help"}).out;
       if (helps[name].find("talus " + name) == std::string::npos)
-        continue;  // no call: "talus is", "talus program"
+        continue;  // not a subcommand: "talus is", "talus program"
       for (std::sregex_iterator one(words.begin(), words.end(), option); one != end; ++one, ++options)
         EXPECT_NE(helps[name].find(one->str()), std::string::npos) << entry.path() << ": " << found->str();
     }
@@ -104,7 +105,7 @@ TEST(Documents, DocumentedOptionsExist) {
   EXPECT_GT(options, 100);
 }
 
-// Property: no page of docs/tutorials is left out.
+// Property: every page of docs/tutorials is tested.
 TEST(Tutorials, EveryTutorialIsTested) {
   EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / "docs/tutorials"), {}), 6);
 }

@@ -1,4 +1,4 @@
-// `talus update` killed at any moment, and two of them at once.
+// `talus update` killed at random times, and concurrent updates.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -19,7 +19,7 @@
 namespace talus::cli {
 namespace update_kill_test {
 
-// A site in its own folder, its map, and a drive of sixty rows.
+// A site in its own folder with its map and a drive of 60 rows.
 class Site {
  public:
   Site() {
@@ -60,8 +60,8 @@ class Site {
   Folder folder;
 };
 
-// Killed at any moment and called again: the drive counts once, in the map and in the journal. The number of kills is
-// TALUS_KILLS, 40 if not set.
+// A drive is counted once in map and journal if an update is killed at a random time and repeated. The
+// environment variable TALUS_KILLS sets the number of kills (default 40).
 TEST(UpdateCommand, DriveIsCountedOnceAfterRetryWhenKilledAtAnyMoment) {
   const Site site;
   ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "whole.ot"}, site.folder.path()).code, 0);
@@ -113,7 +113,7 @@ TEST(UpdateCommand, FailedUpdateLeavesTheJournalUnchanged) {
   EXPECT_EQ(site.content("again.ot"), site.content("out.ot"));
 }
 
-// A drive is known by what it holds, not by the name of its file.
+// A drive is identified by its content, not by its file name.
 TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
   const Site site;
   site.folder.write("copy.csv", site.content("t.csv"));
@@ -127,12 +127,12 @@ TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
   EXPECT_EQ(site.replay("e.db", "c.ot")["rows_used"], 60);
 }
 
-// What a killed update left beside its map goes with the next; that of a process that still runs stays.
+// An update removes temporary files of a killed update, but not those of a running process.
 TEST(UpdateCommand, TemporaryFilesOfAKilledUpdateAreRemoved) {
   const Site site;
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
-  ::waitpid(child, nullptr, 0);  // so that its number is no process's
+  ::waitpid(child, nullptr, 0);  // the process has ended, so its id is not in use
   const std::string left = fmt::format(".out.{}-0.ot", child), live = fmt::format(".out.{}-7.ot", ::getpid()),
                     other = fmt::format(".other.{}-0.ot", child);
   for (const std::string& name : {left, live, other}) site.folder.write(name, "half a map");
@@ -142,7 +142,7 @@ TEST(UpdateCommand, TemporaryFilesOfAKilledUpdateAreRemoved) {
   EXPECT_TRUE(std::filesystem::exists(site.folder / other));
 }
 
-// Two updates in turn, each a process that reads the file of the one before, and one replay of both.
+// Two updates in sequence, each starting from the map of the update before, equal one replay of both drives.
 TEST(UpdateCommand, SequentialUpdatesEqualOneReplay) {
   const Site site;
   std::string text = "time_s,x_m,y_m,slope_rad,load_N,slip\n";

@@ -1,5 +1,5 @@
-// What people read is plain technical English: words that were replaced by terms of the field must not come
-// back in a message, a page, a document or --help.
+// Texts for users are plain technical English: replaced words must not return in messages, pages, documents
+// or --help.
 #include <algorithm>
 #include <regex>
 #include <set>
@@ -14,7 +14,7 @@ namespace words_test {
 
 namespace fs = std::filesystem;
 
-/// A word that must not come back, as a regular expression, and the term in its place.
+/// A replaced word as a regular expression, and the term to use instead.
 struct Replaced {
   const char* word;
   const char* term;
@@ -69,7 +69,7 @@ constexpr Replaced kReplaced[] = {
     {"\\bhouse\\b", "architecture"},
 };
 
-/// Promised names of JSON fields and of calls, which stay whatever the words around them.
+/// Names of JSON fields in the stable interface, which are exempt.
 const std::set<std::string>& promised() {
   static const std::set<std::string> names{"clairvoyant", "breached", "to_tell_apart", "gave_up"};
   return names;
@@ -97,7 +97,7 @@ void expectPlainLines(const fs::path& file) {
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    // Names in code spans are promised or those of tests.
+    // Code spans contain stable names or names of tests.
     const std::string why = complaint(std::regex_replace(line, std::regex("`[^`]*`"), "``"));
     EXPECT_EQ(why, "") << file << ":" << number;
   }
@@ -127,7 +127,7 @@ TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
     if (entry.path().extension() == ".md") expectPlainLines(entry.path());
 }
 
-/// Public headers whose comments still hold replaced words: remove a name when its comments are rewritten.
+/// Public headers whose comments still contain replaced words; remove a name when its comments are rewritten.
 const std::set<std::string>& toBeRewritten() {
   static const std::set<std::string> headers{
       "costmap/evidence/block_evidence.hpp",  "costmap/evidence/evidence_bricks.hpp",
@@ -137,7 +137,7 @@ const std::set<std::string>& toBeRewritten() {
   return headers;
 }
 
-// What a line of a header has of comments; of the header for C, whose comments span lines, the whole line.
+// Comment part of a header line; the whole line in the C header, whose comments span several lines.
 std::string commentOf(const std::string& line, bool is_c) {
   const auto at = line.find("//");
   if (is_c) return line;
@@ -163,7 +163,7 @@ TEST(Words, OfPublicHeadersArePlain) {
   }
 }
 
-/// Names of the calls that `talus --help` lists.
+/// Names of the subcommands that `talus --help` lists.
 std::vector<std::string> calls() {
   const std::string help = runTalus({"--help"}).out;
   const std::regex line(R"(\n  ([a-z]+) {2,})");

@@ -83,8 +83,7 @@ TEST(EstimateCommand, PriorNarrowsWongReece) {
 
 TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
   // Property: a prior of zero variance determines the result; a very wide prior has no effect. The shear
-  // modulus
-  // K of the prior is used if the call states none.
+  // modulus K of the prior is used if the call states none.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   const auto prior = [&](const char* name, const char* cohesion, const char* friction) {
@@ -108,8 +107,7 @@ TEST(EstimateCommand, PriorNarrowsTheLinearMethods) {
 
 TEST(EstimateCommand, RecursiveEstimateEqualsBatchEstimate) {
   // Property: with K given, recursive and batch least squares are equal; the window of wong-reece contains
-  // all ten
-  // rows.
+  // all ten rows.
   const Folder folder;
   const std::string table = folder.write("drive.csv", drive());
   for (const char* method : {"iagnemma", "linear-offset", "wong-reece"}) {

@@ -31,8 +31,8 @@ TEST(InitCommand, CreatedMissionCanBePlanned) {
   EXPECT_THAT(again.err, HasSubstr("m/site.yaml: exists; name another file with -o, or pass --force"));
 }
 
-// Property: where the first choices of start and goal are blocked, or lie in a hollow that no drive leaves, the mission is planned as it
-// stands; and on level ground.
+// Property: a created mission has a feasible route on level ground, and also where the preferred start and
+// goal are blocked or enclosed by walls.
 TEST(InitCommand, ItsPlacesAreJoined) {
   const Folder folder;
   const auto walled = [](int column, int row) {
@@ -50,7 +50,7 @@ TEST(InitCommand, ItsPlacesAreJoined) {
   }
 }
 
-// Property: every key of the reader stands in the text, once.
+// Property: a created mission file contains every key that the reader accepts.
 TEST(InitCommand, CreatedMissionHasEveryKey) {
   const std::string text = missionText({});
   for (const auto keys : {missionKeys(), missionMapKeys(), thresholdKeys()})

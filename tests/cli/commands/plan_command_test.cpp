@@ -12,8 +12,8 @@ namespace plan_command_test {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// 30x20 cells of a metre, flat but for a wall along x = 15 with a gap in the north; a ramp climbs eastwards
-// beyond x = 20.
+// 30 x 20 cells of 1 m: flat, with a wall along x = 15 that ends in the south, and a ramp that rises
+// eastwards from x = 20.
 std::string dem() {
   std::string text = "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   for (int row = 0; row < 20; ++row) {
@@ -27,7 +27,7 @@ std::string dem() {
   return text;
 }
 
-// One run for all that a good plan shows: starting the program is what takes time.
+// All outputs of a feasible plan are tested in one run, because the start of the program dominates the time.
 TEST(PlanCommand, PlannedRouteIsWrittenAndScoresTheSameCost) {
   const Folder folder;
   folder.write("dem.asc", dem());
@@ -172,8 +172,8 @@ TEST(PlanCommand, CheapestGoalIsChosenAndViaPointsArePassed) {
   EXPECT_THAT(bad.err, HasSubstr("bad.yaml:4"));
 }
 
-// Property: a map read in windows gives a route that the whole map allows at the same price, near the one
-// planned on the whole.
+// Property: a route planned window by window is valid on the full map, has the same cost there, and costs at
+// most 5 % more or less than the route planned on the full map.
 TEST(PlanCommand, WindowedPlanMatchesThePlanOnTheFullMap) {
   const Folder folder;
   const Ran made =
@@ -211,7 +211,7 @@ TEST(PlanCommand, UnsupportedWindowedPlanningIsRejected) {
   EXPECT_THAT(ran.err, HasSubstr("--whole-field"));
 }
 
-// Hills, where each price of time and risk has its own route.
+// Hills, on which the weights of time and risk change the route.
 std::string hills() {
   constexpr int kSide = 250;
   std::string text = "ncols 250\nnrows 250\nxllcorner 0\nyllcorner 0\ncellsize 0.5\n";
@@ -224,7 +224,7 @@ std::string hills() {
   return text;
 }
 
-// The route is there before the 36 routes of the Pareto set are planned: the stop comes among those.
+// The route file is written before the 36 routes of the Pareto set are planned; the stop request follows.
 TEST(PlanCommand, CancelledParetoSetIsNotDrawn) {
   const Folder folder;
   folder.write("dem.asc", hills());

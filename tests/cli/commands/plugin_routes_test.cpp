@@ -12,7 +12,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Level ground of 40 m x 20 m with a gap in what is known, a wall for a rover, from y = 8 to the north.
+// Level ground of 40 m x 20 m with an area without data from y = 8 to the north edge, which a rover cannot
+// cross.
 class PluginRoutes : public testing::Test {
  protected:
   PluginRoutes() {
@@ -49,7 +50,7 @@ TEST_F(PluginRoutes, PluginRoutesAreCheckedAndPriced) {
   EXPECT_EQ(route["planner"], "line of straight");
   EXPECT_NEAR(route["length_m"], 30.0, 1e-9);  // Closed form: straight
   const Ran scored = run("score", {"--path", "r.geojson", "--json"});
-  // The file has a vertex in each cell: the same sum in other pieces.
+  // The route file has one vertex per cell; the cost is the same sum over other pieces.
   EXPECT_NEAR(double(json::parse(scored.out)["cost"]), double(route["cost"]), 1e-9 * double(route["cost"]));
   EXPECT_GE(double(route["cost"]), double(route["lower_bound"]));
   const Ran direct =
@@ -97,10 +98,10 @@ TEST_F(PluginRoutes, PluginErrorsAreOneLine) {
   const Ran endless = plan("endless", {"--time", "0.2"});
   EXPECT_EQ(endless.code, 2) << endless.err;
   EXPECT_THAT(endless.err, HasSubstr("did not end within its time limit"));
-  EXPECT_EQ(run("score", {"--path", "r.csv", "--time", "1"}).code, 2);  // of a plugin alone
+  EXPECT_EQ(run("score", {"--path", "r.csv", "--time", "1"}).code, 2);  // --time without --plugin
 }
 
-// It states that it keeps headings and a turning radius; the places of its route say otherwise.
+// The plugin declares that it respects headings and turning radius, but its route does not.
 TEST_F(PluginRoutes, HeadingsAreCheckedAgainstTheRoute) {
   const auto lied = [this](const Words& motion) {
     Words words{"--turning-radius", "2"};

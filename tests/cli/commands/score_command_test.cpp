@@ -12,8 +12,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Undulations with a wavelength of two wheelbases, whose mean slope over the footprint is zero: score refuses
-// the path only with --chassis, and accepts the route of plan --chassis.
+// Undulations with a wavelength of two wheelbases, whose slope over the footprint of the map is small: score
+// refuses the path only with --chassis, and accepts the route of plan --chassis.
 TEST(ScoreCommand, ChassisCheckIsAppliedOnRequest) {
   const Folder folder;
   std::string text = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 0.2\nNODATA_value -9999\n";

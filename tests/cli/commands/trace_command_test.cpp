@@ -16,7 +16,7 @@
 namespace talus::cli {
 namespace trace_command_test {
 
-// Rows of four wheels by the forward model, two percent off; the load cell of wheel 2 pulls 6 N short.
+// Rows of four wheels by the forward model with 2 % noise; the load cell of wheel 2 reads 6 N too low.
 std::string oneWheelShort() {
   std::string text =
       "run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m\n";
@@ -49,7 +49,7 @@ TEST(TraceCommand, EffectOfOneGroupIsAttributedToItsColumn) {
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
 }
 
-// Verdict, errors before and after, measurements and model, each effect over its data, then the rest; numbers as in the text.
+// The page shows verdict, errors before and after, measured and predicted values, and a plot of each effect.
 TEST(TraceCommand, PageShowsVerdictErrorsAndEachEffectWithItsData) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
@@ -74,7 +74,7 @@ TEST(TraceCommand, PageShowsVerdictErrorsAndEachEffectWithItsData) {
   EXPECT_GT(sizes, 0) << ran.out;
 }
 
-// They were traced as rows of straight wheels that the ground pushes aside.
+// Regression: rows with a side force but without slip angle were traced as rows of unsteered wheels.
 TEST(TraceCommand, SideForcesWithoutSlipAngleAreRejected) {
   const Folder folder;
   std::string text = "load_N,slip,sinkage_m,drawbar_pull_N,side_force_N,wheel_radius_m,wheel_width_m\n";
@@ -87,7 +87,7 @@ TEST(TraceCommand, SideForcesWithoutSlipAngleAreRejected) {
               testing::HasSubstr("t.csv:2: no usable row: side_force_N = 10 without slip_angle_rad"));
 }
 
-// `--html` was passed over in silence where rows are held out.
+// Regression: with --hold-out the option --html had no effect.
 TEST(TraceCommand, HeldOutRunWritesItsPageAndNoModel) {
   const Folder folder;
   folder.write("t.csv", oneWheelShort());
@@ -148,7 +148,8 @@ TEST(TraceCommand, EqualCausesAreDistinctAndListedOnce) {
   }
 }
 
-/// 90 rows whose pull a column takes, beside one that goes with it.
+/// 90 rows in which the column `dust` reduces the drawbar pull; the column `humid` is a linear function of
+/// `dust`.
 std::string tiedTable() {
   std::string table = "run,load_N,slip,dust,humid,torque_Nm,sinkage_m,drawbar_pull_N\n";
   const terramech::Soil soil = terramech::loadSoil("sandy_loam");
@@ -181,7 +182,7 @@ TEST(TraceCommand, ProposedRunsAreScoredOnceMeasured) {
   const auto &a = proposals[0]["predictions"][0], &b = proposals[0]["predictions"][1];
   EXPECT_GT(std::abs(a["drawbar_pull_N"].get<double>() - b["drawbar_pull_N"].get<double>()),
             3.0 * a["std"].get<double>());
-  // Runs that measure what the second cause predicts.
+  // Synthetic measurements that agree with the prediction of the second cause.
   const terramech::Telemetry next = terramech::readTelemetry((folder.path() / "next.csv").string());
   std::string measured = "run,load_N,slip,dust,humid,drawbar_pull_N\n";
   for (std::size_t row = 0; row < next.size(); ++row)

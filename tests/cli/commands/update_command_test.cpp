@@ -20,7 +20,7 @@ using nlohmann::json;
 const std::vector<std::string> kGround{"flat.asc", "--ignore-crs", "--resolution", "1",
                                        "--soil",   "sandy_loam",   "--rover",      "sojourner"};
 
-// A flat site taken for sandy loam, and its map of beliefs.
+// A flat site of sandy loam and its traversability map.
 class Site {
  public:
   Site() {
@@ -38,7 +38,7 @@ class Site {
     return json::parse(ran.out);
   }
 
-  // A number behind a cell of a map.
+  // Value of a named cause of a cell, from `talus explain`.
   double cause(const std::string& map, const std::string& place, const std::string& name) const {
     const json why = run({"explain", map, "--at", place, "--json"});
     for (const json& cause : why["causes"])
@@ -51,8 +51,8 @@ class Site {
   mutable std::string warnings;
 };
 
-// A drive east along y = 20 over ground of a soil, of the rover's four wheels at ten moments; `off_Nm` is an
-// offset in the torque.
+// Telemetry of the rover's four wheels on a drive east along y = 20 over the given soil; `off_Nm` is a torque
+// offset.
 std::string driveOver(const terramech::Soil& soil, double off_Nm = 0.0) {
   const terramech::Rover rover = terramech::loadRover("sojourner");
   const double load_N = terramech::wheelLoad_N(rover);
@@ -94,7 +94,7 @@ TEST(UpdateCommand, WeakGroundIsEstimatedAndExplained) {
                after = site.cause("map2.ot", "20,20", "drawbar_pull_over_load");
   const terramech::Rover rover = terramech::loadRover("sojourner");
   const double load_N = terramech::wheelLoad_N(rover);
-  // Closed form: the forward model at the reference slip on the soil that was driven
+  // Closed form: the forward model at the reference slip on the true soil
   const double truth =
       terramech::equilibrium(weak(), rover.wheel, {.load_N = load_N, .slip = 0.5}).drawbar_pull_N / load_N;
   EXPECT_LT(std::abs(after - truth), 0.4 * std::abs(before - truth))
@@ -112,7 +112,7 @@ TEST(UpdateCommand, RepeatedUpdateYieldsTheSameMap) {
   EXPECT_NE(fileContent(site.folder / "a.ot"), fileContent(site.folder / "map.ot"));
 }
 
-// A map that holds drives which the journal lacks cannot be rebuilt from it; nothing told so.
+// The journal cannot rebuild a map that contains drives missing from the journal; the update must warn.
 TEST(UpdateCommand, MissingJournalDrivesAreReported) {
   const Site site;
   site.folder.write("t.csv", driveOver(weak()));
@@ -126,8 +126,8 @@ TEST(UpdateCommand, MissingJournalDrivesAreReported) {
   EXPECT_EQ(site.warnings.find("lacks"), std::string::npos);
 }
 
-// Property: a journal that was changed is not written on, even where the map holds the drives that it has.
-// The new map listed drives of which it knew nothing, so that the drives themselves were not learned later.
+// Property: a journal without usable rows for the map is refused. Otherwise the new map would list drives
+// whose evidence the map does not contain, and a later update with those drives would be skipped.
 TEST(UpdateCommand, JournalOfAnotherAreaIsRejected) {
   const Site site;
   site.folder.write("d.csv", driveOver(terramech::loadSoil("dry_sand")));
@@ -194,7 +194,7 @@ TEST(UpdateCommand, UnusableRowsAreCountedAndReported) {
   const Site site;
   const std::string text = driveOver(weak()) + "a,w0,30,500,20,0,0,10,0.2,0.1,0.01\n" +  // off the map
                            "a,w0,31,20,20,0,0,-3,0.2,0.1,0.01\n" +                       // load <= 0
-                           "a,w0,2,20,20,0,0,10,0.4,0.1,0.01\n";                         // time goes back
+                           "a,w0,2,20,20,0,0,10,0.4,0.1,0.01\n";                         // time decreases
   site.folder.write("t.csv", text);
   const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
   EXPECT_EQ(out["rows_used"], 81);

@@ -35,14 +35,14 @@ TEST(ViewCommand, PlannedRouteIsShownOnItsMap) {
   EXPECT_THAT(fileContent(folder / "route.html"), HasSubstr("\"name\":\"slope\""));
   EXPECT_THAT(view.err, Not(HasSubstr("not found")));
 
-  // The map is gone: the route alone, and it is said.
+  // If the map file is missing, the page shows the route without the map, and a warning is printed.
   std::filesystem::remove(folder.path() / "dem.asc");
   const Ran alone = runTalus({"view", "route.geojson"}, folder.path());
   EXPECT_EQ(alone.code, 0);
   EXPECT_THAT(alone.err, HasSubstr("dem.asc of the route was not found"));
 }
 
-// The map in a folder of its own, the route in another, the call from a third.
+// The map and the route are in two folders; the program runs in a third.
 TEST(ViewCommand, MapIsFoundFromAnotherFolder) {
   const Folder folder;
   for (const char* name : {"maps", "routes", "elsewhere"})
@@ -62,7 +62,7 @@ TEST(ViewCommand, MapIsFoundFromAnotherFolder) {
     EXPECT_THAT(view.err, Not(HasSubstr("was not found"))) << from;
     EXPECT_THAT(fileContent(folder.path() / from / "page.html"), HasSubstr("\"name\":\"slope\"")) << from;
   }
-  // Another file at that place is not the map.
+  // A different file at the path of the map is refused.
   folder.write("maps/dem.asc", asciiGrid(40, 40, [](int, int) { return 1.0; }));
   const Ran other =
       runTalus({"view", folder / "routes/route.geojson", "--resolution", "1", "-o", "page.html"},
@@ -71,7 +71,7 @@ TEST(ViewCommand, MapIsFoundFromAnotherFolder) {
   EXPECT_THAT(other.err, HasSubstr("its checksum differs"));
 }
 
-// Property: of two routes to the same goal the page has both, what differs between them, and what each was made from.
+// Property: the page of two routes to one goal lists both routes, their differences, and their provenance.
 TEST(ViewCommand, RoutesAreCompared) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));

@@ -30,7 +30,7 @@ TEST(WheelCommand, SideForceIsOddInSlipAngle) {
     return nlohmann::json::parse(runTalus(full).out)["side_force_N"].get<double>();
   };
   EXPECT_LT(side("0.3"), 0.0);
-  EXPECT_EQ(side("-0.3"), -side("0.3"));  // Property: odd in the angle.
+  EXPECT_EQ(side("-0.3"), -side("0.3"));  // Property: the side force is an odd function of the slip angle.
   EXPECT_EQ(side("0"), 0.0);
   call.push_back("1.7");
   const Ran refused = runTalus(call);

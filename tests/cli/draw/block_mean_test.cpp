@@ -14,7 +14,7 @@ TEST(Blocks, BlocksCoverTheMapAndExcludeNoData) {
   EXPECT_EQ(blocks.coarse(), (maps::Grid{3, 2, 4.0, {10.0, 20.0}}));
   const maps::Raster<float> mean = blocks.mean([&](maps::Cell c) { return fine[c]; });
   EXPECT_EQ((mean[{0, 0}]), 1.0F);
-  EXPECT_EQ((mean[{2, 0}]), 2.0F);  // the cut block: one cell of 3 and one of 1
+  EXPECT_EQ((mean[{2, 0}]), 2.0F);  // the block at the east edge: one cell of 3 and one of 1
 }
 
 TEST(Blocks, BlockWithoutDataIsNan) {
@@ -23,8 +23,8 @@ TEST(Blocks, BlockWithoutDataIsNan) {
   EXPECT_TRUE(std::isnan(mean[{1, 1}]));
 }
 
-// Property: a map within the side stays as it is; a coarser one has the least factor that fits, covers the map,
-// and where no cell of a block is left out its mean is the brute-force one.
+// Property: the factor is the smallest that limits both sides to max_side; block means equal brute-force
+// means, and a map within max_side is unchanged.
 TEST(Blocks, FactorIsMinimalAndMeansMatchBruteForce) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> value(-1.0F, 1.0F);

@@ -32,7 +32,7 @@ TEST(Canvas, PngHasTheRequestedSize) {
   EXPECT_EQ(number(image, 20), 2U);
 }
 
-// Property: what is drawn stands in the file in its colour, and nothing of it where nothing was drawn.
+// Property: an SVG contains the colour of each drawn element, and no other elements.
 TEST(Canvas, SvgContainsExactlyTheDrawnElements) {
   const auto drawn = [](const auto& draw) {
     Canvas canvas({.width = 40, .height = 30, .kind = Canvas::Kind::Svg});
@@ -61,7 +61,7 @@ TEST(Canvas, SvgContainsExactlyTheDrawnElements) {
               HasSubstr("clip"));
 }
 
-// Property: a text is as wide as its parts, wider when it is larger, and never wider drawn upright.
+// Property: text widths add up, increase with the font size, and do not grow for upright text.
 TEST(Canvas, TextWidthIsAdditiveAndScalesWithSize) {
   Canvas canvas({.width = 10, .height = 10});
   const double one = canvas.textWidth("mmm"), two = canvas.textWidth("mmmmmm");

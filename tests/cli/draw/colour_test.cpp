@@ -11,7 +11,7 @@ namespace colour_test {
 
 using Lab = std::array<double, 3>;
 
-// Parts of sRGB in linear light (IEC 61966-2-1).
+// Components of an sRGB colour in linear light (IEC 61966-2-1).
 std::array<double, 3> linear(Colour c) {
   const auto part = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
   return {part(c.red), part(c.green), part(c.blue)};
@@ -32,7 +32,7 @@ Lab seenByAll(Colour c) {
   return labOf(linear(c));
 }
 
-// A deuteranope: the matrix of severity 1.0 of Machado, Oliveira and Fernandes (2009).
+// Colour as perceived with deuteranopia: matrix of severity 1.0 of Machado, Oliveira and Fernandes (2009).
 Lab seenByADeuteranope(Colour c) {
   const auto [r, g, b] = linear(c);
   const auto inside = [](double v) { return std::clamp(v, 0.0, 1.0); };
@@ -64,13 +64,14 @@ TEST(Colour, HexIsRedGreenBlue) {
 using terramech::Category;
 constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
 
-// Closed form: the lightness that the header states.
+// Closed form: CIE lightness L* of the category colours, as stated in the header.
 TEST(Colour, CategoryLightnessMatchesTheStatedRamp) {
   const double stated[] = {99, 66, 33, 0};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(lightness(colourOf(kCategories[i])), stated[i], 1.0) << i;
 }
 
-// Closed form: CIE L*a*b* of each two categories under the same light of the hillshade, for three kinds of sight.
+// Closed form: distance in CIE L*a*b* of each pair of categories under equal shading, for three types of
+// vision.
 TEST(Colour, CategoryColoursDifferByThirtyUnderAnyIllumination) {
   for (const auto& [sight, seen] :
        {std::pair{"colour", &seenByAll}, {"deuteranope", &seenByADeuteranope}, {"grey", &printedInGrey}}) {
@@ -88,7 +89,7 @@ TEST(Colour, CategoryColoursDifferByThirtyUnderAnyIllumination) {
   }
 }
 
-// The light takes from each part the same share; full light takes nothing.
+// Shading scales all components by the same factor; full light leaves the colour unchanged.
 TEST(Colour, LightScalesAColourProportionally) {
   const Colour c = lit(rgb(0x804020), 0.5, 0.2);
   EXPECT_DOUBLE_EQ(c.red, 0.9 * 0x80 / 255.0);
@@ -96,7 +97,8 @@ TEST(Colour, LightScalesAColourProportionally) {
   EXPECT_EQ(lit(rgb(0x804020), 1.0, 0.2).green, rgb(0x804020).green);
 }
 
-// Property: viridis grows lighter all the way; blue to red is lightest in the middle; 32 steps, ends beyond.
+// Property: lightness of viridis increases throughout; blue to red is lightest in the middle; both have 32
+// steps.
 TEST(Colour, ScalesAreOrderedByLightness) {
   for (int k = 0; k < 31; ++k) {
     EXPECT_LT(lightness(at(viridis(), k / 31.0)), lightness(at(viridis(), (k + 1) / 31.0))) << k;

@@ -18,7 +18,7 @@
 namespace talus::cli {
 namespace heading_costs_test {
 
-// A site with slopes on both sides of what the rover climbs, a hole, and ground that nobody may enter.
+// A site with slopes below and above the climbing limit, an area without data and a step.
 Ground steepSite(const Folder& folder) {
   folder.write("steep.asc", asciiGrid(60, 50, [](int column, int row) {
                  const bool hole = column > 50 && row > 40;
@@ -34,7 +34,7 @@ Ground steepSite(const Folder& folder) {
   return readGround(options, context);
 }
 
-// What the page answers for each cell, the top row first: its category, and its cost in eight headings or null.
+// For each cell of the page, top row first: category, and cost in eight headings (null if refused).
 nlohmann::json answersOf(const Scene& scene) {
   const Shown shown = show(played(scene, R"((async () => {
     const data = JSON.parse(document.getElementById("data").textContent), read = await readHeadings(data);
@@ -51,7 +51,7 @@ nlohmann::json answersOf(const Scene& scene) {
   return nlohmann::json::parse(shown.dom.substr(from, shown.dom.find("</pre>", from) - from));
 }
 
-// Infinite where `talus explain` refuses the heading or knows no ground.
+// Cost of `talus explain`; infinite if the heading is refused or the ground is unknown.
 double explainedCost(const Ground& site, maps::Cell cell, double heading) {
   for (const costmap::Cause& cause :
        costmap::explain(site.map, cell, costmap::Direction{std::cos(heading), std::sin(heading)}).causes)
@@ -59,8 +59,8 @@ double explainedCost(const Ground& site, maps::Cell cell, double heading) {
   return INFINITY;
 }
 
-// Property: category and cost in each heading of a cell are those of `talus explain`, refusals included; where a cell of the page
-// stands for several they are those of the one in its middle.
+// Property: category and cost per heading equal those of `talus explain`, including refusals. A page cell
+// that covers several map cells has the values of the map cell at its centre.
 TEST(HeadingCosts, PageValuesEqualThoseOfExplain) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Folder folder;
@@ -81,7 +81,7 @@ TEST(HeadingCosts, PageValuesEqualThoseOfExplain) {
         ASSERT_EQ(answer.at(k + 1).is_number(), std::isfinite(cost)) << i << ' ' << k;
         refused += std::isfinite(cost) ? 0 : 1;
         if (!std::isfinite(cost)) continue;
-        // Words of 24 bits on a logarithmic scale, and the rounding of floats.
+        // Tolerance: 24-bit words on a logarithmic scale, and rounding to float.
         ASSERT_NEAR(answer.at(k + 1).get<double>() / cost, 1.0, 1e-5) << i << ' ' << k;
       }
     }

@@ -19,7 +19,7 @@ TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
   EXPECT_THAT(report.html(), Not(HasSubstr("http://")));
 }
 
-// Property: nothing that a user named reads as markup, wherever it stands.
+// Property: text from the user is never interpreted as markup, anywhere on the page.
 TEST(HtmlReport, UserTextIsNeverMarkup) {
   const std::string hostile = "<script>alert(\"1\")</script>";
   HtmlReport report(hostile);
@@ -30,7 +30,7 @@ TEST(HtmlReport, UserTextIsNeverMarkup) {
   EXPECT_EQ(escaped("a & <b> \"c\""), "a &amp; &lt;b&gt; &quot;c&quot;");
 }
 
-// Property: on a phone nothing of a page with a table of twelve columns is beside the screen, and each cell has its column's name.
+// Property: on a phone a table of twelve columns fits the screen width, and each cell shows its column name.
 TEST(HtmlReport, FitsAPhone) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   HtmlReport report("t");
@@ -40,7 +40,7 @@ TEST(HtmlReport, FitsAPhone) {
     row.push_back(std::to_string(i));
   }
   report.table(header, {row, row});
-  // The page itself runs no script.
+  // A page of HtmlReport contains no script, so a frame around the page measures the layout.
   const std::string frame = "<!doctype html><html><body><iframe width=390 height=844 srcdoc=\"" +
                             escaped(report.html()) +
                             R"("></iframe><script>onload = () => {
@@ -53,7 +53,7 @@ TEST(HtmlReport, FitsAPhone) {
   EXPECT_THAT(shown.dom, HasSubstr("data-name=\"&quot;column \\&quot;1&quot;\"")) << shown.dom.substr(0, 300);
 }
 
-// Closed form: a number may carry a unit or a percent sign; a name that begins with a digit is none.
+// Closed form: a number may have a unit or percent sign; a name that begins with a digit is not a number.
 TEST(HtmlReport, NumbersAreRightAligned) {
   const auto number = [](const std::string& cell) {
     HtmlReport report("t");

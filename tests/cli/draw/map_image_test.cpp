@@ -14,8 +14,8 @@ maps::Raster<float> plane(double per_column, double per_row) {
 }
 
 TEST(Hillshade, SlopesFacingNorthWestAreBrighter) {
-  // Property: a slope that falls to the north-west is brighter than flat ground, one that falls to the
-  // south-east darker.
+  // Property: with the sun in the north-west, a slope descending to the north-west is brighter than flat
+  // ground, and a slope descending to the south-east is darker.
   const float flat = hillshade(plane(0.0, 0.0))[{4, 4}];
   EXPECT_GT((hillshade(plane(0.3, -0.3))[{4, 4}]), flat);
   EXPECT_LT((hillshade(plane(-0.3, 0.3))[{4, 4}]), flat);
@@ -30,7 +30,8 @@ TEST(Hillshade, NoDataIsPreservedAndDoesNotSpread) {
   EXPECT_NEAR((shade[{5, 4}]), whole, 1e-6);  // float rounding of the elevations
 }
 
-// Property: a few outliers do not take the contrast of the others; a plain has a range around its one brightness.
+// Property: outliers do not compress the brightness range; a plane of constant brightness has a non-empty
+// range.
 TEST(Hillshade, LightRangeIgnoresOutliers) {
   maps::Raster<float> shade({10, 10, 1.0, {0.0, 0.0}}, 0.4F);
   shade[{0, 0}] = 0.0F;

@@ -13,7 +13,7 @@ std::size_t count(std::string_view text, std::string_view part) {
   return found;
 }
 
-// Property: a whole page whose places to fill in are there, the data once and last.
+// Property: the template contains each placeholder, and the placeholder of the data once and last.
 TEST(PageTemplate, TemplateContainsItsPlaceholders) {
   const std::string_view page = pageTemplate();
   EXPECT_TRUE(page.starts_with("<!") || page.starts_with("<html"));
@@ -25,7 +25,7 @@ TEST(PageTemplate, TemplateContainsItsPlaceholders) {
   EXPECT_GT(page.find("@TALUS_DATA@"), std::max(page.rfind("@TALUS_TITLE@"), page.rfind("@TALUS_SUBTITLE@")));
 }
 
-// Property: it loads nothing: no script, style or image of elsewhere.
+// Property: the template loads no external script, style sheet or image.
 TEST(PageTemplate, TemplateLoadsNoExternalResource) {
   const std::string page(pageTemplate());
   EXPECT_EQ(count(page, "<script src"), 0U);

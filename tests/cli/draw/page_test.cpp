@@ -23,12 +23,12 @@ namespace page_test {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Whether the page's body, its scripts left out, matches.
+/// Returns true if the body of the page without scripts contains the text.
 bool bodyHas(const Shown& shown, const std::string& text) {
   return shown.dom.rfind(text, shown.dom.find("id=\"data\"")) != std::string::npos;
 }
 
-/// The same for a pattern.
+/// Returns true if the body of the page without scripts matches the regular expression.
 bool bodyMatches(const Shown& shown, const std::string& pattern) {
   return std::regex_search(shown.dom.substr(0, shown.dom.find("id=\"data\"")), std::regex(pattern));
 }
@@ -63,7 +63,7 @@ TEST(Page, MapProfilesAndSummaryAreDrawn) {
   EXPECT_THAT(shown.console, Not(HasSubstr("CONSOLE"))) << "the page complains";
 }
 
-// Property: no name from a file is taken for code or for markup, in whichever place of the page it stands.
+// Property: a name from a file is never interpreted as code or markup, wherever the page shows the name.
 TEST(Page, FileNamesAreNeverMarkupOrCode) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const std::string name :
@@ -105,7 +105,7 @@ TEST(Page, HoveringTheRouteMarksTheProfile) {
   EXPECT_TRUE(bodyMatches(shown, "data-rule=\"translate\\([1-9]"));
 }
 
-// The page of a plan, played by a script, and the folder that it was planned in.
+// Plans a route in the folder and returns its page with an appended script that simulates user input.
 std::string planned(const Folder& folder, const std::string& script) {
   folder.write("dem.asc", asciiGrid(60, 50, [](int column, int row) {
                  return 1.5 * std::sin(column / 7.0) + 0.9 * std::cos(row / 6.0);
@@ -117,8 +117,8 @@ std::string planned(const Folder& folder, const std::string& script) {
   return played(fileContent(folder / "plan.html"), script);
 }
 
-// Property: what a cell shows is what `talus explain` states of it, to the last decimal that is shown; cells are
-// reached by Enter and the arrow keys.
+// Property: cell values on the page equal those of `talus explain` to the displayed precision; cells are
+// selected by Enter and the arrow keys.
 TEST(Page, CellValuesEqualThoseOfExplain) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Folder folder;
@@ -163,7 +163,7 @@ TEST(Page, CellValuesEqualThoseOfExplain) {
       return std::nan("");
     };
     EXPECT_EQ(m[1], answer["category"]) << place;
-    // Half a unit of the last decimal, and the rounding of a float.
+    // Tolerance: half a unit of the last displayed decimal, and rounding to float.
     EXPECT_NEAR(std::stod(m[2]), cause("slope_rad", "value") / kDegree, 0.00501) << place;
     EXPECT_NEAR(std::stod(m[3]), cause("drawbar_pull_over_load", "value"), 0.0000501) << place;
     EXPECT_NEAR(std::stod(m[4]), cause("drawbar_pull_over_load", "std"), 0.0000501) << place;
@@ -191,17 +191,17 @@ TEST(Page, RulerMeasuresDistanceAndBearing) {
   ASSERT_TRUE(std::regex_search(
       head, said, std::regex("data-measured=\"([0-9.]+) m, last leg 90° from north\\|([0-9]+) m")))
       << head.substr(0, 300) << shown.console;
-  // The bar is as long as its number says, to a pixel.
+  // The length of the scale bar agrees with its label to one pixel.
   EXPECT_NEAR(std::stod(said[1]) / std::stod(said[2]), 1.0, 0.03);
   EXPECT_THAT(head, HasSubstr("data-popups=\"0\""));
 }
 
-// Property: on a screen of 1400 x 900 and on a phone, map and profile are seen without scrolling, and the map is more than the
-// third of the screen.
+// Property: on a screen of 1400 x 900 pixels and on a phone, map and profile are visible without scrolling,
+// and the map covers more than a third of the screen.
 TEST(Page, MapAndProfileFitOneScreen) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const auto& [width, height] : {std::pair{1400, 900}, {390, 844}}) {
-    // Chromium's own window is at least 500 wide: a frame is not.
+    // A Chromium window is at least 500 pixels wide, so a frame emulates the phone.
     const std::string frame =
         "<!doctype html><html data-state='ready'><body style='margin:0'><iframe style='border:0' width=" +
         std::to_string(width) + " height=" + std::to_string(height) + " srcdoc=\"" +
@@ -219,8 +219,8 @@ TEST(Page, MapAndProfileFitOneScreen) {
   }
 }
 
-// Property: each quantity colours the route in more than one colour where it varies, and names its unit beside its bar; the
-// opacity reaches the layer; another layer takes the place of the first.
+// Property: a varying quantity colours the route in more than one colour, with its unit beside the colour
+// bar; the opacity applies to the layer; a selected layer replaces the previous layer.
 TEST(Page, QuantityLayerAndOpacityAreSelectable) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
@@ -247,7 +247,7 @@ TEST(Page, QuantityLayerAndOpacityAreSelectable) {
       << shown.console;
 }
 
-// Closed form: latitude and longitude between the points of the lattice are those of the projection, beside the pole too.
+// Closed form: interpolated latitude and longitude equal those of the projection, also near the pole.
 TEST(Page, CursorShowsLatitudeAndLongitude) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   Scene scene = exampleScene();
@@ -265,7 +265,7 @@ TEST(Page, CursorShowsLatitudeAndLongitude) {
                                     place.latitude_rad / kDegree, place.longitude_rad / kDegree)));
 }
 
-// A script that opens the relief and counts its colours once it is drawn.
+// A script that opens the relief view and counts the colours after drawing.
 constexpr const char* kOpenRelief = R"(
   const root = document.documentElement.dataset, place = document.getElementById("relief");
   document.getElementById("solid").click();
@@ -288,7 +288,7 @@ constexpr const char* kOpenRelief = R"(
     setTimeout(() => { root.probed = document.querySelector("#relief .probe").textContent; }, 300);
   }, 50);)";
 
-// Property: the relief is drawn, not blank, states by how much it is higher, and the console is silent.
+// Property: the relief is not blank, states its vertical exaggeration, and causes no console message.
 TEST(Page, ReliefIsDrawn) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   TALUS_REQUIRE(pageTemplate().find("id=\"three\"") != std::string_view::npos,
@@ -297,7 +297,7 @@ TEST(Page, ReliefIsDrawn) {
   EXPECT_THAT(shown.dom, HasSubstr("data-relief=\"ready|vertical exaggeration 1 ×")) << shown.console;
   EXPECT_THAT(shown.dom, HasSubstr("data-colours=\"true\""));
   EXPECT_TRUE(bodyMatches(shown, "data-probed=\"categories[a-z]+slope[0-9.]+ deg"));
-  // Chromium's own driver notes that the drawing is read back where there is no graphics card.
+  // Without a graphics card, the driver of Chromium prints a message about reading back the drawing.
   const std::regex driver("[^\n]*GL Driver Message[^\n]*ReadPixels[^\n]*");
   EXPECT_THAT(std::regex_replace(shown.console, driver, ""), Not(HasSubstr("CONSOLE")));
 }
@@ -311,8 +311,8 @@ TEST(Page, MissingWebGlIsReported) {
       << shown.console;
 }
 
-// Property: before it is printed the page is laid out on one sheet of A4 less its margins, with the map on it, and afterwards as
-// before.
+// Property: before printing, the page is laid out on one A4 sheet within the margins, including the map;
+// after printing, the previous layout returns.
 TEST(Page, PageFitsOneSheetInPrint) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(
@@ -331,8 +331,8 @@ TEST(Page, PageFitsOneSheetInPrint) {
   EXPECT_THAT(shown.dom, HasSubstr("data-seen=\"true,true,true,true,true\"")) << shown.console;
 }
 
-// Property: on paper neither the legend nor the explained cell lies over the map; both are there as a whole, and back on
-// the map afterwards.
+// Property: in print, the legend and the explained cell are placed beside the map in full; after printing
+// both return to the map.
 TEST(Page, PrintsLegendAndCellBesideTheMap) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   const Shown shown = show(played(exampleScene(), R"(

@@ -18,7 +18,7 @@ std::vector<planner::ParetoRoute> front() {
   return {cheap, safe};
 }
 
-// Closed form: kilojoules, hours and percent of the routes.
+// Closed form: energy in kJ, duration in h and risk in percent of each route.
 TEST(ParetoChart, PageHasARowForEachRoute) {
   const Folder folder;
   saveParetoChart(folder / "front.html", front());

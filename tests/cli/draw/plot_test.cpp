@@ -37,7 +37,7 @@ TEST(Plot, PlotIsDrawnAsPngOrSvg) {
   keep("plot.png", bytes);
 }
 
-// Property: points cost some 30 bytes each of an SVG: a page of many charts stays below 3 MB.
+// Property: a point adds at most 40 bytes to an SVG, so that a page of many charts stays below 3 MB.
 TEST(Plot, SvgSizePerPointIsBounded) {
   Plot many = example();
   Series cloud{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};
@@ -50,8 +50,8 @@ TEST(Plot, SvgSizePerPointIsBounded) {
   EXPECT_LT(draw({many}, Canvas::Kind::Svg).size() - few, 2000U * 40U);
 }
 
-// Property: what a chart shows of 100 000 readings with their standard deviations is bounded by its pixels: readings that do not add to
-// it add nothing to the file, and its axes hold all of them.
+// Property: the file size of 100 000 readings with standard deviations is bounded, because readings that
+// cover each other are omitted.
 TEST(Plot, OfReadingsThatCoverEachOtherIsSmall) {
   const auto cloud = [](int count) {
     Series readings{.name = "", .x = {}, .y = {}, .mark = Series::Mark::Points};

@@ -8,7 +8,7 @@
 namespace talus::cli {
 namespace reach_scene_test {
 
-// Flat ground, and a wall that no heading enters: the west is reached from the start, the east leads to the goal.
+// Flat ground of 30 x 20 cells.
 maps::ElevationMap level() {
   maps::ElevationMap map;
   map.elevation_m =
@@ -16,7 +16,7 @@ maps::ElevationMap level() {
   return map;
 }
 
-// Of places that no way over the cells connects.
+// Scene of two places without a connection over the cells.
 Scene severed(const maps::ElevationMap& map, const maps::Raster<costmap::CellCode>& cells) {
   costmap::TravelCurve curve;
   curve.cost_J_per_m.fill(1.0F);
@@ -41,7 +41,7 @@ TEST(ReachScene, BothCellSetsAndTheGapAreShown) {
       else
         EXPECT_EQ(value, column < 12 ? 0.0F : 1.0F) << column << ' ' << row;
     }
-  // Both sets are seen at a glance, no ring is needed; the title has the reason.
+  // Both sets are large and need no ring; the title contains the reason.
   ASSERT_EQ(scene.layers.front().classes.size(), 2U);
   EXPECT_EQ(scene.layers.front().classes[0].name, "reached from the start: 240 cells");
   EXPECT_EQ(scene.layers.front().classes[1].name, "leading to the goal: 340 cells");
@@ -53,7 +53,7 @@ TEST(ReachScene, BothCellSetsAndTheGapAreShown) {
   EXPECT_NE(drawPicture(scene), drawPicture(unmarked));
 }
 
-// A set that is easily overlooked, 5 columns of 6 cells in a corner, has a ring around it.
+// A ring marks a small set of 5 x 6 cells in a corner.
 TEST(ReachScene, SmallSetIsMarkedByARing) {
   const maps::ElevationMap map = level();
   maps::Raster<costmap::CellCode> cells(map.grid(), costmap::CellCode({.curve = 0}));

@@ -22,22 +22,23 @@ planner::Route through(const std::vector<maps::Point>& points) {
   return route;
 }
 
-// Closed form: a straight line beside one with a triangle of height 30 over its middle part; the sides of the triangle leave
-// the tolerance of 2 at a known place.
+// Closed form: a straight line and a line with a triangular detour of height 30; the distance at which the
+// sides of the triangle exceed the tolerance of 2 is known.
 TEST(RouteComparison, DivergingPartMatchesClosedForm) {
   const planner::Route straight = through({{0, 0}, {100, 0}});
   const planner::Route detour = through({{0, 0}, {30, 0}, {50, 30}, {70, 0}, {100, 0}});
   const auto found = partings(detour, straight, 2.0);
   ASSERT_EQ(found.size(), 1U);
   const double side = std::hypot(20.0, 30.0), leaves = 30.0 + 2.0 * side / 30.0;
-  EXPECT_NEAR(found[0].from_m, leaves, 1.0);  // it is looked at every metre
+  EXPECT_NEAR(found[0].from_m, leaves, 1.0);  // the route is sampled every metre
   EXPECT_NEAR(found[0].to_m, 30.0 + 2.0 * side - 2.0 * side / 30.0, 1.0);
   EXPECT_NEAR(found[0].most_m, 30.0, 1.0);
   EXPECT_NEAR(found[0].begin.x_m, 30.0 + 20.0 * 2.0 / 30.0, 1.0);
   EXPECT_NEAR(found[0].end.x_m, 70.0 - 20.0 * 2.0 / 30.0, 1.0);
 }
 
-// Property: none between a route and itself with other vertices, two where it is left twice, and none of an empty route.
+// Property: no deviation for equal routes with other vertices or an empty route, two for a route that leaves
+// twice.
 TEST(RouteComparison, PartingsAreCounted) {
   const planner::Route straight = through({{0, 0}, {100, 0}});
   EXPECT_TRUE(partings(straight, through({{0, 0}, {13, 0}, {77, 0}, {100, 0}}), 0.5).empty());

@@ -24,7 +24,7 @@ TEST(RouteSummary, SummaryListsLengthTimeEnergyAndSlope) {
       Contains(Pair("slope", StartsWith("max uphill 11.5 deg, downhill 11.5 deg, cross-slope 2.9 deg"))));
   EXPECT_THAT(facts, Contains(Pair("traversability", "safe 66.7 %, marginal 33.3 %")));
   EXPECT_THAT(facts, Contains(Pair("drawbar-pull margin", HasSubstr("min +0.100 (DP/W)"))));
-  // Closed form: the last vertex of the example carries 60 x 0.0002, a probability and not per cent.
+  // Closed form: the last vertex of the example has the risk 60 x 0.0002 (a probability, not percent).
   EXPECT_THAT(facts, Contains(Pair("risk", "immobilisation probability 0.012")));
   EXPECT_LE(facts.size(), 11U);
 }

@@ -17,7 +17,7 @@ TEST(Scene, SlopeOfAPlaneIsItsAngle) {
   const Scene scene = sceneOf(map, {.title = "plane"});
   ASSERT_EQ(scene.layers.size(), 2U);
   EXPECT_EQ(scene.layers[1].name, "elevation");
-  // Closed form: atan of the gradient; 1e-4 deg for elevations stored as float.
+  // Closed form: atan of the gradient; tolerance 1e-4 deg, because elevations are stored as float.
   EXPECT_NEAR((scene.layers[0].values[{10, 10}]), 0.3 / kDegree, 1e-4);
 }
 

@@ -35,7 +35,7 @@ TEST(SlopeRose, RefusedHeadingsAreShaded) {
   const std::string free = draw(crossed(false), Canvas::Kind::Svg),
                     held = draw(crossed(true), Canvas::Kind::Svg);
   EXPECT_THAT(free, HasSubstr("<svg"));
-  // Property: a refused heading is a shaded sector more in each of the three panels, and a piece of curve less.
+  // Property: each of the three panels shades the sector of a refused heading and interrupts the curve there.
   EXPECT_GE(count(held, "<path"), 3U);
   EXPECT_NE(free, held);
   EXPECT_THAT(draw(crossed(true), Canvas::Kind::Png), StartsWith("\x89PNG"));

@@ -17,8 +17,8 @@ TEST(Ticks, TicksAreRoundAndWithinTheRange) {
   EXPECT_EQ(tickLabel(-1e-18, 0.1), "0.0");
 }
 
-// Property: marks of any axis lie inside it, equally far apart by 1, 2 or 5 times a power of ten, and their
-// number is the one asked for within a factor of 1.6, give or take one at the ends.
+// Property: ticks lie inside the axis at a constant step of 1, 2 or 5 times a power of ten; their number is
+// within a factor of 1.6 of the requested number, plus or minus one.
 TEST(Ticks, TicksOfRandomAxesAreRoundAndEquidistant) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> power(-9.0, 9.0), share(0.0, 3.0);

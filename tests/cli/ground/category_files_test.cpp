@@ -11,14 +11,14 @@ namespace category_files_test {
 
 constexpr int kWidth = 700, kHeight = 600;
 
-// Flat, with a wall and a hole.
+// Flat terrain with a wall and an area without data.
 std::string site() {
   return asciiGrid(kWidth, kHeight, [](int column, int row) {
     return column < 200 && row < 150 ? -9999.0 : column == 300 ? 9.0 : 0.0;
   });
 }
 
-// Property: both files have the category that explain gives, at each of three places.
+// Property: at three places, both files have the category that `talus explain` prints.
 TEST(CategoryFiles, CategoryFilesMatchExplain) {
   const Folder folder;
   folder.write("site.asc", site());
@@ -36,7 +36,7 @@ TEST(CategoryFiles, CategoryFilesMatchExplain) {
   EXPECT_THAT(fileContent(folder / "c.qml"),
               testing::HasSubstr("value=\"2\" color=\"#9e1020\" alpha=\"255\" label=\"dangerous\""));
   ASSERT_EQ(band.GetOverviewCount(), 1);
-  // Property: no cell of an overview is of a lesser category than one under it.
+  // Property: the category of an overview cell is at least the worst category of the cells below.
   std::vector<std::uint8_t> fine(kWidth * kHeight), coarse(kWidth * kHeight / 4);
   ASSERT_EQ(
       band.RasterIO(GF_Read, 0, 0, kWidth, kHeight, fine.data(), kWidth, kHeight, GDT_Byte, 0, 0, nullptr),
@@ -64,7 +64,7 @@ TEST(CategoryFiles, CategoryFilesMatchExplain) {
   const YAML::Node yaml = YAML::LoadFile(folder / "n.yaml");
   EXPECT_EQ(yaml["image"].as<std::string>(), "n.pgm");
   EXPECT_EQ(yaml["resolution"].as<double>(), 1.0);
-  // Closed form: of map_server's trinary mode; nothing but free cells is free.
+  // Closed form: thresholds of map_server's trinary mode; only cells written as free are read as free.
   const double free = yaml["free_thresh"].as<double>(), occupied = yaml["occupied_thresh"].as<double>();
   EXPECT_LT((255 - 0xFE) / 255.0, free);
   EXPECT_GT((255 - 0x80) / 255.0, free);

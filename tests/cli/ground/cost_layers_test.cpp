@@ -17,7 +17,7 @@ using Words = std::vector<std::string>;
 
 constexpr int kWidth = 40, kHeight = 24;
 
-// A raster of text by column and row from the south-west.
+// An ASCII raster with the text value(column, row), counted from the south-west.
 std::string raster(const std::function<std::string(int, int)>& value) {
   std::string text = "ncols 40\nnrows 24\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   for (int row = kHeight - 1; row >= 0; --row) {
@@ -27,7 +27,8 @@ std::string raster(const std::function<std::string(int, int)>& value) {
   return text;
 }
 
-// Level ground, and layers over it: 20 J/m anywhere; a wall with a gap in the north, of joules, refused, or without data.
+// Level ground and cost layers: 20 J/m everywhere; a wall with a gap in the north of high cost, refused, or
+// no data.
 class CostLayers : public testing::Test {
  protected:
   CostLayers() {
@@ -68,7 +69,7 @@ class CostLayers : public testing::Test {
   const Folder folder;
 };
 
-// Closed form: 30 m at 20 and at 40 J/m.
+// Closed form: 30 m at 20 J/m and at 40 J/m.
 TEST_F(CostLayers, LayerCostIsAddedToCostAndEnergy) {
   const json plain = score({}), shadow = score({"--layer", "shadow=shadow.asc"}),
              both = score({"--layer", "shadow=shadow.asc", "--layer", "radio=shadow.asc"});
@@ -125,7 +126,7 @@ TEST_F(CostLayers, MapStoresItsLayers) {
   EXPECT_THAT(twice.err, HasSubstr("give --layer to talus costmap"));
 }
 
-// Closed form: 4.5 m of the path lie in its shadow.
+// Closed form: 4.5 m of the path lie in the shadow of the plugin's layer.
 TEST_F(CostLayers, PluginLayerAddsCostAndRefusesCells) {
   const json plain = score({}), shadow = score({"--layer", std::string("shadow=") + TALUS_SHADOW_LAYER});
   EXPECT_NEAR(shadow["cost"].get<double>() - plain["cost"].get<double>(), 4.5 * 20.0, 1e-2);

@@ -18,7 +18,7 @@ TEST(FileFormats, DocumentMatchesTheReaders) {
   EXPECT_EQ(document.substr(std::min(document.find("## "), document.size())), formatsMarkdown());
 }
 
-// Beside what the readers of telemetry know there are two columns of words.
+// The list contains the columns known to the telemetry reader and the two text columns `run` and `wheel`.
 TEST(FileFormats, TelemetryColumnsAreThoseOfTheReader) {
   std::vector<std::string> expected{"run", "wheel"};
   const auto& known = terramech::knownTelemetryColumns();
@@ -26,7 +26,7 @@ TEST(FileFormats, TelemetryColumnsAreThoseOfTheReader) {
   EXPECT_EQ(terramech::namesOf(terramech::telemetryKeys()), expected);
 }
 
-// And a table of x_m, y_m beside them.
+// The list contains the supported vector formats and CSV tables with x_m, y_m.
 TEST(FileFormats, VectorFormatsAreTheSupportedDrivers) {
   std::vector<std::string> expected = maps::vectorFormats();
   expected.emplace_back("CSV");
@@ -36,7 +36,7 @@ TEST(FileFormats, VectorFormatsAreTheSupportedDrivers) {
     }
 }
 
-// Property: every key is taken where it is listed: what is refused is never its name.
+// Property: no listed key is refused as unknown; errors concern only the values.
 TEST(FileFormats, EveryListedKeyIsAccepted) {
   const Folder folder;
   const auto refusal = [&](const std::string& yaml, const std::vector<std::string>& call) {

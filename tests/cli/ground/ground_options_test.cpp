@@ -33,7 +33,7 @@ Context quiet() {
   return context;
 }
 
-// Closed form: degrees as radians; a flag turns its threshold over.
+// Closed form: degrees are converted to radians; a flag inverts the default of its threshold.
 TEST(GroundOptions, PolicyFollowsTheCommandLine) {
   const auto policy =
       parsed("dem.tif --no-marginal --allow-unknown --slope-uncertainty-deg 10 --time-weight 3").policy;
@@ -55,7 +55,7 @@ TEST(GroundOptions, GroundHasTheGivenSoilAndRover) {
   ASSERT_EQ(ground.map.model().parts().classes.size(), 1U);
   EXPECT_EQ(ground.map.surface().footprintRadius_m(), 1.5);
   EXPECT_EQ(ground.files.front(), dem);
-  // Property: a map that was built is taken for what it is, whichever way it is named.
+  // Property: a built map is recognised as such as the DEM argument and as --map.
   const std::string built = folder / "map.ot";
   costmap::writeMap(ground.map, built);
   for (const std::string& line : {built, "any.tif --map " + built}) {
@@ -64,7 +64,7 @@ TEST(GroundOptions, GroundHasTheGivenSoilAndRover) {
     EXPECT_EQ(again.map.costs().countCategories().safe, ground.map.costs().countCategories().safe);
   }
   EXPECT_NO_THROW(readGround(parsed(built + " --rover fido"), quiet()));
-  // Property: nothing that a call says of a built map is ignored.
+  // Property: options that conflict with a built map are refused, not ignored.
   for (const char* ignored :
        {"--keep-out rocks.geojson", "--no-marginal", "--unmonitored", "--risk-weight 1", "--pose-error 2",
         "--soil dry_sand", "--soils s.yaml", "--terrain c.tif", "--terrain-band 1", "--rocks r.tif",
@@ -107,7 +107,7 @@ TEST(GroundOptions, OversizedFootprintIsRejected) {
               ThrowsMessage<InputError>(HasSubstr("hide the steps and slopes")));
 }
 
-// Which file is wrong is told where the number alone is no mistake.
+// Values that are valid alone but not in combination are reported with their file.
 TEST(GroundOptions, InvalidRoverAndSoilValuesAreReportedWithTheirFile) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1";
@@ -125,7 +125,7 @@ TEST(GroundOptions, InvalidRoverAndSoilValuesAreReportedWithTheirFile) {
               ThrowsMessage<InputError>(HasSubstr("soil.yaml: soil 'doubt': cohesion_Pa = 5e+11")));
 }
 
-// A classes file replaces the soil of the body where it defines class 0, and is added to a soil that is named.
+// A classes file replaces the soil of the body; with --soil the classes are added to that soil.
 TEST(GroundOptions, ClassesFileIsCombinedWithANamedSoil) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
@@ -142,8 +142,7 @@ TEST(GroundOptions, ClassesFileIsCombinedWithANamedSoil) {
               ThrowsMessage<InputError>(HasSubstr("no_such")));
 }
 
-// Closed form: theta_m / theta_1 = c1 + c2 slip is 1.08 at slip 1, and -0.32 at slip -1. Either ended the build of the map by
-// exit 1, without the file.
+// Closed form: theta_m / theta_1 = c1 + c2 slip is 1.08 at slip 1, and -0.32 at slip -1: outside the contact.
 TEST(GroundOptions, StressPeakOutsideTheContactIsRejectedNamingTheFile) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(20, 20, flat)) + " --resolution 1 --rover fido";
@@ -163,8 +162,8 @@ TEST(GroundOptions, StressPeakOutsideTheContactIsRejectedNamingTheFile) {
         << given;
 }
 
-// Closed form: one pixel in 25 of each cell of column 2 is of the weak class, whatever its number; rocks are not seen in
-// one pixel of column 4 and dense in one of column 6.
+// Closed form: 1 of 25 pixels in each cell of column 2 has the weak class; one pixel in column 4 has no rock
+// data, one pixel in column 6 has dense rocks.
 TEST(GroundOptions, WeakestClassAndRocksOfPartialPixelsAreUsed) {
   const Folder folder;
   const auto raster = [&](const std::string& name, auto value) {

@@ -32,7 +32,8 @@ MapOptions parsed(const std::string& line) {
   return options;
 }
 
-// Closed form: heights of the cells' columns and rows; a window keeps the cells inside it.
+// Closed form: elevation as a function of column and row; with a window, only cells inside the window are
+// read.
 TEST(MapOptions, ElevationFollowsTheReadOptions) {
   const Folder folder;
   const std::string dem = folder.write("dem.asc", asciiGrid(12, 9, ramp));
@@ -60,7 +61,7 @@ TEST(MapOptions, InvalidReadOptionsAreRejected) {
   EXPECT_THROW(parsed("--band 1"), CLI::RequiredError);
 }
 
-// Closed form: two squares of keep-out, of which either shuts its cells; no other layer where none is named.
+// Closed form: two keep-out squares block the cells of both; layers without a file stay empty.
 TEST(MapOptions, KeepOutFilesAreCombined) {
   const Folder folder;
   const auto square = [&folder](const std::string& name, int x) {

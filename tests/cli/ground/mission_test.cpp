@@ -29,7 +29,8 @@ TEST(Mission, MissionIsDetectedByItsExtension) {
   EXPECT_FALSE(isMission("yaml") || isMission("m.tif") || isMission("m.yaml.tif"));
 }
 
-// Closed form: degrees as radians; files beside the mission by their path, others as they stand.
+// Closed form: degrees are converted to radians; paths beside the mission are resolved, other names
+// unchanged.
 TEST(Mission, EveryMissionFieldIsRead) {
   const Folder folder;
   folder.write("dem.tif", "x");
@@ -37,7 +38,7 @@ TEST(Mission, EveryMissionFieldIsRead) {
   const PlanOptions plan = readIn(folder);
   EXPECT_EQ(plan.ground.dem.path, folder / "dem.tif");
   EXPECT_EQ(plan.ground.soils, folder / "soils.yaml");
-  EXPECT_EQ(plan.ground.layers.terrain, "classes.tif");  // not there: the reader will say so
+  EXPECT_EQ(plan.ground.layers.terrain, "classes.tif");  // not read here
   EXPECT_EQ(plan.ground.rover, "mer");
   EXPECT_THAT(plan.ground.layers.keep_out, ElementsAre("area.json"));
   EXPECT_EQ(plan.ground.dem.read.resolution_m, 2.0);
@@ -54,7 +55,7 @@ TEST(Mission, EveryMissionFieldIsRead) {
   EXPECT_EQ(plan.output, "r.geojson");
 }
 
-// Property: what the command line says holds over the file, stricter thresholds above all.
+// Property: values from the command line have precedence over the mission file, such as stricter thresholds.
 TEST(Mission, CommandLineOverridesTheMission) {
   const Folder folder;
   PlanOptions said;
@@ -71,7 +72,7 @@ TEST(Mission, CommandLineOverridesTheMission) {
   EXPECT_EQ(plan.ground.dem.read.resolution_m, 0.5);
   EXPECT_FALSE(plan.ground.policy.allow_marginal);
   EXPECT_EQ(plan.ground.policy.risk_weight_J, 7e8);
-  EXPECT_EQ(plan.ground.policy.time_weight_W, 3.0);  // not said on the line
+  EXPECT_EQ(plan.ground.policy.time_weight_W, 3.0);  // not given on the command line
   EXPECT_THAT(plan.goals, ElementsAre("3,3"));
   EXPECT_EQ(plan.planner, "RRTstar");
   EXPECT_EQ(plan.tolerance_m, 0.25);

@@ -17,7 +17,7 @@ MotionOptions parsed(const std::string& line) {
   return drive;
 }
 
-// Closed form: degrees as radians.
+// Closed form: degrees are converted to radians.
 TEST(MotionOptions, HeadingsAreAcceptedInRadiansOrDegrees) {
   EXPECT_EQ(*parsed("--start-heading 1.5").start_heading_rad, 1.5);
   EXPECT_NEAR(*parsed("--goal-heading-deg 90").goal_heading_rad, std::numbers::pi / 2, 1e-12);
@@ -47,7 +47,7 @@ TEST(MotionOptions, ChassisTypeFollowsTheOption) {
   const auto rigid = chassisOf(parsed("--chassis rigid").chassis, map);
   ASSERT_TRUE(rigid);
   EXPECT_EQ(rigid->refusal({{104.0, 204.0}, 0.0}), "");                 // Closed form: level ground
-  EXPECT_THROW(chassisOf("rocker-bogie", map), std::invalid_argument);  // four wheels
+  EXPECT_THROW(chassisOf("rocker-bogie", map), std::invalid_argument);  // rover with four wheels
 }
 
 }  // namespace motion_options_test

@@ -22,7 +22,8 @@ TEST(PathReader, TablesAreReadWithColumnsInAnyOrder) {
   EXPECT_THAT(read("p.TXT", "x_m,y_m\n1,2\n"), ElementsAre(Point{1, 2}));
 }
 
-// Property: a route of ours gives back its map metres to the last bit, whatever its coordinates are rounded to.
+// Property: the properties x_m, y_m of a route file are read bit for bit, even if its coordinates are
+// rounded.
 TEST(PathReader, RouteMetresAreReadExactly) {
   EXPECT_THAT(read("r.geojson", R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature",
       "geometry":{"type":"LineString","coordinates":[[0.11,7.02],[0.3,8]]},
@@ -30,7 +31,7 @@ TEST(PathReader, RouteMetresAreReadExactly) {
               ElementsAre(Point{0.1, 7}, Point{0.30000000000000004, 8}));
 }
 
-// A route whose line was moved or cut in another program was judged where it had been before, and allowed.
+// Regression: a route edited in another program was checked along its original line.
 TEST(PathReader, InconsistentCoordinatesAreRejected) {
   const auto with = [](const std::string& coordinates) {
     return R"({"type":"FeatureCollection","crs":"local","features":[{"type":"Feature","geometry":{"type":"LineString",
@@ -53,7 +54,7 @@ TEST(PathReader, FirstLineOfAGeoJsonIsRead) {
               ElementsAre(Point{1, 2}, Point{3, 4}));
 }
 
-// It is judged cell by cell: each vertex near the map, and their sum without an end.
+// A path is checked cell by cell, so the total length is limited, although each vertex lies near the map.
 TEST(PathReader, PathLongerThanFourMillionCellsIsRejected) {
   std::string rows = "x_m,y_m\n";
   for (int k = 0; k < 100; ++k) rows += k % 2 == 0 ? "0,0\n" : "400000,0\n";

@@ -14,8 +14,8 @@ std::map<std::string, maps::Raster<float>> layersOf(const costmap::Traversabilit
   return layers;
 }
 
-// Closed form: a plane that rises by 0.1 eastwards has the slope atan 0.1 everywhere and climbs to the east;
-// uphill costs more than downhill, and a cell without elevation has no number but its category.
+// Closed form: a plane rising eastwards by 0.1 has slope atan 0.1; uphill costs more than downhill; cells
+// without elevation are NaN except for their category.
 TEST(SiteLayers, LayersOfAPlaneMatchClosedForm) {
   const std::vector<std::string> rows(14, "1111111?222222");
   auto layers = layersOf(costmap::mapOf(rows, 0.1));
@@ -31,7 +31,7 @@ TEST(SiteLayers, LayersOfAPlaneMatchClosedForm) {
   EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][hole]));
 }
 
-// Property: a cell's best heading is no worse than its worst, and better on some slope that is safe one way only.
+// Property: the category in the best heading is at most that in the worst heading, and lower on some slope.
 TEST(SiteLayers, BestHeadingIsNoWorseThanTheWorst) {
   bool better = false;
   for (const double gradient : {0.05, 0.1, 0.15, 0.2, 0.25}) {
@@ -44,7 +44,7 @@ TEST(SiteLayers, BestHeadingIsNoWorseThanTheWorst) {
   EXPECT_TRUE(better);
 }
 
-// Property: the weaker soil pulls less and sinks more, and categories are those of the map.
+// Property: the weaker soil has less drawbar pull and more sinkage; categories equal those of the map.
 TEST(SiteLayers, LayersMatchTheMap) {
   const auto map = costmap::mapOf({"1111111222222", "1111111222222", "11111112222#2", "1111111222222"});
   auto layers = layersOf(map);
@@ -53,7 +53,7 @@ TEST(SiteLayers, LayersMatchTheMap) {
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 13; ++column)
       EXPECT_EQ((layers["category"][{column, row}]), static_cast<float>(map.belief({column, row}).category));
-  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][{11, 1}]));  // kept out
+  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][{11, 1}]));  // keep-out cell
 }
 
 }  // namespace site_layers_test

@@ -31,8 +31,8 @@ TEST(WindowedGround, WindowsAreUsedOnlyAboveTheCellLimit) {
   EXPECT_FALSE(needsWindows(built, 10));
 }
 
-// Property: the windows give the codes of the ground read as a whole, away from the DEM's edge, and the
-// overview is coarser by a whole factor and covers it.
+// Property: cell codes read by windows equal those of the full ground except near the edge of the DEM; the
+// cells of the overview are larger by an integer factor and cover the map.
 TEST(WindowedGround, WindowsAreBitIdenticalToTheFullGround) {
   const Folder folder;
   const GroundOptions of = options(folder);

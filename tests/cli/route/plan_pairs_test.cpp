@@ -43,7 +43,7 @@ TEST(PlanPairs, EachRowEqualsASinglePlan) {
   alone.erase("seconds");
   among.erase("pair");
   EXPECT_EQ(among, alone);
-  // One that cannot be planned is a row like any other.
+  // A pair without a route is reported in its own row.
   EXPECT_EQ(lines[2]["status"], "start_invalid");
   EXPECT_THAT(lines[2]["reason"].get<std::string>(), HasSubstr("start"));
   EXPECT_EQ(lines[3]["status"], "found");

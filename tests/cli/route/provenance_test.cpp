@@ -5,7 +5,7 @@
 namespace talus::cli {
 namespace provenance_test {
 
-// Property: two calls that differ in outputs and threads alone have the same text.
+// Property: calls that differ only in program path, outputs and threads have the same text.
 TEST(Provenance, CallTextOmitsOutputsAndThreads) {
   const char* const long_call[] = {"/usr/bin/talus", "plan",          "dem.tif",   "--start", "1,2",    "-o",
                                    "r.geojson",      "--html=p.html", "--threads", "4",       "--seed", "7",

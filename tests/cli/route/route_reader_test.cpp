@@ -15,7 +15,7 @@ namespace route_reader_test {
 
 using testing::HasSubstr;
 
-/// A route as it lies on disk.
+/// A route file as JSON.
 nlohmann::ordered_json written() {
   return routeGeoJson(exampleRoute(), exampleMap(), {.files = {}, .seed = 7});
 }
@@ -78,7 +78,7 @@ TEST(RouteReader, ErrorsNameFileAndField) {
 }
 
 TEST(RouteReader, TruncatedRouteIsRejected) {
-  // Property: a route cut anywhere is refused, never half read. Every 97th length, the file being long.
+  // Property: a truncated route file is refused; tested for every 97th length to save time.
   const Folder folder;
   const std::string whole = written().dump();
   EXPECT_REFUSED(readRoute(folder.write("cut.geojson", "")), InputError, "is empty");
@@ -88,8 +88,8 @@ TEST(RouteReader, TruncatedRouteIsRejected) {
 }
 
 TEST(RouteReader, FieldOfWrongTypeIsReadOrRejected) {
-  // Property: each property replaced by a word, a number, an empty array or nothing is refused or read, never
-  // worse.
+  // Property: a property replaced by a text, a number, an empty array or null is read or refused with
+  // InputError.
   const Folder folder;
   const auto properties = written()["features"][0]["properties"];
   for (const auto& [key, value] : properties.items()) {

@@ -29,7 +29,8 @@ std::string write(const Folder& folder, const std::string& name, const maps::Ele
   return folder / name;
 }
 
-// Property: what another program gets is what `talus score --path` reads: the same metres, to rounding of degrees.
+// Property: every format gives the same metres when `talus score --path` reads the file, except for rounded
+// degrees.
 TEST(RouteWriter, EveryFormatRoundTripsAsAPath) {
   const Folder folder;
   const maps::ElevationMap map = mapOf(maps::kEarth);

@@ -1,4 +1,4 @@
-// The program, C++, C and Python plan the same route for the same request.
+// The program and the C++, C and Python interfaces plan the same route for the same request.
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -33,7 +33,7 @@ constexpr const char* kSoil =
     "1400, "
     "frictional_modulus: 820000, shear_modulus_m: 0.018}\n";
 
-// Metres in whole eighths, which three decimals and a float state exactly.
+// Elevations in multiples of 1/8 m, which three decimals and a float represent exactly.
 double bumpy(int column, int row) {
   return std::round(8.0 * (1.5 * std::sin(column / 6.0) * std::cos(row / 5.0) + 0.04 * column)) / 8.0;
 }

@@ -23,7 +23,7 @@ planner::WorldResult numbered(std::size_t b, std::size_t i) {
   return result;
 }
 
-// Property: a result that went through text is the same to the bit, and in its place, whatever the workers.
+// Property: results are bitwise equal and in order after the conversion to text, for any number of workers.
 TEST(DriveWorlds, ResultsAreInOrderForAnyWorkerCount) {
   const Campaign campaign;
   for (const std::size_t workers : {1U, 3U}) {

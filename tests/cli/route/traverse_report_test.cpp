@@ -22,7 +22,7 @@ planner::WorldResult world(Outcome outcome, double energy_J) {
   return result;
 }
 
-// Property: what is sent from process to process comes back to the bit, for every outcome.
+// Property: a result sent between processes as JSON is bitwise equal, for every outcome.
 TEST(DriveReport, ResultRoundTripsThroughJson) {
   for (const Outcome outcome : {Outcome::Reached, Outcome::Immobilised, Outcome::Tipped, Outcome::GaveUp}) {
     const planner::WorldResult sent = world(outcome, 0.1 * 0.7);
@@ -41,10 +41,10 @@ TEST(DriveReport, LabelsAndJsonNamesMatchTheirDocumentation) {
   EXPECT_EQ(label(Outcome::GaveUp), "no feasible route");
   EXPECT_EQ(label(Outcome::Reached), "reached");
   EXPECT_EQ(label(SoilKnowledge::PerfectKnowledge), "perfect knowledge");
-  EXPECT_EQ(asJson(world(Outcome::GaveUp, 1.0))["outcome"], "gave_up");  // promised
+  EXPECT_EQ(asJson(world(Outcome::GaveUp, 1.0))["outcome"], "gave_up");  // stable name in files
 }
 
-// Closed form: three of four reached: 75 %; the mean energy is of those three alone.
+// Closed form: three of four worlds reached the goal: 75 %; the mean energy is that of these three worlds.
 TEST(DriveReport, RatesAreSharesOfTheWorlds) {
   const std::vector<planner::WorldResult> results{world(Outcome::Reached, 100.0),
                                                   world(Outcome::Reached, 200.0), world(Outcome::Tipped, 9e9),
@@ -59,7 +59,7 @@ TEST(DriveReport, RatesAreSharesOfTheWorlds) {
   EXPECT_THAT(asText(results), HasSubstr("75.0 % ["));
 }
 
-// Closed form: where perfect knowledge reached the goal, 100 J against 150 J is 1.5 times as much.
+// Closed form: in worlds solved with perfect knowledge, 150 J against 100 J gives the ratio 1.5.
 TEST(DriveReport, BeliefsAreComparedInWorldsSolvedWithPerfectKnowledge) {
   BeliefResults beliefs;
   for (auto& each : beliefs) each = {world(Outcome::Reached, 150.0), world(Outcome::Immobilised, 1.0)};

@@ -11,8 +11,8 @@
 namespace talus::cli {
 namespace traverse_telemetry_test {
 
-// Property: what the reader of telemetry takes is what the wheels read, to nine digits; a slope is the angle of
-// its gradient, and what is not known is missing.
+// Property: the telemetry reader returns the recorded wheel values to nine digits; slope_rad is the atan of
+// the gradient; unknown values are missing.
 TEST(DriveTelemetry, TelemetryRoundTrips) {
   const Folder folder;
   planner::TraverseSimulation drive;

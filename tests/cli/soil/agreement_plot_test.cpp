@@ -5,7 +5,8 @@
 namespace talus::cli {
 namespace agreement_plot_test {
 
-// Property: rows without a measurement or a prediction are left out, and the line of agreement spans the measurements.
+// Property: rows without measurement or prediction are omitted; the line of equality spans the measured
+// range.
 TEST(AgreementPlot, OnlyMeasuredAndPredictedRowsAreShown) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Eigen::MatrixXd measured = Eigen::MatrixXd::Constant(4, 4, kNone), told = Eigen::MatrixXd::Zero(4, 4);

@@ -8,7 +8,8 @@ namespace trace_answer_test {
 
 using terramech::TraceResult;
 
-/// Ten rows whose errors exceed the floor, one candidate promising `promised`, gaining `fitted` when fitted; 6 is evidence.
+/// Ten rows with errors above the noise floor and one candidate: gain `promised` to first order, `fitted`
+/// after the fit.
 TraceResult resultOf(double promised, double fitted) {
   TraceResult result;
   result.trial.states.resize(10, {.load_N = 50.0});
@@ -25,7 +26,7 @@ TraceResult resultOf(double promised, double fitted) {
   return result;
 }
 
-// It read "gain 7.7 of 6.0 that would be evidence".
+// The text must name the gain that is below the threshold of 6.0.
 TEST(TraceAnswer, RejectedGainNamesTheInsufficientValue) {
   EXPECT_EQ(refusal(resultOf(2.5, 2.0)), "gain 2.5, below the 6.0 that would be evidence");
   EXPECT_EQ(refusal(resultOf(7.7, 5.1)),
@@ -52,8 +53,8 @@ TEST(TraceAnswer, NothingMissingRequestsNoMeasurement) {
   EXPECT_EQ(answerOf(result).measure, "");
 }
 
-// Property: side bulldozing of size 0 stands in place of the base's, whose term is gone then; a rear fill of size 0 of
-// a wheel that does not dig is nothing, and one of the base's own size would be felt.
+// Property: side bulldozing of size 0 replaces, and so removes, the term of the base soil. A rear fill of
+// size 0 adds nothing if the wheel does not dig.
 TEST(TraceAnswer, EffectOfSizeZeroRemovesTheTermOfTheBase) {
   TraceResult result = resultOf(2.5, 2.0);
   for (int row = 0; row < 10; ++row) {

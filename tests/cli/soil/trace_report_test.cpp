@@ -9,7 +9,7 @@ namespace trace_report_test {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Rows in which "temperature" follows "depth" closely, "same" is depth turned over and "noise" is of its own.
+// Rows in which "temperature" is correlated with "depth", "same" is -2 depth, and "noise" is independent.
 terramech::Trial trial() {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -34,8 +34,8 @@ terramech::Explanation explanation(const std::string& name, const std::string& c
   return made;
 }
 
-// Closed form: 3 x + 0.5 e has the correlation 3 / sqrt(9.25) = 0.986 with x, -2 x has -1; both are above 0.9
-// in size. A column that does not vary has none, nor does a missing value count.
+// Closed form: 3 x + 0.5 e has the correlation 3 / sqrt(9.25) = 0.986 with x, -2 x has -1: both above 0.9 in
+// magnitude. Constant columns have no correlation; missing values are skipped.
 TEST(TraceReport, CorrelatedColumnsAreConfounded) {
   EXPECT_THAT(confounded(trial(), "depth"), ElementsAre("temperature", "same"));
   EXPECT_TRUE(confounded(trial(), "noise").empty());
@@ -48,7 +48,7 @@ TEST(TraceReport, CovariateOfAGroupEffectIsTheGroupColumn) {
   EXPECT_EQ(covariateOf({.name = "a", .covariate = "depth"}), "depth");
 }
 
-// Property: a rival in another column is told first, then a confounded column, then a rival form, then none.
+// Property: order of the alternatives: other column, correlated column, other form of the effect, none.
 TEST(TraceReport, ProposedMeasurementSeparatesTheClosestAlternative) {
   terramech::TracedEffect effect;
   effect.chosen = explanation("ding", "depth");

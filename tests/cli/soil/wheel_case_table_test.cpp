@@ -55,7 +55,7 @@ TEST(WheelCaseTable, ForcesAreAppendedAndEveryColumnKept) {
                                             .frictional_modulus = 1.6e6,
                                             .shear_modulus_m = 0.018},
                                            {}, {.load_N = 80.0, .slip = 0.3});
-  EXPECT_NEAR(std::stod(rows[1][13]) / want.sinkage_m, 1.0, 1e-8);  // Property: as the solver says.
+  EXPECT_NEAR(std::stod(rows[1][13]) / want.sinkage_m, 1.0, 1e-8);  // Property: equal to the solver.
   EXPECT_NEAR(std::stod(rows[1][16]), want.drawbar_pull_N, 1e-6);
 }
 
@@ -79,7 +79,7 @@ TEST(WheelCaseTable, SlipAngleYieldsASideForce) {
                                             .shear_modulus_m = 0.018},
                                            {}, {.load_N = 80.0, .slip = 0.3, .slip_angle_rad = 0.25});
   EXPECT_NEAR(std::stod(rows[1][18]), want.side_force_N,
-              1e-4);  // Property: as the solver says, to the batch's 1e-6.
+              1e-4);  // Property: equal to the solver within 1e-6.
   ASSERT_THAT(table.refused, SizeIs(1));
   EXPECT_THAT(table.refused[0].reason, HasSubstr("slip_angle_rad = 1.9"));
 }
@@ -125,7 +125,7 @@ TEST(WheelCaseTable, InvalidTablesAreRejectedWithoutOutput) {
   EXPECT_THAT(folder.names(), ElementsAre("in.csv"));
 }
 
-// A load of more than a thousand tonnes is refused as what it is, before anything searches for a wheel that carries it.
+// A load above a thousand tonnes is refused before the search for an equilibrium.
 TEST(WheelCaseTable, ExcessiveLoadsAreRejected) {
   const Folder folder;
   std::string row = kGood;

@@ -17,7 +17,7 @@ WheelOperatingPoint work() {
   return {terramech::loadSoil("sandy_loam"), terramech::loadRover("fido"), 80.0, 0.3};
 }
 
-// Property: the page states the forces of the equilibrium, in the units that it names and over r, rW and W.
+// Property: the page lists the equilibrium forces with units and divided by r, rW and W (radius r, load W).
 TEST(WheelReport, PageShowsTheEquilibriumForces) {
   const WheelOperatingPoint at = work();
   const double r = at.rover.wheel.radius_m;
@@ -34,7 +34,7 @@ TEST(WheelReport, PageShowsTheEquilibriumForces) {
   EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,"));
 }
 
-// Property: soils that are compared have a curve each.
+// Property: each compared soil has its own curve.
 TEST(WheelReport, ComparedSoilsHaveTheirOwnCurves) {
   WheelOperatingPoint at = work();
   const std::size_t alone = wheelReport(at).size();

@@ -29,7 +29,8 @@ BenchmarkRun run(const std::string& planner, std::size_t case_index, double cost
   return made;
 }
 
-// Two planners on two cases; RRTstar's route on the first is refused by the check, though it costs half.
+// Two planners on two cases; the route check refuses the first route of RRTstar, although that route costs
+// half.
 std::vector<BenchmarkRun> runs() {
   std::vector<BenchmarkRun> all{run("field", 0, 100.0), run("field", 1, 120.0), run("RRTstar", 0, 50.0),
                                 run("RRTstar", 1, 100.0)};
@@ -39,11 +40,11 @@ std::vector<BenchmarkRun> runs() {
   return all;
 }
 
-// Closed form: by hand from the costs above.
+// Closed form: computed by hand from the costs above.
 TEST(BenchReport, InvalidRouteHasNoCost) {
   const auto lines = compared(plan(), runs());
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_DOUBLE_EQ(lines[0].worst_gap, 0.2);  // on the first case the field's 100 J are the best that stand
+  EXPECT_DOUBLE_EQ(lines[0].worst_gap, 0.2);  // on the first case the best valid route costs 100 J (field)
   EXPECT_NEAR(lines[0].median_gap, 0.1, 1e-12);
   EXPECT_EQ(lines[1].found, 2);
   EXPECT_EQ(lines[1].breached, 1);
@@ -53,7 +54,7 @@ TEST(BenchReport, InvalidRouteHasNoCost) {
   EXPECT_DOUBLE_EQ(lines[1].max_curvature_1_m, 0.0);
 }
 
-// Property: each planner whose route stands has a curve, in percent of the best route that stands.
+// Property: planners with a valid route have a curve of the gap to the best valid route in percent.
 TEST(BenchReport, InvalidRouteIsNotPlotted) {
   const auto plots = gapsOverTime(plan(), runs());
   ASSERT_EQ(plots.size(), 2u);

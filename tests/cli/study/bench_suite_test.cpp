@@ -24,8 +24,8 @@ Context quiet() {
   return context;
 }
 
-// Property: pairs lie half a diagonal apart at least, a route joins them, the same seed gives the same, and
-// maps of one name in two folders keep their cases apart.
+// Property: start and goal are at least half a map diagonal apart and connected; equal seeds give equal
+// pairs; maps of one name in two folders are separate cases.
 TEST(BenchSuite, PairsAreDistantConnectedAndReproducible) {
   const Folder one, other;
   SuiteOptions options;
@@ -52,7 +52,7 @@ TEST(BenchSuite, PairsAreDistantConnectedAndReproducible) {
   EXPECT_EQ(names.size(), 4U);
 }
 
-// Property: each slip world is planned twice over the same truth.
+// Property: each slip world is planned with two beliefs (mean and tail of slip) over the same true slip.
 TEST(BenchSuite, SlipWorldsArePlannedWithMeanAndTail) {
   SuiteOptions options;
   options.names = {"slip"};
