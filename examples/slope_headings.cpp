@@ -18,7 +18,7 @@ namespace terramech = talus::terramech;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// Headings from straight uphill, through across with the slope rising to the left, to straight downhill.
+// Headings from uphill, over across the slope with the uphill side on the left, to downhill.
 void print(const terramech::SlopeEquilibrium& equilibrium, double tilt_rad) {
   std::printf("heading  slip    slip angle  body turn  energy   reserve: pull  side   holds\n");
   for (int heading = 0; heading <= 180; heading += 15) {

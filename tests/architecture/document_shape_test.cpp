@@ -34,8 +34,8 @@ std::vector<Line> proseOf(const std::string& page) {
   return prose;
 }
 
-// Whether a further sentence begins within the line. Code spans, targets of links and abbreviations have no
-// full stops.
+// Returns true if a second sentence begins within the line. Full stops in code spans, link targets and
+// abbreviations do not count.
 bool holdsTwoSentences(std::string line) {
   line = std::regex_replace(line, std::regex("`[^`]*`"), "C");
   line = std::regex_replace(line, std::regex(R"(\]\([^)]*\))"), "]");
@@ -96,7 +96,7 @@ TEST(DocumentShape, ReadmeFitsOneScreen) {
     }
 }
 
-// The section of the next version: from its heading to the next one.
+// The section of the next version: from its heading to the following heading.
 std::string nextVersion() {
   const std::string page = text(TALUS_SOURCE_DIR "/CHANGELOG.md");
   const auto from = page.find("\n## "), to = page.find("\n## ", from + 1);

@@ -1,4 +1,5 @@
-// A comment that cites an equation by number, (B..) of docs/belief.md or (T..) of docs/effects.md, must cite one that the page has.
+// A comment that cites equation (B..) of docs/belief.md or (T..) of docs/effects.md must cite an existing
+// number.
 #include <map>
 #include <regex>
 #include <set>
@@ -10,7 +11,7 @@
 namespace talus::architecture {
 namespace equations_test {
 
-/// Numbers of a page's equations, which end an indented line, and how often each ends one.
+/// Counts how often each equation number ends an indented line of a page.
 std::map<int, int> defined(const std::string& page, const std::string& letter) {
   const std::regex pattern("(?:^|\n) {4}[^\n]*\\(" + letter + "(\\d+)\\)(?=\n)");
   const std::string all = text(page);

@@ -16,7 +16,7 @@ TEST(PublicHeaders, AreThoseThatCMakeInstalls) {
 }
 
 TEST(PublicHeaders, StateUnitsWhereTheyHaveNumbers) {
-  // Property: a number has its unit as suffix of its name, or a comment states the unit or that it has none.
+  // Property: the name of a number ends with its unit, or a comment states the unit or "[-]" for no unit.
   const std::regex number(R"(\b(double|float) )"),
       unit(
           R"(_(m|m2|m_s2|rad|deg|Pa|kPa|N|Nm|J|W|s|mps|kg|mm|Jpm|J_per_m|per_m|cells)\b)"

@@ -47,7 +47,7 @@ TEST(Readme, IsOnePage) {
   }
 }
 
-/// What the pattern's first group matches in the documents.
+/// Matches of the first group of a pattern in all documents.
 std::set<std::string> named(const std::regex& pattern) {
   std::set<std::string> words;
   for (const auto& file : documents()) {

@@ -1,4 +1,4 @@
-// A comment or document that cites a source by key must cite one that REFERENCES.bib holds.
+// Every source key cited in a comment or document must exist in REFERENCES.bib.
 #include <algorithm>
 #include <regex>
 #include <set>

@@ -7,7 +7,7 @@
 namespace talus::test {
 namespace requirement_test {
 
-/// What a test that lacks something comes to with CI set to this.
+/// Result of a test with a missing requirement if the environment variable CI has the given value.
 testing::TestPartResult::Type outcome(const char* ci) {
   ::setenv("CI", ci, 1);
   testing::TestPartResultArray results;

@@ -1,4 +1,4 @@
-// docs/safety.md names the test that proves each part: a name without a test fails here.
+// docs/safety.md names a test for each safety property; every name must be that of an existing test.
 #include <regex>
 #include <set>
 

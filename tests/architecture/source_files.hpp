@@ -9,7 +9,7 @@
 
 namespace talus::architecture {
 
-/// Files of one of our folders, by ending; sorted, so that messages are the same everywhere.
+/// Files below a folder of the project with one of the endings, sorted, so that messages are reproducible.
 inline std::vector<std::filesystem::path> files(const std::string& folder,
                                                 const std::vector<std::string>& endings) {
   std::vector<std::filesystem::path> found;
@@ -20,7 +20,7 @@ inline std::vector<std::filesystem::path> files(const std::string& folder,
   return found;
 }
 
-/// The documents that people read: those of the source folder, docs and the READMEs of all folders; sorted.
+/// All Markdown documents: those in the source folder and in the listed folders; sorted.
 inline std::vector<std::filesystem::path> documents() {
   std::vector<std::filesystem::path> found;
   for (const std::string folder :

@@ -6,7 +6,7 @@
 namespace talus::architecture {
 namespace version_test {
 
-// What the pattern's first group matches in a file; empty where nothing does.
+// Match of the first group of a pattern in a file; empty without a match.
 std::string stated(const std::string& file, const std::string& pattern) {
   const std::string content = text(TALUS_SOURCE_DIR "/" + file);
   std::smatch found;

@@ -11,7 +11,7 @@
 
 namespace talus::planner::testing {
 
-/// Random numbers below a limit.
+/// Random integers from 0 to a limit, excluding the limit.
 class Below {
  public:
   explicit Below(unsigned seed) : random_(seed) {}
@@ -23,7 +23,7 @@ class Below {
 
 using MapPointer = std::shared_ptr<const costmap::CostGrid>;
 
-/// How a patch changes: every cell anew, or each cell's soil cheaper, dearer or either.
+/// Change of a patch: new random cells, or cells with a cheaper soil, a more expensive soil, or either.
 enum class Change { Anew, Cheaper, Dearer, Either };
 
 inline MapPointer changed(const MapPointer& map, CellBox box, Change change, Below& below) {

@@ -13,8 +13,8 @@
 
 namespace talus::planner::testing {
 
-/// Cost of a metre in the tests: 10 J on level ground, more uphill than the reduction downhill, times a
-/// factor; refused beyond a gradient along the heading.
+/// Cost curve of the tests: factor (10 + 100 max(g, 0) + 400 g^2) J/m at gradient g along the heading;
+/// refused for gradients steeper than `steepest`.
 struct Ground {
   double factor = 1.0;
   double steepest = 0.3;

@@ -78,7 +78,8 @@ std::optional<Route> lineOf(const fs::path& path) {
   return route;
 }
 
-// The first printed line that lacks the prefix "talus: "; else a count of error lines other than 1 for exit 2; else empty.
+// First line without the prefix "talus: "; else the number of error lines if not 1 for exit code 2; else
+// empty.
 std::string complaintOf(const std::string& printed, int exit) {
   std::istringstream lines(printed);
   int errors = 0;

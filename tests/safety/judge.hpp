@@ -11,8 +11,8 @@
 
 namespace safety {
 
-/// Largest deviation that follows from the stated rounding of Talus (DESIGN: "where bits run out"). A
-/// deviation within the allowance is not reported; a larger deviation is a defect.
+/// Largest deviation that follows from the rounding of stored values in Talus. A deviation within the
+/// allowance is not reported; a larger deviation is a defect.
 struct Allowance {
   double gradient =
       0.001;               ///< of the gradient of a plane: half a step of 1/1024 in each direction, and float

@@ -7,9 +7,9 @@
 namespace talus::planner {
 namespace cost_range_test {
 
-// Closed form: 10 J on level ground; downhill 10 + 400 g^2 is never lower. The maximum is five times the
-// cost of the steepest climb in the table, 76/256, crossed in the last row that the fifth curve allows, the
-// twelfth.
+// Closed form: the minimum is 10 J/m on level ground (10 + 400 g^2 downhill). The maximum is that of the
+// fifth curve: five times the cost of the steepest climb in the table, 76/256, in row 12, the last cross
+// slope allowed.
 TEST(CostRange, RangeCoversAllAllowedMetres) {
   const CostRange range = costRange(*testing::driveCost());
   const double g = 76.0 / 256;

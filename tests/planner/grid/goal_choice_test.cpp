@@ -67,7 +67,7 @@ TEST(GoalChoice, UnreachableGoalsAreSkipped) {
   EXPECT_EQ(plan.goal, 2u);
 
   problem.other_goals = {{2.5, 2.5}};
-  EXPECT_EQ(NamedPlanner().plan(problem).status, RouteStatus::GoalInvalid);  // the nearest goal's
+  EXPECT_EQ(NamedPlanner().plan(problem).status, RouteStatus::GoalInvalid);  // the status of the nearest goal
   problem.start = {2.5, 1.5};
   EXPECT_EQ(NamedPlanner().plan(problem).status, RouteStatus::StartInvalid);
 }

@@ -34,9 +34,9 @@ TEST(OwnPlanner, ViaPointsAndCheapestGoalAreUsed) {
   request.start = {1.5, 1.5};
   request.goal = {9.5, 1.5};
   request.other_goals = {{4.5, 1.5}};
-  EXPECT_NEAR(planner.plan(request).summary.length_m, 3.0, 1e-9);  // Closed form: straight to the nearer
+  EXPECT_NEAR(planner.plan(request).summary.length_m, 3.0, 1e-9);  // Closed form: to the nearer goal
   request.via = {{7.5, 1.5}};
-  const Route route = planner.plan(request);  // Closed form: 6 to the via point, and 2 on beats 3 back
+  const Route route = planner.plan(request);  // Closed form: 6 m to the via point, 2 m to the goal
   EXPECT_NEAR(route.summary.length_m, 8.0, 1e-9);
   EXPECT_TRUE(std::ranges::any_of(route.vertices, [](const RouteVertex& v) { return v.x_m == 7.5; }));
 }

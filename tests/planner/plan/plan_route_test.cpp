@@ -69,7 +69,7 @@ TEST(PlanRoute, RouteStatesTheGoalItReaches) {
   PlanRequest request{.start = {1.5, 0.5}, .goal = {9.5, 0.5}};
   request.other_goals = {{8.5, 0.5}, {3.5, 0.5}};
   const auto map = drawn({".........."});
-  EXPECT_EQ(planRoute(map, request).goal, 2U);  // Closed form: the nearest over even ground
+  EXPECT_EQ(planRoute(map, request).goal, 2U);  // Closed form: the nearest goal on level ground
   request.other_goals.clear();
   EXPECT_EQ(planRoute(map, request).goal, 0U);
 }

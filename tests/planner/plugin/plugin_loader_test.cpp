@@ -35,7 +35,7 @@ TEST(PluginLoader, LoadsAPluginAndPlans) {
   const Route route = planner->plan(request);
   ASSERT_EQ(route.status, RouteStatus::Found) << route.reason;
   EXPECT_EQ(route.summary.planner, "field");
-  EXPECT_GE(route.vertices.size(), 4u);  // Property: the way round two cells has at least two turns
+  EXPECT_GE(route.vertices.size(), 4u);  // Property: a detour around two cells has two turns or more
 }
 
 TEST(PluginLoader, PlannerOutlivesItsLoader) {

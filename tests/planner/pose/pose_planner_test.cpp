@@ -243,8 +243,8 @@ TEST(PosePlanner, DrivesFollowFieldRoutesWithNarrowHeadingCones) {
   }
 }
 
-// Property: if the field proves that no route exists, no drive exists; the answer is the field's, without
-// advice on the heading.
+// Property: if the field proves that no route exists, the plan of a drive returns the same status and reason,
+// without advice on the heading.
 TEST(PosePlanner, FieldProofOfNoRouteAppliesToDrives) {
   Problem problem{.map = testing::drawn({"......#......", "......#......", "......#......"}),
                   .start = {1.5, 1.5},

@@ -82,7 +82,7 @@ class MapTest(Refusals):
         kept = mean.copy()
         del ground
         gc.collect()
-        level()  # takes memory
+        level()  # allocates memory that may reuse freed arrays
         self.assertEqual(float(heights.sum()), 0.0)
         self.assertEqual(x_m[-1], 25.0)
         np.testing.assert_array_equal(mean, kept)
@@ -135,7 +135,7 @@ class MapTest(Refusals):
         """Property: a drive learned in two parts and settled is the map of `talus update`, and the route that of `talus plan`."""
         program = os.environ["TALUS_PROGRAM"]
         hill = pathlib.Path(__file__).resolve().parents[3] / "examples" / "hill.asc"
-        # Four wheels over slopes that come and go, with ever less slip than the soil's class has: the whole proves the sensors.
+        # Four wheels on alternating slopes; slip changes with slope, so the update can verify the sensors.
         moment, wheel = np.repeat(np.arange(80.0), 4), np.tile(np.arange(4.0), 80)
         slope = 0.15 * np.sin(moment / 7.0)
         slip = 0.05 + 0.2 * (slope + 0.15) + np.random.default_rng(3).normal(0.0, 0.003, moment.size)
@@ -180,7 +180,7 @@ class MapTest(Refusals):
         ground = level()
         self.refused(ValueError, "must be found", lambda: ground.write_route(ground.plan((5.0, 10.0), (500.0, 10.0)), "r.geojson"))
         before = ground.beliefs()["pull_mean"]
-        ground.settle()  # nothing was learned
+        ground.settle()  # no rows were added before
         np.testing.assert_array_equal(ground.beliefs()["pull_mean"], before)
 
     def test_a_moved_map_keeps_what_it_knows(self):
@@ -324,7 +324,7 @@ class BackgroundTest(unittest.TestCase):
                 self.endless(ground, progress=progress)
         finally:
             signal.signal(signal.SIGINT, handled)
-        self.assertTrue(ground.plan((5.0, 5.0), (9.0, 9.0)).found)  # the map still plans
+        self.assertTrue(ground.plan((5.0, 5.0), (9.0, 9.0)).found)  # the map is still usable
 
     def test_what_progress_raises_ends_a_plan(self):
         def progress(share):
@@ -348,7 +348,7 @@ class BackgroundTest(unittest.TestCase):
                 self.endless(ground, progress=progress)
             except InterruptedError:
                 pass
-            except Exception as error:  # shown by the test
+            except Exception as error:  # checked by the main thread
                 failures.append(error)
 
         planning = threading.Thread(target=plan)

@@ -88,8 +88,8 @@ TEST(LiftedGround, EachCauseIsReported) {
   EXPECT_EQ(causeOf(site(wall('w'))), Constraint::Soil);
 }
 
-// Property: the reported hazard is the one that blocks the route alone, also if another hazard stands
-// beside; none if each wall is of another kind.
+// Property: the reported hazard blocks the route on its own, also beside another hazard; if each wall has
+// another hazard, no hazard is reported.
 TEST(LiftedGround, OnlyBlockingHazardIsReported) {
   EXPECT_EQ(between(site(wall('k'))).hazard, Hazard::KeepOut);
   EXPECT_EQ(between(site(wall('r'))).hazard, Hazard::Rocks);
@@ -135,8 +135,8 @@ TEST(LiftedGround, SlopeRefusedByLimitAndSoilIsReported) {
   EXPECT_EQ(causeOf(weak(0.2)), Constraint::Slope);
 }
 
-// Property: the rim's clearance around a field of weak soil is no passage; otherwise "hazards" would be
-// reported.
+// Property: the clearance from the rim around a field of weak soil is not a passage; otherwise the reason
+// would be "hazards".
 TEST(LiftedGround, RimClearanceIsNoPassage) {
   std::vector<std::string> rows = wall('w');
   EXPECT_EQ(causeOf(site(rows)), Constraint::Soil);

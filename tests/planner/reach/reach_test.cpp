@@ -73,7 +73,7 @@ TEST(Reach, DescendingHeadingsReachEverythingBelow) {
 // lattice, four to a cell's side, at most three points apart.
 struct Tally {
   int open = 0;    // reached by brute force
-  int wrong = 0;   // number of those that are proven unreachable
+  int wrong = 0;   // reached by brute force but proven unreachable by Reach
   int proven = 0;  // reached by neither method
 };
 
@@ -123,8 +123,8 @@ TEST(Reach, NoFalseProofOnRandomMaps) {
   EXPECT_GT(tally.proven, 2000);
 }
 
-// The same if every cell has a cone of headings: downhill only, on ground that falls southwards overall.
-// Sides of cells are entered in several sections here, from both sides of a blocked cell.
+// Every cell has a cone of headings: downhill only, on ground that falls southwards overall. Sides of cells
+// are entered in several sections, from both sides of a blocked cell.
 TEST(Reach, NoFalseProofOnRandomDescents) {
   const CampaignPart part = campaignPart("TALUS_RANDOM_MAPS", 120);
   Tally tally;

@@ -43,8 +43,8 @@ TEST(StepEdges, ASheerStepIsFoundOnAPlane) {
   EXPECT_EQ(at->edges.at({4, 4}), StepEdges::Kind::None);
 }
 
-// Property: the edges of a bank bend as much as a step may be high, but are attributed to the slope, because
-// no rise exceeds those on both sides.
+// Property: the edges of a bank exceed the step limit, but are attributed to the slope of the bank, because
+// no rise exceeds the rises on both sides.
 TEST(StepEdges, EdgesOfABankAreOfItsSlope) {
   const auto at = site([](int column) { return 0.6 * std::clamp(column - 7, 0, 6); });
   for (const int column : {7, 13}) {

@@ -138,7 +138,7 @@ TEST_P(EveryPlanner, TimeLimitOverridesTheWorkLimit) {
   problem.time_limit_s = 0.3;
   const Plan plan = planBySampling(problem, {.planner = GetParam(), .work = 1}, detour);
   EXPECT_EQ(plan.status, RouteStatus::Found);
-  EXPECT_LT(plan.cost_J, detour(problem).cost_J);  // work of 1 leaves the known route as it was
+  EXPECT_LT(plan.cost_J, detour(problem).cost_J);  // with a work limit of 1 the known route is unchanged
 }
 
 TEST_P(EveryPlanner, ForbiddenClimbsAreNeverUsed) {

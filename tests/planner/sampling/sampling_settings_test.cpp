@@ -42,8 +42,8 @@ TEST(SamplingSettings, UnsupportedParametersAreRejectedByName) {
   EXPECT_THAT(said("hybrid:range=2"), HasSubstr("not an OMPL planner"));
 }
 
-// Property: the first solution is the field's route, unless the start is cold; a parameter reaches the
-// planner.
+// Property: the first solution is the field's route, unless the option `cold` is set; parameters are passed
+// to the planner.
 TEST(SamplingSettings, ColdStartOmitsTheFieldRoute) {
   Problem problem{
       .map = testing::randomMap({.width = 40, .height = 40, .seed = 3, .blocked = 0.05, .roughness = 0.2}),

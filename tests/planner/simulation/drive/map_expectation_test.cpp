@@ -35,7 +35,7 @@ TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
         MapExpectation(map, slope(0.0, across)).ofWheel({20.5, 20.5}, {20.0, 20.5}, {1.0, 0.0});
     const auto want = plane.at({0.0, across});
     EXPECT_NEAR(said.slip_angle_rad, std::abs(want.slip_angle_rad), 0.03) << across;
-    EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: never below the required slip
+    EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: at least the required slip
     EXPECT_GT(said.sinkage_over_radius, 0.0);
   }
 }

@@ -42,7 +42,7 @@ TEST(WheelAlarm, SlipAngleAboveExpectationTriggersTheAlarm) {
   for (auto& wheel : slope) wheel.slip_angle_rad = 0.1;
   EXPECT_FALSE(alarm.hear(look, slope).reason);
   slope.assign(6, {.slip = 0.1, .sinkage_over_radius = 0.1, .slip_angle_rad = std::nan("")});
-  EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // nothing known: as on level ground
+  EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // unknown angle: compared with level ground
 }
 
 // Property: less braking than expected downhill is no alarm; a sensor stuck at its level-ground value would
