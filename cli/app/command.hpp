@@ -24,7 +24,7 @@ struct Group {
 struct CommandText {
   std::string name;
   std::string group;        ///< one of Group
-  std::string description;  ///< its purpose, one line
+  std::string description;  ///< purpose in one line
   std::string examples;     ///< at least two calls, each on lines indented by two blanks
 };
 

@@ -142,7 +142,7 @@ terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::Trav
   return telemetry;
 }
 
-// Adds the rows of the file to the map. `report` already contains the rows replayed from the journal.
+// Adds the rows of the file to the map. `report` contains the rows replayed from the journal.
 void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
                   const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
                   const Context& context, costmap::DriveReport& report) {

@@ -21,13 +21,13 @@ struct Series {
   std::vector<double> y_std = {};  ///< empty, or standard deviations: band (Line) or bars
   Mark mark = Mark::Line;
   bool dashed = false;
-  std::optional<Colour> colour = {};  ///< none: next distinguishable colour
+  std::optional<Colour> colour = {};  ///< empty: next distinguishable colour
 };
 
 /// One axis.
 struct Axis {
   std::string label;               ///< includes the unit: "slip [-]"
-  std::optional<double> low = {};  ///< none: range of the data
+  std::optional<double> low = {};  ///< empty: range of the data
   std::optional<double> high = {};
 };
 

@@ -9,8 +9,8 @@ namespace talus::cli {
 /// Two places without a connection.
 struct Severed {
   planner::Segment places;
-  double tolerance_m = 0.0;  ///< of the goal
-  std::string reason;        ///< one line
+  double tolerance_m = 0.0;  ///< tolerance of the goal
+  std::string reason;        ///< reason in one line
 };
 
 /// Scene of an infeasible request. The first layer has two classes: cells reachable from the start, and cells

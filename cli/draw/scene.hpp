@@ -93,9 +93,9 @@ struct Scene {
   std::vector<std::pair<maps::Point, std::string>> partings{};  ///< begin and end of deviations
   std::vector<std::pair<const char*, maps::Point>> marks{};  ///< labelled places of a scene without a route
   std::vector<Ring> rings{};
-  std::optional<maps::Georeference> georeference{};  ///< of the map, if known
+  std::optional<maps::Georeference> georeference{};  ///< georeference of the map, if known
   int cells_per_pixel = 1;                           ///< cells of the map per cell of the scene and side
-  std::optional<HeadingCosts> costs{};               ///< of traversability maps
+  std::optional<HeadingCosts> costs{};               ///< traversability maps only
   std::optional<TraverseRecord> story;               ///< a simulated drive for replay
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }

@@ -22,7 +22,7 @@ struct TraverseRecord {
   planner::TraverseSimulation drive;
   std::vector<CellChange> changes;
   std::vector<planner::SoilPatch> patches;
-  maps::Grid grid;  ///< of the cells of `changes`
+  maps::Grid grid;  ///< grid of the cells of `changes`
 };
 
 }  // namespace talus::cli

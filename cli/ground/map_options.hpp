@@ -23,7 +23,7 @@ struct Context;
 struct MapOptions {
   std::string path;
   std::string window;             ///< as entered
-  std::optional<double> below_m;  ///< of an OctoMap: uses ground at or below this height
+  std::optional<double> below_m;  ///< OctoMap only: uses ground at or below this height
   maps::ReadOptions read;
 };
 

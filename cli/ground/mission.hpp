@@ -12,9 +12,9 @@ namespace talus::cli {
 
 /// Constraints on the motion of the rover, for planners of drives.
 struct MotionOptions {
-  std::optional<double> start_heading_rad;  ///< none: any heading
-  std::optional<double> goal_heading_rad;   ///< none: any heading at the goal
-  std::optional<double> turning_radius_m;   ///< none: that of the rover
+  std::optional<double> start_heading_rad;  ///< empty: any heading
+  std::optional<double> goal_heading_rad;   ///< empty: any heading at the goal
+  std::optional<double> turning_radius_m;   ///< empty: that of the rover
   bool no_reverse = false;
   std::string chassis;  ///< "rigid" or "rocker-bogie": limits clearance and tilt along the whole motion
 

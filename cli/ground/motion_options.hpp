@@ -28,8 +28,8 @@ CLI::Validator turningRadius();
 /// Kinematics of the map's rover, overridden by the options of the call.
 planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::TraversabilityMap& map);
 
-/// Chassis of the kind "rigid" or "rocker-bogie"; nothing if `kind` is empty. The chassis holds a reference
-/// to the map.
+/// Chassis of the kind "rigid" or "rocker-bogie"; nothing if `kind` is empty. The chassis refers to the map,
+/// which must outlive the chassis.
 std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
 
 }  // namespace talus::cli

@@ -1,10 +1,10 @@
 # cmake -DOUTPUT=FILE -DPAGE=DIR -DLEAFLET=DIR -DVEGA=DIR [-DTHREE=DIR] -P assemble.cmake
-# Puts the page's template together from its parts and the libraries. Without THREE the page has no relief in three dimensions.
+# Joins the parts of the page template and the libraries. Without THREE the page has no 3-D relief view.
 function(put text)
   file(APPEND "${OUTPUT}" "${text}")
 endfunction()
 
-# A page without network access loads no source maps and no pictures of Leaflet.
+# Links to source maps and to Leaflet's images are removed, because the page must not access the network.
 function(put_script path)
   file(READ "${path}" text)
   string(REGEX REPLACE "//# sourceMappingURL=[^\n]*" "" text "${text}")
@@ -28,7 +28,7 @@ put_style("${LEAFLET}/leaflet.css")
 put_style("${PAGE}/page.css")
 put("</style>\n")
 put_script("${PAGE}/body.html")
-# Text until relief.js makes a script of it: most readers of a page never look at it.
+# Stored as plain text; relief.js executes the text only when the relief view is opened.
 if(THREE)
   put("<script type=\"text/plain\" id=\"three\">\n")
   put_script("${THREE}/three.min.js")

@@ -1,4 +1,4 @@
-// The map in metres (CRS.Simple): hillshade, a coloured layer under its light, north, scale, the place under the cursor.
+// The map in metres (CRS.Simple): hillshade, shaded layer, north arrow, scale bar, coordinates at the cursor.
 function drawMap(element, data) {
   const b = data.bounds;
   const box = L.latLngBounds([[b.south, b.west], [b.north, b.east]]);
@@ -18,14 +18,14 @@ function drawMap(element, data) {
   return map;
 }
 
-// What the first view has to hold.
+// Points that the first view must show: routes, or track and planned routes of a drive.
 function wayOf(data) {
   if (!data.story) return data.routes.flatMap(route => route.points);
   const planned = data.story.events.flatMap(event => event.route);
   return [...data.story.track.map(([, x, y]) => ({x, y})), ...planned.map(([x, y]) => ({x, y}))];
 }
 
-// The view as near as it holds the way, and moved so that as little as can be lies beside the map.
+// Sets the largest zoom that shows all points, shifted so that little area outside the map is visible.
 function firstView(map, data) {
   const b = data.bounds, box = L.latLngBounds([[b.south, b.west], [b.north, b.east]]);
   const points = wayOf(data).map(p => [p.y, p.x]), way = points.length ? L.latLngBounds(points).pad(0.05) : box;
@@ -44,7 +44,7 @@ function showEnd(map, place, letter) {
   L.marker(place, {interactive: false, keyboard: false, icon}).addTo(map);
 }
 
-// A box in a corner of the map, out of the map's own clicks.
+// Adds a box in a corner of the map, whose clicks the map ignores.
 function cornerBox(map, position, className) {
   const control = L.control({position});
   control.onAdd = () => L.DomUtil.create("div", className);
@@ -61,7 +61,8 @@ function showNorth(map) {
     '<text x="13" y="12" text-anchor="middle">N</text></svg>';
 }
 
-// Latitude and longitude in degrees, between the points of a lattice whose directions from the body's centre are mixed.
+// Latitude and longitude [deg] from the directions (unit vectors) of the lattice points, interpolated
+// bilinearly.
 function geographic(places, bounds, x, y) {
   if (!places) return null;
   const n = places.intervals, rad = Math.PI / 180;
@@ -96,13 +97,14 @@ function showCursor(map, data) {
   map.on("mouseout", () => { box.hidden = true; });
 }
 
-// Brightness and contrast of the hillshade that carry its darkest and its brightest to 0 and 1.
+// CSS filter that maps the darkest and brightest values of the hillshade to 0 and 1.
 function lightFilter({low, high}) {
   const gain = 1 / (high - low), contrast = 1 + 2 * gain * low;
   return `brightness(${gain / contrast}) contrast(${contrast})`;
 }
 
-// One layer at a time over the hillshade; the hillshade once more on top, multiplied into the colours by a share.
+// Shows one layer over the hillshade; the hillshade on top is multiplied into the colours by the layer's
+// relief.
 function chooseLayer(map, data, box) {
   const select = document.getElementById("layer"), opacity = document.getElementById("opacity");
   const folded = cornerBox(map, "bottomright", "legend").appendChild(document.createElement("details"));
@@ -127,7 +129,7 @@ function chooseLayer(map, data, box) {
   show();
 }
 
-// The legend of the layer or of the route: colours with names, or a bar with its ends and unit.
+// Legend of the layer or route: colours with names, or a colour bar with its range and unit.
 function showLegend(part, shown) {
   const legend = document.getElementById("legend");
   let entry = legend.querySelector(`[data-part=${part}]`);

@@ -1,4 +1,4 @@
-// Vega comes as CommonJS modules that all claim the same global; each is kept under its own name instead.
+// Vega's CommonJS modules all define one global variable; each module is stored under its own name instead.
 const vegaModules = {};
 function vegaModule(name, body) {
   const module = {exports: {}};

@@ -31,8 +31,8 @@ function showFacts(data) {
   for (const [name, value] of data.provenance) addRow(document.getElementById("provenance"), name, [value]);
 }
 
-// What lies over the map on a screen, its legend and the explained cell, has its own place on paper: it would cover the route, or be cut
-// at the map's edge. Returns how to put it back.
+// Moves the legend and the explained cell from the map into their own area for print, where they would hide
+// the route or be cut off at the edge of the map. Returns a function that moves both back.
 function besideMap() {
   const key = document.getElementById("key"), legend = document.querySelector(".legend"), open = legend.firstChild.open;
   const moved = [legend, ...document.querySelectorAll("#map .probe .leaflet-popup-content > div")].map(part => [part, part.parentNode]);
@@ -44,7 +44,7 @@ function besideMap() {
   };
 }
 
-// For a printer the page is laid out as a sheet of paper, and the map with it.
+// Lays out page and map on one sheet of paper before printing, and restores the screen layout afterwards.
 function printable(map, data, profiles) {
   let back = null;
   const lay = paper => {

@@ -1,5 +1,6 @@
-// What is known of a cell: a click, or Enter for the cell in the middle of the map; arrow keys then take those beside it.
-// A layer's values are whole numbers of its last decimal in the red, green and blue of an image; zero is no value.
+// Explains a clicked cell, or with Enter the cell at the centre of the map; arrow keys select adjacent cells.
+// Layer values are integers in units of the layer's last decimal, stored in RGB of an image; 0 means no
+// value.
 function words(uri, width, height) {
   return new Promise(done => {
     const image = new Image();
@@ -29,7 +30,7 @@ function valueText(layer, word) {
   return layer.bar.unit ? `${value} ${layer.bar.unit}` : value;
 }
 
-// Returns explain(column, row): what is known of a cell, in a table with the rose of its headings.
+// Returns explain(column, row), which creates a table of layer values and a polar chart of cost over heading.
 function cellReader(data) {
   const {width, height, cell, cells_per_pixel: block} = data.grid, b = data.bounds;
   let values = null, headings = null;

@@ -1,4 +1,5 @@
-// The profiles: one panel per quantity over the distance along the route, with one common rule at the pointer.
+// The profiles: one panel per quantity over the distance along the route, with a common marker at the
+// pointer.
 const allPanels = [
   {field: "elevation", title: "elevation [m]", zero: false},
   {field: "slope", title: "slope [deg]", zero: true},
@@ -7,9 +8,9 @@ const allPanels = [
   {field: "energy", title: "energy [kJ]", zero: true},
   {field: "risk", title: "risk [-]", zero: true},
 ];
-const held = ["slope", "slip", "angle"];  // from one vertex to the next
+const held = ["slope", "slip", "angle"];  // constant from one vertex to the next
 
-// The least and the greatest value of each stretch three pixels wide: more points are not seen and take long to draw.
+// Minimum and maximum of each section three pixels wide: more points are not visible and slow down drawing.
 function thinned(points, field, width) {
   const stretch = points[points.length - 1].s / Math.max(1, width / 3), kept = [];
   for (let from = 0; from < points.length;) {
@@ -80,7 +81,7 @@ function profileSpec(routes, unit, layout) {
   };
 }
 
-// What the element has room for: every panel, or the elevation and the quantity that colours the route.
+// Panels that fit the element: all, or elevation and the quantity that colours the route.
 function layoutOf(element) {
   const height = element.clientHeight - 58;
   const chosen = ["slip", "slope", "energy", "risk", "slip"][document.getElementById("quantity").value];
@@ -90,7 +91,8 @@ function layoutOf(element) {
   return {panels, step, panelHeight: step - 17, width: Math.max(200, element.clientWidth - 62)};
 }
 
-// Draws the profiles and returns {mark(s), draw()}; calls onHover(s) when the pointer moves; s in metres from the start.
+// Draws the profiles and returns {mark(s), draw()}. Calls onHover(s) when the pointer moves, with s the
+// distance from the start [m].
 function drawProfiles(element, routes, onHover) {
   const need = name => vegaModules["vega-" + name];
   for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));

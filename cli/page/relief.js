@@ -1,5 +1,5 @@
-// The ground in three dimensions with the shown layer and the routes on it, by three.js, which becomes a script when it
-// is first opened. Metres east, up and south of the middle of the map; the page states their exaggeration.
+// Terrain in 3-D with the selected layer and the routes, drawn by three.js, which is loaded at the first use.
+// Axes: metres east, up and south of the map's centre; the page states the vertical exaggeration.
 function offerRelief(data) {
   const button = document.getElementById("solid"), place = document.getElementById("relief");
   const text = document.getElementById("three");
@@ -31,10 +31,10 @@ function offerRelief(data) {
   });
 }
 
-// At most so many points a side: a processor without a graphics card draws them at once.
+// Largest number of points per side, few enough for immediate drawing without a graphics card.
 const reliefSide = 256;
 
-// Heights [m] of every stride-th cell from the north west; null where there is no data.
+// Heights [m] of every stride-th cell from the north-west; null for cells without data.
 function heightsOf(data, values, {low, decimals}) {
   const {width, height, cell} = data.grid, stride = Math.max(1, Math.ceil(Math.max(width, height) / reliefSide));
   const columns = Math.ceil(width / stride), rows = Math.ceil(height / stride);
@@ -73,7 +73,8 @@ function groundGeometry(heights, data) {
   return geometry;
 }
 
-// The shown layer as the map has it: under its opacity the hillshade, over it its share of light.
+// The selected layer as on the map: drawn with its opacity over the hillshade, then multiplied by the
+// hillshade.
 async function groundTexture(data) {
   const image = uri => new Promise(done => {
     const made = new Image();
@@ -91,7 +92,7 @@ async function groundTexture(data) {
   if (layer) {
     context.globalAlpha = document.getElementById("opacity").value / 100;
     context.drawImage(await image(layer.image), 0, 0, canvas.width, canvas.height);
-    context.globalAlpha = Math.max(layer.relief, 0.3);  // without lamps the form has to be seen by this alone
+    context.globalAlpha = Math.max(layer.relief, 0.3);  // unlit: only the shading shows the terrain
     context.globalCompositeOperation = "multiply";
     context.filter = lightFilter(data.light);
     context.drawImage(shade, 0, 0, canvas.width, canvas.height);
@@ -102,7 +103,7 @@ async function groundTexture(data) {
   return texture;
 }
 
-// A letter that faces the camera.
+// A label that faces the camera.
 function letterAt(letter, size) {
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d", {willReadFrequently: true});
   canvas.width = canvas.height = 64;
@@ -122,7 +123,7 @@ function letterAt(letter, size) {
   return sprite;
 }
 
-// A route as a tube in the colours of its quantity with a rim of its own, above the ground by its own radius, and the letters at its ends.
+// A route as a tube in the colours of its quantity, raised by its radius, with a rim and labels at both ends.
 function routeInSpace({points, colour: rim}, colours, spot, extent) {
   const group = new THREE.Group(), most = 600, radius = extent / 320;
   const chosen = points.length <= most ? points.map((_, i) => i)
@@ -139,7 +140,7 @@ function routeInSpace({points, colour: rim}, colours, spot, extent) {
     }
     tube.setAttribute("color", new THREE.Float32BufferAttribute(parts, 3));
     group.add(new THREE.Mesh(tube, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors})));
-    const wider = new THREE.TubeBufferGeometry(curve, pieces, 1.7 * radius, around);  // its far side shows as a rim
+    const wider = new THREE.TubeBufferGeometry(curve, pieces, 1.7 * radius, around);  // drawn as a rim
     group.add(new THREE.Mesh(wider, new THREE.MeshBasicMaterial({color: rim, side: THREE.BackSide})));
   }
   for (const [p, letter] of [[points[0], "S"], [points[points.length - 1], "G"]]) {
@@ -150,7 +151,7 @@ function routeInSpace({points, colour: rim}, colours, spot, extent) {
   return group;
 }
 
-// A click that turns nothing explains the cell under it, as on the map.
+// A click without dragging explains the cell under the pointer, as on the map.
 function explainOnClick(place, data, {renderer, camera, ground}) {
   const box = place.querySelector(".probe"), read = cellReader(data), {west, south, east, north} = data.bounds;
   let from = null;
@@ -167,7 +168,7 @@ function explainOnClick(place, data, {renderer, camera, ground}) {
   });
 }
 
-// Builds the view and returns {fit()}, which takes the size of its place.
+// Builds the relief view and returns {fit()}, which adapts the view to the size of its element.
 async function makeRelief(place, data, heights, surface) {
   const {west, south, east, north} = data.bounds;
   const extent = Math.max(east - west, north - south), note = place.firstElementChild;
@@ -227,7 +228,7 @@ async function makeRelief(place, data, heights, surface) {
   for (const id of ["layer", "opacity"]) document.getElementById(id).addEventListener("change", paint);
   addEventListener("resize", fit);
   explainOnClick(place, data, {renderer, camera, ground});
-  const away = 1.7 * extent / Math.min(1, place.clientWidth / place.clientHeight);  // the whole width is seen
+  const away = 1.7 * extent / Math.min(1, place.clientWidth / place.clientHeight);  // shows all
   camera.position.set(0, 0.6 * away, 0.8 * away);
   controls.update();
   await paint();

@@ -1,7 +1,7 @@
-// The cost of a cell over the headings, read between the nodes of its cost curve as DriveCurve::price() does.
+// Cost of a cell by heading, interpolated between the nodes of its cost curve as in TravelCurve::price().
 const roseHeadings = 36;
 
-// The cells' gradients, curves and categories, and the nodes of all curves; nothing where the page has none.
+// Gradients, cost curves and categories of the cells, and the nodes of all curves; null without cost data.
 async function readHeadings({headings, grid}) {
   if (!headings) return null;
   const {image, width, height} = headings.table;
@@ -11,7 +11,7 @@ async function readHeadings({headings, grid}) {
   return {...headings, gradients, kinds, nodes};
 }
 
-// J/m in a heading, counter-clockwise from east; null where it is refused.
+// Cost [J/m] in a heading, counter-clockwise from east; null if the heading is refused.
 function headingCost({gradients, kinds, nodes, table, most}, index, heading) {
   const curve = kinds[index] & 255, signed = bits => (bits << 20) >> 20;
   if (curve * table.rows >= table.height) return null;
@@ -34,8 +34,8 @@ function headingCost({gradients, kinds, nodes, table, most}, index, heading) {
   return isNaN(cost) ? null : cost;
 }
 
-// A polar chart, east right and north up: cost as the distance from the middle, refused headings as light sectors with a rim, which
-// stay apart from the curve in grey.
+// Polar chart, east to the right and north up: distance from the centre is the cost; grey sectors are refused
+// headings.
 function drawRose(read, index) {
   const step = 2 * Math.PI / roseHeadings, angles = Array.from({length: roseHeadings}, (_, k) => k * step);
   const costs = angles.map(heading => headingCost(read, index, heading)), allowed = costs.filter(cost => cost !== null);

@@ -1,4 +1,4 @@
-// Routes in the colours of a quantity; each has a value at every vertex that holds to the next one.
+// Routes coloured by a quantity; the value at a vertex applies until the next vertex.
 const perMetre = (points, i, key) => i + 1 < points.length && points[i + 1].s > points[i].s
   ? (points[i + 1][key] - points[i][key]) / (points[i + 1].s - points[i].s) : null;
 const quantities = [
@@ -15,7 +15,7 @@ const quantities = [
   {name: "category", value: (points, i) => points[i].category},
 ];
 
-// The colours of the vertices of each route on one scale, and its legend.
+// Colours of all vertices of each route on one common scale, and the legend.
 function coloursOf(quantity, data) {
   const values = data.routes.map(({points}) => points.map((_, i) => quantity.value(points, i)));
   if (!quantity.unit) {
@@ -28,14 +28,15 @@ function coloursOf(quantity, data) {
     if (value !== null) { low = Math.min(low, value); high = Math.max(high, value); }
   if (!(low <= high)) low = high = 0;
   if (quantity.signed) { high = Math.max(Math.abs(low), Math.abs(high)); low = -high; }
-  if (!(high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)))) high = low + 1;  // all the same but for rounding
+  if (!(high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)))) high = low + 1;  // equal up to rounding
   const scale = quantity.signed ? data.scales.signed : data.scales.magnitude;
   const step = value => Math.min(scale.length - 1, Math.floor((value - low) / (high - low) * scale.length));
   const colours = values.map(line => line.map(value => value === null ? "#888" : scale[step(value)]));
   return {colours, legend: {name: "route: " + quantity.name, bar: {colours: scale, low, high, unit: quantity.unit}}};
 }
 
-// Draws the routes and returns {mark(points)}; calls onHover(route, point) when the pointer moves over one.
+// Draws the routes and returns {mark(points)}; calls onHover(route, point) when the pointer moves over a
+// route.
 function drawRoutes(map, data, onHover) {
   const routes = data.routes, lines = routes.map(({points}) => points.map(p => [p.y, p.x]));
   const select = document.getElementById("quantity");
@@ -84,7 +85,7 @@ function nearest(points, spot) {
   }, {d: Infinity}).p;
 }
 
-// A line in its colours: all pieces of one colour are one path, so that a browser has few to draw.
+// Draws a line; all pieces of one colour form one path, because browsers draw few paths faster.
 function paintLine(line, colours, group) {
   const pieces = new Map();
   for (let from = 0; from + 1 < line.length;) {
@@ -98,7 +99,7 @@ function paintLine(line, colours, group) {
     L.polyline(parts, {color, weight: 5, lineCap: "butt", interactive: false, className: "piece"}).addTo(group);
 }
 
-// Where the rover drives backwards, dashed; dots where it changes direction or turns in place.
+// Draws reverse sections dashed, and dots where the direction changes or the rover turns in place.
 function manoeuvres(points, line, group) {
   const turn = {radius: 4, color: "#fff", weight: 1, fillColor: "#000", fillOpacity: 1, interactive: false};
   points.forEach((p, i) => {

@@ -1,4 +1,4 @@
-// A ruler: clicks on the map lay its points; lengths are those of the map.
+// A ruler: clicks on the map add its points; lengths are distances in the map plane [m].
 function offerRuler(map, data) {
   const button = document.getElementById("ruler"), steps = L.layerGroup().addTo(map);
   let places = [];

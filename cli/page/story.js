@@ -20,7 +20,7 @@ function showStory(map, story) {
   const rover = L.circleMarker([track[0].y, track[0].x], {radius: 8, color: "#fff", weight: 3, fillColor: "#b3202c",
                                                           fillOpacity: 1, interactive: false, className: "here"}).addTo(map);
 
-  // Cells are added as time goes on and taken away as it goes back.
+  // Adds reclassified cells as time increases, and removes them as time decreases.
   const drawn = [];
   function showCells(time) {
     while (drawn.length && story.changes[drawn.length - 1][0] > time) cells.removeLayer(drawn.pop());

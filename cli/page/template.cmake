@@ -1,4 +1,5 @@
-# The page's template: our parts, Leaflet, Vega and, where it is installed, three.js in one file, built into the program.
+# The page template: Talus' parts, Leaflet, Vega and, if installed, three.js in one file embedded in the
+# program.
 find_path(LEAFLET_DIR leaflet.min.js PATHS /usr/share/javascript/leaflet REQUIRED)
 find_path(VEGA_DIR vega-view.min.js PATHS /usr/share/javascript/vega REQUIRED)
 find_path(THREE_DIR examples/js/controls/OrbitControls.js PATHS /usr/share/javascript/three)

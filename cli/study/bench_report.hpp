@@ -21,9 +21,9 @@ struct BenchmarkLine {
   double worst_gap = 0.0;
   double median_seconds = 0.0;
   double worst_megabytes = 0.0;
-  double mean_cusps = 0.0;             ///< of drives
-  double max_curvature_1_m = 0.0;      ///< of drives
-  double least_clearance_cells = 0.0;  ///< to a cell that no heading may enter; NaN: no route
+  double mean_cusps = 0.0;             ///< drives only
+  double max_curvature_1_m = 0.0;      ///< drives only
+  double least_clearance_cells = 0.0;  ///< distance to a cell that no heading may enter; NaN: no route
 };
 
 std::vector<BenchmarkLine> compared(const planner::BenchmarkPlan& plan,

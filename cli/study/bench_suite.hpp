@@ -15,7 +15,7 @@ struct Context;
 struct SuiteOptions {
   std::vector<std::string> names{"generated"};  ///< "generated", "slip", "grids", DEMs, MovingAI .scen files
   int pairs = 3;                                ///< start-goal pairs per map, > 0; number of "slip" worlds
-  int side_cells = 300;                         ///< of generated sites
+  int side_cells = 300;                         ///< side length of generated sites
   double turning_radius_m = -1.0;               ///< for planners of drives; < 0: that of the rover
   GroundOptions ground;                         ///< for DEMs: layers, rover, soils, policy
 };

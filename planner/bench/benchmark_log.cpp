@@ -80,7 +80,7 @@ std::string oneWord(std::string name) {
   return name;
 }
 
-// Note for a case whose runs were not all made because of a stop.
+// Note for a case with fewer runs than planned, because of a stop.
 std::string cutShort(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
                      std::size_t case_index) {
   const auto asked = plan.planners.size() * static_cast<std::size_t>(plan.seeds);

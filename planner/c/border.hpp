@@ -83,8 +83,8 @@ inline std::shared_ptr<Session> open(talus_session number) {
   return session;
 }
 
-/// Exclusive access to a session for one call. Reads the session again after locking, because talus_move()
-/// may have replaced it.
+/// Exclusive access to a session for one call. Looks up the session again after locking, because talus_move()
+/// may have replaced the session.
 struct Held {
   explicit Held(talus_session number) {
     do {

@@ -30,8 +30,8 @@ struct Bounds {
 
 /// Lower and upper bounds of pitch and roll, and lower bound of the clearance, of a rover at a pose.
 struct Stance {
-  Bounds pitch_rad;          ///< of the body's long axis, nose up > 0
-  Bounds roll_rad;           ///< of the body's cross axis, left side up > 0
+  Bounds pitch_rad;          ///< pitch of the body's long axis, nose up > 0
+  Bounds roll_rad;           ///< roll of the body's cross axis, left side up > 0
   double clearance_m = 0.0;  ///< lower bound of the belly's height above ground; < 0: contact possible
 };
 
@@ -45,7 +45,7 @@ struct Stance {
 class Chassis {
  public:
   /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps a reference to the raster.
-  /// The raster holds elevations [m]; NaN: unknown.
+  /// The raster contains elevations [m]; NaN: unknown.
   Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover& rover, Suspension suspension);
 
   /// Distance of the represented poses from a pose: a shift of the whole rover, and the displacement of its

@@ -44,7 +44,7 @@ std::vector<Violation> violations(const costmap::CostGrid& map, const PosePath& 
 struct Danger {
   maps::Point place;         ///< map coordinates [m]
   double along_m = 0.0;      ///< distance along the polyline to the place
-  double probability = 1.0;  ///< that the rover cannot drive there: 1 for a constraint of the map
+  double probability = 1.0;  ///< probability that the rover cannot drive: 1 for a constraint of the map
   std::string reason;        ///< as in Violation, or "the soil may give less drawbar pull than required"
 };
 

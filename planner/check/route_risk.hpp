@@ -11,7 +11,7 @@ namespace talus::planner {
 
 /// Parameters of the risk simulation of a route.
 struct RouteRiskOptions {
-  double correlation_length_m = 5.0;  ///< of the soil, as in TravelPolicy, > 0
+  double correlation_length_m = 5.0;  ///< correlation length of the soil, as in TravelPolicy, > 0
   double entrapment = 1.0;  ///< share of the places with too weak soil that immobilise the rover, [0, 1], as
                             ///< in the hazard per metre
   /// Soil is uniform within a cell of this size: stretches are treated as at least this far apart, >= 0.

@@ -41,7 +41,7 @@ struct ImprovedByScalar {
 };
 
 #if defined(__x86_64__)
-// Compares the eight neighbours as above, with AVX2.
+// AVX2 version of ImprovedByScalar, which compares eight neighbours at once.
 struct ImprovedByVector {
   __attribute__((target("avx2"))) static unsigned of(const std::uint32_t* distance, const std::uint16_t* into,
                                                      std::ptrdiff_t stride) noexcept {

@@ -14,9 +14,9 @@
 namespace talus::planner {
 
 /// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes per
-/// cell. A step consists of a half step in the cell it leaves and a half step in the cell it enters, both in
-/// the heading of the step: the MotionCost of the segment between the centres. A diagonal step is blocked
-/// unless both cells beside it allow the heading, too.
+/// cell. A step consists of two half steps, in the cell left and in the cell entered, both in the heading of
+/// the step: the MotionCost of the segment between the centres. A diagonal step is blocked unless both cells
+/// beside the step also allow the heading.
 class EdgeLayer {
  public:
   static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;

@@ -22,7 +22,7 @@ class EdgeUnits {
   static constexpr std::uint16_t kBlocked = 0xffff;
   static constexpr std::uint16_t kDearest = 0x7ffe;
 
-  using Halves = std::array<std::uint16_t, 8>;  ///< by GridHeading
+  using Halves = std::array<std::uint16_t, 8>;  ///< indexed by GridHeading
 
   /// Units for cells of side resolution_m [m] and the given cost. `coarsening` >= 1 enlarges the unit (for
   /// huge maps).

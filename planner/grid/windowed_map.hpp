@@ -28,8 +28,8 @@ class WindowedMap {
  public:
   /// Grid, overview and source of the full-resolution cells.
   struct Parts {
-    maps::Grid grid;                                    ///< of the whole map at full resolution
-    std::shared_ptr<const costmap::CostGrid> overview;  ///< of the whole map in larger cells
+    maps::Grid grid;                                    ///< grid of the whole map at full resolution
+    std::shared_ptr<const costmap::CostGrid> overview;  ///< the whole map in larger cells
     /// Builds the cells of a box at full resolution; empty if the box contains no data. Called from one
     /// thread.
     std::function<std::optional<costmap::TraversabilityMap>(const MapBox&)> build;

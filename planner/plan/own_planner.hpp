@@ -19,7 +19,7 @@ class OwnPlanner final : public GlobalPlanner {
   std::unique_ptr<GlobalPlanner> create() const override { return std::make_unique<OwnPlanner>(); }
 
  private:
-  std::optional<RoutePlanner> planner_;  // none: the default planner, created on first use
+  std::optional<RoutePlanner> planner_;  // empty: the default planner, created on first use
   PlannerSettings settings_;
   std::shared_ptr<const costmap::CostGrid> map_;
 };

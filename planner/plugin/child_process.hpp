@@ -25,7 +25,7 @@ struct ChildAnswer {
   End end = End::Died;
   std::string bytes;       ///< result of the work; empty unless Answered
   int signal = 0;          ///< signal that ended the process; 0: none
-  int exit_code = 0;       ///< if the process was ended by no signal
+  int exit_code = 0;       ///< exit code if no signal ended the process
   double megabytes = 0.0;  ///< peak memory
 };
 

@@ -47,7 +47,7 @@ struct PlannerCapabilities {
 struct PlannerSettings {
   std::string planner;     ///< one of PlannerCapabilities::planners; empty: the default
   std::uint64_t seed = 1;  ///< seed of sampling planners
-  int threads = 1;         ///< >= 1; the route does not depend on it
+  int threads = 1;         ///< >= 1; does not affect the route
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0; returns the best route so far
   bool whole_field = false;  ///< search large maps completely at full resolution
 };
@@ -67,17 +67,17 @@ struct PlanRequest {
   std::vector<maps::Point> other_goals{};     ///< alternative goals; the cheapest is used
   double tolerance_m = 0.0;                   ///< permitted distance of the end from the goal, >= 0
   std::vector<maps::Point> via{};             ///< to be passed in this order
-  std::optional<double> start_heading_rad{};  ///< heading at the start; none: any
-  std::optional<double> goal_heading_rad{};   ///< heading at the goal; none: any
-  /// Turning radius, reversing and costs of turning, from planner::kinematicsOn(); none: turning is free.
+  std::optional<double> start_heading_rad{};  ///< heading at the start; empty: any
+  std::optional<double> goal_heading_rad{};   ///< heading at the goal; empty: any
+  /// Turning radius, reversing and costs of turning, from planner::kinematicsOn(); empty: turning is free.
   std::optional<planner::Kinematics> kinematics{};
-  /// Limits clearance, pitch and roll along the whole motion; none: only the cost map limits the motion.
+  /// Limits clearance, pitch and roll along the whole motion; null: only the cost map limits the motion.
   std::shared_ptr<const planner::Chassis> chassis{};
   /// Causes of completely refused cells, to name the obstruction: TraversabilityMap::surface().hazards() of
   /// the map used for planning.
   planner::HazardsOf hazards{};
   bool prove = false;  ///< also compute an improved lower bound and search other corridors; slow
-  std::optional<RiskLimit> risk_limit{};  ///< none: risk enters through its price only
+  std::optional<RiskLimit> risk_limit{};  ///< empty: only the price of risk applies
   ProgressMonitor watch{};  ///< progress and stop request; after a stop plan() returns Cancelled
 };
 

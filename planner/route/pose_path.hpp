@@ -53,7 +53,7 @@ class PoseCost {
 
   const MotionCost& cost_;
   Kinematics kinematics_;
-  std::optional<ShortestCurves> curves_;  // none: the rover turns in place
+  std::optional<ShortestCurves> curves_;  // empty: the rover turns in place
   double step_m_;
 };
 

@@ -29,14 +29,14 @@ struct Problem {
   /// Also compute an improved lower bound and search other corridors, which takes a multiple of the time of a
   /// field; otherwise a simple bound.
   bool prove = false;
-  /// Causes of completely refused cells, to name the obstruction; none: all are assigned to hazards. Must
-  /// outlive planning.
+  /// Causes of completely refused cells, to name the obstruction. If empty, all causes are assigned to
+  /// hazards. Must outlive planning.
   HazardsOf hazards{};
   bool whole_field = false;  ///< compute the complete field even on large maps (NamedPlanner)
   ProgressMonitor watch{};
-  /// Heading at the start, for planners of drives; none: any.
+  /// Heading at the start, for planners of drives; empty: any.
   std::optional<double> start_heading_rad{};
-  std::optional<double> goal_heading_rad{};  ///< heading at the goal; none: any
+  std::optional<double> goal_heading_rad{};  ///< heading at the goal; empty: any
   Kinematics kinematics{};                   ///< motion constraints, for planners of drives
 };
 

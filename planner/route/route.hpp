@@ -18,10 +18,10 @@ namespace talus::planner {
 /// Result status of planning.
 enum class RouteStatus {
   Found,         ///< a route that satisfies every constraint along its whole length
-  NoRoute,       ///< start and goal are valid and not connected: proven for all headings
+  NoRoute,       ///< start and goal are valid but not connected: proven for all headings
   NoneFound,     ///< no route was found, without proof
   StartInvalid,  ///< the start is outside the map or on a cell that no heading may enter
-  GoalInvalid,   ///< goal or via point outside the map or on such a cell
+  GoalInvalid,   ///< the goal or a via point is outside the map or on such a cell
   TimedOut,      ///< the time limit passed before any route was found
   Cancelled,     ///< the caller requested a stop
 };
@@ -75,7 +75,7 @@ inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 struct RouteVertex {
   double x_m = 0.0;
   double y_m = 0.0;
-  double elevation_m = kNotKnown;           ///< of the ground; NaN: unknown
+  double elevation_m = kNotKnown;           ///< ground elevation; NaN: unknown
   double heading_rad = 0.0;                 ///< counter-clockwise from x (east), (-pi, pi]
   double slope_along_rad = 0.0;             ///< climbing > 0
   double slope_across_rad = 0.0;            ///< left side higher > 0
@@ -83,8 +83,8 @@ struct RouteVertex {
   double slip_angle_rad = kNotKnown;        ///< from the wheel planes to the direction of travel, left > 0
   double side_force_over_load = kNotKnown;  ///< largest of all wheels, over the load of the wheel [-]
   double stability_margin_rad = kNotKnown;  ///< additional tilt until the rover tips
-  double sinkage_m = kNotKnown;             ///< of one wheel, >= 0
-  double torque_Nm = kNotKnown;             ///< of one wheel
+  double sinkage_m = kNotKnown;             ///< sinkage of one wheel, >= 0
+  double torque_Nm = kNotKnown;             ///< torque of one wheel
   double drawbar_pull_margin = kNotKnown;   ///< available DP/W minus required DP/W, tan(slope) [-]
   terramech::Category category = terramech::Category::Unknown;
   double energy_J = 0.0;             ///< from the start to this vertex
@@ -96,8 +96,8 @@ struct RouteVertex {
   int soil_class = 0;                ///< class of the ground in the model
   double shared_doubt = 0.0;         ///< share of the pull variance common to all ground of the class
   bool reverse = false;              ///< reverse motion: heading_rad is opposite to the motion
-  double curvature_1_m = 0.0;        ///< of the motion that leaves the vertex, left > 0
-  double turn_rad = 0.0;             ///< turned in place before moving on, left > 0
+  double curvature_1_m = 0.0;        ///< curvature of the motion after this vertex, left > 0
+  double turn_rad = 0.0;             ///< turn in place before the next motion, left > 0
 };
 
 /// Number of manoeuvres, and curvature, of a drive.
@@ -111,8 +111,8 @@ struct RouteShape {
 /// Totals and extremes of a route.
 struct RouteSummary {
   double cost = 0.0;                  ///< under the cost function [J]: energy + weighted time and risk
-  double energy_J = 0.0;              ///< of driving
-  double time_s = 0.0;                ///< of driving
+  double energy_J = 0.0;              ///< energy of driving
+  double time_s = 0.0;                ///< time of driving
   double length_m = 0.0;              ///< along the map plane
   double max_slip = 0.0;              ///< largest magnitude along the route [-]
   double max_slope_rad = 0.0;         ///< steepest inclination along the heading, as a magnitude

@@ -16,7 +16,7 @@ struct SamplingSettings {
   std::uint64_t work = 4'000'000;
   double range_cells = 40.0;  ///< longest motion added to a tree, > 0
   bool cold = false;          ///< true: no initial route; false: starts from the field planner's route
-  std::map<std::string, std::string> parameters{};  ///< of OMPL's planner, with its own names and units
+  std::map<std::string, std::string> parameters{};  ///< parameters of OMPL's planner, in its own units
   std::function<void(double)> better{};             ///< called with each lower cost of the present leg [J]
 };
 

@@ -22,7 +22,7 @@ class TravelObjective : public ompl::base::OptimizationObjective {
   struct Parts {
     std::shared_ptr<const MeteredCost> cost;
     std::shared_ptr<const ImprovableRegion> region;
-    std::uint64_t seed = 1;  ///< of the informed samplers
+    std::uint64_t seed = 1;  ///< seed of the informed samplers
   };
 
   TravelObjective(const ompl::base::SpaceInformationPtr& space, Parts parts);

@@ -74,8 +74,8 @@ const std::vector<std::string> kEnds{"--start", "4,4", "--goal", "35,25"};
 
 struct Call {
   std::string name;                 ///< subcommand
-  std::vector<std::string> words;   ///< after it
-  std::vector<std::string> fields;  ///< JSON pointer of each promised field, behind its kind: `number /cost`
+  std::vector<std::string> words;   ///< arguments after the subcommand
+  std::vector<std::string> fields;  ///< type and JSON pointer of each stable field: `number /cost`
 };
 
 std::vector<std::string> words(std::vector<std::string> first, const std::vector<std::string>& more) {

@@ -32,7 +32,7 @@ Ran runTalus(const std::vector<std::string>& words, const fs::path& folder, doub
   for (const std::string& word : words) line << ' ' << quoted(word);
   line << " >" << quoted(capture / "out") << " 2>" << quoted(capture / "err") << " </dev/null";
   const int status =
-      std::system(line.str().c_str());  // NOLINT(cert-env33-c): the shell redirects the output
+      std::system(line.str().c_str());  // NOLINT(cert-env33-c): the shell redirects both outputs
   Ran ran;
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   ran.out = fileContent(capture / "out");

@@ -8,7 +8,7 @@ namespace talus::cli {
 
 /// Exit code, standard output and standard error of a run of the program.
 struct Ran {
-  int code = -1;  ///< exit code; 128 + signal where a signal ended it
+  int code = -1;  ///< exit code; 128 + signal number if a signal ended the process
   std::string out;
   std::string err;
 };

@@ -115,7 +115,7 @@ struct RandomGround {
   int height = 20;
   unsigned seed = 1;
   double blocked = 0.15;   ///< share of blocked cells
-  double roughness = 0.2;  ///< gradients are uniform within +- this
+  double roughness = 0.2;  ///< gradients are uniform in [-roughness, roughness]
   double resolution_m = 1.0;
 };
 

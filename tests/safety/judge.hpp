@@ -19,8 +19,8 @@ struct Allowance {
   double curve = 0.002;    ///< of the gradient along the heading: half a bin of 1/256
   double pull = 0.013;     ///< of DP/W: half a step of 0.02 of a stored estimate, and 0.003 of PullCurve
   double side = 0.015;     ///< of F/N: error of the wheel table (docs/slopes.md)
-  double belief = 0.5;     ///< share of the explained deviation: two sound estimates may differ by it
-  double torque = 0.03;    ///< of a torque, relative
+  double belief = 0.5;     ///< share of the explained deviation by which sound estimates may differ
+  double torque = 0.03;    ///< relative error of a torque
   double clear_m = 0.005;  ///< of a distance to an obstacle or keep-out area
 };
 
@@ -71,10 +71,10 @@ class Judge {
   /// neglected.
   struct Hold {
     double most_across =
-        -1.0;  ///< that any angle holds at the least slip that gives the demand along; -1: none gives it
+        -1.0;  ///< largest force across of all angles at their least slip; -1: no angle meets the demand
     bool holds = false;
-    double slip = 0.0;   ///< slip at the least angle in equilibrium
-    double angle = 0.0;  ///< that angle, as an index among PullCurve's nodes
+    double slip = 0.0;   ///< least slip in equilibrium
+    double angle = 0.0;  ///< slip angle in equilibrium, as a fractional index of PullCurve::kAngles_deg
   };
   /// Equilibrium on ground whose DP/W is lower than the estimate by `weaker`.
   static Hold hold(const std::vector<Wheel>& wheels, const Planar& demand, double most_slip,

@@ -23,7 +23,7 @@ Sampled mean(const std::vector<double>& values);
 /// Outcomes of the drives of several worlds.
 struct Rates {
   std::size_t worlds = 0;            ///< number of worlds
-  std::array<Sampled, 5> outcome{};  ///< shares, in the order of Outcome
+  std::array<Sampled, 5> outcome{};  ///< shares of the outcomes, in the order of Outcome
   double energy_J = 0.0;             ///< mean of the drives that reached the goal; NaN if there are none
 };
 
@@ -34,10 +34,11 @@ Rates ratesOf(const std::vector<WorldResult>& results);
 /// safe route: those in which perfect knowledge reached the goal.
 struct Comparison {
   Rates rates;                              ///< over the worlds with a safe route
-  Sampled energy_over_perfect_knowledge{};  ///< mean ratio over the worlds in which both reached the goal [-]
+  Sampled energy_over_perfect_knowledge{};  ///< mean ratio over worlds in which both reached the goal [-]
 };
 
-/// Both vectors hold the same worlds in the same order. Throws std::invalid_argument if their sizes differ.
+/// Both vectors contain the same worlds in the same order. Throws std::invalid_argument if their sizes
+/// differ.
 Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& perfect);
 
 }  // namespace talus::planner

@@ -9,8 +9,8 @@ namespace talus::planner {
 /// Errors of a map's predictions along a drive.
 struct PredictionErrors {
   int steps = 0;              ///< number of steps
-  double slip_rmse = 0.0;     ///< over all steps [-]
-  double energy_rmse = 0.0;   ///< of the energy per metre of a step, relative to the mean true value [-]
+  double slip_rmse = 0.0;     ///< root mean square slip error over all steps [-]
+  double energy_rmse = 0.0;   ///< RMS error of energy per metre, relative to the mean true value [-]
   double energy_error = 0.0;  ///< (predicted - true) / true energy of the whole drive [-]
 };
 

@@ -73,8 +73,8 @@ struct TrackPoint {
   maps::Point place;       ///< true position [m]
   double time_s = 0.0;     ///< since the start
   double energy_J = 0.0;   ///< since the start
-  double slip = 0.0;       ///< of the step that ended here
-  double sinkage_m = 0.0;  ///< of the deepest wheel in that step
+  double slip = 0.0;       ///< slip of the step that ended here
+  double sinkage_m = 0.0;  ///< largest sinkage of a wheel in that step
 };
 
 /// Event of the drive: "planned", "reversed", "turned downhill", the reason of an alarm ("slips", "slides",
@@ -82,13 +82,13 @@ struct TrackPoint {
 struct TraverseEvent {
   double time_s = 0.0;             ///< since the start
   std::string text;                ///< name of the event
-  std::vector<maps::Point> route;  ///< the planned route, of "planned" only
+  std::vector<maps::Point> route;  ///< the planned route; only for the event "planned"
 };
 
 /// Reading of one wheel at one time, including noise and faults.
 struct WheelRecord {
   std::size_t wheel = 0;              ///< foremost wheels first
-  double heading_rad = 0.0;           ///< of the rover
+  double heading_rad = 0.0;           ///< heading of the rover
   costmap::TelemetryReading reading;  ///< as given to the map
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 // Standard deviations of the rover's sensors, equal to those assumed by WheelObserver.
 constexpr double kSlipNoise = 0.02, kAngleNoise_rad = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
-// Of the deviation of one wheel's slip from the rover's slip.
+// Standard deviation of the difference between the slip of one wheel and the slip of the rover.
 constexpr double kEncoderNoise = 0.005;
 // Magnitudes of the faults of SensorFault.
 constexpr double kSlipBias = -0.2, kTorqueOffset = 0.15, kSinkageOffset = -0.1;

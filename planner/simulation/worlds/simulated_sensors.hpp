@@ -42,12 +42,12 @@ struct SensorOptions {
   double dropout = 0.02;     ///< share of missing torque and sinkage values; only with noise
   double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, in [0, kMostPoseDrift] [-]
   SensorFault fault = SensorFault::None;  ///< fault of one sensor
-  std::uint64_t seed = 1;                 ///< of noise, drift direction and faulty wheel
+  std::uint64_t seed = 1;                 ///< seed of noise, drift direction and faulty wheel
 };
 
 /// Readings of all wheels of a rover at one time.
 struct WheelMeasurements {
-  double heading_rad = 0.0;     ///< of the rover
+  double heading_rad = 0.0;     ///< heading of the rover
   double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, as measured by visual
                                 ///< odometry
   std::vector<costmap::TelemetryReading>

@@ -34,8 +34,8 @@ struct WorldSoils {
 
 /// Position and motion of a rover.
 struct Motion {
-  maps::Point place;           ///< of the rover's centre
-  costmap::Direction heading;  ///< of the motion
+  maps::Point place;           ///< position of the rover's centre
+  costmap::Direction heading;  ///< heading of the motion
   double gradient = 0.0;       ///< rise over run along the motion
   double across = 0.0;         ///< rise over run to the left of the motion
   double dug_m = 0.0;          ///< depth of the holes from which the wheels must climb

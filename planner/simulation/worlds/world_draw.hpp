@@ -17,8 +17,8 @@ struct Truth {
   double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of the friction angle and
                            ///< moduli [-]
   int random_patches = 0;  ///< random patches drawn per world; patches near start or goal are omitted
-  double patch_radius_m = 3.0;               ///< mean; uniform within +-50 %
-  terramech::Soil patch_soil;                ///< of the random patches, varied like the classes
+  double patch_radius_m = 3.0;               ///< mean radius; uniform within +-50 %
+  terramech::Soil patch_soil;                ///< soil of the random patches, varied like the classes
   std::vector<terramech::Effect> effects{};  ///< undeclared effects on all soils
 };
 
