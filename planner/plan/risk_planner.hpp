@@ -44,9 +44,9 @@ struct ParetoRoute {
   costmap::CostWeights weights;  ///< prices with which the route was planned
 };
 
-/// Routes of which none is dominated in energy, time and risk, in order of increasing energy. The candidates
-/// are the routes of `planner` for `steps` x `steps` prices of time and risk. Empty if there is no route or
-/// if the problem's watch was stopped, because a part of the prices gives a different set. Throws
+/// Pareto-optimal routes in energy, time and risk, in order of increasing energy. The candidates are the
+/// routes of `planner` for `steps` x `steps` prices of time and risk. Empty if there is no route or if the
+/// problem's watch was stopped, because a part of the prices gives a different set. Throws
 /// std::invalid_argument if steps < 2.
 std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                                    int steps);

@@ -60,10 +60,11 @@ struct Obstruction {
   maps::Point last{};                ///< closest cell of the first set: its centre
   maps::Point first{};               ///< closest cell of the second set
   bool tried = false;                ///< true if constraints were tested separately
-  /// First constraint whose removal opens a route; none if no single constraint suffices.
+  /// First constraint whose removal opens a route; empty if no single constraint suffices.
   std::optional<Constraint> lifting{};
-  /// If `lifting` is Hazard: the kind whose removal alone, with its clearance, opens a route; none if several
-  /// kinds must be removed. If `lifting` is Slope: Step means that slopes and steps must be removed together.
+  /// If `lifting` is Hazard: the kind whose removal alone, with its clearance, opens a route; empty if
+  /// several kinds must be removed. If `lifting` is Slope: Step means that slopes and steps must be removed
+  /// together.
   std::optional<costmap::Hazard> hazard{};
 };
 

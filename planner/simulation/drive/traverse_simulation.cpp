@@ -153,7 +153,7 @@ class Drive {
     return std::nullopt;
   }
 
-  // Spins on the spot without detecting it.
+  // One step of spinning on the spot by a rover that does not sense the stall.
   std::optional<FollowEnd> dig(const TrueWorld::Step& step) {
     const double radius_m = map_.model().rover().wheel.radius_m;
     dug_m_ += kDugPerMetre * options_.step_m;

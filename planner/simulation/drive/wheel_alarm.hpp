@@ -39,7 +39,7 @@ class WheelAlarm {
     std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"; empty without an alarm
     std::vector<bool> sank;             ///< for each wheel: true if its sinkage exceeds the limit
   };
-  /// `expected`: one entry per wheel of `look`.
+  /// Compares readings with expectations; `expected` has one entry per wheel of `look`.
   AlarmCheck hear(const WheelMeasurements& look, const std::vector<WheelExpectation>& expected);
 
  private:
