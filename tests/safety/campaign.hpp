@@ -33,7 +33,7 @@ class Campaign {
 
   static std::uint64_t routesPerSite() { return kPairs * planners().size(); }
 
-  /// Runs those of the errands first .. first + count - 1 that the file lacks. Reports and skips sites that
+  /// Runs the errands first .. first + count - 1 that are missing in the file. Reports and skips sites that
   /// fail.
   void run(std::uint64_t first, std::uint64_t count, const std::function<void(const std::string&)>& report);
 

@@ -19,13 +19,14 @@ class PullCurve {
   static constexpr std::array<double, 12> kAngles_deg{0, 1, 2, 4, 6, 9, 13, 18, 24, 31, 38, 45};
   static double angle_rad(std::size_t node);
 
-  /// DP/N [-] at a slip in [-1, 1] and a load over the load on level ground in [0.3, 1.5].
+  /// Drawbar pull over load DP/N [-] at a slip in [-1, 1] and a load in [0.3, 1.5] of the load on level
+  /// ground.
   double pull(double slip, double load_share = 1.0, std::size_t angle = 0) const;
-  /// F/N [-], positive towards the side to which the wheel is turned.
+  /// Side force over load F/N [-], positive towards the side to which the wheel is turned.
   double side(double slip, double load_share, std::size_t angle) const;
-  /// z/r [-].
+  /// Sinkage over radius z/r [-].
   double sinkage(double slip, double load_share = 1.0, std::size_t angle = 0) const;
-  /// T/(N r) [-].
+  /// Torque over load and radius T/(N r) [-].
   double torque(double slip, double load_share = 1.0, std::size_t angle = 0) const;
 
   static constexpr double kReferenceSlip = 0.5;  ///< slip at which categories are judged (thesis 3.5)

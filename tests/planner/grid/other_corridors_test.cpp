@@ -95,8 +95,8 @@ std::shared_ptr<const costmap::CostGrid> blocks(unsigned seed) {
   return testing::drawn(rows);
 }
 
-// Property: with other corridors a route is never more expensive, and cheaper in some cases in which eight
-// headings rank the corridors between blocks wrongly.
+// Property: with other corridors a route never costs more, and costs less in some cases in which the eight
+// grid headings rank the corridors between blocks incorrectly.
 TEST(OtherCorridors, AlternativesNeverIncreaseTheRouteCost) {
   int cheaper = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {

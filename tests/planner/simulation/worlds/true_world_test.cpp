@@ -161,7 +161,7 @@ TEST(TrueWorld, EnergyIsWorkWithSlipPlusHotelEnergy) {
   const TrueWorld world = dustInTheEast();
   const auto step = world.drive({.place = {10.0, 20.0}, .heading = {1.0, 0.0}, .gradient = 0.05});
   const double left = 1.0 - step.slip;
-  // Closed form: sum T / (r (1 - i)) + P / (v0 (1 - i))
+  // Closed form: energy per metre sum T / (r (1 - i)) + P / (v0 (1 - i)), hotel power P, rim speed v0
   EXPECT_NEAR(
       step.energy_J_per_m,
       step.torque_Nm / (rover.wheel.radius_m * left) + rover.hotel_power_W / (rover.max_speed_mps * left),
