@@ -65,17 +65,17 @@ WheelSwath::WheelSwath(const terramech::Rover& rover, double resolution_m, doubl
   touched_.assign(touched.begin(), touched.end());
 }
 
-std::vector<WheelSwath::Footprint> WheelSwath::stand(const terramech::Rover& rover, const maps::Point& middle,
+std::vector<WheelSwath::Footprint> WheelSwath::stand(const terramech::Rover& rover, const maps::Point& p_map,
                                                      double heading_rad) const {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
   const int side = 2 * reach_ + 1;
   std::vector<Footprint> wheels;
-  for (const Offset& wheel : wheelCentres(rover)) {
+  for (const Offset& p_body : wheelCentres(rover)) {
     std::set<Place> touched;
     for (std::size_t k = 0; k < across_; ++k) {
-      const double across =
-          wheel.y_m + (static_cast<double>(k) / static_cast<double>(across_ - 1) - 0.5) * rover.wheel.width_m;
-      const double x = middle.x_m + c * wheel.x_m - s * across, y = middle.y_m + s * wheel.x_m + c * across;
+      const double across = p_body.y_m + (static_cast<double>(k) / static_cast<double>(across_ - 1) - 0.5) *
+                                             rover.wheel.width_m;
+      const double x = p_map.x_m + c * p_body.x_m - s * across, y = p_map.y_m + s * p_body.x_m + c * across;
       const int column = static_cast<int>(std::floor(x / resolution_m_ + 0.5)) + reach_;
       const int row = static_cast<int>(std::floor(y / resolution_m_ + 0.5)) + reach_;
       touched.insert(

@@ -52,7 +52,7 @@ class WheelSwath {
  private:
   using Place = std::uint32_t;           // index of a cell in `around`
   using Footprint = std::vector<Place>;  // cells under a wheel: distinct, ascending
-  std::vector<Footprint> stand(const terramech::Rover& rover, const maps::Point& middle,
+  std::vector<Footprint> stand(const terramech::Rover& rover, const maps::Point& p_map,
                                double heading_rad) const;
 
   double resolution_m_;

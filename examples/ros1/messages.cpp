@@ -100,12 +100,12 @@ bool has(const sensor_msgs::PointCloud2& cloud, const char* name) {
 
 }  // namespace
 
-Motion::Motion(const geometry_msgs::Transform& transform)
-    : t_{transform.translation.x, transform.translation.y, transform.translation.z} {
-  const auto& q = transform.rotation;
+RigidTransform::RigidTransform(const geometry_msgs::Transform& T_map_frame)
+    : t_{T_map_frame.translation.x, T_map_frame.translation.y, T_map_frame.translation.z} {
+  const auto& q = T_map_frame.rotation;
   const double n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
   if (!(std::abs(n - 1.0) < 1e-3) || !std::isfinite(t_.x_m + t_.y_m + t_.z_m))
-    throw std::runtime_error("its transform is no rigid motion");
+    throw std::runtime_error("its transform is not rigid");
   const double s = 2.0 / n;
   r_[0][0] = 1.0 - s * (q.y * q.y + q.z * q.z);
   r_[0][1] = s * (q.x * q.y - q.z * q.w);
@@ -118,29 +118,31 @@ Motion::Motion(const geometry_msgs::Transform& transform)
   r_[2][2] = 1.0 - s * (q.x * q.x + q.y * q.y);
 }
 
-CloudPoint Motion::operator()(const CloudPoint& p) const {
-  return {r_[0][0] * p.x_m + r_[0][1] * p.y_m + r_[0][2] * p.z_m + t_.x_m,
-          r_[1][0] * p.x_m + r_[1][1] * p.y_m + r_[1][2] * p.z_m + t_.y_m,
-          r_[2][0] * p.x_m + r_[2][1] * p.y_m + r_[2][2] * p.z_m + t_.z_m};
+CloudPoint RigidTransform::operator()(const CloudPoint& p_frame) const {
+  return {r_[0][0] * p_frame.x_m + r_[0][1] * p_frame.y_m + r_[0][2] * p_frame.z_m + t_.x_m,
+          r_[1][0] * p_frame.x_m + r_[1][1] * p_frame.y_m + r_[1][2] * p_frame.z_m + t_.y_m,
+          r_[2][0] * p_frame.x_m + r_[2][1] * p_frame.y_m + r_[2][2] * p_frame.z_m + t_.z_m};
 }
 
-double Motion::heading_rad() const {
+double RigidTransform::heading_rad() const {
   return std::atan2(r_[1][0], r_[0][0]);
 }
 
-std::vector<CloudPoint> pointsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion) {
+std::vector<CloudPoint> pointsOf(const sensor_msgs::PointCloud2& cloud, const RigidTransform& T_map_frame) {
   const std::size_t count = countOf(cloud);
   const Field x = fieldOf(cloud, "x"), y = fieldOf(cloud, "y"), z = fieldOf(cloud, "z");
   std::vector<CloudPoint> points;
   for (std::size_t i = 0; i < count; ++i) {
     const CloudPoint p{x(i), y(i), z(i)};
-    if (std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.z_m)) points.push_back(motion(p));
+    if (std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.z_m))
+      points.push_back(T_map_frame(p));
   }
   if (points.empty()) throw std::runtime_error("has no finite point");
   return points;
 }
 
-std::vector<CloudPoint> pointsOf(const sensor_msgs::Image& image, double pixel_m, const Motion& motion) {
+std::vector<CloudPoint> pointsOf(const sensor_msgs::Image& image, double pixel_m,
+                                 const RigidTransform& T_map_frame) {
   if (image.encoding != "32FC1")
     throw std::runtime_error("has encoding '" + image.encoding + "', must be 32FC1");
   if (image.is_bigendian) throw std::runtime_error("is big-endian; send little-endian");
@@ -156,15 +158,15 @@ std::vector<CloudPoint> pointsOf(const sensor_msgs::Image& image, double pixel_m
       float height_m = 0.0F;
       std::memcpy(&height_m, image.data.data() + r * image.step + c * sizeof(float), sizeof height_m);
       if (!std::isfinite(height_m)) continue;
-      points.push_back(motion({(static_cast<double>(c) - 0.5 * (image.width - 1.0)) * pixel_m,
-                               (0.5 * (image.height - 1.0) - static_cast<double>(r)) * pixel_m,
-                               static_cast<double>(height_m)}));
+      points.push_back(T_map_frame({(static_cast<double>(c) - 0.5 * (image.width - 1.0)) * pixel_m,
+                                    (0.5 * (image.height - 1.0) - static_cast<double>(r)) * pixel_m,
+                                    static_cast<double>(height_m)}));
     }
   if (points.empty()) throw std::runtime_error("has no finite pixel");
   return points;
 }
 
-Wheels wheelsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion) {
+Wheels wheelsOf(const sensor_msgs::PointCloud2& cloud, const RigidTransform& T_map_frame) {
   const std::size_t count = countOf(cloud);
   const Field x = fieldOf(cloud, "x"), y = fieldOf(cloud, "y"), z = fieldOf(cloud, "z");
   fieldOf(cloud, "load_N");
@@ -180,10 +182,10 @@ Wheels wheelsOf(const sensor_msgs::PointCloud2& cloud, const Motion& motion) {
   const bool heading = !has(cloud, "heading_rad");
   if (heading) wheels.columns.push_back("heading_rad");
   for (std::size_t i = 0; i < count; ++i) {
-    const CloudPoint at = motion({x(i), y(i), z(i)});
+    const CloudPoint at = T_map_frame({x(i), y(i), z(i)});
     wheels.values.insert(wheels.values.end(), {cloud.header.stamp.toSec(), at.x_m, at.y_m, at.z_m});
     for (const Field& other : others) wheels.values.push_back(other(i));
-    if (heading) wheels.values.push_back(motion.heading_rad());
+    if (heading) wheels.values.push_back(T_map_frame.heading_rad());
   }
   return wheels;
 }

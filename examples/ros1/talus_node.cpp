@@ -156,10 +156,10 @@ class Node {
     }
   }
 
-  Motion motionOf(const std_msgs::Header& header) const {
+  RigidTransform transformOf(const std_msgs::Header& header) const {
     if (header.stamp.isZero()) throw std::runtime_error("has no stamp; set the time that it is of");
     requireFresh(header.stamp);
-    return motionAt(header.frame_id, header.stamp);
+    return transformAt(header.frame_id, header.stamp);
   }
   void requireFresh(const ros::Time& stamp) const {
     const double age_s = (ros::Time::now() - stamp).toSec();
@@ -170,39 +170,39 @@ class Node {
   // Returns the current place of the rover; throws if the transform is outdated. A static transform has no
   // stamp.
   Place rover() const {
-    const Motion motion = motionAt(settings_.base_frame, ros::Time(0));
+    const RigidTransform T_map_base = transformAt(settings_.base_frame, ros::Time(0));
     const ros::Time stamp =
         transforms_.lookupTransform(settings_.map_frame, settings_.base_frame, ros::Time(0)).header.stamp;
     if (!stamp.isZero()) requireFresh(stamp);
-    const CloudPoint at = motion({});
+    const CloudPoint at = T_map_base({});
     return {at.x_m, at.y_m};
   }
-  // Returns the motion from a frame to the map frame. tf2 expects frames without a leading slash.
-  Motion motionAt(const std::string& frame, const ros::Time& stamp) const {
+  // Returns the rigid transform from a frame to the map frame. tf2 expects frames without a leading slash.
+  RigidTransform transformAt(const std::string& frame, const ros::Time& stamp) const {
     const std::string plain = frame.substr(std::min(frame.find_first_not_of('/'), frame.size()));
     if (plain.empty()) throw std::runtime_error("has no frame_id; name a frame that tf knows");
     std::string why;
     if (!transforms_.canTransform(settings_.map_frame, plain, stamp, ros::Duration(0.2), &why))
       throw std::runtime_error("frame '" + plain + "' is not known in '" + settings_.map_frame +
                                "' at its time (" + why + "); publish the transform");
-    return Motion(transforms_.lookupTransform(settings_.map_frame, plain, stamp).transform);
+    return RigidTransform(transforms_.lookupTransform(settings_.map_frame, plain, stamp).transform);
   }
 
   void cloud(const sensor_msgs::PointCloud2ConstPtr& message) {
     guarded("cloud", [&] {
-      navigator_.see(pointsOf(*message, motionOf(message->header)));
+      navigator_.see(pointsOf(*message, transformOf(message->header)));
       show();
     });
   }
   void image(const sensor_msgs::ImageConstPtr& message) {
     guarded("heights", [&] {
-      navigator_.see(pointsOf(*message, settings_.pixel_m, motionOf(message->header)));
+      navigator_.see(pointsOf(*message, settings_.pixel_m, transformOf(message->header)));
       show();
     });
   }
   void wheels(const sensor_msgs::PointCloud2ConstPtr& message) {
     guarded("wheels", [&] {
-      navigator_.learn(wheelsOf(*message, motionOf(message->header)));
+      navigator_.learn(wheelsOf(*message, transformOf(message->header)));
       show();
     });
   }
@@ -212,7 +212,7 @@ class Node {
     try {
       const auto& p = message->pose.position;
       if (!std::isfinite(p.x) || !std::isfinite(p.y)) throw std::runtime_error("its position is not finite");
-      const CloudPoint at = motionOf(message->header)({p.x, p.y, std::isfinite(p.z) ? p.z : 0.0});
+      const CloudPoint at = transformOf(message->header)({p.x, p.y, std::isfinite(p.z) ? p.z : 0.0});
       navigator_.setGoal(Place{at.x_m, at.y_m});
       report(GoalStatus::PENDING,
              "goal at (" + std::to_string(at.x_m) + ", " + std::to_string(at.y_m) + ") m");

@@ -105,7 +105,7 @@ class PixelCorners {
  public:
   PixelCorners(GDALDataset& band, const ElevationMap& map, const std::string& path)
       : corner_(map.grid().south_west) {
-    if (band.GetGeoTransform(affine_.data()) != CE_None)
+    if (band.GetGeoTransform(T_map_pixel_.data()) != CE_None)
       throw InputError({path, "states no place of its pixels", "give it one with gdal_edit.py -a_ullr"});
     if (band.GetSpatialRef() == nullptr) return;
     const std::string target = "DST_SRS=" + map.georeference->system().wkt;
@@ -121,7 +121,7 @@ class PixelCorners {
   /// Corners along the upper edge of pixel row y; non-finite outside the range of the projection.
   void line(int y, std::vector<Point>& corners) {
     if (!near_) {
-      const Affine& c = affine_;
+      const Affine& c = T_map_pixel_;
       for (std::size_t x = 0; x < corners.size(); ++x) {
         const auto column = static_cast<double>(x);
         corners[x] = {c[0] + column * c[1] + y * c[2], c[3] + column * c[4] + y * c[5]};
@@ -146,7 +146,7 @@ class PixelCorners {
     void operator()(void* transformer) const { GDALDestroyTransformer(transformer); }
   };
   Point corner_;
-  Affine affine_{};
+  Affine T_map_pixel_{};
   std::unique_ptr<void, Destroy> exact_, near_;  // the approximate transformer calls the exact one
   std::vector<double> xs_, ys_, zs_;
   std::vector<int> reached_;

@@ -51,7 +51,7 @@ Chassis::Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover&
   const int axles = std::max(2, rover.wheel_count / 2);
   for (int k = 0; k < axles; ++k)
     for (const double side : {0.5, -0.5})
-      wheels_.push_back(
+      p_body_wheels_.push_back(
           {rover.wheelbase_m * (0.5 - static_cast<double>(k) / (axles - 1)), side * rover.track_m});
 }
 
@@ -109,7 +109,7 @@ double Chassis::moves_m(double x_m, double y_m, const Tilt& tilt) noexcept {
 // added for a shift.
 std::optional<Chassis::Heights> Chassis::heights(const Place& place, const Tilt& tilt) const {
   Heights z;
-  for (const Wheel& wheel : wheels_) {
+  for (const BodyPoint& wheel : p_body_wheels_) {
     const Point nominal = placed(place.pose, wheel.x_m, wheel.y_m);
     const double own_m = moves_m(wheel.x_m, wheel.y_m, tilt) + place.slack.turn_m;
     const auto rough = above(place.plane, nominal, own_m + place.slack.shift_m);
@@ -125,8 +125,8 @@ std::optional<Chassis::Heights> Chassis::heights(const Place& place, const Tilt&
 // the ground and nowhere above the highest such line.
 Stance Chassis::rigid(const Heights& z) const {
   Bounds pitch = nothing(), roll = nothing();
-  const std::size_t axles = wheels_.size() / 2;
-  const auto x = [&](std::size_t axle) { return wheels_[2 * axle].x_m; };
+  const std::size_t axles = p_body_wheels_.size() / 2;
+  const auto x = [&](std::size_t axle) { return p_body_wheels_[2 * axle].x_m; };
   for (const std::size_t side : {0U, 1U}) {
     std::vector<double> highest(axles, -INFINITY);
     for (std::size_t a = 0; a < axles; ++a)

@@ -72,7 +72,7 @@ class Chassis {
   std::vector<Violation> violations(const std::vector<maps::Point>& route) const;
 
  private:
-  struct Wheel {
+  struct BodyPoint {
     double x_m, y_m;  // in the body frame
   };
   using Heights = std::vector<Bounds>;  // left and right alternating, front axle first
@@ -109,7 +109,7 @@ class Chassis {
   const maps::Raster<float>& elevation_m_;
   terramech::Rover rover_;
   Suspension suspension_;
-  std::vector<Wheel> wheels_;
+  std::vector<BodyPoint> p_body_wheels_;
   double reach_m_;  // of the farthest wheel
 };
 

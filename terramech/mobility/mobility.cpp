@@ -8,6 +8,7 @@
 
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/steady_wheel.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
@@ -103,15 +104,9 @@ CarriedForces carriedBy(const Soil& soil, const Wheel& wheel) {
 
 /// Returns the prediction of a model for a wheel of a rover at maximum rim speed.
 WheelForces predicted(const RefinedModel& model, const Rover& rover, const WheelStation& at, int pass) {
-  WheelState state;
-  state.wheel = rover.wheel;
-  state.load_N = at.load_N;
-  state.slip = at.slip;
-  state.rim_speed_mps = rover.max_speed_mps * (at.slip < 0.0 ? 1.0 + at.slip : 1.0);
-  state.speed_mps = rover.max_speed_mps * (1.0 - std::max(at.slip, 0.0));
+  WheelState state = steadyWheel(rover, at.load_N, at.slip);
   state.pass_index = pass;
   state.slope_rad = at.slope_rad;
-  state.gravity_m_s2 = rover.gravity_m_s2;
   const Reading reading = predict(model, state);
   return {.sinkage_m = reading.sinkage_m,
           .entry_angle_rad = 0.0,

@@ -5,6 +5,7 @@
 
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
+#include <talus/terramech/mobility/steady_wheel.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::terramech {
@@ -122,16 +123,8 @@ WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover
   ground.slip_along_travel = false;
   std::vector<WheelState> states;
   for (const WheelMotion& m : motions(even_load_N_)) {
-    WheelState state;
-    state.wheel = rover.wheel;
-    state.load_N = m.load_N;
-    state.slip = m.slip;
-    state.slip_angle_rad = m.slip_angle_rad;
-    state.gravity_m_s2 = rover.gravity_m_s2;
-    state.rim_speed_mps = rover.max_speed_mps * (m.slip < 0.0 ? 1.0 + m.slip : 1.0);
-    state.speed_mps = rover.max_speed_mps * (1.0 - std::max(m.slip, 0.0));
-    state.pass_index = 1;
-    states.push_back(state);
+    states.push_back(steadyWheel(rover, m.load_N, m.slip, m.slip_angle_rad));
+    states.back().pass_index = 1;
   }
   SolvedContacts solved;
   std::vector<Node> nodes;

@@ -6,6 +6,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/mobility/steady_wheel.hpp>
 
 namespace talus::planner {
 namespace {
@@ -56,17 +57,10 @@ std::vector<Row> solved(const terramech::Soil& soil, const terramech::Rover& rov
 std::vector<Row> predicted(const terramech::RefinedModel& model, const terramech::Rover& rover) {
   std::vector<terramech::WheelState> states;
   for (const auto& operation : operations(rover)) {
-    terramech::WheelState state;
-    state.wheel = rover.wheel;
-    state.load_N = operation.load_N;
-    state.slip = operation.slip;
-    state.slip_angle_rad = operation.slip_angle_rad;
-    state.rim_speed_mps = rover.max_speed_mps * (state.slip < 0.0 ? 1.0 + state.slip : 1.0);
-    state.speed_mps = rover.max_speed_mps * (1.0 - std::max(state.slip, 0.0));
-    state.slope_rad = 0.0;
-    state.gravity_m_s2 = rover.gravity_m_s2;
-    state.pass_index = 1.0;
-    states.push_back(state);
+    states.push_back(
+        terramech::steadyWheel(rover, operation.load_N, operation.slip, operation.slip_angle_rad));
+    states.back().slope_rad = 0.0;
+    states.back().pass_index = 1.0;
   }
   terramech::SolvedContacts contacts;
   std::vector<Row> rows;
