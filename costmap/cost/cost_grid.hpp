@@ -65,7 +65,7 @@ class CostGrid {
     TileTable tiles;  ///< tiles beyond the eastern and northern edge are padded
     std::shared_ptr<const TravelCost> cost;
     std::uint64_t version = 0;
-    HeightTable elevation_m{};  ///< NaN for unobserved cells; without tiles: unknown
+    HeightTable elevation_m{};  ///< NaN for unobserved cells; a table without tiles has no elevations
   };
 
   explicit CostGrid(Content content);
@@ -98,7 +98,7 @@ struct Revision {
   std::vector<maps::CellBox> ranges;  ///< the changed cells, inside the grid
   /// New code of a cell of the ranges, from its position and its old code.
   std::function<CellCode(maps::Cell, CellCode)> code;
-  /// Returns the cost function of the new version; called after `code` was called for all changed cells.
+  /// Returns the cost function of the new version. Is called after `code` was called for all changed cells.
   std::function<std::shared_ptr<const TravelCost>()> cost;
   std::optional<HeightTable> elevation_m{};  ///< elevation of the new version; nullopt: unchanged
 };

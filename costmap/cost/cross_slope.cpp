@@ -18,12 +18,12 @@ using terramech::Gradient;
 using terramech::SlopeFailure;
 using terramech::SlopeState;
 
-constexpr double kAlongStep = 1.0 / 32.0;   // step of the gradients along of a row
-constexpr double kLevelStep = 1.0 / 128.0;  // the same for row 0 under even loads
+constexpr double kAlongStep = 1.0 / 32.0;   // step of the gradients along the heading in a row
+constexpr double kLevelStep = 1.0 / 128.0;  // step in row 0 under even loads
 constexpr double kRowStep = 1.0 / TravelCurve::kRowsPerUnit;
-constexpr double kSpare = 1.25;  // rows solved beyond the limit, to find the failure
+constexpr double kSpare = 1.25;  // factor on the number of rows, to find failures beyond the roll limit
 constexpr int kBins = TravelCurve::kBins;
-constexpr double kBelow = 0.16;        // descents solved beyond the limit, to find the failure
+constexpr double kBelow = 0.16;        // gradient solved beyond the pitch limit, to find failures of descents
 constexpr double kNowhere = 4.0;       // steeper than any cell
 constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
 constexpr float kSamePlace = 0.02F;    // [bins]
@@ -186,13 +186,13 @@ void CrossSlope::addRow(int row, const Strengths& strengths, const LevelClimbs& 
 
 CrossSlope::CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
                        const TravelCost::Limits& limits) {
-  // Includes the row beyond the limit, which gradients at the limit read; gradients across are at most 1.
+  // Interpolation at the roll limit needs the row beyond. Gradients across are at most 1.
   const int needed = static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 1;
   const double low = -std::min(limits.max_along + kBelow, 1.0),
                high = std::clamp(level.last + kAlongStep, 0.0, 1.0);
   const terramech::SlopeEquilibrium even_equilibrium = equilibrium.withEvenLoads();
   const SlopeRow even = SlopeRows(even_equilibrium, low, high, kLevelStep).solved(0.0);
-  if (level.first > level.last || even.states.empty()) {  // the states themselves refuse row 0
+  if (level.first > level.last || even.states.empty()) {  // the states of the curve refuse row 0
     addLevelRow();
     climbs_.resize(2 * kBins, Climbs{.refused = Refusal::Pull});
     tabulateSteepest();
@@ -255,7 +255,7 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// Failure of the nearer, else of the other adjacent equilibrium; else the usual reason in the row.
+// Failure of the nearer adjacent equilibrium, else of the other, else Pull (row 0) or SideForce.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
@@ -271,7 +271,7 @@ Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   return other != SlopeFailure::None ? reasonOf(other) : lacks;
 }
 
-// Linear between the two adjacent equilibria, or equal to the only one that did not fail.
+// Interpolates linearly between the adjacent equilibria; skips a failed equilibrium.
 SlopeHold CrossSlope::holdInRow(int row, double along) const noexcept {
   if (row >= static_cast<int>(held_.size())) return {};
   const std::vector<Held>& held = held_[static_cast<std::size_t>(row)];

@@ -23,26 +23,26 @@ struct CostWeights {
 /// gradient across; row 0 included) is represented by three gradients without cross slope, under even wheel
 /// loads:
 ///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
-///   - leaves: the climb with the same strength reserve, the loss of strength until failure. A loss d reduces
-///     the pull by d and the side force by the fraction d / thrust, with thrust = gross thrust / load at
-///     the reference slip;
-///   - brakes: the descent with the same braking reserve, if descents fail at most 0.16 beyond the pitch
-///     limit.
+///   - leaves: the climb with the same strength reserve, i.e. the same loss d of drawbar pull over load at
+///     which the slope fails. A loss d reduces the side force by the fraction d / thrust, with thrust =
+///     gross thrust / load at the reference slip;
+///   - brakes: the descent with the same braking reserve. Descents are solved up to the gradient 0.16 beyond
+///     the pitch limit.
 /// A climb is at least as steep as the node's gradient along, and no slope becomes less steep from row to
 /// row: cost, risk and refusal never decrease with the gradient across. The slopes follow from the class's
 /// soil alone; an estimate of the ground changes the states on these slopes. Nodes at which the rover tips
-/// are refused on any ground; the attitude of the body is computed on the class's ground.
+/// are refused on any soil; the attitude of the body is that on the soil of the class.
 ///
-/// The equilibria with load transfer and under even loads use one table of wheel forces, so that its errors
-/// cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are solved at
-/// gradients along 1/32 apart and interpolated linearly. If the gradients without failure form several
-/// intervals, the interval nearest to level ground is used; of equally near intervals, the longest.
+/// The equilibria with load transfer and those under even loads use one table of wheel forces, so that the
+/// table errors cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are
+/// solved at gradients along 1/32 apart and interpolated linearly. If the gradients without failure form
+/// several intervals, the interval nearest to level ground is used; of equally near intervals, the longest.
 /// Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
   struct Level {
-    double first = 0.0, last = -1.0;  ///< interval of gradients along without failure; first > last: empty
+    double first = 0.0, last = -1.0;  ///< gradients along without failure; first > last: empty interval
     double thrust = 1.0;              ///< gross thrust / load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
@@ -52,11 +52,11 @@ class CrossSlope {
   /// slopes along the heading only.
   static CrossSlope alongOnly();
 
-  /// For ground of either class: at each node the harder of both.
+  /// Slopes for ground of the class of `a` or of `b`: at each node the less favourable values of both.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
-  /// Returns the number of tabulated rows, row 0 included; later rows equal the last row, which refuses every
-  /// heading unless the limits are reached first.
+  /// Returns the number of tabulated rows, row 0 included. Steeper gradients across use the last row, which
+  /// refuses every heading unless the limits of roll or pitch end the table first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / TravelCurve::kBins; }
 
   /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
@@ -71,7 +71,7 @@ class CrossSlope {
   /// b), those of a.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// Returns the gradient of the climb with the same strength reserve as a slope; 4 if refused on any ground.
+  /// Returns the gradient of the climb with the same strength reserve as a slope; 4 if refused on any soil.
   double climb(const terramech::Gradient& gradient) const noexcept;
   /// Returns the maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
   double steepest(double gradient) const noexcept;
@@ -84,7 +84,7 @@ class CrossSlope {
     float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
     Refusal refused = Refusal::None;
   };
-  // Equilibrium at one gradient along of a row.
+  // Equilibrium of a row at one gradient along the heading.
   struct Held {
     SlopeHold hold;
     terramech::SlopeFailure grip = terramech::SlopeFailure::None;
@@ -109,7 +109,7 @@ class CrossSlope {
   Refusal reasonAt(int row, int bin) const noexcept;
 
   std::vector<Climbs> climbs_;
-  std::vector<std::vector<Held>> held_;  // by row, as far as any gradient has an equilibrium
+  std::vector<std::vector<Held>> held_;  // by row, up to the last row with an equilibrium
   int first_along_ = 0;                  // index of the first gradient along, in steps of kAlongStep
   std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };

@@ -21,7 +21,7 @@ bool drivable(const MobilityCurve& curve, double demand) {
   return curve.at(std::atan(demand)).feasible;
 }
 
-// The limit of drivable demands between a drivable and an undrivable demand, by bisection.
+// Finds the limit between a drivable demand (`drives`) and an undrivable demand (`fails`) by bisection.
 double edge(const MobilityCurve& curve, double drives, double fails) {
   for (int halving = 0; halving < 50; ++halving) {
     const double middle = 0.5 * (drives + fails);
@@ -30,7 +30,7 @@ double edge(const MobilityCurve& curve, double drives, double fails) {
   return drives;
 }
 
-// The farthest drivable demand from `from` towards `end` without an undrivable demand between.
+// Returns the last demand from `from` towards `end` up to which all demands are drivable.
 double followed(const MobilityCurve& curve, double from, double end) {
   const double step = (end - from) / kSteps;
   double last = from;
@@ -47,7 +47,7 @@ double followed(const MobilityCurve& curve, double from, double end) {
 ExpectedTravel::ExpectedTravel(const MobilityCurve& curve) {
   if (curve.maxSlope_rad() < curve.minSlope_rad()) return;
   const double low = std::tan(curve.minSlope_rad()), high = std::tan(curve.maxSlope_rad());
-  // Start at level ground, or else at the greatest drivable demand.
+  // Starts at level ground or, if level ground is undrivable, at the greatest drivable demand.
   double from = 0.0;
   for (int k = 0; k <= kSteps && !drivable(curve, from); ++k) from = high + k * (low - high) / kSteps;
   if (!drivable(curve, from)) return;

@@ -9,7 +9,7 @@ namespace talus::costmap {
 
 using terramech::Estimate;
 
-/// Expected cost per metre along the surface for an uncertain demand.
+/// Expected cost per metre along the surface for an uncertain demand (required drawbar pull over load).
 struct ExpectedCost {
   double energy_J_per_m = 0.0;
   double time_s_per_m = 0.0;
@@ -32,8 +32,8 @@ class ExpectedTravel {
  public:
   explicit ExpectedTravel(const terramech::MobilityCurve& curve);
 
-  /// Interval of drivable demands: from the steepest descent that locked wheels hold to the limit of slip,
-  /// torque and soil. first > last: empty.
+  /// Interval of drivable demands, from the steepest descent on which locked wheels stop the rover to the
+  /// limit of slip, torque and soil. first > last: empty interval.
   double first() const noexcept { return first_; }
   double last() const noexcept { return last_; }
 
@@ -41,8 +41,8 @@ class ExpectedTravel {
   /// raised to `least`: ground that is stronger than the soil does not propel the rover.
   ExpectedCost at(const Estimate& demand, double least) const noexcept;
 
-  /// Returns the greatest sinkage of a wheel [m] between level ground and the demand; for a demand below 0,
-  /// the sinkage at the demand.
+  /// Returns the greatest sinkage of a wheel [m] over the demands from 0 to `demand`; for a demand below 0,
+  /// the sinkage at that demand.
   double sinkage_m(double demand) const noexcept;
 
  private:

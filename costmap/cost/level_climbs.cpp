@@ -47,7 +47,6 @@ double LevelClimbs::reached(const std::vector<double>& values, double value) con
   return (first_node_ + static_cast<double>(k) - back) * step_;
 }
 
-// Solved by bisection.
 double strengthToLose(double along, double across, const LevelStrength& level,
                       const std::vector<double>& losses) {
   const auto fails = [&](double lost) {

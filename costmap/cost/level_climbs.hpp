@@ -37,9 +37,9 @@ struct LevelStrength {
   double last, thrust;
 };
 
-/// Returns the loss of DP/W at which a slope fails; <= 0 if the slope fails without a loss. A
-/// loss of pull adds to the climb, and a loss of side force increases the effective gradient across. `losses`
-/// are the reductions of the steepest climb in rows of gradient across 1/64 apart.
+/// Returns the loss of drawbar pull over load at which a slope fails; <= 0 if the slope fails without a loss.
+/// A loss of pull adds to the climb, and a loss of side force increases the effective gradient across.
+/// `losses[k]` is the reduction of the steepest climb at the gradient across k/64.
 double strengthToLose(double along, double across, const LevelStrength& level,
                       const std::vector<double>& losses);
 

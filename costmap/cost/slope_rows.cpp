@@ -12,7 +12,7 @@ using terramech::SlopeState;
 
 namespace {
 
-constexpr double kNear_rad = 0.1;  // below, an axle or side carries nearly the whole load (ours)
+constexpr double kNear_rad = 0.1;  // margin below which one axle or side carries nearly the whole load (ours)
 
 }  // namespace
 
@@ -79,7 +79,7 @@ SlopeState SlopeRows::at(double along, double across) const {
   return right.grip == SlopeFailure::None && right.energy_J_per_m < left.energy_J_per_m ? left : right;
 }
 
-// The limit gradient without failure between a node and its failing neighbour, by bisection.
+// Finds by bisection the last gradient without failure between a node and its failing neighbour.
 double SlopeRows::edge(int node, int towards, double across) const {
   double holds = node * step_, fails = (node + towards) * step_;
   for (int halving = 0; halving < 7; ++halving) {

@@ -7,12 +7,12 @@
 
 namespace talus::costmap {
 
-/// Slope equilibria for one gradient across, at equally spaced gradients along.
+/// Slope equilibria for one gradient across the heading, at equally spaced gradients along the heading.
 struct SlopeRow {
   double step = 1.0;  ///< step of the gradients along
   double first = 0.0,
          last = -1.0;  ///< interval of gradients without failure; infinite beyond the tabulated gradients
-  bool tips_before = false, tips_behind = false;  ///< whether tipping, not strength, limits that end
+  bool tips_before = false, tips_behind = false;  ///< whether tipping limits `first`, `last`
   int first_node = 0;                             ///< gradient of states[0], in steps
   std::vector<terramech::SlopeState> states{};    ///< states in the interval, tipping ones included
   std::vector<terramech::SlopeState> all{};       ///< states at all tabulated gradients

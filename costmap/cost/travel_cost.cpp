@@ -34,7 +34,7 @@ std::vector<TravelCurve> curvesOf(const std::vector<GroundCost>& grounds) {
   return curves;
 }
 
-// The stability margin on level ground is least towards one of the four sides of the wheel base.
+// Gradient up to which no heading tips: tan(stability margin on level ground).
 double steadyGradient(const terramech::RoverStance* stance) {
   const double margin_rad = stance ? stance->stabilityMargin_rad({}) : kInfinity;
   return margin_rad < 0.5 * std::numbers::pi ? std::tan(margin_rad) : kInfinity;

@@ -64,8 +64,8 @@ class CellCode {
 
 /// Cost per horizontal metre on one kind of ground, tabulated over the gradient along the heading (rise over
 /// run, climbing > 0; kBins nodes at k/256, k = -256..255) and over |gradient across| (rows at multiples of
-/// 1/64). Bilinear between nodes; infinite for a refused motion. price() is finite only if every node of
-/// positive weight is finite.
+/// 1/64). Costs are bilinear between nodes, and infinite for a refused motion. price() is finite only if
+/// every node of positive weight is finite.
 struct TravelCurve {
   static constexpr int kBins = 512;
   static constexpr int kBinsPerUnit = 256;
@@ -75,8 +75,9 @@ struct TravelCurve {
       kBins - 1 - kSame;  ///< upper bound of positions along [bins], exclusive
   /// Row 0, without cross slope: energy + weighted time + weighted risk [J/m].
   std::array<float, kBins> cost_J_per_m;
-  /// All rows, row 0 first; gradients beyond use the last row. Null: no additional cost across. Costs must
-  /// not decrease from row to row in any bin, because lower bounds rely on monotone costs.
+  /// All rows, row 0 first; steeper gradients across use the last row. Null: a gradient across adds no cost.
+  /// Costs must not decrease from row to row in any bin, because the planners' lower bounds rely on monotone
+  /// costs.
   std::shared_ptr<const std::vector<float>> crossing{};
 
   /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
@@ -147,8 +148,8 @@ struct GroundCost {
   TurnCosts turns{};  ///< cost of one radian on level ground; zeros if turning is free (tests)
 };
 
-/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the class; NaN without
-/// an equilibrium.
+/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the class; NaN on a
+/// slope without an equilibrium.
 struct SlopeHold {
   /// relative to the direction of travel, left positive
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
@@ -185,11 +186,11 @@ class TravelCost {
   /// motion.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
 
-  /// State behind costPerMetre(): the cost is finite if and only if refusal is None. Zeros with category
-  /// Unknown for a curve without states.
+  /// Returns the state from which costPerMetre() follows: the cost is finite if and only if refusal is None.
+  /// For a curve without states: zeros, category Unknown.
   TravelState detail(CellCode cell, Direction heading) const noexcept;
 
-  /// Slip angle, side force and stability margin on the cell.
+  /// Returns slip angle, side force and stability margin on the cell.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
   /// Returns the cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns()

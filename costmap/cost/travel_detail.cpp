@@ -4,8 +4,8 @@
 #include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/cost/travel_cost.hpp>
 
-// State behind the cost of a metre. Separate from travel_cost.cpp, which is independent of the construction of
-// curves.
+// Computes the state from which the cost of a metre follows. This file is separate from travel_cost.cpp,
+// which does not depend on the construction of curves.
 namespace talus::costmap {
 namespace {
 

@@ -13,20 +13,20 @@ struct TravelPolicy {
   bool allow_unknown = false;
 
   double slope_margin_rad = 5.0 * kDegree;  ///< category limits at tan(slope -+ margin), thesis 3.5: 5 deg
-  double sinkage_threshold = 0.5;           ///< z/r without effect on the category, thesis 3.5 [-]
+  double sinkage_threshold = 0.5;           ///< sinkage over radius, z/r, without effect (thesis 3.5)
   /// z/r above which ground is dangerous [-]; 0: clearance of the rover divided by wheel radius.
   double sinkage_critical = 0.0;
   /// Refuse ground if the probability that the drawbar pull is insufficient exceeds this limit [-].
   double max_immobilisation = 0.5;
 
   double pose_error_m =
-      0.0;  ///< greatest position error of the rover; widens the area whose soil is evaluated
+      0.0;  ///< greatest position error of the rover; enlarges the area whose soil is evaluated
 
   double time_weight_W = 1.0;  ///< weight of time [J/s]
   double entrapment =
       0.01;  ///< probability that insufficient drawbar pull immobilises a rover with slip monitoring, which
              ///< usually stops and backs out (ours, not from the literature) [-]
-  double unmonitored_entrapment = 1.0;  ///< the same without slip monitoring [-]
+  double unmonitored_entrapment = 1.0;  ///< the same probability for a rover without slip monitoring [-]
   bool unmonitored = false;             ///< whether this drive has no slip monitoring
   double risk_weight_J = 1e8;           ///< cost of the loss of the rover [J]
   double correlation_length_m = 5.0;    ///< correlation length of the soil within one class

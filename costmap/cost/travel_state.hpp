@@ -23,11 +23,11 @@ enum class Refusal : std::uint8_t {
   Tips,       ///< centre of mass beyond the wheel base
 };
 
-/// Returns the text of a reason: "required drawbar pull above the available drawbar pull".
+/// Returns the text of a reason, e.g. "required drawbar pull above the available drawbar pull".
 const char* toText(Refusal refusal) noexcept;
 
-/// State of driving over one kind of ground at one gradient: the quantities behind a cost. Per wheel where
-/// noted, else for the rover; metres are horizontal.
+/// State of driving over one kind of ground at one gradient: the quantities from which a cost follows.
+/// Quantities are those of the rover unless marked "per wheel"; metres are horizontal.
 struct TravelState {
   float slip = 0.0F;            ///< [-], driven > 0, braked < 0
   float sinkage_m = 0.0F;       ///< per wheel
@@ -42,11 +42,11 @@ struct TravelState {
   std::uint8_t class_index = 0;  ///< index of the ground's class in the model
 };
 
-/// The less favourable value of each quantity of two states; the first refusal of the two.
+/// Returns the less favourable value of each quantity; the refusal of `b` only if `a` is allowed.
 TravelState worse(const TravelState& a, const TravelState& b) noexcept;
 
-/// Interpolation between two states, share in [0, 1]: linear quantities, the worse category, and the first
-/// refusal of the two. Tipping takes precedence, because tipping does not depend on the soil.
+/// Interpolates linearly from a (share = 0) to b (share = 1). The category is the worse of both. The refusal
+/// is Tips if either state tips, else that of `a`, else that of `b`.
 TravelState between(const TravelState& a, const TravelState& b, float share) noexcept;
 
 /// States of a curve over the gradient along, at the bins of TravelCurve.

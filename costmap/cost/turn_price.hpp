@@ -21,7 +21,7 @@ inline TurnCosts reweighted(TurnCosts turns, double energy, double time_W) noexc
   return turns;
 }
 
-/// The maximum of each quantity.
+/// Returns the maximum of each quantity of two turns.
 inline TurnCosts dearer(const TurnCosts& a, const TurnCosts& b) noexcept {
   const auto of = [](const TurnCost& x, const TurnCost& y) {
     return TurnCost{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),

@@ -18,9 +18,9 @@ constexpr double kStep = 0.01;
 constexpr double kLowest = -1.28;
 constexpr double kSurest = 0.025;  // standard deviation of grade 0 [-]
 constexpr double kModel =
-    0.02;  // error of thesis Eq. 3.12 as a model of DP/W, common to all readings of a place [-]
-constexpr double kSinkageStd = 0.02;    // of one reading of sinkage over radius [-]
-constexpr double kReferenceStd = 0.05;  // of a reading that counts as one sample [-]
+    0.02;  // error of thesis Eq. 3.12 for drawbar pull over load, common to all readings of a place [-]
+constexpr double kSinkageStd = 0.02;    // standard deviation of one reading of sinkage over radius [-]
+constexpr double kReferenceStd = 0.05;  // standard deviation of a reading that counts as one sample [-]
 constexpr double kLeastShared = 0.02, kSharedStep = 1.5;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -33,8 +33,9 @@ std::uint8_t stepped(double steps) noexcept {
   return static_cast<std::uint8_t>(std::clamp(steps, 0.0, 255.0));
 }
 
-// Mean of the lower tail of probability p of a standard normal distribution, with the sign reversed: phi(Phi^-1(p))/p.
-// Tabulated at p = 2^-i and interpolated linearly in log p, which never exceeds the exact value.
+// Mean of the lower tail of probability p of a standard normal distribution (density phi, distribution
+// function Phi), with the sign reversed: phi(Phi^-1(p))/p. Tabulated at p = 2^-i and interpolated linearly in
+// log p, which never exceeds the exact value.
 double tailMean(double p) {
   static const std::array<double, 33> table = [] {
     std::array<double, 33> t{};
@@ -75,7 +76,7 @@ void addWeakest(std::span<const ReadingCount> counts, double std, double sign, V
 double pullOf(std::uint8_t step) noexcept {
   return kLowest + kStep * step;
 }
-// Pull of a bound. Step 0 contains all lower pulls and returns -10.
+// Returns the pull of a bound. Step 0 represents all lower pulls and returns -10.
 double mostPullOf(std::uint8_t step) noexcept {
   constexpr double kLeast = -10.0;
   return step == 0 ? kLeast : pullOf(step);
@@ -137,7 +138,7 @@ std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, st
   return merged;
 }
 
-// Mean shared error of the readings that may raise, weighted by inverse variance.
+// Returns the mean shared error of the readings that may raise an estimate, weighted by inverse variance.
 double sharedOf(std::span<const ReadingCount> counts) noexcept {
   double weight = 0.0, sum = 0.0;
   for (const ReadingCount& c : counts) {

@@ -7,8 +7,8 @@
 #include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 
-/// Evidence of one block of ground: counts of quantised readings, and the numbers computed from the counts. Counts have
-/// no order: the same readings in any order give bitwise equal results.
+/// Evidence of one block of ground: counts of quantised readings, and the numbers computed from the counts.
+/// The order of readings has no effect: equal readings give bitwise equal results.
 namespace talus::costmap {
 
 /// Number of times that a block received one quantised reading of one drive, at most 65535 (saturated).
@@ -21,10 +21,11 @@ struct ReadingCount {
   friend bool operator==(const ReadingCount&, const ReadingCount&) = default;
 };
 
-/// Kinds of readings. A pull has one of eight grades g of certainty, standard deviation 0.025 * 2^(g/2), 0.025 to 0.28
-/// [-]. Pulls that may raise an estimate have one kind for each pair of a grade of certainty and a grade of the shared
-/// error. Pulls that may only lower an estimate have one kind for each grade of certainty. Bounds apply to the block
-/// itself: the strictest bound applies, whatever the number of other readings.
+/// Kinds of readings. A pull has one of eight grades g of certainty, standard deviation 0.025 * 2^(g/2),
+/// 0.025 to 0.28 [-]. Pulls that may raise an estimate have one kind for each pair of a grade of certainty
+/// and a grade of the shared error. Pulls that may only lower an estimate have one kind for each grade of
+/// certainty. Of several bounds of a block the strictest applies, independent of the number of other
+/// readings.
 namespace reading_kind {
 inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
 inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
@@ -79,14 +80,15 @@ static_assert(sizeof(BlockEvidence) == 44);
 /// Computes the fields `sinkage_raises` to `least_sinkage` of `block`. `prior`: drawbar pull over load of the class and
 /// its standard deviation between places [-].
 ///
-/// Readings of one grade of certainty give the least value over k of m_k + sigma c(k/n) (ours): m_k is the mean of the
-/// k lowest of n readings, and c(p) = phi(Phi^-1(p))/p is the mean of the lower tail of a normal distribution, by which
-/// noise alone would lower m_k. The variance includes the model error, 0.02 in DP/W, which is common to all readings of
-/// a place. With several drives, `pull` is at most the bound of each drive, because the sensors of any drive may be
-/// faulty. The bound of a drive is its mean, plus two standard errors of its own scatter if these exceed 0.02. With n
-/// drives the least bound is raised by 0.02 (c(1/n) - c(1/2)), the difference to expect between the least of n and the
-/// least of two sound drives. `shared` is the mean shared error of the readings, weighted by inverse variance: more
-/// readings do not reduce `shared`.
+/// Readings of one grade of certainty give the least value over k of m_k + sigma c(k/n) (ours): m_k is the
+/// mean of the k lowest of n readings. Noise alone lowers m_k by sigma c(k/n), where c(p) = phi(Phi^-1(p))/p
+/// is the mean of the lower tail of the standard normal distribution (density phi, distribution function
+/// Phi). The variance includes the model error, 0.02 in DP/W, which is common to all readings of a place.
+/// With several drives, `pull` is at most the bound of each drive, because the sensors of any drive may be
+/// faulty. The bound of a drive is its mean, plus two standard errors of its own scatter if these exceed
+/// 0.02. With n drives the least bound is raised by 0.02 (c(1/n) - c(1/2)), the expected difference between
+/// the least of n and the least of two sound drives. `shared` is the mean shared error of the readings,
+/// weighted by inverse variance: more readings do not reduce `shared`.
 void summarise(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block);
 
 /// Numbers of the drives among the counts, ascending, without duplicates; and the counts of one drive.

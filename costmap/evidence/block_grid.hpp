@@ -8,10 +8,10 @@
 
 namespace talus::costmap {
 
-/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of cells, at
-/// most 256, that does not exceed a quarter of the correlation length, or one cell. Blocks are aligned with the
-/// octree. A block is identified by its south-west cell, which may lie outside the grid, or by its column and row from
-/// the map's south-west. Immutable.
+/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of
+/// cells, 1 to 256, that does not exceed a quarter of the correlation length; at least one cell. Blocks are
+/// aligned with the octree. A block is identified by its south-west cell, which may lie outside the grid, or
+/// by its column and row from the map's south-west. Immutable.
 class BlockGrid {
  public:
   explicit BlockGrid(std::shared_ptr<const GroundSite> site);
@@ -33,8 +33,8 @@ class BlockGrid {
   }
   maps::Point middleOf(maps::Cell block) const noexcept;
 
-  /// Octree height key of an elevation, and of the first cell with an elevation in a block; nothing if the block has no
-  /// elevation.
+  /// keyOf(): octree height key of an elevation. topKey(): key of the first cell with an elevation in a
+  /// block; nullopt if no cell of the block has an elevation.
   std::uint16_t keyOf(float height_m) const noexcept;
   std::optional<std::uint16_t> topKey(maps::Cell block) const noexcept;
 

@@ -18,7 +18,7 @@ std::int64_t fixed(double value) {
 }
 
 constexpr double kPullStep = 0.005, kSinkageStep = 0.02;
-constexpr double kSame = 1e-6;  // tolerance in steps: a rounded number rounds to itself
+constexpr double kSame = 1e-6;  // tolerance [steps], so that a rounded number rounds to itself
 
 double below(double value, double step) noexcept {
   return std::floor(value / step + kSame) * step;

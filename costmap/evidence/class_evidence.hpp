@@ -27,7 +27,8 @@ struct ClassState {
                                        ///< deviation [-]
   double own_std = 0.0, shared = 0.0;  ///< as in ClassPosterior [-]
   double sinkage = 0.0;                ///< departure of sinkage over radius [-]
-  bool may_raise = false;     ///< true if enough places may raise, so that estimates of the class may rise
+  bool may_raise = false;     ///< true if enough places have verified readings, so that estimates of the
+                              ///< class may rise
   double most_rise = 0.0;     ///< greatest rise of an estimate [-]
   double pull_step = 0.0;     ///< rounding step: the exact value of `pull` is higher by at most this [-]
   double sinkage_step = 0.0;  ///< rounding step: the exact value of `sinkage` is lower by at most this [-]
@@ -41,8 +42,8 @@ class IndependentPlaces {
  public:
   using Square = std::pair<int, int>;  ///< column and row
 
-  /// Sets the departure of a square's weakest ground from its class; -infinity: no reading in the square may raise;
-  /// nothing: the square has no readings.
+  /// Sets the departure of a square's weakest ground from its class. -infinity: no reading in the square may
+  /// raise an estimate. nullopt: the square has no readings.
   void set(const Square& square, std::optional<float> departure);
 
   /// Greatest number of squares with readings in one set.
@@ -63,14 +64,14 @@ class IndependentPlaces {
 struct BlockContribution {
   double weight = 0.0;            ///< number of independent places that the block represents [-]
   double pull = 0.0;              ///< departure from the prior [-]
-  std::optional<double> sinkage;  ///< departure from the prior; nothing if not measured
-  bool raises = false;            ///< true if the contribution may raise the mean and reduce its standard
-                                  ///< deviation
+  std::optional<double> sinkage;  ///< departure from the prior; nullopt: not measured
+  bool raises = false;            ///< true if the contribution may raise the class mean and reduce the
+                                  ///< standard deviation
   bool sinkage_raises = false;    ///< true if the sinkage may be below that of the class
   double shared = 0.0;            ///< standard deviation by the error common to all contributions [-]
   std::uint16_t drive =
-      0;  ///< drive of all readings that may raise, 0: several drives; if `raises` is false, drive of all
-          ///< readings
+      0;  ///< drive of the readings that may raise an estimate, or of all readings if `raises` is false; 0:
+          ///< several drives
 };
 
 /// Evidence of a class: the sum of the contributions of all blocks. Sums are exact (fixed point): a contribution can be

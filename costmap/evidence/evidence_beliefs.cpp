@@ -8,7 +8,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr std::size_t kMostRemembered = 512;  // patches
+constexpr std::size_t kMostRemembered = 512;  // greatest number of stored patches
 constexpr int kPatchSide = EvidenceReach::kPatchBlocks;
 
 }  // namespace

@@ -16,18 +16,20 @@ struct BlockLevel {
   std::uint8_t terrain_class = 0;  ///< number of the class
 };
 
-/// The evidence of a map, in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with evidence and a
-/// sorted list of their readings. A block takes 44 bytes and 12 for each distinct reading of a drive; a block without
-/// evidence takes less than one byte. (A leaf of an OctoMap tree takes 64 bytes with its allocation, and its parents as
-/// much again.) Not thread-safe while changed; pointers are valid until the next change.
+/// The evidence of a map, in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with evidence
+/// and a sorted list of their readings. A block takes 44 bytes and 12 for each distinct reading of a drive; a
+/// block without evidence takes less than one byte. (For comparison: a leaf of an OctoMap tree takes 64 bytes
+/// with its allocation, and its parents another 64.) Not thread-safe while changed; pointers are valid until
+/// the next change.
 class EvidenceBricks {
  public:
-  /// No evidence on a map of so many columns and rows of blocks.
+  /// Makes an empty store for a map with these numbers of block columns and rows.
   EvidenceBricks(int block_columns, int block_rows);
 
   /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the map.
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
-  /// The same evidence for modification, created if absent; the block must lie inside the map.
+  /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
+  /// inside the map.
   BlockEvidence& at(const BlockLevel& block);
   /// Returns the readings of a block, sorted by kind, value and drive; an unread block has an empty list.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;

@@ -13,9 +13,10 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kFarthestReach_m = 25.5;  // greatest value of BlockEvidence::reach
-constexpr double kPlaceStd = 0.06;         // greatest std of DP/W of a block that counts as measured [-]
+constexpr double kPlaceStd = 0.06;         // standard deviation of drawbar pull over load up to which a block
+                                           // counts as measured [-]
 
-// Drive of all readings that may raise; 0 if there are several such drives or none.
+// Returns the drive of the readings that may raise an estimate; 0 if the number of such drives is not 1.
 std::uint16_t driveOf(std::span<const ReadingCount> counts) noexcept {
   std::uint16_t drive = 0;
   for (const ReadingCount& c : counts) {
@@ -60,9 +61,9 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
   return out;
 }
 
-// Contribution of a block to its class. The weight is at most the side of the block over the integral scale (2/3 of the
-// correlation length), and at most 1. The departure is limited to kOrdinary standard deviations: a greater departure is
-// other ground, which no class raster shows.
+// Contribution of a block to its class. The weight is at most the side of the block over the integral scale
+// (2/3 of the correlation length), and at most 1. The departure is limited to kOrdinary standard deviations:
+// a greater departure is assumed to be other ground, missing in the class raster.
 BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
@@ -87,8 +88,9 @@ BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_
   return lesson;
 }
 
-// One contribution of all readings if some of them may raise, with the lowest weak pull of any drive; else one
-// contribution for each drive, so that no drive reduces the effect of another.
+// Returns one contribution of all readings, with the lowest weak pull of any drive, if some readings may
+// raise an estimate. Otherwise returns one contribution for each drive, so that no drive reduces the effect
+// of another.
 std::vector<BlockContribution> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
                                                         int class_index) const {
   std::vector<BlockContribution> lessons;
@@ -117,9 +119,9 @@ Estimate EvidenceField::priorOf(int class_index) const {
   return {site_->model->prior(class_index).pull.value, store_->groundClass(class_index).pull_std};
 }
 
-// Least departure of a square's blocks from the class, over blocks that are measured to kPlaceStd or lie below the
-// prior by more than their standard deviation. -infinity if no block is measured to kPlaceStd; nothing if the square
-// has no readings.
+// Least departure of a square's blocks from the class, over blocks that are measured to kPlaceStd or lie
+// below the prior by more than their standard deviation. -infinity if no block is measured to kPlaceStd;
+// nullopt if the square has no readings.
 std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Square& square,
                                                    int class_index) const {
   const int side = store_->blocks.reach();
@@ -213,7 +215,7 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
                    .reach = static_cast<std::uint8_t>(
                        std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
                    .heard = boundReadings(observation.here)};
-  // The reading may be of ground one position error away, which correlates with the ground here by `alike`; the
+  // The measured ground may lie one position error away, and correlates with the ground here by `alike`. The
   // variance of the class that this correlation does not explain is added.
   Estimate pull = observation.pull;
   const double alike = sparseKernel(observation.pose_std_m, correlation_length_m);

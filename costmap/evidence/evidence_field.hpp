@@ -35,11 +35,11 @@ struct EvidenceStore;
 /// to the top surface, and contributes to the first class only if no raster contains classes. The same evidence in any
 /// order gives bitwise equal results. Not thread-safe while changed.
 ///
-/// Evidence lowers an estimate immediately: around each place that is weaker than its class explains, or whose readings
-/// may only lower, no estimate exceeds the value that this place alone implies. Evidence raises an estimate, or reduces
-/// its standard deviation, only if at least three independent places of the class may raise, and by at most the
-/// departure that each of the three places reaches; until then no estimate exceeds that of the class without nearby
-/// evidence.
+/// Evidence lowers an estimate immediately: no estimate exceeds the value that any single nearby place
+/// implies, if that place is weaker than the variation of its class explains or has only unverified readings.
+/// Evidence raises an estimate, or reduces its standard deviation, only if at least three independent places
+/// of the class may raise, and by at most the departure that each of the three places reaches; until then no
+/// estimate exceeds that of the class without nearby evidence.
 class EvidenceField {
  public:
   /// A field without evidence.
@@ -48,28 +48,29 @@ class EvidenceField {
   EvidenceField(EvidenceField&&) noexcept;
   EvidenceField& operator=(EvidenceField&&) noexcept;
 
-  /// Adds an observation. Returns the cells whose estimate may change while the class states are constant: all cells of
-  /// the patches of blocks within reach of the observation. Returns nothing if the place is outside the map or has no
-  /// class, or if the observation contains neither an estimate nor a bound.
+  /// Adds an observation. Returns the cells whose estimate may change while the class states are constant:
+  /// all cells of the patches of blocks within reach of the observation. Returns nullopt if the place is
+  /// outside the map or has no class, or if the observation contains neither an estimate nor a bound.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
-  /// The block and the readings to which add() would add an observation; nothing where add() returns nothing.
+  /// Returns the block and the quantised readings that add() would store for an observation; nullopt if add()
+  /// returns nullopt.
   std::optional<SavedBlock> heardOf(const WheelObservation& observation) const;
-  /// Removes added estimates of pull and sinkage; the bounds of the place stay. Returns the cells whose estimate may
-  /// change; nothing if the block has no evidence.
+  /// Removes stored readings of pull and sinkage; the bounds of the place remain. Returns the cells whose
+  /// estimate may change; nullopt if the block has no evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& heard);
 
-  /// Class states from which estimates are computed: exact, or in steps rounded towards danger
-  /// (ClassEvidence::stateInSteps()), from which a map is published.
+  /// Class states from which estimates are computed. AsKnown: exact. InSteps: rounded towards danger
+  /// (ClassEvidence::stateInSteps()), as used for publishing.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
 
-  /// Evidence of the cell's class on the top surface of the block that contains the cell; null if there is none.
+  /// Returns the evidence of the cell's class on the top surface of the cell's block; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
-  /// Evidence of a floor below the top surface; null if there is none.
+  /// Returns the evidence of a floor below the top surface; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell, const Floor& floor) const;
   /// Number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
   double samplesOf(maps::Cell cell) const;
   double samplesOf(maps::Cell cell, const Floor& floor) const;
-  /// Estimate for a floor, from the evidence of the floor and of ground level with the floor.
+  /// Returns the estimate for a floor, from the evidence on that floor and on ground at the same level.
   GroundBelief floorBelief(maps::Cell cell, const Floor& floor) const;
 
   /// Evidence of a floor below the top surface, and a cell with that floor.
@@ -94,8 +95,8 @@ class EvidenceField {
   /// Side of a block, in cells.
   int blockCells() const noexcept;
 
-  /// visit() visits all evidence in a fixed order. restore() adds visited evidence to a field of the same site and
-  /// returns the cells whose estimate may change, as add(); nothing if the site has no such block or class.
+  /// visit() visits all evidence in a fixed order. restore() adds visited evidence to a field of the same
+  /// site and returns the cells whose estimate may change; nullopt if the site has no such block or class.
   void visit(const std::function<void(const SavedBlock&)>& visit) const;
   std::optional<maps::CellBox> restore(const SavedBlock& saved);
 

@@ -11,8 +11,9 @@
 
 namespace talus::costmap {
 
-/// Patches of 8x8 blocks within reach of evidence. Estimates are computed for each patch from all evidence that can
-/// reach any block of the patch, so that a changed block changes whole patches. Not thread-safe while changed.
+/// Patches of 8x8 blocks within reach of evidence. The estimates of a patch are computed from all evidence
+/// that can reach any block of the patch; a changed block therefore changes whole patches. Not thread-safe
+/// while changed.
 class EvidenceReach {
  public:
   static constexpr int kPatchBlocks = 8;

@@ -7,8 +7,8 @@
 namespace talus::costmap {
 namespace {
 
-// True if the place of a bound, anywhere in its block and within its position uncertainty, may lie in the block around
-// `at`.
+// True if the place of a bound may lie in the block around `at`: the place is anywhere in its block or within
+// its position uncertainty around the block.
 bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
   const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
   const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
@@ -21,8 +21,8 @@ GroundBelief bounded(const GroundBelief& belief, const PlaceBound& bound) noexce
                          .sinkage = {std::fmax(belief.sinkage.value, bound.least_sinkage), 0.0}});
 }
 
-// Estimate that a weak place implies, from the mean and the departure. The standard deviation of the class mean counts
-// in proportion to the standard deviation that the place leaves.
+// Estimate that a weak place implies, from the mean and the departure. The standard deviation of the class
+// mean is multiplied by the standard deviation left by the place, relative to that of the class.
 GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, const GroundClass& ground,
                   double mean_std) noexcept {
   const double open = std::min(weak.pull.std / ground.pull_std, 1.0);
@@ -30,10 +30,10 @@ GroundBelief left(const GroundBelief& weak, const GroundBelief& mean, const Grou
           .sinkage = {mean.sinkage.value + weak.sinkage.value, weak.sinkage.std}};
 }
 
-// Estimate from the process. The standard deviation of the class mean counts in proportion to the standard deviation
-// that the process leaves. The shared error counts with the weights of the evidence and of the class mean. If the
-// positive weights sum to more than 1, rounding the class mean down by up to pull_step may raise the estimate by (sum -
-// 1) pull_step, which is subtracted.
+// Estimate from the process. The standard deviation of the class mean is multiplied by the standard deviation
+// left by the process, relative to that of the class. The shared error is weighted as the evidence and the
+// class mean. If the positive weights sum to more than 1, rounding the class mean down by up to pull_step may
+// raise the estimate by (sum - 1) pull_step, which is subtracted.
 GroundBelief combined(const GroundModel& model, const GroundOfClass& of, const LearnedPlace& learned) {
   const GroundClass& ground = model.parts().classes[static_cast<std::size_t>(of.class_index)];
   const ClassState& state = of.state;

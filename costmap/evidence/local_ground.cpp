@@ -12,7 +12,7 @@ namespace {
 constexpr int kPatchBlocks = EvidenceReach::kPatchBlocks;
 constexpr std::size_t kMostNeighbours = 64;
 constexpr double kSteepest =
-    0.6;  // greatest gradient between places of one floor, above the gradients that rovers drive
+    0.6;  // greatest gradient between places of one floor; above the drivable gradients
 
 // LocalGround while it is collected.
 struct NearbyEvidence {
@@ -22,9 +22,9 @@ struct NearbyEvidence {
   std::vector<PlaceBound> bounds{};
 };
 
-// Adds the evidence of one block. Pulls that may raise enter the process. Places that are weaker than the class
-// explains, or whose readings may only lower, become separate bounds. Evidence of another class counts only if its
-// position uncertainty may include this ground.
+// Adds the evidence of one block. Pulls that may raise enter the process. Places that are weaker than the
+// class explains, or whose readings may only lower, become separate bounds. Evidence of another class is used
+// only if its position uncertainty includes this ground.
 void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvidence& e,
            NearbyEvidence& nearby) {
   const int own = store.model().classIndex(block.terrain_class);

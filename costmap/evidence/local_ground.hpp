@@ -29,7 +29,7 @@ struct GroundOfClass {
 struct LocalGround {
   GaussianProcess process;  ///< readings that may raise, as departures from the class's posterior mean
   std::vector<WeakPlace> weak,
-      lower;  ///< departures from the prior: weaker than the class explains, and within its variation
+      lower;  ///< departures from the prior: `weak` beyond the variation of the class, `lower` within
   std::vector<PlaceBound> bounds;
 
   bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
@@ -44,8 +44,8 @@ Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
 /// Evidence on the top surface within reach of a patch of 8x8 blocks; `patch` is its south-west block.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
 
-/// Evidence of the class on the top surface or a floor that lies level with a level of a block: reachable by gradients
-/// of at most 0.6.
+/// Evidence of the class on all surfaces, top surface and floors, that gradients of at most 0.6 connect with
+/// a level of a block.
 LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
                             const GroundOfClass& of);
 

@@ -11,7 +11,8 @@
 namespace talus::costmap {
 namespace {
 
-// Most pairs are too far apart: they cost one comparison.
+// Kernel of two places. Most pairs are farther apart than the correlation length and need only one
+// comparison.
 double sparseKernel(const maps::Point& a, const maps::Point& b, double correlation_length_m) noexcept {
   const double x_m = a.x_m - b.x_m, y_m = a.y_m - b.y_m;
   const double squared = x_m * x_m + y_m * y_m;
@@ -19,8 +20,9 @@ double sparseKernel(const maps::Point& a, const maps::Point& b, double correlati
   return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
-// Replaces A by U of A = U^T U: row-major upper triangle with reciprocal diagonal. The noise makes A positive definite.
-// The inner loops here and below run along rows, so that no step waits for a sum.
+// Replaces A by U of A = U^T U: row-major upper triangle with reciprocal diagonal. The noise makes A positive
+// definite. The inner loops here and below run along rows without a running sum, so that their steps are
+// independent.
 void factorise(std::vector<double>& a, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     double* const row = a.data() + j * n;

@@ -29,9 +29,9 @@ struct SharedError {
   double shared = 0.0;    ///< c: change of the estimate per standard deviation of b, >= 0 [-]
 };
 
-/// Posterior variance of an estimate with a common error: conjugate update by one reading of variance e^2/g + (c/g)^2,
-/// g = 1 - e^2/a^2 (ours). Exact if all evidence measures the same quantity; between e^2 and a^2 for any amount of
-/// evidence; does not decrease as e or c increases.
+/// Returns the posterior variance of an estimate with a common error: conjugate update by one reading of
+/// variance e^2/g + (c/g)^2, g = 1 - e^2/a^2 (ours). The result is exact if all evidence measures the same
+/// quantity, lies between e^2 and a^2, and does not decrease as e or c increases.
 ///   (e^2 g + c^2) / (g + c^2/a^2)
 double withSharedError(const SharedError& error) noexcept;
 
@@ -51,8 +51,8 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 struct LearnedPlace {
   GroundBelief departure;  ///< departure from the class mean, without the common error
   bool any = false;        ///< true if any evidence reaches the place
-  double weight = 0.0;     ///< sum of the weights of all evidence, 0 to 1; the remaining weight is that of
-                           ///< the class mean
+  double weight = 0.0;     ///< sum of the weights of all evidence, 0 to 1; the class mean has the weight 1 -
+                           ///< `weight`
   double positive =
       0.0;  ///< sum of the positive weights: if the class mean falls by d, the estimate rises by at most
             ///< (positive - 1) d
@@ -90,9 +90,10 @@ struct Departure {
   double variance = 0.0;
 };
 
-/// Departure that a reading implies without other evidence: a^2 y/(a^2 + v), in units of the class's standard
-/// deviation. The amplitude a >= 1 is the least amplitude for which the reading lies within two standard deviations
-/// (ours): patches of other ground, which no class raster shows, depart further than the class varies.
+/// Returns the departure that a reading y of variance v implies without other evidence: a^2 y/(a^2 + v), with
+/// y, v and a in units of the class's standard deviation. The amplitude a >= 1 is the least amplitude for
+/// which the reading lies within two standard deviations (ours): small areas of other ground, missing in the
+/// class raster, depart further than the class varies.
 double believedAlone(const Departure& reading, double class_std) noexcept;
 
 /// Ground that is weaker than its class, or has a greater sinkage, by the evidence of one place alone. No estimate
@@ -108,17 +109,20 @@ struct WeakPlace {
                              ///< another class
 };
 
-/// Departure from the prior that a weak place implies at another place, by a process of amplitude 1 + (a - 1) k(d)
-/// there, a as in believedAlone(); nothing if the place has no effect there.
+/// Returns the departure from the prior that a weak place implies at `place`, at the distance d: a process of
+/// amplitude 1 + (a - 1) k(d), with a as in believedAlone(); nullopt if the weak place has no effect at
+/// `place`.
 std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
                                      const maps::Point& place);
 
-/// The same for a place within the variation of its class whose readings may only lower: amplitude a = 1.
+/// Returns the departure that a place within the variation of its class implies, if its readings may only
+/// lower an estimate: as weakness(), with the amplitude a = 1.
 std::optional<GroundBelief> lowered(const WeakPlace& place, const Variation& variation,
                                     const maps::Point& at);
 
-/// Combines two estimates that both bound the same ground: the lesser mean of the pull, and the lesser mean minus six
-/// standard deviations; the greater values for the sinkage. The order of several combinations has no effect.
+/// Combines two estimates that both bound the same ground: the pull has the lower of both means, and a
+/// standard deviation by which mean - 6 std is the lower of both; the sinkage has the greater values. The
+/// order of several combinations has no effect.
 GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept;
 
 /// Bayesian generalised kernel inference (doherty_2019): a weighted mean of the evidence around a place, conjugate to

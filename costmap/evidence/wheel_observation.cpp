@@ -13,38 +13,40 @@ constexpr double kReferenceSlip = 0.5;
 constexpr double kMissPerSlip = 0.06;
 constexpr double kMissPerSlipAndDeparture = 1.2;
 constexpr double kFlatFrom = 0.25;  // slip difference from which the error no longer grows
-// Further error by differences between soils of a class other than strength, in standard deviations of the class, per
-// H(0.5)/H - 1 (ours; for soils drawn from the deviations of mars_crusty, clay, sandy_loam, dry_sand at slip 0.1 to
-// 0.3: 0.2 to 0.6).
+// Further error by differences between soils of a class other than strength, in standard deviations of the
+// class, per H(0.5)/H - 1 (H: thrust over load) (ours; for soils drawn from the deviations of mars_crusty,
+// clay, sandy_loam, dry_sand at slip 0.1 to 0.3: 0.2 to 0.6).
 constexpr double kMissPerGrowth = 0.4;
 constexpr double kMostGrowth =
     3.0;                       // greatest factor from a departure to that at the reference slip; readings
-                               // beyond it raise nothing
-constexpr double kFelt = 0.1;  // least torque, over that at the reference slip, that is extrapolated
-// Factor on the standard deviation of the class if the torque of the class replaces a torque that is not mobilised: the
-// torque of the class is no measurement, and the estimate contains the class already (ours).
+                               // with a greater factor raise no estimate
+constexpr double kFelt = 0.1;  // least torque that is extrapolated, relative to that at the reference slip
+// Factor on the standard deviation of the class where the torque of the class replaces a torque that is not
+// mobilised. The torque of the class is not a measurement, and the estimate includes the class already
+// (ours).
 constexpr double kStandIn = 2.0;
 constexpr double kStanding = 0.9;  // slip from which a rover may be stationary (ours)
 constexpr double kHeld =
-    0.05;  // least side force over load that is not due to a turn or a drift of the pose (ours)
+    0.05;  // least side force over load that cannot result from a turn or a drift of the pose (ours)
 constexpr double kRutDoubt = 1.0;  // relative error of the pull gained in a rut (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
 }
 
-// True if a departure at this share of the thrust at the reference slip is extrapolated to the reference slip.
+// True if a departure is extrapolated to the reference slip. `share`: mobilised thrust relative to that at
+// the reference slip.
 bool tells(double share) noexcept {
   return kMostGrowth * share >= 1.0;
 }
 
-// Factor from a departure at this share of the thrust to the departure at the reference slip. Beyond the reference slip
+// Returns the factor from a departure to the departure at the reference slip. Beyond the reference slip
 // (share > 1) the factor of a negative departure is 1.
 double growth(double departure, double share) noexcept {
   return tells(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
 }
 
-// Value without the part that its error explains: v v^2/(v^2 + e^2).
+// Returns the value reduced by the part that its error explains: v v^2/(v^2 + e^2).
 double beyondError(double value, double error) noexcept {
   const double square = value * value;
   return square > 0.0 ? value * square / (square + error * error) : 0.0;
@@ -71,14 +73,14 @@ WheelObserver::WheelObserver(const GroundModel& model, const ReadingNoise& noise
 // A reading and the values that the model predicts for the reading.
 struct WheelObserver::Wheel {
   const ClassReading& read;
-  SteadyWheel expected;    // at the measured slip, on undisturbed ground or in a rut
-  SteadyWheel reference;   // at the reference slip, likewise
-  double steepness = 0.0;  // change of the expected gradient per standard deviation of slip
+  SteadyWheel expected;    // wheel of the class at the measured slip, on undisturbed ground or in a rut
+  SteadyWheel reference;   // wheel of the class at the reference slip, on undisturbed ground or in a rut
+  double steepness = 0.0;  // change of the expected gradient for one standard deviation of slip
   double rut_gain = 0.0;   // pull in a rut minus pull on undisturbed ground, over load
-  double share = 1.0;      // thrust over that at the reference slip, of the class straight ahead
+  double share = 1.0;      // thrust of the class at slip angle 0, relative to the reference slip
   double asked = 0.0;      // pull over load that the slope requires in the wheel's plane
   double held = 0.0;       // side force over load that the slope requires
-  double known = 0.0;      // departure of the ground at the reference slip that is known by other means
+  double known = 0.0;      // departure of the ground at the reference slip from other data
   double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at the measured slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
   double torque_std =
@@ -103,8 +105,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
   const SteadyWheel straight =
       turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
-  // Share at the measured slip. The part of its difference from the class on this slope that the slip error explains is
-  // removed: otherwise a reading would have the more weight, the greater its error.
+  // Share at the measured slip. The part of its difference from the class on this slope that the slip error
+  // explains is removed; otherwise a greater error would increase the weight of a reading.
   if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
     w.share = straight.torque_over_load_radius / thrust;
     if (known(w.asked)) {
@@ -153,9 +155,9 @@ double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
          thrust;
 }
 
-// Standard deviation of a departure at the reference slip by the model, the same for all readings at one slip. At low
-// slip only a share of the thrust is mobilised. The departure is then not extrapolated; the standard deviation of the
-// share that is not mobilised is added.
+// Returns the standard deviation of a departure at the reference slip by the model error, common to all
+// readings at one slip. At low slip only a share of the thrust is mobilised. The departure is then not
+// extrapolated; the standard deviation of the share that is not mobilised is added.
 double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) const {
   const double by_slip = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom);
   const double class_std = model_.prior(w.read.class_index).pull.std;
@@ -216,8 +218,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   }
   if (out.bound) seen = upperBound(w, balance);
   if (!known(seen.std)) return std::nullopt;
-  // Only the slope can show that ground is stronger than its class: torque and sinkage, and differences between wheels,
-  // never raise the value above that of the slope.
+  // Only the slope is evidence of ground stronger than its class: torque, sinkage and differences between
+  // wheels never raise the value above that of the slope.
   if (!known(reading.drawbar_pull_N)) {
     const double less = std::min(own, std::max(-balance.departure, 0.0));
     seen.value = std::min(seen.value, by_balance ? std::max(bySlope(w, balance, less).value, 0.0) : 0.0);

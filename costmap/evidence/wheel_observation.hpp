@@ -29,7 +29,7 @@ struct TelemetryReading {
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double drawbar_pull_N = 0.0;  ///< drawbar pull, measured on a test stand
   double pose_std_m = 0.0;      ///< position uncertainty, one standard deviation
-  int pass = 1;                 ///< number of this wheel among those that rolled here: from 2 on in a rut
+  int pass = 1;                 ///< pass number at this place: 1 on undisturbed ground, >= 2 in a rut
   double speed_slip = std::numeric_limits<double>::quiet_NaN();  ///< slip from rim and rover speed [-]
 };
 
@@ -59,7 +59,7 @@ struct ReadingNoise {
   double torque_share = 0.05;   ///< of T/(rW), relative
   double sinkage_share = 0.05;  ///< of z/r, relative, and its effect on DP/W
   double mobilised = 0.15;      ///< of T/(rW) at the reference slip, per unit of growth factor - 1
-  /// Of DP/W by thesis Eq. 3.12, and by the assumption that each wheel pulls its own share.
+  /// Of the drawbar pull over load DP/W by thesis Eq. 3.12 and by the assumed shares of the wheels.
   double model_pull = 0.02;
 };
 
@@ -101,39 +101,44 @@ struct WheelObservation {
 /// load-weighted mean of these gradients is the departure d of the ground under all wheels at slip s. Ground of the
 /// share f of its class's thrust H departs by (1 - f) H(s) (GroundModel), and therefore at the reference slip by
 ///   k d,  k = H(0.5)/H(s) in [1, 3]
-/// (ours; for soils drawn around mars_crusty and phi 37 deg the departure is within 0.02 of k d if strength varies, and
-/// up to a third less than k d if the shear modulus varies). The share of d that errors of the reading explain is not
-/// extrapolated: k applies to d - d e^2/(d^2 + e^2), e the standard deviation of d; e itself is multiplied by k. Other
-/// differences between soils of a class add 0.4 (k - 1) standard deviations of the class. At less than a third of the
-/// thrust k is 1, the standard deviation of the class is added for the share of the thrust that is not mobilised, and
-/// nothing is raised unless the drive mobilised most of the thrust elsewhere (SensorProof). Beyond the reference slip a
-/// negative d is not reduced; a positive d is. Torque and sinkage distribute d over the wheels: a wheel that pulls less
-/// than the other wheels, as on the edge of a soft patch, stands on weaker ground. At a slip of at least 0.9 of any
-/// wheel the rover may be stationary and pull less than the slope requires: the result is then an upper bound, and not
-/// above the class.
+/// (ours; for soils drawn around mars_crusty and phi 37 deg the departure is within 0.02 of k d if strength
+/// varies, and up to a third less than k d if the shear modulus varies). The share of d that errors of the
+/// reading explain is not extrapolated: k multiplies only d - d e^2/(d^2 + e^2), where e is the standard
+/// deviation of d. The standard deviation of the result is k e. Other differences between soils of a class
+/// add 0.4 (k - 1) standard deviations of the class. If less than a third of the thrust is mobilised, k is 1,
+/// the standard deviation of the class is added for the share of the thrust that is not mobilised, and the
+/// reading raises no estimate unless the drive mobilised most of the thrust elsewhere (SensorProof). Beyond
+/// the reference slip a negative d is not reduced; a positive d is. Torque and sinkage distribute d over the
+/// wheels: a wheel that pulls less than the other wheels, as on the edge of a soft patch, stands on weaker
+/// ground. If the slip of any wheel is at least 0.9, the rover may be stationary and pull less than the slope
+/// requires: the result is then an upper bound that does not exceed the class.
 ///
-/// A wheel at slip angle beta, on ground of slope g along and c across the heading, pulls g cos(beta) - c sin(beta) in
-/// its plane and holds |g sin(beta) + c cos(beta)| across, both over load. Both are compared with the wheel of the
-/// class at that slip angle. If the side force over load is at least 0.05 and lies below that of the class by more than
-/// two standard deviations, the ground counts as weaker in proportion (CrossSlope), unless the pull gives a lower
-/// value. Without the slip angle or the slope across, the wheel counts as straight, which errs towards weaker ground.
+/// A wheel at slip angle beta, on ground of slope g along and c across the heading, has the pull g cos(beta)
+/// - c sin(beta) in its plane and the side force |g sin(beta) + c cos(beta)|, both over load. Pull and side
+///   force are compared with those of the class at that slip angle. If the side force over load is at least
+///   0.05 and
+/// lies below that of the class by more than two standard deviations, the ground counts as weaker in
+/// proportion (CrossSlope), unless the pull gives a lower value. Without the slip angle or the slope across,
+/// the slip angle is assumed to be 0, which underestimates the ground.
 ///
-/// Torque and sinkage: the drawbar pull of a wheel is a function of both (thesis Eq. 3.12). Both are extrapolated to
-/// the reference slip with the ratio of the class's values: torque as shear is mobilised, sinkage as the wheel digs
-/// (ours; from slip 0.3 on within 0.11 of the forward model on dust, trap and drift classified as sand, whose pull is
-/// 0.2 to 0.36 lower). If little torque is mobilised, the torque of the class is used, with twice the standard
-/// deviation of the class; the estimate then follows the sinkage, because a deeper wheel has a higher resistance.
+/// Torque and sinkage: the drawbar pull of a wheel is a function of torque and sinkage (thesis Eq. 3.12).
+/// Both are extrapolated to the reference slip with the ratio of the class's values: torque as shear is
+/// mobilised, sinkage as the wheel digs (ours; from slip 0.3 on within 0.11 of the forward model on dust,
+/// trap and drift classified as sand, whose pull is 0.2 to 0.36 lower). If little torque is mobilised, the
+/// torque of the class is used, with twice the standard deviation of the class; the estimate then follows the
+/// sinkage, because a deeper wheel has a higher resistance.
 class WheelObserver {
  public:
   /// Keeps a reference to `model`.
   explicit WheelObserver(const GroundModel& model, const ReadingNoise& noise = {});
 
-  /// Observation of one wheel; nothing if slip or a positive load is missing, or if slope, torque with sinkage, and
-  /// drawbar pull are all missing.
+  /// Returns the observation of one wheel; nullopt without slip or a positive load, or without any of slope,
+  /// torque with sinkage, and drawbar pull.
   std::optional<WheelObservation> observe(int class_index, const TelemetryReading& reading) const;
 
-  /// Observations of the wheels of one rover at one moment, in the order of `together`. `departures`: departure of each
-  /// class at the reference slip that is known by other means [-]; the readings determine the rest. Empty: all 0.
+  /// Observations of the wheels of one rover at one moment, in the order of `together`. `departures`:
+  /// departure of each class at the reference slip that other data provide [-]; the readings determine the
+  /// remaining departure. Empty: all 0.
   std::vector<std::optional<WheelObservation>> observe(const std::vector<ClassReading>& together,
                                                        std::span<const double> departures = {}) const;
 

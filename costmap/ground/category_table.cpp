@@ -13,10 +13,11 @@ namespace {
 using terramech::Category;
 
 constexpr int kJudgedHeadings =
-    24;                       // over 180 degrees, as CrossSlope::steepest(): left and right are symmetric
+    24;                       // headings over 180 degrees, as CrossSlope::steepest(): left and right are
+                              // symmetric
 constexpr int kSteps = 2898;  // greatest gradient of CellCode in steps: 2048 sqrt(2)
 
-// Whether the reason depends on the uncertain pull of the ground.
+// Whether the reason for the refusal depends on the uncertain pull of the ground.
 bool isOfSoil(Refusal refusal) {
   return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }
@@ -29,7 +30,7 @@ CategoryTable::Entry entryOf(const RankedCategory& ranked) {
   return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)};
 }
 
-// The model's category at the first climb, from `climb` upwards, whose category is at least `least`.
+// Increases `climb` until the model's category is at least `least`, and returns that category.
 RankedCategory atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
   RankedCategory ranked = model.category(belief, climb);
   while (ranked.category < least && climb < 4.0)
@@ -65,7 +66,7 @@ Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept {
   const double length = std::hypot(cell.dzDx(), cell.dzDy());
   if (!(length > 0.0)) return {};
   const Direction up{cell.dzDx() / length, cell.dzDy() / length};
-  constexpr double kClearly = 1.0 / 32.0;  // two rows of gradient across
+  constexpr double kClearly = 1.0 / 32.0;  // gradient difference of two rows
   Direction found = up;
   double most = climbAt(cost, cell, up) + kClearly;
   for (int k = 1; k < kJudgedHeadings; ++k) {

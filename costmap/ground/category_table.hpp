@@ -12,17 +12,17 @@ namespace talus::costmap {
 /// heading; the gradient along for ground without a soil.
 double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept;
 
-/// Returns the heading for the category of a cell if no heading is given: straight uphill, or a heading
-/// across the slope whose equivalent climb is steeper by more than 1/32.
+/// Returns the heading that determines the category of a cell: straight uphill, or a heading across the slope
+/// if its equivalent climb is steeper by more than 1/32.
 Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept;
 
-/// Category of ground in a heading and its probability: `state` is TravelCost::detail(), `climb` is climbAt()
-/// there. Ground that is refused for a reason other than its category is dangerous.
+/// Returns the category of ground in a heading, and its probability. `state` is TravelCost::detail() and
+/// `climb` is climbAt() for that heading. Ground refused for a reason other than its category is dangerous.
 RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
                       double climb);
 
 /// Category of one kind of ground over the gradient of its plane, in steps of CellCode: the worst category
-/// over all headings, and dangerous if worstHeading() is refused. A cell uses the next whole step.
+/// over all headings; dangerous if worstHeading() is refused. The gradient of a cell is rounded up to a step.
 class CategoryTable {
  public:
   /// Table entry for one gradient.
@@ -31,7 +31,7 @@ class CategoryTable {
     std::uint8_t confidence;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
   };
 
-  /// Dangerous at every gradient.
+  /// Makes a table that is dangerous at every gradient.
   CategoryTable() = default;
   /// Table of the ground that GroundModel made from the estimate.
   CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground);

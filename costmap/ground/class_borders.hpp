@@ -7,8 +7,8 @@
 
 namespace talus::costmap {
 
-/// For each cell by its index in the grid: whether a cell of another class lies within `reach` columns and
-/// rows. Empty for an empty raster.
+/// Returns, by cell index, whether a cell of another class lies within `reach` columns and rows of the cell;
+/// empty for an empty raster.
 std::vector<bool> classBorders(const maps::Raster<std::uint8_t>& classes, int reach);
 
 }  // namespace talus::costmap

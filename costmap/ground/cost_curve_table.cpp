@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kNumbers = CellCode::kUnknown;
 
-// Cost that refuses every heading, for classes whose prior was not requested.
+// Returns a cost that refuses every heading, for classes whose prior was not requested.
 const GroundCost& refused() {
   static const GroundCost ground = [] {
     auto states = std::make_shared<TravelTable>();
@@ -58,7 +58,7 @@ std::uint8_t CostCurveTable::prior(int class_index) {
   return standIn(GroundKind::of(model_->prior(class_index), class_index, class_index, priors_[i], level_));
 }
 
-// Appends a curve index, or takes the highest class index that is free; empty if all are used.
+// Appends a curve index, or reuses the highest free class index; nullopt if all indices are in use.
 std::optional<std::uint8_t> CostCurveTable::freeNumber() {
   if (grounds_.size() < kNumbers) {
     grounds_.emplace_back();
@@ -81,7 +81,8 @@ std::uint8_t CostCurveTable::learned(int class_index, int other_class, const Gro
     overflowed_ = true;
     return standIn(kind);
   }
-  // The worst estimate of the kind, so that the curve does not depend on the estimate that occurred first.
+  // Uses the worst estimate of the kind, so that the curve does not depend on the estimate that occurred
+  // first.
   const GroundBelief worst =
       kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
   grounds_[*number] = model_->ground(class_index, other_class, worst);
@@ -168,7 +169,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
   if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
   priors_[i] = next;
-  if (slots_[i] != Slot::Own) return true;  // the prior is used where the class borders on other classes
+  if (slots_[i] != Slot::Own) return true;  // at class borders, the prior is in use
   price(i);
   for (const auto& [from, its] : dearer_)
     if (from.first == i) {
@@ -191,8 +192,8 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
   return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 
-// Fraction of the pull variance of each class that is common to all of its ground: the excess over the
-// variance between places.
+// Computes the fraction of the pull variance of each class that is common to all of its ground: the excess
+// over the variance between places.
 SoilUncertainty CostCurveTable::doubt() const {
   const GroundModel::Parts& parts = model_->parts();
   SoilUncertainty doubt{.correlation_length_m = parts.policy.correlation_length_m,

@@ -15,14 +15,14 @@
 namespace talus::costmap {
 
 /// Assigns indices (0 to 253) of cost curves to estimates of the ground. The indices 0 .. classes-1 belong to
-/// the priors of the classes. A prior is refused in every heading until prior() is called for its class, so
-/// that only classes that occur are computed; the first class, the default, is computed by the constructor.
-/// An estimate from telemetry is quantised towards danger (GroundKind) and gets an index at its first
+/// the priors of the classes. The curve of a prior is computed at the first call of prior() for its class,
+/// and refuses every heading before; the constructor computes that of the first class, the default. An
+/// estimate from telemetry is quantised towards danger (GroundKind) and gets an index at its first
 /// occurrence. If all indices are used:
 ///   - the estimate gets the index of a class whose prior was not requested;
 ///   - else the index of the strongest known estimate of the same classes that is no better in any quantity;
 ///   - else CellCode::kBlocked.
-/// A lack of indices therefore never reduces a cost. Not thread-safe.
+/// Exhausted indices therefore never reduce a cost. Not thread-safe.
 class CostCurveTable {
  public:
   explicit CostCurveTable(std::shared_ptr<const GroundModel> model);
@@ -32,20 +32,20 @@ class CostCurveTable {
   const GroundBelief& priorBelief(int class_index) const {
     return priors_[static_cast<std::size_t>(class_index)];
   }
-  /// Returns the index of the curve of an estimate from telemetry. The curve is nowhere below the curve of
-  /// the same estimate on `other_class`.
+  /// Returns the index of the curve of an estimate from telemetry. No cost of the curve is below that of the
+  /// same estimate on `other_class`.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
   }
 
-  /// Returns the index of the curve with index `number` and `added_J_per_m` added to its energy. `number`
-  /// must not be a result of dearer(). `step` > 0 identifies the added energy and increases with the added
-  /// energy. If no index is free, returns the index assigned to the next greater step of the same curve, else
+  /// Returns the index of a curve equal to that of index `number`, with `added_J_per_m` added to the energy.
+  /// `number` must not be a result of dearer(). `step` > 0 identifies the added energy and increases with it.
+  /// If no index is free, returns the index assigned to the next greater step of the same curve, else
   /// CellCode::kBlocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
-  /// Whether a substitute was needed since the last restart.
+  /// Whether an estimate got a substitute curve since the last restart.
   bool overflowed() const noexcept { return overflowed_; }
   /// Returns the fraction, 0 to 1, of the indices for estimates from telemetry that are in use.
   double used() const noexcept;
@@ -53,8 +53,8 @@ class CostCurveTable {
   void restart(int level);
   int level() const noexcept { return level_; }
 
-  /// Replaces the prior of a class after learning its soil; returns false if unchanged. Priors learned in
-  /// steps (EvidenceField::Classes::InSteps) are mostly unchanged.
+  /// Replaces the prior of a class by an estimate from evidence; returns false if unchanged. With
+  /// EvidenceField::Classes::InSteps, most calls leave the prior unchanged.
   bool setPrior(int class_index, const GroundBelief& next);
 
   /// Returns the estimate from which the curve with an index was computed.
@@ -62,12 +62,12 @@ class CostCurveTable {
   /// Returns the categories of the ground with a curve index, tabulated by the gradient of its plane.
   const CategoryTable& categories(std::uint8_t number) const { return categories_[number]; }
 
-  /// Returns the cost function with the curves of all assigned indices; the same object until a curve is
-  /// added.
+  /// Returns the cost function with the curves of all assigned indices. Calls return the same object until a
+  /// curve is added.
   std::shared_ptr<const TravelCost> cost() const;
 
  private:
-  // Bits of a prior, as the key of a cache: a class that is being learned alternates between few priors.
+  // Bits of a prior, as the key of a cache: during learning, a class alternates between few priors.
   using PriorKey = std::array<std::int64_t, 5>;
   struct Worked {
     GroundCost ground;

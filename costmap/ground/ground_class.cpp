@@ -23,7 +23,7 @@ constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFie
      {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
      {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
 
-// Central difference over half a deviation on either side keeps parameters near their bounds in range.
+// Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
 constexpr double kStep = 0.5;
 
 // Standard deviation of the exponent of underGravity(): ours.
@@ -42,7 +42,7 @@ Soil lessAffected(const Soil& tested, const terramech::Rover& rover) {
   return underGravity(tested, rover.gravity_m_s2, 1.0 - kGravityExponentStd);
 }
 
-// The prior converted to the gravity of the rover.
+// Converts the prior to the gravity of the rover.
 terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& rover) {
   if (!isStiffer(prior.mean, rover)) return prior;
   const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);

@@ -6,8 +6,8 @@
 namespace talus::costmap {
 
 /// Ground class of a soil prior on a rover. mean_std is the standard deviation of drawbar pull over load at
-/// the reference slip that follows, to first order and for independent parameters, from the stated deviations
-/// of cohesion, friction, sinkage exponent, moduli, shear modulus and slip-sinkage exponent; a prior without
+/// the reference slip, by first-order propagation of the stated deviations of cohesion, friction, sinkage
+/// exponent, moduli, shear modulus and slip-sinkage exponent as independent parameters; a prior without
 /// deviations keeps GroundClass's default. A soil that was tested in greater gravity is converted by
 /// underGravity(), and mean_std then includes the effect of a gravity exponent of 0.5 instead of 1. Throws
 /// std::invalid_argument as MobilityCurve.

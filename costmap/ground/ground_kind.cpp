@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kLeastStd = 0.01;  // least unit of the standard deviation, for priors with a smaller one
 constexpr double kSinkageStep = 0.1;
-constexpr double kSame = 1e-6;  // rounding tolerance [steps], so that quantised values are unchanged
+constexpr double kSame = 1e-6;  // rounding tolerance [steps]: a quantised value remains equal
 constexpr double kOctaveStep = 0.25;
 constexpr double kLeastOctaves = -6.0, kMostOctaves = 8.0;
 constexpr double kMostSteps = 1e6;
@@ -31,7 +31,7 @@ double unitOf(const GroundBelief& prior) noexcept {
   return std::max(prior.pull.std, kLeastStd);
 }
 
-// Rounds the logarithm up to a step.
+// Returns log2(share), in steps, rounded up to a multiple of 2^level steps.
 int logStepsAbove(double share, int level) {
   const double octaves = std::log2(std::clamp(share, std::exp2(kLeastOctaves), std::exp2(kMostOctaves)));
   return stepsAbove(octaves, kOctaveStep, level);

@@ -10,9 +10,9 @@ namespace talus::costmap {
 ///   - pull: 0.02, rounded down;
 ///   - standard deviation of the pull: a quarter octave, from 1/64 to 256 of the prior's, rounded up;
 ///   - sinkage divided by radius: 0.1, rounded up.
-/// At level n, steps are 2^n times as large. An estimate no worse than the prior is rounded to no worse than
-/// the prior, so that little evidence never increases a cost. Rounding twice to equal or increasing levels
-/// equals rounding once. The standard deviation has the finest steps, because the probability of
+/// At level n, steps are 2^n times as large. An estimate no worse than the prior is not rounded beyond the
+/// prior, so that little evidence never increases a cost. Rounding at a level after rounding at the same or a
+/// lower level equals rounding once. The standard deviation has the finest steps, because the probability of
 /// immobilisation with a reserve of z deviations is most sensitive to the standard deviation: a step of one
 /// octave would halve z.
 struct GroundKind {
@@ -20,24 +20,24 @@ struct GroundKind {
   static constexpr double kPullStep = 0.02;  ///< at level 0 [-]
 
   int class_index = 0;
-  int other_class = 0;  ///< second possible class of the ground; class_index if there is none
+  int other_class = 0;  ///< second possible class of the ground, else equal to class_index
   int pull = 0;
   int pull_std = 0;  ///< quarter octaves relative to the prior's standard deviation
   int sinkage = 0;
 
   auto operator<=>(const GroundKind&) const = default;  // NOLINT(modernize-use-nullptr): of clang 14
 
-  /// `prior` is that of the class before any evidence (GroundModel::prior()).
+  /// Quantises `belief`. `prior` is the estimate of the class before any evidence (GroundModel::prior()).
   static GroundKind of(const GroundBelief& prior, int class_index, int other_class,
                        const GroundBelief& belief, int level = 0) noexcept;
 
-  /// The worst estimate that is quantised to this kind. The standard deviation of sinkage decreases in
-  /// proportion to that of the pull, up to the class's sinkage_std.
+  /// Returns the worst estimate that is quantised to this kind. The standard deviation of sinkage decreases
+  /// in proportion to that of the pull, up to the class's sinkage_std.
   GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
 };
 
-/// Whether ground of one estimate costs at least as much as ground of the other, at any gradient and on any
-/// class: pull no greater, standard deviation no smaller, sinkage no smaller.
+/// Whether ground of the estimate `belief` costs at least as much as ground of `than`, at any gradient and on
+/// any class: the pull is no greater, its standard deviation and the sinkage are no smaller.
 bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept;
 
 }  // namespace talus::costmap

@@ -29,7 +29,7 @@ double probabilityBelow(const Estimate& value, double bound) {
   return terramech::normalProbability((bound - value.value) / value.std);
 }
 
-constexpr double kLeastThrust = 0.02;  // divided by load [-]
+constexpr double kLeastThrust = 0.02;  // least thrust divided by load [-]
 
 // Pull and gross thrust of a class, both divided by load, at the reference slip.
 struct Thrust {
@@ -77,7 +77,7 @@ terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::
   return {modelOf(ground), rover};
 }
 
-// The class in the rut of an equal wheel: by the effects found in data, else by rutted().
+// Returns the class in the rut of an equal wheel: by its multipass effect if found in data, else by rutted().
 GroundClass rutOf(const GroundClass& ground) {
   GroundClass rut = ground;
   if (!terramech::knowsPasses(ground.effects)) rut.soil = terramech::rutted(ground.soil);
@@ -89,7 +89,7 @@ terramech::MobilityOptions passOf(const GroundClass& rut) {
                                              : terramech::MobilityOptions{};
 }
 
-// Options for all axles together, if the axles differ.
+// Options for a curve of all axles together; nullopt if the class has no multipass effect.
 std::optional<terramech::MobilityOptions> axlesOf(const GroundClass& ground, const terramech::Rover& rover) {
   if (!terramech::knowsPasses(ground.effects)) return std::nullopt;
   return terramech::MobilityOptions{.axles = rover.wheel_count / 2};
@@ -263,7 +263,7 @@ RankedCategory GroundModel::category(const GroundBelief& belief, double gradient
   return {mean, probability};
 }
 
-// Up to the reference slip by the shift of the curve, beyond by the ground's fraction of the class's thrust.
+// Shifts the curve up to the reference slip; beyond, scales the thrust of the class (class comment).
 Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradient) const noexcept {
   const Thrust own(referenceOf(class_index).fresh);
   const double beyond = std::max(gradient - pull.value, 0.0), share = own.share(pull.value);
@@ -271,22 +271,22 @@ Estimate GroundModel::demand(int class_index, const Estimate& pull, double gradi
           pull.std * (1.0 + beyond / (share * own.thrust)) / share};
 }
 
-// The greatest pull of the ground is its fraction of the class's pull at the strongest slip. The probability
-// is 1 if the mean falls short: a large standard deviation must not reduce it.
+// The greatest pull of the ground is its fraction of the class's pull at the strongest slip. If the mean pull
+// is insufficient, the probability is 1, because a large standard deviation must not reduce the probability.
 double GroundModel::weakProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
   const double strongest = ground.all.strongest().drawbar_pull_over_load;
   const double reserve = std::max({strongest, ground.drive.last(), own.pull}) - own.pull;
-  // Least pull at the reference slip for the gradient; by the shift for ground stronger than its class.
+  // Least sufficient pull at the reference slip; by the shift of the curve if stronger than the class.
   const double least = gradient > own.pull + reserve
                            ? gradient - reserve
                            : (gradient * own.thrust - reserve * own.resistance()) / (own.thrust + reserve);
   return pull.value < least ? 1.0 : probabilityBelow(pull, least);
 }
 
-// On ground weaker by d, locked wheels brake less by d, or by the ground's fraction of the class's braking if
-// that is less.
+// On ground weaker by d, the braking force over load of locked wheels is less by d, or is the ground's
+// fraction of the class's braking force if that is lower.
 double GroundModel::unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                         double gradient) noexcept {
   const Thrust own(ground.wheel.reference());
@@ -327,7 +327,7 @@ TravelState GroundModel::state(int class_index, const GroundBelief& belief, doub
 
   TravelState state;
   state.slip = static_cast<float>(s.slip);
-  // The larger braking torque on stronger ground of an equal slope is used for weaker ground, too.
+  // Weaker ground has at least the braking torque of stronger ground on the same slope.
   state.sinkage_m = static_cast<float>(
       std::max({s.sinkage_m, ground.drive.sinkage_m(mean), braked.sinkage_m, ground.drive.sinkage_m(least)}) *
       deeper);

@@ -31,7 +31,7 @@ struct GroundClass {
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options = {});
 
-/// mobilityOf().reference(), computed a hundred times as fast.
+/// Returns mobilityOf().reference() without the other points of the curve, a hundred times as fast.
 terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
                                          const terramech::MobilityOptions& options = {});
 
@@ -48,12 +48,12 @@ struct SlippingWheel {
   double slip_angle_rad = 0.0;  ///< limited to 60 degrees
 };
 
-/// Quantities of a wheel in steady motion.
+/// Quantities of a wheel at constant speed.
 struct SteadyWheel {
   double gradient = 0.0;  ///< gradient of the slope, equal to DP/W [-]
   double sinkage_over_radius = 0.0;
   double torque_over_load_radius = 0.0;
-  double hold = 0.0;  ///< side force against sideways motion, divided by load [-]
+  double hold = 0.0;  ///< side force that resists sideways motion, divided by load [-]
 };
 
 /// A category and its probability.
@@ -64,18 +64,19 @@ struct RankedCategory {
 
 /// Ground model of one rover on one body: the mobility curve of each class, and the cost of ground for any
 /// estimated strength. At the reference slip, a class has a thrust H (torque / (load * radius)),
-/// a resistance R and a pull P = H - R, all divided by load. Ground with an estimated pull P - d drives on a
-/// gradient g as the class does on the gradient
+/// a resistance R and a pull P = H - R, all divided by load. Driving on ground with an estimated pull P - d
+/// at a gradient g equals driving on the class at the gradient
 ///   g + d                                  for g <= P - d (up to the reference slip): shift of the curve;
 ///   P + (g - P + d) / f,  f = 1 - d / H    beyond: the ground has the fraction f of the class's thrust
 /// (ours; both are exact at the reference slip. For soils drawn from the deviations of mars_crusty,
 /// sandy_loam and dry_sand, the shift overestimates the pull at slip 0.8 by 0.02, 0.04, 0.01 on average, and
 /// the fraction by 0.00, 0.01, 0.00. Below the reference slip, the shift underestimates the pull.) The
-/// standard deviation scales with the derivative of the demand by P - d. Ground with a greater pull drives as
-/// on a flatter slope, at most as on level ground, and has no more reserve than its class. Cost and risk
-/// never decrease with the standard deviation nor, from level ground upwards, with the gradient
-/// (ExpectedTravel). Downhill, ground weaker by d brakes less by d or by the fraction f: weaker ground is
-/// never allowed where stronger ground is refused. CrossSlope adds the effect of cross slopes.
+/// standard deviation of the demand is that of the pull times the derivative of the demand by P - d. Ground
+/// with a greater pull is driven like a flatter slope of the class, but no flatter than level ground, and has
+/// no more reserve than its class. Cost and risk never decrease with the standard deviation nor, from level
+/// ground upwards, with the gradient (ExpectedTravel). Downhill, the braking force over load on ground weaker
+/// by d is less by d or by the fraction f, so that weaker ground is never allowed where stronger ground is
+/// refused. CrossSlope adds the effect of cross slopes.
 ///
 /// Curves and cross slopes of a class are computed once, at the first use: a class raster may declare
 /// hundreds of classes, of which few occur in a window. Logically immutable and thread-safe; copies share the
@@ -100,11 +101,11 @@ class GroundModel {
   /// Returns the index in parts().classes of a class number; -1 for an undeclared number.
   int classIndex(int number) const noexcept;
 
-  /// Estimate before any evidence.
+  /// Returns the estimate of a class before any evidence.
   const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
 
-  /// Quantities of a wheel that drives steadily at this slip on ground of the class, by its soil; limited to
-  /// the drivable range. The effect of a slip angle is that of a wheel on fresh ground.
+  /// Quantities of a wheel that drives steadily at this slip on the soil of the class; slips are limited to
+  /// the drivable range. The effect of a slip angle is computed for fresh ground, also in a rut.
   SteadyWheel steady(int class_index, const SlippingWheel& wheel) const;
   /// Quantities of a wheel that drives straight on a slope of this gradient (rise over run), limited to the
   /// drivable gradients.
@@ -135,7 +136,7 @@ class GroundModel {
   TravelCost::Limits limits() const;
 
  private:
-  // Quantities computed at construction; Lazy has those computed at the first use.
+  // Quantities computed at construction; Lazy contains those computed at the first use.
   struct Reference {
     terramech::MobilityReference fresh, in_rut;  // of one wheel
     GroundBelief prior;
@@ -159,7 +160,7 @@ class GroundModel {
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
   static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept;
-  // Required DP/W: at most when driven, at least when braked.
+  // Required DP/W: the maximum when driven, the minimum when braked.
   struct Demand {
     double driven, braked;
   };

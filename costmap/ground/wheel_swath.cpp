@@ -9,7 +9,7 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kHeadings = 16;  // over 180 degrees: forward and backward stances are equal
+constexpr int kHeadings = 16;  // headings over 180 degrees: forward and backward stances are equal
 
 // Returns the number of positions of the centre along a side of the cell: spaced at most a quarter of the
 // track.

@@ -13,11 +13,11 @@ namespace talus::costmap {
 /// Computes the drawbar pull over load [-] of a whole rover whose centre is in a cell, from the ground under
 /// all its wheels.
 ///
-/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean of DP/W of
-/// its wheels, each on the weakest cell within its width. The result is the least mean over all
-/// positions of the centre within the cell (edges, corners and pose error included) and over 16 headings,
-/// 11.25 degrees apart, turns in place included; or the pull of the cell's own ground if less. The standard
-/// deviation and the sinkage are the maxima over the cells that a wheel may touch. Immutable.
+/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W (drawbar pull over load) of the
+/// rover is the mean over its wheels, each on the weakest cell within its width. The result is the least mean
+/// over all positions of the centre within the cell (edges, corners and pose error included) and over 16
+/// headings, 11.25 degrees apart, but at most the pull of the cell itself. The standard deviation and the
+/// sinkage are the maxima over the cells that a wheel may touch. Immutable.
 class WheelSwath {
  public:
   /// For a rover on cells of this size; `pose_error_m` >= 0 widens the positions of the centre.
@@ -45,8 +45,8 @@ class WheelSwath {
   };
 
   /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,
-  /// the cell itself in the centre. The central cell must have a class; cells without a
-  /// class, such as cells outside the map, get the pull of the central cell.
+  /// the cell itself in the centre. The central cell must have a class; cells without a class, such as cells
+  /// outside the map, have the pull of the central cell.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

@@ -13,7 +13,7 @@
 namespace talus::costmap {
 namespace {
 
-// Entry of a drive; number 0 if the journal lacks the id.
+// Returns the entry of a drive; number 0 if the journal does not contain the id.
 DriveEntry find(const JournalDatabase& database, const std::string& id) {
   const auto entry = database.prepare("SELECT number, checksum FROM drive WHERE id = ?");
   sqlite3_bind_text(entry.get(), 1, id.c_str(), static_cast<int>(id.size()), SQLITE_TRANSIENT);

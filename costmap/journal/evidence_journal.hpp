@@ -12,9 +12,9 @@ namespace talus::costmap {
 class JournalDatabase;
 
 /// EVIDENCE.db: all telemetry rows offered to a map, by drive, in an SQLite file with a write-ahead log. A
-/// drive is stored once, independently of its file name, atomically, and synchronised to the disk before
-/// append() or Transaction::commit() returns. Several processes may use one journal; they wait for each
-/// other. One object per thread.
+/// drive is stored atomically and only once, whatever its file name, and is on the disk before append() or
+/// Transaction::commit() returns. Several processes may use one journal; each waits for the lock of the
+/// others. One object per thread.
 class EvidenceJournal {
  public:
   /// Write lock of the journal during the lifetime of the object; changes are undone unless commit() is
@@ -40,9 +40,9 @@ class EvidenceJournal {
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
   /// Appends the rows of a drive with its driveId(), in a new transaction unless one is open; no effect if
-  /// the journal has the drive. `continued`: id of the drive without these rows, if the journal has that
-  /// drive. Throws InputError if the disk is full or if another process keeps the journal for more than 30 s,
-  /// std::invalid_argument for an invalid id (isDriveId()).
+  /// the journal contains the drive. `continued`: id of the drive without these rows, if the journal contains
+  /// that drive. Throws InputError if the disk is full or if another process keeps the journal for more than
+  /// 30 s, std::invalid_argument for an invalid id (isDriveId()).
   void append(const std::string& drive, const std::vector<JournalRow>& rows,
               const std::string& continued = {});
 
@@ -58,8 +58,8 @@ class EvidenceJournal {
   /// InputError if the drive is missing or changed.
   std::int64_t check(const std::string& drive) const;
 
-  /// The rows of a drive in order; numbers equal the written ones to the bit. Throws InputError as check(),
-  /// or for a number that no wheel can produce.
+  /// The rows of a drive in order; numbers are bitwise equal to the written ones. Throws InputError as
+  /// check(), or for a physically impossible number (fault()).
   std::vector<JournalRow> rows(const std::string& drive) const;
 
   /// Returns the number of rows.

@@ -25,8 +25,8 @@ constexpr const char* kSelect =
     "wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence WHERE drive = ? AND id > ? ORDER "
     "BY id";
 
-// NULL represents NaN, which SQLite lacks. Other types than numbers give infinity, which fault() rejects;
-// SQLite would read 0.
+// Returns NaN for NULL, because SQLite cannot store NaN, and infinity, which fault() rejects, for a value
+// that is not a number; SQLite's own conversion would return 0.
 double number(sqlite3_stmt* row, int column) {
   const int type = sqlite3_column_type(row, column);
   if (type == SQLITE_NULL) return std::numeric_limits<double>::quiet_NaN();

@@ -11,7 +11,7 @@
 /// Access to the rows of the tables `evidence` and `drive` of a journal.
 namespace talus::costmap {
 
-/// Returns the text of a column, byte by byte.
+/// Returns the text of a column, zero bytes included.
 std::string journalText(sqlite3_stmt* row, int column);
 
 /// Appends rows to the drive with that number.
@@ -20,11 +20,11 @@ void insertRows(const JournalDatabase& database, std::int64_t drive, const std::
 /// The rows of a drive in order.
 std::vector<JournalRow> selectRows(const JournalDatabase& database, std::int64_t drive);
 
-/// An id below that of every row, also in a modified journal.
+/// Lower bound of the ids of all rows, also in a modified journal.
 constexpr std::int64_t kBeforeAllRows = std::numeric_limits<std::int64_t>::min();
 
-/// Chained checksum of the rows of a drive with an id above `after`; `before` is the checksum of the earlier
-/// rows, 0 for none.
+/// Returns the chained checksum of the rows of a drive with an id above `after`; `before` is the checksum of
+/// the earlier rows, 0 without earlier rows.
 std::uint64_t rowsChecksum(const JournalDatabase& database, std::int64_t drive, std::uint64_t before,
                            std::int64_t after);
 
@@ -36,7 +36,7 @@ struct DriveEntry {
   std::uint64_t checksum = 0;  ///< checksum of the rows
 };
 
-/// Converts the checksum of the rows to the stored checksum, and back: checksum XOR hash of number and id.
+/// Converts the checksum of the rows to the stored checksum and back: XOR with a hash of number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
 /// Whether the id has 16 hexadecimal digits, as from driveId(), or is "source NAME", as rows of Talus 0.1.0

@@ -37,7 +37,7 @@ struct Entry {
 };
 const Entry kSequence{"table", "sqlite_sequence", "CREATE TABLE sqlite_sequence(name,seq)"};
 
-// All entries of a journal, by name.
+// Returns all entries of a journal, sorted by name.
 const std::vector<Entry>& entriesOfJournal() {
   static const std::vector<Entry> entries{
       {"table", "drive",
@@ -102,7 +102,7 @@ void sealDrives(const JournalDatabase& database) {
   }
 }
 
-// 0.1.0 has no drives: the rows of a source become a drive.
+// Converts a journal of Talus 0.1.0, which has no drives: the rows of a source become one drive.
 void takeOver010(const JournalDatabase& database) {
   requireExact(database, entriesOf010());
   database.run("ALTER TABLE evidence RENAME TO evidence_010");

@@ -213,8 +213,8 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
 }
 
-// The category of the map is that of the worst heading; with a requested heading, the category of that
-// heading.
+// Sets category and probability: those of the requested heading (`asked`), else those of the map, for the
+// worst heading.
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, bool asked,
            Explanation& out) {
   const Hazard hazards = map.surface().hazards(cell);
@@ -227,7 +227,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   out.category = static_cast<terramech::Category>(belief.category);
   out.probability = out.category == terramech::Category::Unknown ? kNotKnown : belief.confidence / 16.0;
   out.verdict = std::string(terramech::name(out.category));
-  // If unknown ground is allowed, another hazard excludes the cell.
+  // If the policy allows unknown ground, only hazards other than Unknown exclude the cell.
   const bool unseen = map.model().parts().policy.allow_unknown;
   for (const Hazard one : kHazards)
     if (has(hazards, one) && !opened && !(unseen && one == Hazard::Unknown)) {

@@ -9,7 +9,7 @@
 
 namespace talus::costmap {
 
-/// One quantity behind the category of a cell.
+/// A quantity that determines the category of a cell.
 struct Cause {
   std::string name;                                       ///< "slope_rad"
   double value = 0.0;                                     ///< in the unit of the name's suffix
@@ -18,7 +18,7 @@ struct Cause {
   std::string remark;                                     ///< effect on the category; may be empty
 };
 
-/// Category of a cell with the quantities behind it.
+/// Category of a cell, with the quantities that determine the category.
 struct Explanation {
   terramech::Category category = terramech::Category::Unknown;
   double probability = 0.0;  ///< probability of the category; NaN for Unknown

@@ -9,11 +9,11 @@ namespace talus::costmap {
 namespace {
 
 constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
-constexpr int kFew = 4;  // cells by which a box may grow in addition to a new cell
+constexpr int kFew = 4;  // number of other cells that a box may include with a new cell
 constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 24, kSinkageZero = 64;
 
-// Packs a kind into a non-zero word: DP/W within 10 of the prior's, sinkage up to 44 radii
-// above.
+// Packs a kind into a non-zero word. Range: drawbar pull over load within 10 of the prior, sinkage up to 44
+// radii above.
 std::uint32_t packed(const GroundKind& kind) {
   const auto field = [](int value, int bits) {
     return static_cast<std::uint32_t>(std::clamp(value, 0, (1 << bits) - 1));
@@ -32,8 +32,7 @@ GroundKind unpacked(std::uint32_t word, int class_index) {
           .sinkage = field(0, kSinkageBits) - kSinkageZero};
 }
 
-// Adds a cell to the last box if the box grows by few other cells, else as a new box: boxes hold mostly
-// changed cells.
+// Adds a cell to the last box, or as a new box if the last box would include more than kFew other cells.
 void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
   const auto area = [](const maps::CellBox& b) {
     return (b.last.column - b.first.column + 1) * (b.last.row - b.first.row + 1);
@@ -77,7 +76,8 @@ maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
   return grown(range, swath_.reach(), site_->grid());
 }
 
-// A change of class alters borders within the reach; their computation needs cells within twice the reach.
+// A change of class alters class borders within the reach; the computation of the borders needs cells within
+// twice the reach.
 maps::CellBox GroundCurves::takeClasses(const maps::CellBox& box) {
   const maps::CellBox changed = within(box), seen = within(changed);
   const std::vector<bool> borders = classBorders(cut(site_->classes, seen), swath_.reach());

@@ -16,9 +16,9 @@
 
 namespace talus::costmap {
 
-/// Assigns a cost curve to the ground of each cell: the curve of the cell's own ground if all ground that a
-/// wheel may touch is equal, else that of the result of WheelSwath. Stores the learned ground of cells as
-/// GroundKind, so that cells are recomputed only after changes within reach. Not thread-safe.
+/// Assigns a cost curve to the ground of each cell: the curve of the cell's ground if all ground that a wheel
+/// may touch is equal, else the curve of the ground by WheelSwath. Stores the learned ground of cells as
+/// GroundKind, and recomputes cells only after changes within reach. Not thread-safe.
 class GroundCurves {
  public:
   explicit GroundCurves(std::shared_ptr<const GroundSite> site);
@@ -34,24 +34,23 @@ class GroundCurves {
   /// Changes by learnClasses().
   struct ClassChange {
     bool priors = false;   ///< whether priors of classes changed
-    bool learned = false;  ///< whether the class state behind learned ground changed
+    bool learned = false;  ///< whether a class state used for learned ground changed
   };
-  /// Takes over the estimates of the classes.
+  /// Updates the estimates of the classes.
   ClassChange learnClasses(const EvidenceField& field);
-  /// Takes over the estimates of the cells of the ranges, with class states in steps. Returns the ranges
-  /// whose curve indices may have changed.
+  /// Updates the estimates of the cells of the ranges, with class states in steps. Returns the ranges whose
+  /// curve indices may have changed.
   std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
-  /// Takes over changed terrain classes of the site in a box. Returns the box whose curve indices may
-  /// have changed.
+  /// Reads changed terrain classes of the site in a box. Returns the box whose curve indices may have
+  /// changed.
   maps::CellBox takeClasses(const maps::CellBox& box);
 
-  /// Returns the boxes whose curve indices depend on several kinds of ground, possibly with priors of
-  /// classes.
+  /// Returns boxes that contain all cells whose curve depends on several kinds of ground.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Discards all curve indices, after none was free; a higher level has coarser steps. Steps of cost layers
-  /// become coarser before those of estimates, because estimates decide which ground is drivable.
+  /// Discards all curve indices when none is free; a higher level has coarser steps. The steps of cost layers
+  /// become coarser before those of estimates, because estimates determine which ground is drivable.
   void restart(int level) {
     level_ = level;
     step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);
@@ -76,7 +75,7 @@ class GroundCurves {
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;
-  std::vector<ClassState> states_;  // class states behind learned_
+  std::vector<ClassState> states_;  // class states used for learned_
   bool any_learned_ = false;
   std::vector<WheelSwath::Ground> around_;
 };

@@ -151,9 +151,9 @@ void MapCosts::publish(const EvidenceField& field, bool whole) {
   heights_m_.reset();
 }
 
-// Ensures that an incremental version is no cheaper than a complete one. At level 0, each curve depends on
-// its kind alone. At a coarser level with free curve indices, a complete computation would use the same or a
-// finer level. In all other cases, all indices are reassigned.
+// Ensures that no cost of an incremental version is below that of a complete one. At level 0, each curve
+// depends on its kind alone. At a coarser level with free curve indices, a complete computation would use the
+// same or a finer level. In all other cases, all indices are reassigned.
 std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox>& changed) {
   std::shared_ptr<const CostGrid> next = rewritten(changed);
   const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
@@ -171,7 +171,8 @@ std::shared_ptr<const CostGrid> MapCosts::renumbered() {
   }
 }
 
-// The cost is requested after the codes, because codes may add curves.
+// Recomputes the cells of the ranges. The cost is requested after the codes, because new codes may add
+// curves.
 std::shared_ptr<const CostGrid> MapCosts::rewritten(const std::vector<maps::CellBox>& ranges) {
   return std::make_shared<CostGrid>(
       revised(*published(), {.ranges = ranges,
@@ -188,7 +189,7 @@ CellCode MapCosts::coded(maps::Cell cell, CellCode code) {
   if (found == Hazard::None) return code.withCurve(curves_->number(cell));
   if (found != Hazard::Unknown) return code.withCurve(CellCode::kBlocked);
   if (!surface_->model().parts().policy.allow_unknown) return code.withCurve(CellCode::kUnknown);
-  // The estimate from telemetry still applies to cells whose shape cannot be measured.
+  // The estimate from telemetry also applies to cells whose shape cannot be measured.
   return code.withCurve(surface_->classIndex(cell) >= 0 ? curves_->number(cell)
                                                         : curves_->numberOfUnseen(cell));
 }

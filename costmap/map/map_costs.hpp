@@ -33,15 +33,15 @@ struct CellCategory {
 /// members.
 class MapCosts {
  public:
-  /// Measures the surface and publishes version 1, without evidence.
+  /// Measures the surface and publishes version 1, without evidence from wheels.
   MapCosts(std::shared_ptr<MapSurface> surface, const ProgressMonitor& watch);
   ~MapCosts();
 
   /// The newest version.
   std::shared_ptr<const CostGrid> published() const noexcept;
 
-  /// Ground estimate behind the published cost of a cell, after WheelSwath and the quantisation of the cost
-  /// curves; nullopt for blocked and unknown cells.
+  /// Ground estimate from which the published cost of a cell follows, after WheelSwath and the quantisation
+  /// of the cost curves; nullopt for blocked and unknown cells.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
   /// Published category of a cell; nullopt for blocked and unknown cells.
   std::optional<CellCategory> ranked(maps::Cell cell) const;
@@ -60,7 +60,7 @@ class MapCosts {
   void publish(const EvidenceField& field);
   /// Recomputes and publishes all cells.
   void publishAll(const EvidenceField& field);
-  /// Publishes the newest version again under another version number.
+  /// Publishes the newest version under another version number.
   void republishAs(std::uint64_t version);
 
  private:

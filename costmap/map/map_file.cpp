@@ -154,7 +154,8 @@ class TrailerReader {
     if (size > bytesLeft()) fail("truncated");
     return size;
   }
-  // Checked before the allocation of a section, so that a damaged size cannot exhaust the memory.
+  // Returns the number of bytes to the end. Checked before the allocation of a section, so that a damaged
+  // size cannot exhaust the memory.
   std::uint64_t bytesLeft() {
     const auto here = stream_.tellg();
     const auto end = stream_.seekg(0, std::ios::end).tellg();
@@ -310,7 +311,8 @@ void writeMap(const TraversabilityMap& map, const std::string& path) {
 
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch) {
   requireWhole(stream, reading.name);
-  readLeaves(stream, reading.name, [](const TreeLeaf&) {});  // the trailer contains the same information
+  readLeaves(stream, reading.name, [](const TreeLeaf&) {});  // the nodes are skipped, because the trailer
+                                                             // contains the same information
   TrailerReader trailer(stream, reading.name);
   MapText text = parsed(trailer.bytes("TEXT"), reading.name);
   requireSane(text.grid, reading.name);

@@ -23,9 +23,9 @@ void writeMap(const TraversabilityMap& map, const std::string& path);
 struct MapReading {
   std::string name;  ///< file name for messages
   int threads = 1;   ///< >= 1
-  /// Makes the georeference of a coordinate system and grid. Default: GeographicLib, without latitude and
-  /// longitude for coordinate systems that need PROJ (maps::ElevationMap::places). talus::maps_io provides
-  /// one with PROJ.
+  /// Makes the georeference of a coordinate system and grid. The default uses GeographicLib, without latitude
+  /// and longitude for coordinate systems that need PROJ (maps::ElevationMap::places); talus::maps_io
+  /// provides a function with PROJ.
   std::function<maps::Georeference(const maps::CoordinateSystem&, const maps::Grid&)> georeference{};
 };
 
@@ -33,7 +33,7 @@ struct MapReading {
 /// damaged, or not a map.
 TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const ProgressMonitor& watch = {});
 
-/// Reads the map of a file name. Throws InputError also if the file cannot be opened.
+/// Reads the map from the file reading.name. Throws InputError also if the file cannot be opened.
 TraversabilityMap readMap(const MapReading& reading, const ProgressMonitor& watch = {});
 TraversabilityMap readMap(const std::string& path, int threads = 1, const ProgressMonitor& watch = {});
 

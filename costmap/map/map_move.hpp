@@ -6,8 +6,8 @@
 
 namespace talus::costmap {
 
-/// Shift of a map window by whole tiles: tiles leave at one side, and unseen tiles enter at the other.
-/// Immutable.
+/// Shift of a map window by whole tiles: tiles are dropped at one side, and unseen tiles are added at the
+/// other. Immutable.
 class MapShift {
  public:
   /// Shift by `tiles` tiles of 64 cells eastward (columns) and northward (rows); evidence blocks have
@@ -17,7 +17,7 @@ class MapShift {
 
   /// The shifted layers of a surface; unseen cells are NaN or without class and hazard.
   MapLayers layers(const MapSurface& surface) const;
-  /// The evidence block with its position in the new window; may lie outside.
+  /// Returns the evidence block with its position in the new window, or outside the window.
   SavedBlock block(SavedBlock saved) const;
 
  private:

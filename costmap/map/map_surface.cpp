@@ -110,7 +110,8 @@ void MapSurface::measure(const TakeShape& take, const ProgressMonitor& watch) {
   inflate(hazards_, limits_, spreading());
 }
 
-// For an unknown shape, uses unseenSlope() if the policy allows unknown ground.
+// Makes code and hazards of a cell. If the shape is unknown and the policy allows unknown ground, the slope
+// is unseenSlope().
 MapSurface::Ground MapSurface::grounded(maps::Cell cell, const GroundShape& shape, Hazard found) const {
   if (!std::isnan(shape.dz_dx) || !site_->model->parts().policy.allow_unknown)
     return {flatCode(shape), found};
@@ -119,9 +120,9 @@ MapSurface::Ground MapSurface::grounded(maps::Cell cell, const GroundShape& shap
   return {CellCode({.dz_dx = slope.dz_dx, .dz_dy = slope.dz_dy}), steep ? found | Hazard::Slope : found};
 }
 
-// A changed cell affects the shape of all cells whose footprint contains the cell, and the possible slope
-// between the cell and the next height. These cells may enter or leave the clearance around hazards. Refused
-// places have no clearance, so their marks are removed during the update.
+// A changed cell affects the shape of all cells whose footprint contains the cell, and unseenSlope() up to
+// the next height. The affected cells may enter or leave the clearance around hazards. Refused places have no
+// clearance; their marks are therefore removed during the update.
 MapSurface::PatchEffect MapSurface::take(const SurfacePatch& patch) {
   const maps::CellBox window = placeOf(patch, *site_, any_height_);
   takeHazards(patch, window);
@@ -212,7 +213,7 @@ maps::CellBox MapSurface::refuse(const RefusedPlace& place) {
   return mark(place, true);
 }
 
-// Sets or clears the obstacle mark of the cells of a place. Returns their bounding box.
+// Sets or clears the obstacle mark of the cells of a place. Returns the bounding box of the cells.
 maps::CellBox MapSurface::mark(const RefusedPlace& refusal, bool refused) {
   const double cell_m = grid().resolution_m;
   const auto clamped = [](double value, int cells) {

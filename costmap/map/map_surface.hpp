@@ -42,7 +42,7 @@ class MapSurface {
   int classNumber(maps::Cell cell) const noexcept {
     return site_->classes.empty() ? 0 : site_->classes[cell];
   }
-  /// Returns the index of the cell's class in model().parts().classes, or -1.
+  /// Returns the index of the cell's class in model().parts().classes; -1 without a class.
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
   /// Class index of the ground at a height; the first class for a floor beneath the surface.
   int classIndex(maps::Cell cell, double z_m) const noexcept {
@@ -94,7 +94,7 @@ class MapSurface {
   /// with place and remedy for an invalid patch; the surface is then unchanged.
   PatchEffect take(const SurfacePatch& patch);
 
-  /// Marks the cells of a place as obstacles. Returns their bounding box.
+  /// Marks the cells of a place as obstacles. Returns the bounding box of the cells.
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:
@@ -115,7 +115,7 @@ class MapSurface {
   HazardLimits limits_;
   ShapeOptions options_;
   bool any_height_ = false;
-  maps::Raster<Hazard> declared_;  // by layers other than elevation and classes
+  maps::Raster<Hazard> declared_;  // hazards by layers other than elevation and classes
   maps::Raster<Hazard> hazards_;
   std::vector<RefusedPlace> refused_;
 };

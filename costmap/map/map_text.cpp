@@ -48,7 +48,7 @@ class Writer {
   void count(const std::string& name, const std::vector<T>& list, std::size_t = 0) {
     if (!list.empty()) (*this)(name, list.size());
   }
-  /// Writes true values only: files without the flag are unchanged.
+  /// Writes a flag only if true, so that files without the flag are unchanged.
   void flag(const std::string& name, bool value) {
     if (value) (*this)(name, value);
   }
@@ -90,13 +90,13 @@ class Reader {
     values_.erase(found);
   }
 
-  /// Reads an optional value; older maps lack it, and the default remains.
+  /// Reads an optional value; `value` is unchanged for an older map without the line.
   template <typename T>
   void added(const std::string& name, T& value) {
     if (values_.contains(name)) (*this)(name, value);
   }
 
-  /// Sets the length of a list; 0 without a line.
+  /// Reads the length of a list; 0 if the line is missing.
   template <typename T>
   void count(const std::string& name, std::vector<T>& list, std::size_t most = 1000) {
     std::size_t size = 0;
@@ -139,7 +139,7 @@ class Reader {
   std::string name_;
 };
 
-// One list of fields for both directions: V is Writer with const values or Reader with mutable values.
+// Lists the fields once for both directions: V is Writer with const values or Reader with mutable values.
 template <typename V, typename G>
 void visitGrid(V& v, G& grid) {
   v("grid.width", grid.width);

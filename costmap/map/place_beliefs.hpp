@@ -12,15 +12,15 @@ namespace talus::costmap {
 
 class TraversabilityMap;
 
-/// Estimates of cells from surface, evidence and published category. Caches data that adjacent cells share,
-/// for sequences of calls. Valid until the map changes. Not thread-safe.
+/// Estimates of cells from surface, evidence and published category. Caches data common to adjacent cells.
+/// Valid until the map changes. Not thread-safe.
 class PlaceBeliefs {
  public:
   explicit PlaceBeliefs(const TraversabilityMap& map);
 
   /// Estimate of a cell inside the map.
   CellBelief at(maps::Cell cell);
-  /// Estimate of a floor of a cell: soil strength only. The shape is unknown (Hazard::Unknown).
+  /// Returns the estimate of a floor of a cell: soil strength only, with unknown shape (Hazard::Unknown).
   CellBelief at(maps::Cell cell, const Floor& floor) const;
   /// Strength of a cell's ground from the prior of the class and the evidence; nullopt for a cell without a
   /// class.

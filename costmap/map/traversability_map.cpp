@@ -23,8 +23,8 @@ std::shared_ptr<MapSurface> surfaceOf(MapLayers layers, std::shared_ptr<const Gr
   return std::make_shared<MapSurface>(std::move(layers), std::move(model), shape);
 }
 
-// Returns the disc around the block of an observation: repeated observations of a spinning wheel give an
-// equal disc.
+// Returns the disc around the block of an observation. Repeated observations of a spinning wheel have equal
+// discs.
 RefusedPlace blockAround(const WheelObservation& observation, const maps::Grid& grid, double side_m) {
   const auto middle = [&](double at, double from) {
     return from + (std::floor((at - from) / side_m) + 0.5) * side_m;
@@ -71,7 +71,8 @@ bool TraversabilityMap::restore(const SavedBlock& saved) {
   return range.has_value();
 }
 
-// For evidence of danger on unobserved ground. Returns false if the place does not reach the map.
+// Refuses the place of a dangerous observation on unobserved ground. Returns false if the place does not
+// overlap the map.
 bool TraversabilityMap::refuseUnobserved(const WheelObservation& observation) {
   const RefusedPlace refusal = blockAround(observation, grid(), field_.blockCells() * grid().resolution_m);
   if (!reaches(refusal, grid())) return false;

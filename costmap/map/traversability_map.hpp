@@ -23,8 +23,8 @@ namespace talus::costmap {
 /// cell and about 60 bytes per block with evidence.
 ///
 /// One thread changes a map: a concurrent call of learn(), forget(), refuse(), patch(), publish() or
-/// publishAll() throws std::logic_error. published() may be called from any thread at any time and never
-/// waits. Concurrent calls of other const members are safe while no thread changes the map.
+/// publishAll() throws std::logic_error. published() may be called from any thread at any time without
+/// waiting. Concurrent calls of other const members are safe while no thread changes the map.
 class TraversabilityMap {
  public:
   struct Options {
@@ -66,8 +66,8 @@ class TraversabilityMap {
   /// place like refuse(): a block and two standard deviations of the pose around the place, independently of
   /// later patches. Returns false if the map has no ground at the place.
   bool learn(const WheelObservation& observation);
-  /// Removes pulls and sinkages that were learned, given as evidence().heardOf() returned them, in order to
-  /// replace them. Bounds of the place remain. Visible to planners after publish().
+  /// Removes learned pulls and sinkages, as returned by evidence().heardOf(), before their replacement.
+  /// Bounds of the place remain. Visible to planners after publish().
   void forget(const SavedBlock& heard);
   /// Restores the evidence of a block from a file; visible to planners after publish(). Returns false if the
   /// map has no such block or class.
@@ -102,14 +102,14 @@ class TraversabilityMap {
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
-  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers never wait; a running
+  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers do not wait; a running
   /// planner keeps its version. If no index of a cost curve is free, all cells get new indices with coarser
   /// steps (GroundKind).
   ///
-  /// The costs equal those of publishAll() to the bit, for any sequence of changes. A cell depends on its
+  /// The costs are bitwise equal to those of publishAll(), for any sequence of changes. A cell depends on its
   /// shape, on the class states in steps (ClassEvidence::stateInSteps()) and on the evidence within reach of
-  /// its patch of blocks, and is recomputed after a change of any of these. Exception: after curve numbers
-  /// were exhausted, steps may be up to 8 times as coarse as those of publishAll(); no cost is then lower.
+  /// its patch of blocks, and is recomputed after a change of any of these. Exception: after curve indices
+  /// were exhausted, steps may be up to 8 times as coarse as those of publishAll(); no cost is lower.
   void publish();
   /// Recomputes and publishes all cells.
   void publishAll();

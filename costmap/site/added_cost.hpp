@@ -10,8 +10,8 @@ namespace talus::costmap {
 /// Sum of the cost layers per metre in each cell, quantised because cell costs are limited to 254 curves. The
 /// sum is rounded up by at most a fifth, to two digits out of 10, 11, 12, 13, 15, 16, 18, 20, 22, 25, 28, 30,
 /// 35, 40, 45, 50, 60, 70, 80, 90; positive sums below 0.1 J are raised to 0.1 J. Steps are equal on all
-/// maps, so that a cost in one place lowers no cost elsewhere. Infinite costs are omitted, because such a
-/// cell is refused by its hazard. Immutable.
+/// maps, so that a cost in one place lowers no cost elsewhere. Infinite costs are omitted, because their
+/// cells have the hazard KeepOut. Immutable.
 class AddedCost {
  public:
   static constexpr int kCoarsest = 3;  ///< highest level

@@ -15,9 +15,10 @@
 
 namespace talus::costmap {
 
-/// External cost per metre [J/m] of the ground, for example for shadow, radio or other hazards; added to the
-/// energy. 0 to kMost_J_per_m; infinite: impassable. NaN: unknown; the cell is refused as unknown ground, or
-/// costs unseen_J_per_m if the policy allows unknown ground.
+/// External cost per metre [J/m] of the ground, for example for shadow or missing radio contact, which is
+/// added to the energy. Values are 0 to kMost_J_per_m, or infinite: impassable, or NaN: unknown. A cell with
+/// an unknown value is refused as unknown ground, or costs unseen_J_per_m if the policy allows unknown
+/// ground.
 struct CostLayer {
   static constexpr float kMost_J_per_m = 1e6F;
   static constexpr std::size_t kMostLayers = 64;

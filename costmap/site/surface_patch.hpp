@@ -4,8 +4,8 @@
 
 namespace talus::costmap {
 
-/// Limit of |height|: the resolution of single precision beyond is coarser than 1/64 m. No planetary surface
-/// exceeds the limit.
+/// Limit of |height|, below which single precision resolves at least 1/64 m. No planetary surface exceeds the
+/// limit.
 inline constexpr double kHighest_m = 131072.0;
 
 /// The cells of a map that a patch covers; any_height: whether the map has an elevation. Throws

@@ -32,9 +32,9 @@ constexpr bool has(Hazard set, Hazard one) noexcept {
 /// Estimate of one cell: the strength of the ground from the prior of the terrain class and from wheel
 /// evidence, and the category, which is the worst over all headings. Payload of the octree.
 struct CellBelief {
-  float pull_mean = 0.0F;     ///< DP/W at the reference slip 0.5 [-], posterior mean
+  float pull_mean = 0.0F;     ///< drawbar pull over load DP/W at slip 0.5 [-], mean
   float pull_std = 0.0F;      ///< standard deviation of pull_mean [-]
-  float sinkage_mean = 0.0F;  ///< z/r at the reference slip [-], posterior mean
+  float sinkage_mean = 0.0F;  ///< sinkage over radius z/r at slip 0.5 [-], mean
   float sinkage_std = 0.0F;   ///< standard deviation of sinkage_mean [-]
   /// Samples in the cell's block, each weighted by its certainty [-]; 0: no evidence.
   float evidence = 0.0F;
@@ -50,7 +50,7 @@ struct CellBelief {
 };
 
 /// Whether the estimate belongs to a floor beneath the top surface: evidence exists, and the shape is
-/// unknown. Such a leaf represents its own voxel and is never merged.
+/// unknown. The leaf of a floor represents one voxel and is never merged.
 inline bool ofFloor(const CellBelief& belief) noexcept {
   return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);
 }

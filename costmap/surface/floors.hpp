@@ -17,7 +17,7 @@ struct Floor {
 /// The floors beneath a map's top surface, from a point cloud; empty for a map from a raster.
 class Floors {
  public:
-  /// Least free height above a floor (ours). Lower gaps are treated as holes in the scan.
+  /// Least free height above a floor (ours). A gap of less height is treated as a hole in the scan.
   static constexpr double kHeadroom_m = 0.5;
 
   Floors() = default;

@@ -70,7 +70,7 @@ Hazard ShapeJudge::operator()(const GroundShape& shape) const noexcept {
 
 namespace {
 
-// The ground outside the map is unseen.
+// Marks cells near the edge of the map as Near, because ground outside the map is unseen.
 void keepOffEdge(maps::Raster<Hazard>& hazards, const maps::CellBox& box, int cells) {
   const maps::Grid& grid = hazards.grid();
   for (int row = box.first.row; row <= box.last.row; ++row)

@@ -18,7 +18,8 @@ struct HazardLimits {
   double rock_area_m2 = 1.0;      ///< footprint that must be free of such rocks
   double max_rock_probability = 0.5;  ///< greatest accepted probability of such a rock in the footprint [-]
   double wheelbase_m = 1.0;           ///< height differences within this span are steps
-  double wheel_diameter_m = 0.0;  ///< greatest distance of heights that form a step; adjacent cells always do
+  double wheel_diameter_m = 0.0;      ///< greatest distance of heights that form a step; adjacent cells form
+                                      ///< steps at any distance
   double inflation_m = 0.0;  ///< clearance of the rover's centre from keep-out, impassable and unseen cells
 
   /// Limits of a rover: step and relief up to the ground clearance, rocks up to twice the clearance,
@@ -61,11 +62,11 @@ class ShapeJudge {
 /// Hazards from which the whole width of the rover must keep clear.
 inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks | Hazard::Unknown;
 
-/// Marks all cells as Near that have a point closer than inflation_m to a cell with one of the hazards
-/// `spreading`; if Unknown is one of them, also cells close to the border of the map.
+/// Marks as Near all cells that have a point closer than inflation_m to a cell with a hazard of the set
+/// `spreading`, and to the border of the map if the set contains Unknown.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
-/// Marks only cells of `box`, which must lie inside the map; the result in the box is that of inflate() on
-/// all cells.
+/// Marks only cells of `box`, which must lie inside the map; inside the box, the result equals that of
+/// inflate() on all cells.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
              const maps::CellBox& box);
 /// Returns the greatest column or row offset between a cell and the cells marked for that cell.

@@ -142,7 +142,8 @@ void forEachColumn(const Leaf& leaf, const maps::Grid& grid, const Box& box, Vis
       visit(grid.index({static_cast<int>(x), static_cast<int>(y)}));
 }
 
-// Counting sort by column, because a cube of side s has s^2 runs; then each column is sorted by height.
+// Sorts the runs by column with a counting sort, because a cube of side s has s^2 runs, and each column by
+// height.
 Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const Box& box) {
   Columns columns{.first = std::vector<std::uint32_t>(grid.size() + 1, 0U), .runs = {}};
   for (const Leaf& leaf : leaves)
@@ -153,7 +154,7 @@ Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const
     const Run run{static_cast<std::uint16_t>(leaf.z), static_cast<std::uint16_t>(leaf.z + leaf.side - 1)};
     forEachColumn(leaf, grid, box, [&](std::size_t column) { columns.runs[columns.first[column]++] = run; });
   }
-  // Filling advanced each `first` to that of the next column; restore.
+  // The loop advanced each `first` to that of the next column; this shift is undone here.
   std::copy_backward(columns.first.begin(), columns.first.end() - 1, columns.first.end());
   columns.first.front() = 0;
   for (std::size_t c = 0; c + 1 < columns.first.size(); ++c)
@@ -162,7 +163,7 @@ Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const
   return columns;
 }
 
-// Ground voxels of each column: those with headroom, lowest first, in the order of columns.
+// Returns the ground voxels, i.e. the occupied voxels with headroom, by column and upwards.
 std::vector<Floor> groundOf(const Columns& columns, double resolution_m) {
   const double headroom = std::max(2.0, std::ceil(Floors::kHeadroom_m / resolution_m));
   std::vector<Floor> ground;
@@ -233,7 +234,7 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
-  double runs = 0.0;  // a leaf may be a cube of side 65536
+  double runs = 0.0;  // as double, because a leaf may be a cube of side 65536
   for (const Leaf& leaf : leaves) runs += static_cast<double>(leaf.side) * static_cast<double>(leaf.side);
   if (runs > static_cast<double>(kMostColumns))
     throw InputError(

@@ -23,8 +23,8 @@ struct OctomapGround {
 
 /// Reads a .bt or .ot file of type OcTree or ColorOcTree. Ground voxels are occupied voxels with free or
 /// unknown space of at least Floors::kHeadroom_m and two voxels above. The surface is, in each column, the
-/// centre of the highest ground voxel at or below `ceiling_m`; NaN without one. The error of a flat surface
-/// is at most half a voxel. All other ground voxels are floors. Throws InputError for a file that is
+/// centre of the highest ground voxel at or below `ceiling_m`; NaN without such a voxel. The error of a flat
+/// surface is at most half a voxel. All other ground voxels are floors. Throws InputError for a file that is
 /// truncated, of another type, empty (or empty below the ceiling), or larger than 4e8 columns.
 OctomapGround octomapGround(const std::string& path,
                             double ceiling_m = std::numeric_limits<double>::infinity());

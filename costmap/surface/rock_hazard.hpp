@@ -15,8 +15,8 @@ struct RockCrossing {
 ///   N(D) = integral over D' > D of (-dF/dD') 4/(pi D'^2)   rocks per square metre
 ///        = 4 k q/pi [e^(-q D)/D - q E1(q D)]
 ///   P = 1 - e^(-N A)                                       Poisson distribution
-/// Returns 1 for an abundance above 0.5: the distribution was fitted to counted fields, and at such an
-/// abundance underestimates the number of large rocks (ours). Relative accuracy 1e-6 in N.
+/// Returns 1 for an abundance above 0.5, for which the distribution, fitted to counted fields, underestimates
+/// the number of large rocks (ours). Relative accuracy 1e-6 in N.
 double rockHazard(double abundance, const RockCrossing& crossing);
 
 }  // namespace talus::costmap

@@ -68,8 +68,8 @@ class Cubes {
     return found != floors_.end() && found->first - from < std::uint64_t{1} << (3 * cube.level);
   }
 
-  // The range of the pyramid is inconclusive if the surface spans the cube vertically; the children then
-  // decide.
+  // Whether a cube contains a cell of the surface. If the height range of the block extends below and above
+  // the cube, the children of the cube are checked.
   bool holdsSurface(const Cube& cube) const {
     const auto range = pyramid_.range(cube.level, cube.x, cube.y);
     const unsigned side = 1U << cube.level;
@@ -209,7 +209,7 @@ std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
   };
   if (!cubes.anything()) return owned;
   Filler<octomap::ColorOcTree, octomap::ColorOcTreeNode, decltype(set)> filler(tree, cubes, set);
-  // OctoMap creates a root only through a voxel; any voxel of the surface serves.
+  // OctoMap creates a root only with a voxel; the first voxel of the surface is used.
   const auto& heights = surface.elevation_m.values();
   const auto first =
       std::find_if(heights.begin(), heights.end(), [](float height) { return !std::isnan(height); });

@@ -19,7 +19,7 @@ namespace {
 using octomap::OcTreeKey;
 
 constexpr std::size_t kPayloadBytes = 36;
-constexpr std::size_t kVersionAt = 6;  // index in the preamble
+constexpr std::size_t kVersionAt = 6;  // index of the version in the preamble
 using Payload = std::array<char, kPayloadBytes>;
 constexpr std::array<char, 8> kPreamble{'T', 'A', 'L', 'U',
                                         'S', 'T', 2,   0};  // last two bytes: version 2, little-endian
@@ -225,7 +225,7 @@ void TraversabilityTree::prune() {
 
 namespace {
 
-// Fixed width for any number of nodes, so that the field can be overwritten at the end.
+// Returns the number of nodes as text of fixed width, so that the field can be overwritten at the end.
 std::string sizeField(std::size_t nodes) {
   std::string digits = std::to_string(nodes);
   digits.resize(20, ' ');

@@ -8,7 +8,7 @@ namespace {
 
 struct Sight {
   double height_m;
-  int cells;  // distance [cells]
+  int cells;  // distance of the height [cells]
 };
 
 std::optional<Sight> nearest(const maps::Raster<float>& elevation_m, maps::Cell cell, maps::Cell step) {

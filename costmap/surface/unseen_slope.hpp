@@ -12,9 +12,9 @@ struct UnseenSlope {
 /// Greatest distance of the heights that determine the slope of a cell [cells].
 inline constexpr int kUnseenReach = 32;
 
-/// Slope of a cell without a known shape: along the row and along the column, the mean slope between the
-/// nearest heights on both sides, which the ground reaches or exceeds somewhere between. 0 along an axis
-/// without a height on a side within kUnseenReach. NaN heights are skipped.
+/// Returns the slope of a cell without a known shape: along the row and along the column, the mean slope
+/// between the nearest heights on both sides. The ground has at least this slope somewhere in between. Along
+/// an axis with a side without heights within kUnseenReach the slope is 0. NaN heights are skipped.
 UnseenSlope unseenSlope(const maps::Raster<float>& elevation_m, maps::Cell cell);
 
 }  // namespace talus::costmap

@@ -6,15 +6,16 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kLastSlip = 0.8;  // end of the cost curves
+constexpr double kLastSlip = 0.8;  // slip at the end of the cost curves
 constexpr double kStanding = 0.9;  // slip from which a wheel may be stationary
-constexpr double kDoubt = 0.05;    // two standard deviations of DP/W from one slip and slope
-constexpr double kSunk = 0.75;     // sinkage over radius
+constexpr double kDoubt = 0.05;    // two standard deviations of drawbar pull over load (DP/W) from one slip
+                                   // and slope
+constexpr double kSunk = 0.75;     // sinkage over radius from which ground is dangerous in every heading
 constexpr double kBelow = 0.01;    // step in which evidence is stored, in DP/W
 constexpr double kMost = 10.0;     // greatest value of either bound; greater values have no further effect
 constexpr double kFarBelow = 2.0;  // standard deviations
 
-// The greater of the measured slip and the slip from speeds, at most 1; NaN if both are missing.
+// Returns the greater of the measured slip and the slip from speeds, at most 1; NaN if both are missing.
 double slipOf(const TelemetryReading& reading) noexcept {
   const double most = std::fmax(reading.slip, reading.speed_slip);
   return most > 1.0 ? 1.0 : most;
@@ -27,12 +28,13 @@ double kept(double most_pull) noexcept {
 
 }  // namespace
 
-// DP/W that is dangerous at a gradient, including rounding.
+// Returns the greatest DP/W that is dangerous at a gradient, less the step in which evidence is stored.
 double DangerWatch::dangerousBelow(double gradient) const noexcept {
   return std::tan(std::atan(gradient) - model_.parts().policy.slope_margin_rad) - kBelow;
 }
 
-// DP/W that is dangerous at the steepest descent that the rover may drive.
+// Returns the greatest DP/W that is dangerous in every heading: that of the steepest descent the rover may
+// drive.
 double DangerWatch::neverDriven() const noexcept {
   return dangerousBelow(-std::tan(model_.rover().max_pitch_rad));
 }

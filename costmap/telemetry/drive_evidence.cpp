@@ -31,7 +31,8 @@ void processRows(const TelemetryRows& rows, const TraversabilityMap& map, Teleme
   }
 }
 
-// Appends rows, column by column; values of a column that one of the two lacks are empty.
+// Appends the rows of `part` to `all`, column by column. A column of only one of the two is filled with
+// missing values.
 void append(terramech::Telemetry& all, const terramech::Telemetry& part) {
   const std::size_t before = all.size(), after = before + part.size();
   const auto join = [&](auto& to, const auto& from, const auto& none) {
@@ -56,7 +57,7 @@ RowWheel wheelOf(const terramech::Rover& rover) {
   return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
 }
 
-// Whether a row of the journal is of this rover's wheel; false if the row does not contain the wheel.
+// Whether a row of the journal refers to a wheel of this rover; false if the row has no wheel size.
 bool isOf(const terramech::Rover& rover, const RowWheel& wheel) {
   const RowWheel own = wheelOf(rover);
   const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);
@@ -106,12 +107,12 @@ struct DriveIntake::State {
   IntakeOptions options;
   std::unique_ptr<TelemetryProcessor> processor;
   DriveReport report{};
-  DriveId sum{};                       // of all parts so far
+  DriveId sum{};                       // identifier of all parts so far
   std::string id{};                    // text of `sum`
-  std::optional<std::uint16_t> tag{};  // of the first part with a row
-  std::vector<JournalRow> rows{};      // of the present part
-  // Of all parts, only if settles: measurements, readings counted in the map, places with a bound, and rejected rows
-  // that indicate danger.
+  std::optional<std::uint16_t> tag{};  // drive number, from the first part with a row
+  std::vector<JournalRow> rows{};      // rows of the present part
+  // Data of all parts, kept only for settle(): measurements, readings counted in the map, places with a
+  // bound, and rejected rows that indicate danger.
   using Place = std::tuple<double, double, double>;
   terramech::Telemetry all{};
   std::vector<SavedBlock> counted{};
@@ -165,7 +166,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
   if (journal) rows.push_back(std::move(row));
 }
 
-// Rows that the map contains already are used by the sensor checks only.
+// Adds the rows of a part. Rows that the map contains already are used for the sensor checks only.
 void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
                              const DriveBeginning& known) {
   const TelemetryRows readings(telemetry, map, options.pose_std_m);
@@ -191,7 +192,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   map.noteDrive(id, before);
 }
 
-// Replaces the estimates of all rows; bounds of places stay as first added.
+// Replaces the estimates of all rows; bounds of places remain as first added.
 void DriveIntake::State::settle() {
   if (!options.settles)
     throw std::logic_error("DriveIntake: IntakeOptions::settles = false, must be true to settle");
@@ -281,7 +282,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
     report.repeated = telemetry.size();
     return report;
   }
-  // First pass: common bias of torque and sinkage, and verification of the sensors.
+  // The first pass determines the common bias of torque and sinkage, and verifies the sensors.
   TelemetryProcessor first_pass(map);
   processRows(TelemetryRows(telemetry, map, options.pose_std_m), map, first_pass, {},
               [](std::size_t, TelemetryProcessor::Result&&) {});

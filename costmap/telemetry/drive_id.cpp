@@ -48,7 +48,7 @@ std::vector<Column> usedOf(const std::vector<terramech::Telemetry::Numbers>& col
   return used;
 }
 
-// A missing column counts as a column of NaN.
+// Adds the values of a row; a missing column counts as a column of NaN.
 void addNumbers(Checksum& sum, const std::vector<Column>& columns, std::size_t row) {
   for (const Column column : columns) {
     double value = column ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
@@ -76,7 +76,7 @@ void addRows(Checksum& sum, const terramech::Telemetry& telemetry, Added&& added
         added(false);
       },
       [&](std::size_t i) {
-        // A row without any number, such as a footer or a repeated header, has no effect.
+        // A row without any number, such as a footer or a repeated header, does not change the identifier.
         const auto holds = [i](Column column) { return column && !std::isnan((*column)[i]); };
         if (std::ranges::any_of(left_out, holds)) addNumbers(sum, left_out, i);
         added(true);

@@ -21,17 +21,18 @@ class DriveId {
   Checksum sum_{};
 };
 
-/// Number of a drive in a map, WheelObservation::drive: a checksum of its first row, so that further rows of a file
-/// that grew, or of further parts, belong to the same drive. Of some 65 000 numbers two drives may have the same; they
-/// then count as one drive.
+/// Number of a drive in a map, WheelObservation::drive: a checksum of its first row, so that further rows of
+/// a file that grew, or of further parts, belong to the same drive. Two drives with the same number, of 65
+/// 536 possible numbers, count as one drive.
 std::uint16_t driveTag(const terramech::Telemetry& telemetry);
 
-/// Number of rows from the beginning of a drive: accepted and rejected by the file's reader.
+/// Number of rows in the beginning of a drive: `rows` accepted and `rejected` by the file's reader.
 struct DriveBeginning {
   std::size_t rows = 0, rejected = 0;
 };
 
-/// The longest beginning of a telemetry whose identifier is among `drives`: the known rows of a file that grew since.
+/// Returns the longest beginning of a telemetry whose identifier is among `drives`, i.e. the known rows of a
+/// file that grew.
 DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives);
 
 }  // namespace talus::costmap

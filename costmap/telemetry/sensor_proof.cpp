@@ -6,11 +6,11 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kApart_m = 0.5;             // least distance between rows that count separately
+constexpr double kApart_m = 0.5;             // least distance between rows that count as separate [m]
 constexpr double kGradientVariation = 0.03;  // least standard deviation of the gradients
 constexpr double kLevel = 0.08;              // gradient of ground that counts as level
 constexpr std::size_t kLevelRows = 6;        // least number of rows on level ground
-constexpr double kFelt = 0.6;                // share that counts as most of the thrust
+constexpr double kFelt = 0.6;                // share of the thrust that counts as mobilised
 constexpr double kSlipPerGradient = 0.1;     // least slope of slip over gradient, that of the firmest soil
 constexpr double kPerGradient = 0.5;         // least slope of measured gradient and torque pull
 constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's slopes against the map's
@@ -29,7 +29,8 @@ bool follows(const ResponseSeries& series, double least) {
   return series.whole().follows({.least = least, .variation = kGradientVariation});
 }
 
-// The last rows are few, and slip varies little on descents: half of the slope required for verification suffices.
+// The number of last rows is small, and slip varies little on descents: half of the regression slope required
+// for verification is accepted.
 bool contradicts(const ResponseSeries& series, double least) {
   const Response last = series.recent(kGradientVariation);
   return last.size() >= Response::kEnough &&
@@ -102,7 +103,8 @@ std::size_t SensorProof::wheels(const std::string& run) const {
   return r ? r->wheels.size() : 0;
 }
 
-// True if the measured slopes are too steep: the ground would count as stronger in the same proportion.
+// True if the measured slopes are too steep, which would make the ground appear stronger in the same
+// proportion.
 bool SensorProof::slopeScaled(const Run& run) const noexcept {
   // The wheels of one moment share one measured slope.
   const double certain = kSlopeScaleCertain * std::sqrt(static_cast<double>(run.wheels.size()));

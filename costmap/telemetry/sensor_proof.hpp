@@ -12,8 +12,8 @@
 
 namespace talus::costmap {
 
-/// Verification of the sensors of a drive against each other: only verified readings may raise an estimate. Each test
-/// requires a property that a stuck, biased, displaced or missing sensor lacks (all limits ours):
+/// Verifies the sensors of a drive against each other: only verified readings may raise an estimate. Each
+/// test checks a property that a stuck, biased, displaced or missing sensor does not have (all limits ours):
 ///
 /// slip        increases with the slope; at least 6 rows are on level ground, and the slip there has no step, because
 ///             the slip on either side of a step may be wrong
@@ -43,7 +43,7 @@ class SensorProof {
   static constexpr double kLevelStep = 0.04;
   void take(const Row& row);
 
-  /// True if the pull of a wheel may raise an estimate, by all rows so far.
+  /// True if the rows so far verify the sensors from which the pull of a wheel is computed.
   bool pullSound(const std::string& run, const std::string& wheel) const {
     return lack(run, wheel) == Lack::Nothing;
   }
@@ -69,10 +69,9 @@ class SensorProof {
   bool torqueSound(const std::string& run, const std::string& wheel) const;
   /// True if the last rows contradict the verification by earlier rows.
   bool doubted(const std::string& run, const std::string& wheel) const;
-  /// True if the position, after the rows so far, is displaced by a jump.
+  /// True if the position is displaced by a jump in the rows so far.
   bool displaced(const std::string& run) const;
-  /// True if enough rows of the wheel are at slips that mobilise most of the thrust of the class, so that readings at
-  /// low slip are not the only ones.
+  /// True if enough rows of the wheel are at slips that mobilise most of the thrust of the class.
   bool felt(const std::string& run, const std::string& wheel) const;
   /// Mean of the measured gradient minus the map's gradient in a run [-]; 0 without rows.
   double gradientExcess(const std::string& run) const;

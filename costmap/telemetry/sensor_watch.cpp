@@ -34,7 +34,7 @@ bool sameNumber(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-// Two readings with equal slip, torque and sinkage.
+// True if two readings have equal slip, torque and sinkage.
 bool sameReading(const TelemetryReading& a, const TelemetryReading& b) {
   return sameNumber(a.slip, b.slip) && sameNumber(a.torque_Nm, b.torque_Nm) &&
          sameNumber(a.sinkage_m, b.sinkage_m);
@@ -56,8 +56,8 @@ bool SensorWatch::slipsBackwardsUphill(const TelemetryReading& reading) const no
          !(reading.torque_Nm <= 0.0);
 }
 
-// Reason if the whole reading is stuck, or one sensor that changed in most rows before. Called before the reading is
-// stored.
+// Returns a reason if the whole reading is stuck, or one sensor that changed in most rows before. Must be
+// called before the reading is stored.
 std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReading& reading) const {
   if (wheel.last.empty()) return std::nullopt;
   const TelemetryReading& before = wheel.last.back();
@@ -101,7 +101,7 @@ void SensorWatch::countDropout(Wheel& wheel, const TelemetryReading& reading) {
 std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
   std::vector<std::optional<std::string>> reasons;
   for (const Named& named : moment) reasons.push_back(judge(named));
-  // A wheel that is rejected for another reason does not prevent that a jump of all other wheels is accepted.
+  // If all wheels are rejected and several jump, the jumps are accepted as slip of the rover.
   const auto spikes = std::count(reasons.begin(), reasons.end(), kSpike);
   const bool all_jump = spikes > 1 && std::all_of(reasons.begin(), reasons.end(),
                                                   [](const auto& reason) { return reason.has_value(); });

@@ -15,13 +15,13 @@ namespace talus::costmap {
 /// Limits beyond which readings are rejected or reported.
 struct SensorLimits {
   double slip_spike = 0.3;      ///< difference from the median of the last five readings
-  double torque_spike = 0.3;    ///< of T/(rW), from the median likewise
-  double sinkage_spike = 0.25;  ///< of z/r, from the median likewise
-  std::size_t stuck_rows = 25;  ///< equal readings in a row that a working sensor does not give
-  double lively = 0.8;          ///< least share of rows with a changed value for which equal values count
-                                ///< as stuck
-  double slip_excess = 0.05;    ///< least mean slip above that of the soil on these slopes that is reported,
-                                ///< if it also exceeds its scatter
+  double torque_spike = 0.3;    ///< difference of torque T/(rW) from the same median
+  double sinkage_spike = 0.25;  ///< difference of sinkage z/r from the same median
+  std::size_t stuck_rows = 25;  ///< number of consecutive equal readings that counts as stuck
+  double lively = 0.8;          ///< share of rows with a changed value above which equal values count as
+                                ///< stuck
+  double slip_excess = 0.05;    ///< mean slip above that of the soil on these slopes from which an excess
+                                ///< above the scatter is reported
   /// Least mean difference of the pull from torque and sinkage and the required pull that counts as a bias [-].
   double bias = 0.04;
   std::size_t bias_rows = 30;    ///< least number of rows for a bias or a slip excess
@@ -30,12 +30,13 @@ struct SensorLimits {
   double gap = 10.0;             ///< time without a row, in mean intervals, that counts as a gap
 };
 
-/// Checks the readings of a drive, wheel by wheel, in their order. Rejected with a reason: stuck values (of a wheel, or
-/// of one sensor that changed before), spikes, and negative slip of a driven wheel on a climb. A decrease of time is
-/// counted and begins a new series. An offset of torque or sinkage appears as pull that the slope does not require, on
-/// all ground; both channels are then excluded, and slip against slope remains. One rover cannot distinguish
-/// another bias of slip from ground that is weaker or firmer than estimated: a mean excess on all ground is reported
-/// with both explanations. Gaps in time and single missing values are counted.
+/// Checks the readings of a drive, wheel by wheel, in their order. Rejects, with a reason, stuck values (of a
+/// wheel, or of one sensor that changed before), spikes, and negative slip of a driven wheel on a climb. A
+/// decrease of time is counted and begins a new series. An offset of torque or sinkage appears as pull that
+/// the slope does not require, on all ground; both channels are then excluded, so that only slip and slope
+/// remain. One rover cannot distinguish a bias of slip from ground that is weaker or firmer than estimated: a
+/// mean excess on all ground is reported with both explanations. Gaps in time and single missing values are
+/// counted.
 class SensorWatch {
  public:
   SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
@@ -46,10 +47,10 @@ class SensorWatch {
     TelemetryReading reading;
   };
 
-  /// Reason why each reading of one moment is rejected; nothing if accepted. A jump of all of several wheels at once is
-  /// slip of the rover and no spike.
+  /// Returns the reason why each reading of one moment is rejected; nullopt for an accepted reading. A
+  /// simultaneous jump of all wheels (two or more) is slip of the rover and no spike.
   std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
-  /// The same for one wheel.
+  /// Returns the reason why the reading of one wheel is rejected.
   std::optional<std::string> refuse(const std::string& wheel, const TelemetryReading& reading) {
     return refuse({{wheel, reading}}).front();
   }
@@ -58,13 +59,13 @@ class SensorWatch {
   void compare(const WheelObservation& observation);
   /// Counts the slip of a wheel minus the slip of its soil on the slope.
   void compareSlip(double excess);
-  /// Mean difference of compare() [-]; nothing before SensorLimits::bias_rows rows.
+  /// Returns the mean difference of compare() [-]; nullopt before SensorLimits::bias_rows rows.
   std::optional<double> bias() const;
-  /// True if the mean difference exceeds that of a working sensor.
+  /// True if |bias()| exceeds SensorLimits::bias.
   bool biased() const { return bias() && std::abs(*bias()) > limits_.bias; }
 
-  /// Mean slip above that of the soil on all ground [-]; nothing if below SensorLimits::slip_excess or below its
-  /// scatter.
+  /// Returns the mean slip above that of the soil on all ground [-]; nullopt if below
+  /// SensorLimits::slip_excess or below its scatter.
   std::optional<double> slipExcess() const;
 
   /// True if time decreased in the rows of any wheel.

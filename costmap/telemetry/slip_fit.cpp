@@ -19,7 +19,7 @@ struct SensorPrior {
 constexpr SensorPrior kAny{0.1, 0.45}, kSound{0.03, 0.05};
 
 constexpr double kModelError = 0.02, kSlipNoise = 0.015, kGradientNoise = 0.01;
-constexpr double kMostVariance = 1.0;  // of a slip, where the curve is flat
+constexpr double kMostVariance = 1.0;  // greatest variance of a slip, where the curve is flat
 constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
 constexpr std::array<double, 5> kVariations{0.0, 0.35, 0.7, 1.0, 1.4};
 
@@ -62,7 +62,8 @@ struct SlipFit::Curve {
     }
   }
 
-  // The least slip at which ground of a departure has the pull of a gradient, searched from index `from` on (Eq. 1).
+  // Least slip at which ground with a departure has the pull of a gradient (Eq. 1); the search starts at
+  // index `from`.
   double slipOn(double gradient, double departure, std::size_t& from) const {
     const auto at = [&](std::size_t i) { return pull[i] + departure * share[i]; };
     while (from + 2 < pull.size() && at(from + 1) < gradient) ++from;
@@ -145,7 +146,7 @@ std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
 }
 
 std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<double>& departures) const {
-  constexpr double kNothing = 40.0;  // terms so far below the greatest log-likelihood are ignored
+  constexpr double kNothing = 40.0;  // terms below the greatest log-likelihood by more are ignored
   const std::vector<Parabola> all = parabolas(departures);
   double greatest = -std::numeric_limits<double>::infinity();
   for (const Parabola& p : all) greatest = std::max(greatest, p.greatest());

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t kOnEitherSide = 3;  // least number of places on either side
 constexpr double kLeastScatter =
-    0.2;  // least scatter of a place over `least_`: few places show less by chance
-constexpr std::size_t kMostPlaces = 1000;  // places
+    0.2;  // least scatter of a place, relative to `least_`: the scatter of few places may be lower by chance
+constexpr std::size_t kMostPlaces = 1000;  // greatest number of places
 
 }  // namespace
 

@@ -14,11 +14,11 @@ class StepWatch {
 
   /// Adds a value; a value that is not finite is ignored.
   void add(double value);
-  /// Mean after the step minus mean before; 0 without a step: fewer than three places of kRows values on either side, a
-  /// difference below `least`, or below kCertain standard errors.
+  /// Mean after the step minus mean before. 0 (no step) for fewer than three places of kRows values on either
+  /// side, for a difference below `least`, and for a difference below kCertain standard errors.
   double step() const noexcept { return step_; }
 
-  static constexpr std::size_t kRows = 10;  ///< values averaged to one place, which share their error
+  static constexpr std::size_t kRows = 10;  ///< consecutive values with a common error, averaged to one place
   static constexpr double kCertain = 6.0;   ///< standard errors
 
  private:

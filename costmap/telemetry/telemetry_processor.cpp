@@ -10,13 +10,14 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastTold =
-    2.0;  // of the class's mean_std: a drive with a greater standard deviation raises nothing (ours)
-constexpr std::size_t kFirstFit = 32;  // moments before the first fit
+    2.0;  // limit, in units of the class's mean_std: a drive with a greater standard deviation raises no
+          // estimate (ours)
+constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
 constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 constexpr double kSlipOfResistance =
     0.03;  // slip on level ground that ground with more resistance than its class may cause (ours)
 constexpr double kLittleSlip =
-    0.5;  // of the class's standard deviation: shared error of a reading at low slip (ours)
+    0.5;  // shared error of a reading at low slip, in units of the class's standard deviation (ours)
 
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
@@ -37,7 +38,8 @@ WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& her
   return boundAlone(out);
 }
 
-// Unverified torque and sinkage never raise the value above that from slip and slope.
+// Replaces the pull by the pull from slip and slope if lower: unverified torque and sinkage never raise a
+// pull.
 void weakerBySlope(WheelObservation& seen) {
   if (std::isfinite(seen.from_torque) && seen.by_slope.value < seen.pull.value) seen.pull = seen.by_slope;
 }
@@ -120,14 +122,14 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Ground without a class is refused for any danger; the first class replaces the missing class.
+// Returns the bound of ground without a class, evaluated as ground of the first class.
 std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const TelemetryReading& reading,
                                                                  double least_gradient) const {
   const GroundBound here = danger_.hear(0, reading, least_gradient);
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Bound of one reading; for a suspected reading also from its estimated pull.
+// Returns the bound from one reading; for a suspected reading, the estimated pull is used, too.
 GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
   GroundBound here = danger_.hear(read.class_index, read.reading, least_gradient);
   if (!suspected) return here;
@@ -153,8 +155,8 @@ struct TelemetryProcessor::SlipOfClasses {
   }
 };
 
-// Observations of accepted wheels together; without torque and sinkage if biased. Readings that indicate danger are not
-// used to check sensors.
+// Returns the joint observations of the accepted wheels; biased torque and sinkage are omitted. Readings that
+// indicate danger are not used to check sensors.
 std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
                                                                           const DriveVerdict& verdict) {
   auto whole = observer_.observe(sound.read);
@@ -189,7 +191,7 @@ void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
   fit_.take(moment);
 }
 
-// Repeats the fit each time that the number of moments has grown by a quarter, if the whole drive is not known.
+// Repeats the fit each time that the number of moments has grown by a quarter, for drives added in parts.
 void TelemetryProcessor::refit() {
   if (fit_.moments() < std::max(next_fit_, kFirstFit)) return;
   fitted_ = fitted();
@@ -252,8 +254,8 @@ std::string TelemetryProcessor::whyNoneRaises() const {
                                               "the only one of the file; give them all, and time_s";
 }
 
-// Replaces the observations by those of the corrected slips, relative to the mean strength of the drive, and marks
-// those that may raise.
+// Replaces the observations by those from the corrected slips, relative to the mean strength of the drive,
+// and marks the observations that may raise an estimate.
 void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
                                std::vector<std::optional<WheelObservation>>& seen) const {
   const SlipPosterior& drive = verdict.drive ? *verdict.drive : *fitted_;
@@ -280,7 +282,7 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
     if (!torque_sound && fitted[i]->by_slope.value < one.pull.value) one.pull = fitted[i]->by_slope;
     one.pull.value -= drive.caution[static_cast<std::size_t>(read[i].class_index)];
     one.shared_std = fitted[i]->shared_std;
-    // A reading at low slip raises only if the drive has mobilised most of the thrust.
+    // A reading at low slip raises an estimate only if the drive has mobilised most of the thrust.
     if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
       one.shared_std = kLittleSlip * map_.model().prior(read[i].class_index).pull.std;
     one.shared_std = std::hypot(one.shared_std, of_drive.std);
@@ -289,8 +291,8 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
   }
 }
 
-// Slip, equal for all wheels, at which ground of their classes, undisturbed or in a rut, gives the pull of a gradient;
-// NaN if there is none in -0.5 to 0.8.
+// Returns the common slip of all wheels at which ground of their classes, undisturbed or in a rut, provides
+// the pull of a gradient; NaN if no slip in -0.5 to 0.8 does.
 double TelemetryProcessor::slipOfClasses(const std::vector<ClassReading>& together, double gradient) const {
   const auto pull = [&](double slip) {
     double load_N = 0.0, sum = 0.0;

@@ -16,31 +16,33 @@ namespace talus::costmap {
 
 /// Verification of the sensors of a drive, from its rows so far or from a first pass.
 struct DriveVerdict {
-  bool without_torque = false;  ///< true if torque and sinkage are biased: both then only indicate danger
+  bool without_torque = false;         ///< true if torque and sinkage are biased, and used for danger only
   const SensorProof* proof = nullptr;  ///< null: no reading may raise an estimate
-  /// Slip sensor and ground of the drive; null: the processor's own estimate from the rows so far.
+  /// Estimate of slip sensor and ground; null: the processor's own estimate from the rows so far.
   std::shared_ptr<const SlipPosterior> drive{};
 };
 
-/// The observation without its estimates: only the bound of its place.
+/// Returns the observation reduced to the bound of its place, without estimates.
 WheelObservation boundAlone(const WheelObservation& observation);
 
 /// Processes the moments of a drive in order: sensor checks, observation, verification. Keeps a reference to the map.
 ///
-/// Each channel of each reading is first checked for danger separately (DangerWatch): a danger bounds the place of the
-/// reading, even if the reading is rejected, and verifies no sensor. A suspected reading has no other effect.
+/// Each channel of each reading is first checked for danger separately (DangerWatch). A dangerous reading
+/// bounds its place, even if the reading is rejected, and is not used to verify sensors. A suspected reading
+/// has no other effect.
 ///
-/// A moment may raise an estimate only if each of its wheels, all wheels of the rover or the only wheel of the file, is
-/// verified. The offset and scale of SlipFit then correct its slips, an excess of measured slopes over the map's is
-/// subtracted, and the wheels are compared with ground of the mean strength of the drive. A moment raises nothing if a
-/// wheel has another radius, width or load than the rover's, if the corrected slip is 0.7 or more, if a drawbar pull
-/// was measured that no other channel confirms, or if torque and sinkage are biased.
+/// A moment may raise an estimate only if all wheels of the rover, or the only wheel of the file, are
+/// verified. The offset and scale of SlipFit then correct its slips, an excess of measured slopes over the
+/// map's is subtracted, and the wheels are compared with ground of the mean strength of the drive. A moment
+/// raises nothing if a wheel has another radius, width or load than the rover's, if the corrected slip is 0.7
+/// or more, if a drawbar pull was measured that no other channel confirms, or if torque and sinkage are
+/// biased.
 class TelemetryProcessor {
  public:
   explicit TelemetryProcessor(const TraversabilityMap& map);
 
-  /// Result for one wheel: the observation, if any, and the reason of a rejection; a rejected reading may leave the
-  /// bound of its place.
+  /// Result for one wheel: the observation, if any, and the reason of a rejection. The observation of a
+  /// rejected reading contains only a bound of the place.
   struct Result {
     TelemetryReading reading;
     std::string reason{};
@@ -50,18 +52,19 @@ class TelemetryProcessor {
   /// Results of the rows of a moment, in their order.
   std::vector<Result> process(const TelemetryRows& rows, const Moment& moment, const DriveVerdict& verdict);
 
-  /// Bound from a row that the file's reader rejected; nothing without danger or without a place.
+  /// Returns the bound from a row that the file's reader rejected; nullopt without danger or without a place.
   std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
 
-  /// Verification by all rows so far; in soFar() the slip sensor is that known at each row.
+  /// Verification by all rows so far. soFar() omits the estimate of the slip sensor, so that each row uses
+  /// the estimate at that row.
   DriveVerdict verdict() const;
   DriveVerdict soFar() const { return {watch_.biased(), watch_.clockWentBack() ? nullptr : &proof_}; }
   const SensorWatch& watch() const noexcept { return watch_; }
-  /// Why no row may raise an estimate, and the remedy; empty if other findings contain the reason.
+  /// Returns why no row may raise an estimate, and the remedy; empty if other findings contain the reason.
   std::string whyNoneRaises() const;
   /// Number of rows whose loads were computed from the load transfer.
   std::size_t transferred() const noexcept { return transferred_; }
-  /// Number of rows of another wheel than the rover's, or with another load.
+  /// Number of rows of a wheel or load other than the rover's.
   std::size_t others() const noexcept { return others_; }
 
  private:

@@ -14,12 +14,13 @@ namespace {
 
 constexpr double kSameLoad = 0.01;       // relative difference below which loads are equal
 constexpr double kSameWheel = 0.01;      // relative difference below which wheel sizes are equal
-constexpr double kSameWeight = 0.25;     // of the total load; a slope of 25 degrees takes a tenth
+constexpr double kSameWeight = 0.25;     // relative difference of total loads below which a row has the
+                                         // rover's load; a slope of 25 degrees reduces the load by a tenth
 constexpr double kLevelGradient = 0.03;  // gradient below which load transfer is neglected
 constexpr double kQuarterTurn = 1.5707963267948966;
 constexpr double kTurning_mps = 0.005;  // least rim speed of a turning wheel
 constexpr double kVertical_rad = 1.57;
-constexpr double kWorstPose_m = 1000.0;  // limit of the position uncertainty
+constexpr double kWorstPose_m = 1000.0;  // greatest accepted position uncertainty
 
 double slipOf(double speed_mps, double rim_speed_mps) noexcept {
   return std::abs(rim_speed_mps) > kTurning_mps ? 1.0 - speed_mps / rim_speed_mps

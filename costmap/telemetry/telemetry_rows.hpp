@@ -19,20 +19,21 @@ std::span<const std::string_view> usedWordColumns() noexcept;
 /// The columns of a telemetry file as readings on a map. Keeps references to file and map.
 class TelemetryRows {
  public:
-  /// `pose_std_m`: position uncertainty of rows without a value [m]. Throws InputError if x_m, y_m, load_N or slip is
-  /// missing.
+  /// `pose_std_m`: position uncertainty of rows without a column pose_std_m [m]. Throws InputError if x_m,
+  /// y_m, load_N or slip is missing.
   TelemetryRows(const terramech::Telemetry& telemetry, const TraversabilityMap& map, double pose_std_m);
 
   std::size_t size() const noexcept { return x_.size(); }
 
-  /// Slopes are those of the row, slope_rad along the heading and roll_rad across; if missing, those of the map.
+  /// Returns the reading of row i. Slopes are slope_rad along the heading and roll_rad across; missing slopes
+  /// are those of the map.
   TelemetryReading reading(std::size_t i) const;
   double heading(std::size_t i) const { return value(heading_, i); }
   std::string wheel(std::size_t i) const { return wheel_ ? (*wheel_)[i] : std::string(); }
   std::string run(std::size_t i) const { return run_ ? (*run_)[i] : std::string(); }
   /// Name of a series in time: run and wheel.
   std::string series(std::size_t i) const { return run(i) + '/' + wheel(i); }
-  /// True if the row's wheel is that of the map's rover, or its columns wheel_radius_m and wheel_width_m are missing.
+  /// True if wheel_radius_m and wheel_width_m are those of the map's rover or are missing.
   bool ofRover(std::size_t i) const;
   /// Gradient along the heading, as measured by the rover and from the map; NaN: unknown.
   double measuredGradient(std::size_t i) const;
@@ -44,8 +45,8 @@ class TelemetryRows {
   /// gradient if lower.
   double steepestDescent(std::size_t i) const;
 
-  /// All rows by moment: rows of different wheels at one time of one run. Neither the order of rows within a moment nor
-  /// the order of runs read together has an effect, except on the row numbers.
+  /// Returns the indices of all rows by moment: rows of different wheels at one time of one run. The order of
+  /// rows within a moment, and of interleaved runs, affects only the indices.
   std::vector<std::vector<std::size_t>> byMoment() const;
 
  private:
@@ -61,8 +62,8 @@ class TelemetryRows {
   const std::vector<std::string>*wheel_, *run_;
 };
 
-/// The readings of one moment. If all wheels on a slope have the same load, the column contains the even share of the
-/// weight and no measurement: the loads are then computed from the slope.
+/// The readings of one moment. If all wheels on a slope have the same load, the load column is an even share
+/// of the weight and not a measurement: the loads are then computed from the slope.
 struct Moment {
   std::vector<std::size_t> rows;
   std::vector<TelemetryReading> readings;  ///< of each row
@@ -75,7 +76,7 @@ bool sameOrUnknown(double value, double of_rover) noexcept;
 /// True if the mean load of the wheels is that of the rover's wheels within a quarter.
 bool carriesRover(const std::vector<TelemetryReading>& readings, const terramech::Rover& rover) noexcept;
 
-/// The moment of some rows, one row per wheel.
+/// Makes the moment of the rows `of`, one row per wheel.
 Moment momentOf(const TelemetryRows& rows, std::vector<std::size_t> of, const terramech::Rover& rover);
 
 }  // namespace talus::costmap
