@@ -109,7 +109,7 @@ inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil
   return out;
 }
 
-/// Sand that is too weak for the steeper slopes; weakerSand() is weaker still.
+/// Sand that is too weak for the steeper slopes; weakerSand() has a lower strength than weakSand().
 inline terramech::Soil weakSand() {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa = 300.0;

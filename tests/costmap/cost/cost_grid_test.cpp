@@ -69,8 +69,7 @@ TEST(CostGrid, RetiledElevationLeavesEarlierVersionsUnchanged) {
   for (const std::size_t other : {0U, 2U, 3U, 8U}) EXPECT_EQ(after[other], before[other]) << "shared";
 }
 
-// Property: after any sequence of shared tiles is set in several tables, each table holds the same values as
-// a plain list.
+// Property: after any sequence of shared tiles is set in several tables, each table equals a plain list.
 TEST(TileTable, CopiesAreIndependent) {
   const auto tileOf = [](std::uint8_t curve) {
     auto tile = std::make_shared<CostTile>();

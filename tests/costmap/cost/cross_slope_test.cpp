@@ -79,8 +79,8 @@ TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
           EXPECT_FALSE(allowed) << soils << ' ' << along << ' ' << across;
           ++refused;
         }
-        // Property: a slope that has an equilibrium with one row and one bin to spare is allowed, except
-        // where limits other than the soil's apply first.
+        // Property: a slope is allowed if a slope steeper by one row and one bin has an equilibrium, unless
+        // limits other than the soil's apply first.
         if (std::abs(along) < 0.3 && exact.at({along - 1.5 * inward, across + 2.0 / 64}).holds() &&
             exact.at({along + 0.02, across + 2.0 / 64}).holds() &&
             exact.at({along - 0.02, across + 2.0 / 64}).holds()) {
@@ -128,8 +128,8 @@ TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
   EXPECT_LT(ratios.back(), 1.10);
 }
 
-// Property: between headings one degree apart, the cost on a plane changes as the energy of the equilibrium
-// does, without steps.
+// Property: between headings one degree apart, the cost on a plane changes like the energy of the
+// equilibrium, without steps.
 TEST(CrossSlope, CostIsSmoothInHeading) {
   const GroundModel model = modelOf(testSand());
   const terramech::SlopeEquilibrium exact(testSand(), testRover());
@@ -157,8 +157,8 @@ TEST(CrossSlope, CostIsSmoothInHeading) {
   EXPECT_GT(compared, 800);
 }
 
-// A rover that tips easily: base and track 0.9 m, centre of mass 1.2 m high. The rover tips at atan(0.45 /
-// 1.2) = 20.6 degrees, on ground whose strength allows far steeper slopes.
+// A rover with base and track 0.9 m and a centre of mass 1.2 m high tips at atan(0.45 / 1.2) = 20.6 degrees,
+// on ground whose strength allows far steeper slopes.
 TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   terramech::Soil clay = testSand();
   clay.cohesion_Pa = 20000.0;
@@ -192,9 +192,9 @@ TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   }
 }
 
-// Property: on an allowed slope the deepest wheel, solved again under its load on the slope, sinks by less
-// than the clearance. Tolerance 0.04 of the clearance: table of wheel forces and one bin of gradient. The
-// rover is near tipping, so that its lower wheels carry far more than their share.
+// Property: on an allowed slope the sinkage of the deepest wheel, solved again for its load on the slope, is
+// less than the clearance. Tolerance 0.04 of the clearance: table of wheel forces and one bin of gradient.
+// The rover is near tipping, so that its lower wheels carry far more than their share.
 TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
   terramech::Rover tall = testRover();
   tall.wheelbase_m = 0.8;

@@ -12,7 +12,7 @@
 namespace talus::costmap {
 namespace travel_cost_test {
 
-// A curve whose cost in each bin is the bin's number, so that the result shows which bin was read.
+// A curve whose cost in each bin is the number of the bin, so that a cost identifies the bin.
 TravelCurve numbered() {
   TravelCurve curve{};
   for (int bin = 0; bin < TravelCurve::kBins; ++bin)
@@ -110,7 +110,7 @@ TEST(TravelCost, UnknownAndBlockedCellsAreInfeasibleInEveryHeading) {
     }
 }
 
-// Property: the cost is finite exactly where the detailed state is allowed.
+// Property: the cost is finite if and only if detail() has no refusal.
 TEST(TravelCost, CostIsFiniteExactlyWhereTheStateIsFeasible) {
   const auto model = testGround();
   const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
@@ -155,7 +155,7 @@ TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
     const Direction heading = towards(angle(random));
     const double size = std::sqrt(1.0 + cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy());
     const double rise = cell.dzDx() * heading.x + cell.dzDy() * heading.y, run = std::hypot(1.0, rise);
-    const double ahead_z = rise / run;  // of the unit vector ahead on the plane; left = normal x ahead
+    const double ahead_z = rise / run;  // z of the unit vector `ahead` on the plane; left = normal x ahead
     const double left_z = (-cell.dzDx() * heading.y + cell.dzDy() * heading.x) / (size * run);
     const double plumb = rover.centre_of_mass_height_m * size;
     const double off = std::max(plumb * std::abs(ahead_z) - 0.5 * rover.wheelbase_m,

@@ -28,14 +28,14 @@ using Block =
     std::pair<int, int>;  // column and row of a block, or of a square of blocks, from the south-west
 using World = std::map<Block, std::vector<Read>>;
 
-// P0, p, q, l and the side of a block, as in docs/belief.md.
+// P0 (prior), p, q, l (length) and the side of a block, as in docs/belief.md.
 struct Given {
   double prior, p, q, length, side;
 
   int reach() const { return static_cast<int>(std::ceil(length / side)); }
 };
 
-// (B1)
+// Correlation of two places at distance d (B1).
 double correlation(double d, double length) {
   if (d >= length) return 0.0;
   const double turn = 2.0 * std::numbers::pi * d / length;
@@ -73,7 +73,7 @@ struct Place {
   double y = 0.0, variance = 0.0, shared = 0.0;  // y: departure from P0
 };
 
-// (B11)
+// Evidence of one block from its readings (B11).
 Place placeOf(const std::vector<Read>& reads, const Given& given) {
   std::map<double, std::vector<double>> grades;
   double weight = 0.0;
@@ -146,7 +146,7 @@ double inSteps(double value) {
   return std::round(value * 0x1p20) * 0x1p-20;
 }
 
-// (B12), (B13)
+// Mean and variance of the class (B12), (B13).
 Class classOf(const World& world, const Given& given) {
   const double p2 = given.p * given.p, q2 = given.q * given.q;
   double weight = 0.0, sum = 0.0, shared = 0.0;
@@ -196,7 +196,7 @@ bool isNearPatch(const Block& block, const Block& at, const Given& given) {
   return near(block.first, at.first) && near(block.second, at.second);
 }
 
-// (B14), (B15)
+// Estimate of a cell (B14), (B15).
 Estimate cellOf(const World& world, const Class& all, const Given& given, const Block& at) {
   const double p2 = given.p * given.p, q2 = given.q * given.q;
   const Estimate away{given.prior + all.mean, std::sqrt(p2 + all.variance)};

@@ -70,8 +70,8 @@ TEST(BlockEvidence, EstimateIsThatOfTheWeakestDrive) {
   EXPECT_NEAR(summed(few).pull, summed({low, times(strong, 900), high}).pull, 1e-6F);
 }
 
-// Mean strength of places read twelve times by each of `drives` drives, whose sensor errors have a standard
-// deviation of 0.01.
+// Returns the mean strength of places with twelve readings of each of `drives` drives; the sensor errors of
+// the drives have a standard deviation of 0.01.
 double meanOfSound(int drives) {
   constexpr int kPlaces = 400;
   std::mt19937_64 random(11);
@@ -146,7 +146,7 @@ TEST(BlockEvidence, StrictestBoundIsKept) {
 }
 
 TEST(BlockEvidence, SampleCountIsInverseVarianceWeighted) {
-  // Closed form: a reading of standard deviation 0.05 counts as one sample, of 0.1 as a quarter
+  // Closed form: a reading of standard deviation 0.05 counts as 1 sample, a reading of 0.1 as 1/4
   EXPECT_NEAR(samples(std::vector{pullReading({0.2, 0.05}, true), pullReading({0.2, 0.1}, true)}), 1.25,
               1e-9);
 }

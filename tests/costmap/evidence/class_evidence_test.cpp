@@ -53,9 +53,9 @@ TEST(ClassEvidence, RisesOnlyAsFarAsThreePlacesReach) {
   EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
 }
 
-// Property: two drives of 25 places each may raise the class if their means differ by less than 3 standard
-// deviations of the difference, and may not, in either order, if the means differ by more. Closed form: the
-// mean over n places has the variance q^2 p^2 / (n q^2 + p^2), with q = p = 0.05.
+// Property: two drives of 25 places each may raise the class only if their means differ by less than 3
+// standard deviations of the difference, in either order of the drives. Closed form: the mean over n places
+// has the variance q^2 p^2 / (n q^2 + p^2), with q = p = 0.05.
 TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
   const double apart =
       3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in the contributions of the places
@@ -74,8 +74,8 @@ TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
     }
 }
 
-// Property: evidence that may not raise never lifts the class mean above the mean from the evidence that
-// may.
+// Property: evidence from unverified sensors never raises the class mean above the mean from verified
+// evidence.
 TEST(ClassEvidence, WhatMayNotRaiseNeverLifts) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-0.2, 0.2);
@@ -90,9 +90,8 @@ TEST(ClassEvidence, WhatMayNotRaiseNeverLifts) {
   }
 }
 
-// Property: a drive that may not raise lifts no mean, changes no standard deviation and reduces no sinkage,
-// whatever other drives exist: with and without evidence that may raise, and with a second drive that may
-// not.
+// Property: a drive with unverified sensors never raises the mean, changes the standard deviation or reduces
+// the sinkage, with and without verified evidence, and with a second unverified drive.
 TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> any(-0.2, 0.2), deep(0.0, 0.2);
@@ -142,8 +141,8 @@ TEST(ClassEvidence, IsWhatTheWeakestDrivesMakeOfIt) {
   EXPECT_NEAR(lessons.posterior().pull.value, -0.18 / 3.0, 1e-5);
 }
 
-// Closed form: with two drives the mean is at most the value of the weaker drive, q^2 W y/(q^2 W + p^2), and
-// the standard deviation is that drive's, q/sqrt(1 + q^2 W/p^2), with W = 40 contributions. The result is
+// Closed form: with two drives the mean is at most the value of the weaker drive, q^2 W y/(q^2 W + p^2), with
+// the standard deviation q/sqrt(1 + q^2 W/p^2) of that drive and W = 40 contributions. The result is
 // bit-identical in either order, and after a drive is added and removed again.
 TEST(ClassEvidence, NoDriveLiftsWhatAnotherShows) {
   const auto lessonOf = [](std::uint16_t drive) {

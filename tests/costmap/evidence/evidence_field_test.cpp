@@ -99,7 +99,7 @@ TEST(EvidenceField, ClassMeanMovesMoreWithManyIndependentPlaces) {
   }
   EXPECT_LT(one.evidence().posterior(0).places, 1.0);
   EXPECT_GT(many.evidence().posterior(0).places,
-            8.0);  // Closed form: 50 m over integral scales of 3.3 m, less noise
+            8.0);  // Closed form: 50 m divided by the integral scale of 3.3 m, reduced for noise
   EXPECT_LT(many.evidence().posterior(0).pull.value, one.evidence().posterior(0).pull.value);
 }
 
@@ -110,8 +110,8 @@ TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
     ordinary.learn(weaker(30.5, 30.5, 0.06));
   }
   map.publish();
-  // Property: readings that lie seven standard deviations off move the class mean less than one standard
-  // deviation, but determine the estimate of their own cells.
+  // Property: readings seven standard deviations from the class change the class mean by less than one
+  // standard deviation, but determine the estimate of their own cells.
   EXPECT_GT(map.evidence().posterior(0).pull.value, -0.05);
   const double prior = map.model().prior(0).pull.value;
   EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);

@@ -1,4 +1,4 @@
-// Properties of the evidence on random sites with random logs, checked by brute force over all cells.
+// Properties of the evidence on random sites with random observations, checked by brute force over all cells.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -92,7 +92,7 @@ TEST(Evidence, ResultIsIndependentOfReadingOrder) {
   }
 }
 
-// Property: a reading of weaker ground than any before never increases an estimate anywhere.
+// Property: a reading of ground weaker than all earlier readings increases no estimate.
 TEST(Evidence, WeakReadingNeverIncreasesAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
@@ -125,7 +125,7 @@ TEST(Evidence, ReplacingAReadingByAWeakerOneIncreasesNoEstimate) {
   }
 }
 
-// Property: readings that may only lower improve no cell, neither in the mean nor in the tail that
+// Property: readings of unverified sensors improve no cell, neither in the mean nor in the tail that
 // determines the risk.
 TEST(Evidence, LowerOnlyReadingsNeverIncreaseAnyEstimate) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
@@ -143,8 +143,8 @@ TEST(Evidence, LowerOnlyReadingsNeverIncreaseAnyEstimate) {
   }
 }
 
-// Property: after twenty readings of a trap in one cell, with strong ground in every block around and the
-// trap's block anywhere in its patch, the cell is as weak as its readings.
+// Property: after twenty weak readings in one cell, with strong readings in all blocks around, the estimate
+// of the cell is that of its readings, for any position of the block in its patch.
 TEST(Evidence, WeakEvidenceOfACellIsNeverDroppedForItsNeighbours) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     std::mt19937_64 random(seed);

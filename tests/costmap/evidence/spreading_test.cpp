@@ -28,8 +28,8 @@ TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
   const double k = sparseKernel(2.0, 4.0);
   // Property: a place 2 m away that is known exactly reduces the variance by the share k^2 at most.
   EXPECT_GE(GaussianProcess(many, kVariation).at({2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
-  // Kernel inference counts repeated readings as independent. The model underestimates the standard
-  // deviation, and therefore the map does not use it.
+  // Kernel inference counts repeated readings as independent and underestimates the standard deviation; the
+  // map therefore uses the Gaussian process.
   EXPECT_LT(kernelInference(many, kVariation, {2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
 }
 

@@ -85,10 +85,11 @@ TEST(Spreading, GaussianProcessIsAsAccurateAndBetterCalibratedThanKernelInferenc
   EXPECT_LT(process.rms(), 1.02 * inference.rms());
   EXPECT_LT(process.rms(), prior.rms());
   EXPECT_LT(process.surprise, inference.surprise);
-  EXPECT_NEAR(process.share(), 0.683, 0.1);  // Property: calibrated, as far as the kernel fits the field
+  EXPECT_NEAR(process.share(), 0.683, 0.1);  // Property: calibrated; tolerance for a field that does not
+                                             // follow the kernel
 }
 
-// Predicted probability that ground is weak, against the observed share of weak ground.
+// Compares the predicted probability of weak ground with the observed share of weak ground.
 class Reliability {
  public:
   void add(const Estimate& said, double truth) {

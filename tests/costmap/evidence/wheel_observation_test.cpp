@@ -33,8 +33,8 @@ TEST(WheelObserver, MatchingGroundShowsNoDeparture) {
   for (const double slip : {0.1, 0.3, 0.5}) {
     const auto seen = WheelObserver(*model).observe(0, reading(testSand(), slip));
     ASSERT_TRUE(seen.has_value());
-    // Property: the estimate equals the class value. Eq. 3.12 is accurate to 0.03 and has less weight than
-    // the slope.
+    // Property: the estimate equals the class value. Tolerance: Eq. 3.12, accurate to 0.03, has less weight
+    // than the slope.
     EXPECT_NEAR(seen->pull.value, model->prior(0).pull.value, 0.02) << slip;
     EXPECT_NEAR(seen->sinkage.value, model->prior(0).sinkage.value, 0.02) << slip;
   }
@@ -173,7 +173,7 @@ TEST(WheelObserver, SlipAngleDoesNotBiasTheObservation) {
     }
 }
 
-// Ground with the pull of its class but a lower side force.
+// Property: a low side force lowers the estimate of ground with the pull of its class.
 TEST(WheelObserver, LowSideForceIndicatesWeakerGround) {
   const auto model = testGround();
   const WheelObserver observer(*model);
@@ -193,8 +193,8 @@ TEST(WheelObserver, LowSideForceIndicatesWeakerGround) {
   EXPECT_NEAR(observer.observe(0, sliding)->pull.value, model->prior(0).pull.value, 0.03);
 }
 
-// Property: from slip 0.9 on a force balance never raises the estimate above the class; a lower estimate is
-// kept.
+// Property: from slip 0.9 on, the estimate from the force balance is limited to the class; a lower estimate
+// is unchanged.
 TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
   const auto ground = testGround();
   const WheelObserver observer(*ground);

@@ -14,7 +14,7 @@ CategoryTable tableOf(const GroundModel& model) {
   return {model, model.prior(0), model.ground(0, model.prior(0))};
 }
 
-// Property: the category equals that of the model on the steepest heading, or is worse through the planners'
+// Property: the category is that of the model in the steepest heading, or worse because of the planners'
 // rounding.
 TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   const auto model = testGround();

@@ -20,8 +20,8 @@ TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
   EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
 }
 
-// The error message names the stated standard deviation, not the parameter's value at half of it, which no
-// soil has.
+// Property: the error message states the given standard deviation, not the impossible parameter of the
+// central difference.
 TEST(GroundClass, StdOutsideTheSoilRangeIsReported) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
   EXPECT_THAT(

@@ -116,7 +116,8 @@ TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
     }
     EXPECT_LE(promised, 6) << name;
     EXPECT_LT(std::abs(sum / weak), 0.02) << name;
-    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // reason why the curve is not shifted
+    EXPECT_GE(shift_promised, 4 * promised + 8) << name;  // the rejected model, which shifts the curve at all
+                                                          // slips
   }
 }
 
@@ -166,7 +167,7 @@ TEST(GroundModel, CategoryProbabilityIsTheNormalTailProbability) {
   const double edge = std::tan(model->parts().policy.slope_margin_rad);
   const RankedCategory ranked = model->category({.pull = {edge + 0.05, 0.05}, .sinkage = {0.1, 0.0}}, 0.0);
   EXPECT_EQ(ranked.category, Category::Safe);
-  // Closed form: P(pull > edge) one standard deviation above it.
+  // Closed form: P(pull > edge) for a mean one standard deviation above the edge.
   EXPECT_NEAR(ranked.probability, 0.5 * std::erfc(-1.0 / std::numbers::sqrt2), 1e-12);
 }
 
@@ -232,7 +233,7 @@ TEST(GroundModel, ConcurrentRequestsYieldTheSingleThreadedResult) {
   EXPECT_EQ(together->crossing(1), copy.crossing(1)) << "copies share what was worked out";
 }
 
-// Property: the range of a lazily evaluated class is checked at construction.
+// Property: the soil of a lazily computed class is validated at construction.
 TEST(GroundModel, InvalidSoilOfAnUnusedClassIsRejected) {
   GroundModel::Parts parts = testGround()->parts();
   parts.classes.push_back({.number = 9, .soil = testSand()});
@@ -248,8 +249,7 @@ TEST(GroundModel, SteadyWheelMatchesTheForwardModel) {
     const SteadyWheel steady = model->steady(0, {.slip = slip});
     const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.gradient);
     const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
-    // Closed form: the wheel under its load on that slope; the table of the curve is accurate to 1e-3 in
-    // slip
+    // Closed form: the wheel under its load on that slope. Tolerance: the table of the curve, 1e-3 in slip.
     EXPECT_NEAR(steady.gradient, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
     EXPECT_NEAR(steady.sinkage_over_radius, wheel.sinkage_m / rover.wheel.radius_m, 2e-3) << slip;
     EXPECT_NEAR(steady.torque_over_load_radius, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 5e-3)

@@ -43,9 +43,8 @@ TEST(WheelSwath, PullIsTheMeanOverTheWheels) {
   Around around = all(swath, strong());
   for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
   const WheelSwath::Judged judged = swath.judged(around);
-  // Closed form: with the centre on the edge, one wheel stands beyond it. If the edge runs along a diagonal
-  // of the rover, the two wheels on the diagonal touch the ground beyond with their width: three of four
-  // wheels. The fourth wheel never touches it.
+  // Closed form: if the edge runs along a diagonal of the rover, one wheel stands beyond the edge, and the
+  // two wheels on the diagonal touch the ground beyond with their width: three of four wheels.
   EXPECT_NEAR(judged.belief.pull.value, 0.25 * 0.3 - 0.75 * 0.25, 1e-12);
   EXPECT_EQ(judged.weakest_class, 1);
   EXPECT_DOUBLE_EQ(judged.belief.sinkage.value, 0.8) << "the deepest wheel";

@@ -98,7 +98,7 @@ TEST_F(EvidenceJournalTest, MigratesAJournalOfRelease010) {
     EXPECT_EQ(b[0].line, 7);
     EXPECT_EQ(b[0].observation.z_m, -2500.5);
     EXPECT_TRUE(b[0].observation.pull_may_raise);
-    // Property: rows of format 3 lack the shared error, so that they can only lower an estimate.
+    // Property: rows of format 3 have no shared error and can only lower an estimate.
     EXPECT_TRUE(std::isnan(b[0].observation.shared_std));
     ASSERT_EQ(a.size(), 1U);
     EXPECT_TRUE(std::isnan(a[0].observation.z_m));
@@ -179,8 +179,8 @@ TEST_F(EvidenceJournalTest, ModifiedRowsAreRejected) {
   }
 }
 
-// Property: the entry of a drive belongs to its rows alone. (Unchecked ids made the replay end with exit
-// code 0 and no row used.)
+// Property: the entry of a drive is valid only with the rows of the drive. (Without this check, a replay with
+// a changed id used no row and had exit code 0.)
 TEST_F(EvidenceJournalTest, ModifiedDriveEntriesAreRejected) {
   for (const char* sql :
        {"UPDATE drive SET id = zeroblob(1000000) WHERE number = 1",
@@ -230,7 +230,7 @@ TEST_F(EvidenceJournalTest, ForeignSchemaObjectsAreRejected) {
     }
 }
 
-// SQLite takes these names for databases without a file, whose rows are lost when the process ends.
+// SQLite interprets these names as databases without a file, whose rows are lost when the process ends.
 TEST_F(EvidenceJournalTest, InMemoryAndUriNamesAreRejected) {
   for (const char* name : {"", ":memory:", "file:zz.db?mode=memory", "file:zz.db", "folder/"})
     EXPECT_THROW(EvidenceJournal{name}, InputError) << name;
@@ -308,7 +308,7 @@ TEST_F(EvidenceJournalTest, FilesThatAreNoJournalAreRejected) {
   std::ofstream(path("text.db")) << std::string(5000, 'x');
   EXPECT_THROW(EvidenceJournal{path("text.db")}, InputError);
   EXPECT_THROW(EvidenceJournal{"/nonexistent/evidence.db"}, InputError);
-  // SQLite would take the first for an empty database.
+  // SQLite would treat the file of 1 byte as an empty database.
   for (const std::size_t size : {1U, 15U, 100U, 5000U}) {
     { EvidenceJournal(path("cut.db")).append(kIdA, {row(1), row(2)}); }
     std::filesystem::resize_file(path("cut.db"), size);

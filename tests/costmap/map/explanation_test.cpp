@@ -41,8 +41,8 @@ TEST(Explain, CategoryDependsOnHeading) {
   EXPECT_EQ(down.category, Category::Safe);
 }
 
-// Property: without a heading the category is that of the map, refusals included, and no better than in the
-// worst heading.
+// Property: without a heading the category is that of the map, also for refused cells, and no better than in
+// the worst heading.
 TEST(Explain, CategoryWithoutHeadingIsThatOfTheMapAndWorstHeading) {
   for (int k = 0; k < 30; ++k) {
     const TraversabilityMap map = mapOf(kPlain, 0.0133 * k);

@@ -95,8 +95,8 @@ TEST(GroundCurves, UnusedClassesDoNotAffectCosts) {
 }
 
 // Property: publishing after each of many drives yields the same costs as publishing once. Curve numbers may
-// differ, costs may not. The class means are fixed here: if a class mean moves by less than a step of the
-// prior, ground with evidence of its own keeps its curve number.
+// differ, costs may not. The class means are fixed, because ground with evidence keeps its curve number while
+// its class mean changes by less than a step.
 TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
   std::mt19937_64 random(21);
   GroundModel::Parts parts = testGround()->parts();
@@ -125,7 +125,7 @@ TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
 }
 
 // Property: a heading that explain() rates dangerous or unknown has infinite cost; an allowed heading has
-// finite cost. The cost equals the one in the detailed state.
+// finite cost, equal to that of the detailed state.
 TEST(GroundCurves, DangerousAndUnknownHeadingsHaveInfiniteCost) {
   std::mt19937_64 random(22);
   int dangerous = 0, allowed = 0;
@@ -177,7 +177,7 @@ TEST(GroundCurves, AddedHazardNeverLowersACost) {
   }
 }
 
-// A straight path beside a trap, with half the wheels in the trap.
+// Property: cells of a straight path beside weak ground have the mean of the wheels on both.
 TEST(GroundCurves, CellsNextToWeakGroundUseTheWheelMean) {
   std::vector<std::string> rows(kSide, std::string(kSide, '1'));
   for (std::string& row : rows) row.replace(12, 6, 6, '2');
@@ -228,8 +228,8 @@ TEST(GroundCurves, CurveTableOverflowIsConservative) {
   EXPECT_GT(blocked, 0) << "there were curves enough";
 }
 
-// The finest rounding steps that avoid blocked cells are used; a map that needs fewer curves returns to
-// finer steps.
+// Property: the map uses the finest rounding steps that avoid blocked cells, and returns to finer steps when
+// fewer curves are needed.
 TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
   std::mt19937_64 random(25);
   TraversabilityMap map(drawn(std::vector<std::string>(80, std::string(80, '1'))), testGround(), {});
@@ -253,7 +253,7 @@ TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
   EXPECT_EQ(cheaper, 0);
 }
 
-// A long rover two cells from a cell without a class: a wheel may stand on the unclassified cell.
+// Property: a cell is unknown if a wheel of a long rover may stand on a cell without a class, two cells away.
 TEST(GroundCurves, UnclassifiedCellUnderAWheelIsUnknown) {
   terramech::Rover rover = testRover();
   rover.wheelbase_m = 3.0;

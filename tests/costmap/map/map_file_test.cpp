@@ -72,7 +72,8 @@ TEST(MapFile, CoordinateSystemRoundTrips) {
   EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
 }
 
-// Without PROJ the map has metric coordinates only, and keeps its coordinate system for a machine with PROJ.
+// Property: without PROJ a map has metric coordinates only, but preserves its coordinate system for a machine
+// with PROJ.
 TEST(MapFile, UnsupportedSystemRoundTripsWithoutGeographicCoordinates) {
   MapLayers layers = drawn({"11", "11"});
   layers.elevation.georeference.emplace(
@@ -136,7 +137,7 @@ TEST(MapFile, CrossSlopeParametersRoundTrip) {
   EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);
 }
 
-// A place where a rover was immobilised stays refused after a restart.
+// Property: a refused place stays refused after a map is written and read.
 TEST(MapFile, RefusedAreasRoundTrip) {
   TraversabilityMap map = mapOf(std::vector<std::string>(12, std::string(12, '1')));
   map.refuse({106.0, 206.0}, 2.1);
@@ -192,7 +193,7 @@ TEST(MapFile, DriveListRoundTrips) {
   EXPECT_THAT(fromBytes(bytesOf(map)).drives(), testing::ElementsAre("a", "b"));
 }
 
-// A map of another version is rejected with one line that states the version and the remedy.
+// Property: a map of another version is rejected with one line that states the version and the remedy.
 TEST(MapFile, OtherVersionIsRejectedNamingBothVersions) {
   std::string bytes = bytesOf(site());
   bytes[bytes.size() - 12] = 3;

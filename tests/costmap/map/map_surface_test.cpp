@@ -145,8 +145,7 @@ struct Case {
   int threads = 1;
   double resolution_m = 0.25, footprint_m = 0.5;
   int rounds = 8;
-  int most_drives =
-      4;  // few enough for the numbers of cost curves: a map that ran out of them rounds coarser
+  int most_drives = 4;  // few drives, so that the curve indices suffice without coarser rounding
   TravelPolicy policy{};
 };
 
@@ -190,7 +189,7 @@ TEST(MapSurface, PatchedEqualsFullBuild) {
   for (unsigned seed = 1; seed <= 2; ++seed) patchedIsAtOnce({.seed = seed});
 }
 
-// The rover's clearance radius exceeds the radius of its footprint.
+// Case in which the clearance radius of the rover exceeds the radius of the footprint.
 TEST(MapSurface, PatchedEqualsFullBuildWithSmallFootprint) {
   patchedIsAtOnce({.seed = 41,
                    .resolution_m = 0.05,
@@ -213,8 +212,8 @@ TEST(MapSurface, PatchedEqualsFullBuildWithUnknownAllowed) {
     patchedIsAtOnce({.seed = seed, .policy = {.allow_unknown = true}});
 }
 
-// Property: a strip of two metres without data between known heights has the slope between these heights,
-// and is opened if the height difference could not be a cliff.
+// Property: a strip of two metres without data has the slope between the known heights on both sides, and is
+// allowed if that slope is within the limits.
 TEST(MapSurface, OpenedUnseenCellsUseTheSlopeBetweenKnownHeights) {
   for (const double fall_m : {0.2, 5.0}) {
     MapLayers layers;

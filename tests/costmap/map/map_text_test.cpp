@@ -49,8 +49,7 @@ TEST(MapText, RoundTripIsExact) {
   EXPECT_EQ(written(back), written(example()));
 }
 
-// Property: the centre of mass is stored. A rover read with a centred mass would tip later than the actual
-// rover.
+// Property: the centre of mass is stored; a centred mass would underestimate tipping.
 TEST(MapText, CentreOfMassRoundTrips) {
   MapText text = example();
   text.ground.rover.centre_of_mass_ahead_m = 0.07;
@@ -64,8 +63,8 @@ TEST(MapText, CentreOfMassRoundTrips) {
   EXPECT_EQ(parsed(older, "m").ground.rover.centre_of_mass_left_m, 0.0);
 }
 
-// Property: every field of the coordinate system is stored; on Mars a planetocentric latitude taken as
-// planetographic is wrong by up to 20 km.
+// Property: every field of the coordinate system is stored; on Mars, a planetocentric latitude read as
+// planetographic has an error of up to 20 km.
 TEST(MapText, CoordinateSystemRoundTripsCompletely) {
   for (const bool planetocentric : {false, true}) {
     MapText text = example();

@@ -9,7 +9,7 @@
 namespace talus::costmap {
 namespace place_beliefs_test {
 
-// Property: cached results equal those of the map, in whatever order cells of several classes are requested.
+// Property: cached results equal those of the map for any order of requests over cells of several classes.
 TEST(PlaceBeliefs, CachedBeliefsEqualTheMap) {
   std::vector<std::string> rows(40, std::string(20, '1') + std::string(20, '2'));
   rows[5][5] = '?';

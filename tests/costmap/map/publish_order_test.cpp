@@ -94,8 +94,8 @@ maps::Point Sequence::anywhere() {
           grid.south_west.y_m + uniform(0.0, grid.height * grid.resolution_m)};
 }
 
-// Sound readings, suspected readings, readings with a shared error, bounds, and sinkage, at places known
-// more or less precisely.
+// Random observation: verified, suspected, with a shared error, with bounds or sinkage, and with a random
+// position uncertainty.
 WheelObservation Sequence::reading(const maps::Point& place) {
   WheelObservation seen{.time_s = 1.0, .place = place};
   if (how_.levels) seen.z_m = uniform(-0.3, 4.3);
@@ -147,8 +147,8 @@ void Sequence::patch() {
   map_->patch(seen);
 }
 
-// Whether a cell is published as stronger, or with less sinkage, than its estimate. Rounding exceeds a step
-// by a millionth of the step at most.
+// Whether a cell is published as stronger, or with less sinkage, than its estimate. Tolerance: a millionth of
+// a rounding step.
 bool Sequence::isBetterThanBelieved(Cell cell) const {
   constexpr double kRounded = 1e-6, kTail = 6.0;
   const auto known = map_->ground(cell), published = map_->costs().ground(cell);
@@ -235,7 +235,7 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationForSingleReadings) {
   runAll({.seed = 11, .rounds = 60, .most_readings = 1}, 2);
 }
 
-// More places than one Gaussian process takes, and blocks of several cells.
+// Case with more places than one Gaussian process uses, and blocks of several cells.
 TEST(PublishOrder, IncrementalEqualsFullPublicationForDenseEvidence) {
   runAll({.seed = 21, .resolution_m = 0.25, .rounds = 25, .most_readings = 80, .pull_spread = 0.05}, 2);
 }

@@ -89,7 +89,7 @@ TEST(TraversabilityMap, ResultIsIndependentOfBandsAndThreads) {
 }
 
 // Property: while versions are published, a reader on another thread sees only complete versions (cells
-// refused together appear together), never an older version after a newer one, and a version that it holds
+// refused together appear together), never an older version after a newer one; a version in use by the reader
 // does not change.
 TEST(TraversabilityMap, ConcurrentReadersObserveConsistentVersionsInOrder) {
   TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(300, '1')));

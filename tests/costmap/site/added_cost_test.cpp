@@ -100,8 +100,7 @@ TEST(AddedCost, ValuesAreRoundedUp) {
     });
 }
 
-// Property: increasing the values of a layer lowers no cost in any heading and allows nothing that was
-// refused.
+// Property: increasing the values of a layer lowers no cost in any heading and allows no refused motion.
 TEST(AddedCost, AddedLayerNeverLowersACost) {
   std::mt19937 random(11);
   for (int round = 0; round < 2; ++round) {
@@ -211,7 +210,7 @@ TEST(AddedCost, PatchesWeightsAndEvidenceKeepTheAddedCost) {
   EXPECT_GE(cheap->cost().costPerMetre(cheap->at(middle), {}), own.added_J_per_m[middle]);
 }
 
-// Property: the same holds for four classes in patches, whose borders are further kinds of ground.
+// Property: costs stay finite with four classes in patches, whose borders are further kinds of ground.
 TEST(AddedCost, ManyClassesAndValuesStayFeasible) {
   std::mt19937 random(13);
   MapLayers ground = hills(80);
@@ -248,7 +247,7 @@ TEST(AddedCost, AddedCostAppliesToOpenedUnseenCells) {
   EXPECT_NEAR(costAt(dearer, {3, 2}, 0) - costAt(plain, {3, 2}, 0), 10.0, 1e-3);
 }
 
-// Property: evidence of a class applies to its cells with an added cost as to those without.
+// Property: evidence of a class has the same effect on cells with and without an added cost.
 TEST(AddedCost, ClassEvidenceAppliesUnderALayer) {
   const MapLayers ground = drawn(std::vector<std::string>(90, std::string(90, '1')));
   const maps::Grid grid = ground.elevation.grid();

@@ -114,8 +114,8 @@ TEST(SurfacePatch, InvalidPatchIsRejectedWithOneLineAndMapUnchanged) {
   }
 }
 
-// Property: a map rejects the layer values that a patch rejects; an invalid height or rock share must not
-// count as missing.
+// Property: a map rejects the layer values that a patch rejects; an invalid height or rock abundance is not
+// treated as missing.
 TEST(SurfacePatch, MapLayersAreValidatedLikePatches) {
   for (const float bad : {1e30F, INFINITY, -INFINITY}) {
     MapLayers layers = flat();
@@ -206,7 +206,7 @@ TEST(SurfacePatch, FirstPatchSetsTheBaseElevation) {
   EXPECT_NE(refusal(map, patch).find("within 1638.35 m of -4500 m"), std::string::npos);
 }
 
-// A reading of ground of the class, weaker or stronger, sometimes with immobilisation.
+// A random observation of ground weaker or stronger than the class, sometimes with immobilisation.
 WheelObservation anywhere(std::mt19937_64& random) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -223,8 +223,8 @@ WheelObservation anywhere(std::mt19937_64& random) {
   return seen;
 }
 
-// Property: readings on ground of a known class before its heights are known count after a patch adds the
-// heights, there and nearby, as on a map built with the heights; likewise for a map built without any data.
+// Property: readings on ground of a known class without heights have, after a patch adds the heights, the
+// same effect as on a map built with the heights. The map built without any data is included.
 TEST(SurfacePatch, EvidenceFromBeforeThePatchIsRetained) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937_64 random(seed);

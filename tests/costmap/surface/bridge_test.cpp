@@ -78,8 +78,8 @@ TEST(Bridge, EvidenceBelowTheDeckDoesNotAffectTheDeckCell) {
   TraversabilityMap map = mapOf(bridge());
   const CellBelief deck = map.belief(cellAt(map, 20.0)), road = roadBelief(map, 20.0);
   addDrive(map, drive(kRoad_m, 17.0, 23.0), nullptr);
-  // All ground has one soil, so that the class may learn. The deck's cell has no evidence of its own and
-  // follows the class.
+  // All ground has one soil, so that evidence on the road changes the class. The cell of the deck has no
+  // evidence and has the estimate of the class.
   const CellBelief after = map.belief(cellAt(map, 20.0)), below = roadBelief(map, 20.0);
   EXPECT_EQ(after.evidence, 0.0F);
   EXPECT_EQ(deck.evidence, 0.0F);
@@ -159,7 +159,7 @@ TEST(Bridge, RowsWithoutHeightOrFloorAreAssignedToTheTop) {
   std::erase_if(rows.numbers, [](const auto& column) { return column.name == "z_m"; });
   addDrive(map, rows, nullptr);
   EXPECT_GT(map.belief(cellAt(map, 20.0)).evidence, 0.0F);
-  // On open ground a z_m with another vertical datum changes nothing.
+  // On ground without other floors, a z_m with another vertical datum has no effect.
   TraversabilityMap plain = mapOf(bridge()), offset = mapOf(bridge());
   addDrive(plain, drive(kRoad_m, 2.0, 10.0), nullptr);
   addDrive(offset, drive(kRoad_m - 2500.0, 2.0, 10.0), nullptr);

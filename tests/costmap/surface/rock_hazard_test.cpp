@@ -31,8 +31,8 @@ TEST(RockHazard, WithoutRocksTheHazardIsZero) {
   EXPECT_EQ(rockHazard(std::numeric_limits<double>::quiet_NaN(), {.diameter_m = 0.1, .area_m2 = 1.0}), 0.0);
 }
 
-// Property: the hazard never decreases with rock abundance. (By the bare formula, an abundance of 0.9 left
-// 0.55 of such places free.)
+// Property: the hazard never decreases with rock abundance. (The fitted distribution alone would leave 0.55
+// of such places free at an abundance of 0.9.)
 TEST(RockHazard, HazardIsMonotoneInRockAbundance) {
   const RockCrossing fido{.diameter_m = 0.46, .area_m2 = 0.7};
   double last = 0.0;

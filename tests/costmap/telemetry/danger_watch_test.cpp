@@ -1,4 +1,4 @@
-// Bounds from each channel of one reading.
+// Tests of the bounds from each channel of one reading.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -49,13 +49,12 @@ TEST(DangerWatch, EachChannelBoundsIndependently) {
   const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
   EXPECT_TRUE(std::isnan(deep.most_pull));
   EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
-  // Torque at the motor's limit in either direction.
+  // The torque is at the limit of the motor, in the braking direction.
   EXPECT_LT(watch.hear(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
 }
 
-// Closed form: at its slip, ground of the class would pull at(slip). The deficit is at(slip) less the
-// gradient, reduced by two standard deviations of 0.05 in total. In a rut at(slip) is that of the class's
-// rut.
+// Closed form: at(slip) is the pull of the class at the slip. The deficit is at(slip) minus the gradient
+// minus 0.05 (two standard deviations). In a rut, at(slip) is the pull of the class in a rut.
 TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
   const auto model = testGround();
   const DangerWatch watch(*model);

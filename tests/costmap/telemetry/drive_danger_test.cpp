@@ -54,7 +54,7 @@ terramech::Telemetry tableOf(const std::vector<Row>& rows, const terramech::Rove
 
 constexpr int kSide = 40;
 
-// Rovers of the tests, one of them of Sojourner's size.
+// Rovers of the tests; the last has the size of Sojourner.
 std::vector<terramech::Rover> rovers() {
   terramech::Rover six = testRover(), tiny = testRover();
   six.wheel_count = 6;
@@ -173,7 +173,7 @@ TEST(Danger, DeepSinkageAtLowSlipRefusesThePlace) {
       }
 }
 
-// Later rows at the same place: standing, reversing and a thousand good rows.
+// Property: standing, reversing or a thousand good rows at the same place do not remove a refusal.
 TEST(Danger, LaterReadingsDoNotRemoveARefusal) {
   for (const double slip_after : {0.0, -0.1, 0.05}) {
     TraversabilityMap map = plain(testRover(), testSand());
@@ -189,8 +189,8 @@ TEST(Danger, LaterReadingsDoNotRemoveARefusal) {
   }
 }
 
-// Ground with DP/W -0.05 lets a wheel spin on level ground; a thousand such rows must not average to an
-// acceptable mean.
+// Property: a thousand rows on ground with drawbar pull over load -0.05, on which a wheel spins on level
+// ground, do not average to an acceptable mean.
 TEST(Danger, ManyDangerousReadingsDoNotAverageOut) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> noise(0.0, 0.01);
@@ -288,7 +288,8 @@ TEST(Danger, SuspectedReadingRefusesOnlyItsPlace) {
     }
 }
 
-// Rows that no fit may use: each contains one dangerous value, and most contain one that is not a number.
+// Property: rejected rows with one dangerous value, most with a value that is not a number, bound their
+// place.
 TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
   const std::string path = std::filesystem::temp_directory_path() / ("danger" + std::to_string(::getpid()));
   const double radius_m = testRover().wheel.radius_m;
@@ -317,8 +318,8 @@ TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
   }
 }
 
-// A rejected row may have a wrong heading. Its reading is taken as straight downhill, so that the place is
-// refused downhill too, where an uphill reading would not refuse it.
+// A rejected row may have a wrong heading. Its reading is assumed to be straight downhill, so that the place
+// is also refused downhill; an uphill reading would not refuse the downhill heading.
 TEST(Danger, RejectedRowIsAssumedToBeDownhill) {
   for (const bool rejected : {false, true}) {
     terramech::Telemetry telemetry = tableOf(afterGoodRows({}, true));

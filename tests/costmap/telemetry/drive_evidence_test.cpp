@@ -66,7 +66,7 @@ TEST(AddDrive, DustDrivenAsSandIsEstimatedAsWeak) {
   EXPECT_NE(map.belief({30, 30}).category, static_cast<std::uint8_t>(terramech::Category::Safe));
 }
 
-// Rows first to end - 1.
+// Returns the rows `first` to `end` - 1.
 terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, std::ptrdiff_t end) {
   for (auto& column : whole.numbers)
     column.values = {column.values.begin() + first, column.values.begin() + end};
@@ -74,7 +74,7 @@ terramech::Telemetry partOf(terramech::Telemetry whole, std::ptrdiff_t first, st
   return whole;
 }
 
-// Property: reversed rows and a wrong clock lose no evidence of weak ground.
+// Property: evidence of weak ground is retained for reversed rows and for a wrong clock.
 TEST(AddDrive, WeakGroundIsDetectedForReversedRowsAndWrongClock) {
   TraversabilityMap forward = mapOf(wide());
   addDrive(forward, drive());

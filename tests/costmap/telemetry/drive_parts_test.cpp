@@ -50,7 +50,7 @@ std::vector<std::size_t> randomParts(std::size_t rows, std::size_t most_moments,
   return ends;
 }
 
-// Soil of the class, stronger, weaker, and so weak that wheels spin.
+// Returns the soil of the class, a stronger soil, a weaker soil, or a soil so weak that wheels spin.
 terramech::Soil soilOf(unsigned seed) {
   if (seed == 4) return weakSand();
   terramech::Soil soil = testSand();
@@ -91,8 +91,8 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
 }
 
 // Property: without settle(), without sensor bias and with non-decreasing time, the result is independent of
-// the division into parts. Pinned: the result differs from that of the whole file by up to 0.035 in DP/W in
-// either direction, because sensor errors and class strength are estimated later.
+// the division into parts. Pinned: the result differs from that of the whole file by up to 0.035 in drawbar
+// pull over load in either direction, because sensor errors and class strength are estimated later.
 TEST(DriveParts, UnsettledPartsAreIndependentOfDivision) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     std::mt19937_64 random(seed);

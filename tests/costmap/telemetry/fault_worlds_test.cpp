@@ -1,6 +1,6 @@
-// Worlds of known soil in which sound drives are followed by faulty ones; counts the cells that a fault
-// makes allowed wrongly. TALUS_FAULT_WORLDS="FIRST COUNT" replaces the 200 worlds of each run; a campaign
-// consists of such runs.
+// Worlds of known soil in which faulty drives follow sound drives; counts the cells that a fault makes
+// allowed wrongly. TALUS_FAULT_WORLDS="FIRST COUNT" replaces the 200 worlds of each run; a campaign consists
+// of such runs.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -88,7 +88,8 @@ class World {
     return out;
   }
 
-  // Departure of a place's DP/W from the world's soil at slip 0.5: waves of several metres.
+  // Departure of the drawbar pull over load at a place from the soil of the world at slip 0.5: waves of
+  // several metres.
   double departure(const maps::Point& at) const {
     return variation_ * (std::sin(0.9 * at.x_m + phases_[0]) * std::sin(0.8 * at.y_m + phases_[1]) +
                          std::sin(0.5 * at.x_m + phases_[2]) * std::sin(0.6 * at.y_m + phases_[3]));
@@ -205,8 +206,8 @@ int freedBy(const TraversabilityMap& map, const World& world, const std::vector<
 }
 
 // Property: one to three faulty drives of one kind, alone, after a sound drive, or after a sound drive on
-// gentle ground, make no cell allowed whose ground is too weak; tolerated are three in a thousand cells, and
-// more in one world of a hundred. The same holds for sound drives.
+// gentle ground, make no cell allowed whose ground is too weak. Tolerance: three in a thousand cells; more in
+// one world of a hundred. Sound drives have the same property.
 TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
   const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 200);
   const auto class_model = groundOf(testSand(), kWheels);

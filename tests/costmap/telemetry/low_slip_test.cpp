@@ -18,7 +18,8 @@ namespace low_slip_test {
 constexpr double kReferenceSlip = 0.5;
 constexpr double kTwelveDegrees = 0.2126;  // tangent of 12 deg
 constexpr std::array<maps::Cell, 4> kCells{
-    {{30, 23}, {16, 23}, {30, 26}, {30, 60}}};  // driven twice, beside the drive, far away
+    {{30, 23}, {16, 23}, {30, 26}, {30, 60}}};  // cells: driven twice (2), beside the drive, far from the
+                                                // drive
 
 // Soils of the library, and a strong soil with a small shear modulus.
 std::vector<terramech::SoilPrior> priors() {
@@ -197,8 +198,8 @@ TEST(LowSlip, PullAndMaximumSlopeAreCalibrated) {
     }
 }
 
-// Property: on ground of lower strength, a reading at low slip gives the departure at the reference slip,
-// although the departure at its own slip is far smaller.
+// Property: on ground of lower strength, the estimate from a low-slip reading is the departure at the
+// reference slip, although the departure at the measured slip is far smaller.
 TEST(LowSlip, StrengthDeficitIsExtrapolatedToTheReferenceSlip) {
   for (const terramech::SoilPrior& prior : {priors()[0], priors()[1], firm()}) {
     const auto model = modelOf(prior);
@@ -226,10 +227,10 @@ TEST(LowSlip, StrengthDeficitIsExtrapolatedToTheReferenceSlip) {
   }
 }
 
-// Property: a drive at low slip leaves the probability that 12 degrees are too steep (which is true here) at
-// 0.85 of its previous value or more, if the soil lies several standard deviations off its class (weaker,
-// with a smaller shear modulus) or its slip is read too small. (No reading can show a modulus outside the
-// class. Shifting the curve left 0.4 to 0.85.)
+// Property: a slope of 12 degrees is too steep here. A drive at low slip reduces the probability of that to
+// no less than 0.85 of its previous value, if the soil lies several standard deviations from its class
+// (weaker, with a smaller shear modulus) or its slip is read too small. (By shifting the curve, the
+// probability was 0.4 to 0.85 of that.)
 TEST(LowSlip, LowSlipDriveDoesNotReduceRiskOnSteepSlopes) {
   const auto model = modelOf(firm());
   const auto soil = [](double friction_rad, double modulus_m) {

@@ -1,5 +1,5 @@
-// Property: rows of another wheel, load or rover raise no estimate, in a file and in a journal; the rover's
-// own rows do.
+// Property: rows of another wheel, load or rover raise no estimate, in a file and in a journal; rows of the
+// same rover raise estimates.
 #include <filesystem>
 
 #include <rover_drive.hpp>
@@ -78,8 +78,8 @@ TEST(OtherWheel, ReadingsOfAnotherWheelRaiseNothing) {
   }
 }
 
-// Property: the journal of a light rover raises no estimate for a heavy rover; nor do rows that do not state
-// their rover.
+// Property: neither the journal of a light rover nor rows without rover data raise an estimate for a heavy
+// rover.
 TEST(OtherJournal, JournalOfAnotherRoverRaisesNothing) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("other" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);

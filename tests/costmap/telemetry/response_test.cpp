@@ -42,8 +42,8 @@ TEST(Response, NanPairsAreIgnored) {
   EXPECT_DOUBLE_EQ(out.causeVariance(), 1.0);
 }
 
-// Property: a series that responds for a hundred rows and is then constant responds as a whole, but not in
-// its recent window.
+// Property: a series that follows the cause for a hundred rows and is then constant follows as a whole, but
+// not in its recent window.
 TEST(ResponseSeries, RecentWindowDetectsALateChange) {
   ResponseSeries series;
   for (int i = 0; i < 150; ++i) {

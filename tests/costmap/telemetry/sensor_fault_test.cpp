@@ -1,4 +1,4 @@
-// Drives with one faulty sensor: none improves an estimate; a sound drive does.
+// Property: drives with one faulty sensor improve no estimate; a sound drive improves estimates.
 #include <cmath>
 #include <functional>
 #include <random>
@@ -258,8 +258,8 @@ TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimateDespiteSpikeFilter) {
   EXPECT_GT(after.ground(cell)->sinkage.value, 0.4);
 }
 
-// Property: a sinkage of 0.85 r at low slip contradicts the slope and resembles a wrong sinkage datum; the
-// sinkage counts nevertheless.
+// Property: a sinkage of 0.85 r at low slip lowers the estimate, although it contradicts the slope and may
+// result from a wrong datum of the sinkage.
 TEST(FaultyDrive, DeepSinkageAtLowSlipLowersTheEstimate) {
   const TraversabilityMap before = hills();
   TraversabilityMap after = hills();

@@ -46,7 +46,7 @@ TEST(SensorProof, SoundSensorsAreProven) {
   EXPECT_FALSE(proof.pullSound("a", "v"));
 }
 
-// Property: each failed proof is named, in the order of the checks.
+// Property: lack() names the first failed test, in the order of the tests.
 TEST(SensorProof, SaysWhatIsLacking) {
   using Lack = SensorProof::Lack;
   const double kSilent = std::nan("");
@@ -64,7 +64,7 @@ TEST(SensorProof, SaysWhatIsLacking) {
   const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
   EXPECT_EQ(proofOf({}, 400).lack(), Lack::Nothing);
   EXPECT_EQ(proofOf(step, 400).lack(), Lack::SlipStep);
-  // A step is found across runs, because a sensor is the same in all runs.
+  // A step between two runs is detected, because all runs have the same sensor.
   const auto in_runs = [&](Row& r, int i) {
     r.run = i < 200 ? "a" : "b";
     step(r, i);

@@ -36,7 +36,7 @@ TEST(SensorWatch, StuckValuesAndSpikesAreRejected) {
   EXPECT_EQ(watch.findings().size(), 2U);
 }
 
-// Property: rows with decreasing time are accepted; otherwise a file in another order would lose its weak
+// Property: rows with decreasing time are accepted; a file in reverse order keeps its evidence of weak
 // ground.
 TEST(SensorWatch, DecreasingTimeStartsANewSeries) {
   const auto model = testGround();
@@ -96,7 +96,7 @@ TEST(SensorWatch, PersistentStepIsNotASpike) {
   for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
   int refused = 0;
   for (int i = 0; i < 10; ++i) refused += watch.refuse("w", at(2.0 + 0.1 * i, 0.6 + 0.01 * (i % 3))) ? 1 : 0;
-  EXPECT_LE(refused, 3);  // Closed form: a median of five follows after three
+  EXPECT_LE(refused, 3);  // Closed form: the median of five changes after three readings
 }
 
 TEST(SensorWatch, TorqueOffsetIsDetectedAgainstTheSlope) {
@@ -153,7 +153,7 @@ TEST(SensorWatch, JumpAtAllWheelsIsNotASpike) {
   const auto both = moment(3.0, 0.9, 0.91);
   EXPECT_FALSE(both[0].has_value());
   EXPECT_FALSE(both[1].has_value());
-  // A wheel refused for another reason does not count in the comparison.
+  // A wheel that is refused for another reason does not turn the common jump of the others into spikes.
   TelemetryReading backwards = at(4.0, -0.5);
   backwards.gradient = 0.3;
   const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"rear", backwards}});

@@ -26,7 +26,8 @@ TraversabilityMap sand() {
   return mapOf(testSand(), 4, kHeight_m);
 }
 
-// Sand whose pull is lower than that of the class by 0.12 and 0.23 for the two calls below.
+// Test sand with lower strength. The pull is lower than that of the class by 0.12 and 0.23 in the two calls
+// below.
 terramech::Soil weakerBy(double cohesion_Pa, double friction_rad) {
   terramech::Soil soil = testSand();
   soil.cohesion_Pa -= cohesion_Pa;
@@ -104,8 +105,8 @@ std::shared_ptr<const SlipPosterior> sensorOf(const GroundModel& model, const Dr
 }
 
 // Closed form: many readings reduce the standard deviation m of the class mean to m c / sqrt(m^2 + c^2), c
-// being the mean shared error of the drive's readings; the variation between places remains. A drive over
-// gentle hills at slips of about 0.1 shows half of a departure or less. Tolerance 2 %.
+// being the mean shared error of the drive's readings; the variation between places remains. Gentle hills
+// require slips of about 0.1, at which half of a departure or less is measured. Tolerance 2 %.
 TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   const TraversabilityMap before = sand();
   TraversabilityMap after = sand();
@@ -114,7 +115,7 @@ TEST(SharedError, ClassStdCombinesWithTheSharedErrorAtLowSlip) {
   const auto sensor = sensorOf(after.model(), drive);
   ASSERT_LT(std::abs(sensor->slip_bias), 0.01);
   std::map<std::pair<int, int>, std::pair<double, double>>
-      blocks;  // of one metre: weights, and weighted values
+      blocks;  // blocks of one metre: sum of weights, sum of weighted values
   double shared = 0.0, slip = 0.0;
   for (const auto& row : drive.rows) {
     const Shared read =
@@ -160,8 +161,7 @@ Drive nearReferenceSlip(const Drive& whole, std::size_t wheels) {
 }
 
 // Property: a drive with correct slip near the reference slip reduces the standard deviation, more at closer
-// places, most where the rover climbed. The margins are those of readings that need no extrapolation in
-// slip.
+// places and most where the rover climbed. The tolerances apply to readings without extrapolation in slip.
 TEST(SharedError, SoundDriveReducesStdMostWhereItDrove) {
   constexpr double kSteep_m = 1.5;
   const TraversabilityMap before = mapOf(testSand(), 4, kSteep_m);

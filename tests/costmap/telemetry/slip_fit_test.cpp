@@ -88,8 +88,8 @@ TEST(SlipFit, LargerShearModulusIsEstimatedAsWeakGround) {
   }
 }
 
-// Closed form: without a moment the standard deviation is infinite. Moments on one slope alone leave it
-// above the standard deviation of the class.
+// Closed form: without a moment the standard deviation is infinite. With moments on one slope alone the
+// standard deviation exceeds that of the class.
 TEST(SlipFit, ConstantSlopeLeavesStrengthUnidentified) {
   const TraversabilityMap map = mapOf(testSand(), 4);
   SlipFit fit(map.model());
@@ -103,8 +103,8 @@ TEST(SlipFit, ConstantSlopeLeavesStrengthUnidentified) {
 }
 
 // Property: the class estimate after a drive equals the strength of weaker ground to within 0.02. For
-// stronger ground it moves at least a quarter of the way and never beyond. Both hold also if all slips are
-// read 0.1 too small.
+// stronger ground the class estimate moves by at least a quarter of the difference and never beyond. Slips
+// read 0.1 too small do not change these properties.
 TEST(SlipFit, ClassEstimateFollowsGroundStrengthDespiteSlipOffset) {
   for (const double strength : {0.85, 0.93, 1.1, 1.2, 1.3})
     for (const double offset : {0.0, -0.1}) {

@@ -69,7 +69,8 @@ TEST(TelemetryRows, SlipFollowsFromTravelAndRimSpeed) {
   EXPECT_TRUE(std::isnan(rows.reading(4).speed_slip)) << "a wheel that does not turn";
 }
 
-// Property: a slope beyond vertical is ignored; a row that is not trusted may have gone straight downhill.
+// Property: a slope beyond vertical is ignored; a row with an unreliable heading is assumed to be straight
+// downhill.
 TEST(TelemetryRows, LeastGradientIgnoresImpossibleSlopes) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
@@ -93,8 +94,8 @@ TEST(TelemetryRows, MomentContainsAllWheelsOfOneTime) {
   EXPECT_EQ(momentOf(rows, {2, 3}, map.model().rover()).readings.size(), 2U);
 }
 
-// Property: wheels and runs may come in any order within a time; a second row of a wheel is a moment of its
-// own.
+// Property: the order of wheels and runs at one time has no effect; a second row of a wheel at that time
+// begins another moment.
 TEST(TelemetryRows, MomentsAreIndependentOfRowOrderWithinATime) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();
@@ -122,7 +123,7 @@ TEST(TelemetryRows, SpeedSlipIsSignSymmetricAndNanIfUndefined) {
   EXPECT_NEAR(rows.reading(0).speed_slip, 0.95, 1e-12);
   EXPECT_NEAR(rows.reading(1).speed_slip, 0.0, 1e-12);
   for (const std::size_t i : {2U, 3U, 4U}) EXPECT_TRUE(std::isnan(rows.reading(i).speed_slip));
-  // Property: the same holds in reverse.
+  // Property: driving in reverse gives the same slips.
   for (std::size_t k = t.numbers.size() - 2; k < t.numbers.size(); ++k)
     for (double& v : t.numbers[k].values) v = -v;
   const TelemetryRows back(t, map, 0.5);
