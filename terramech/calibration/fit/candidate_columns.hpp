@@ -17,11 +17,12 @@ struct ModelOnRows {
   const SolvedContacts& solved;
 };
 
-/// Linearised contribution of a candidate, whitened row by row: the change at its typical size and the
-/// derivatives by its other parameters, or the derivatives by a curve's values at its knots.
+/// Returns the linearised contribution of a candidate, whitened row by row. For an effect: the change of the
+/// predictions at its typical size, and the derivatives by its other parameters. For a curve: the derivatives
+/// by its values at the knots.
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
 
-/// Linearised change of the predictions by the free parameters of a plan at a fitted model, in steps of
+/// Returns the derivatives of the predictions by the free parameters of a plan at a fitted model, in units of
 /// rangeOf().scale.
 LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whitening& whitening,
                        const FitPlan& plan, SolvedContacts& solved);

@@ -15,11 +15,11 @@ namespace talus::terramech {
 /// model's sinkage.
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
-/// Curves of every covariate, initially zero, in each measured channel alone, through stiffness and through
-/// strength: a line and splines of 4 and 7 knots. Columns constant within runs need at least three runs per
-/// knot. Further candidates: steps of time, heading and additional columns; for text columns a constant per
-/// group; and lines over products ("A*B") of an additional column with slip, load, speed or, for at most six
-/// additional columns, another additional column.
+/// Curves of every covariate, initially zero: a line and splines of 4 and 7 knots, each applied to one
+/// measured channel, to the soil stiffness or to the soil strength. Columns constant within runs need at
+/// least three runs per knot. Further candidates: steps of time, heading and additional columns; for text
+/// columns a constant per group; and lines over products ("A*B") of an additional column with slip, load,
+/// speed or, for at most six additional columns, another additional column.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
 /// Returns true if a covariate is a product of two columns.
@@ -28,7 +28,8 @@ bool isProduct(const std::string& covariate);
 /// Returns true for a numeric column that is not one of stateColumns().
 bool isOwnColumn(const std::string& column);
 
-/// GainDistribution::further_questions for a search in screened columns: ln((kept + dropped) / kept).
+/// Returns GainDistribution::further_questions for a search after column screening: ln((kept + dropped) /
+/// kept), with the numbers of kept and dropped columns.
 double furtherQuestions(const Trial& trial);
 
 /// The coarsest candidates of an additional column: a spline of 4 knots in each measured channel alone; for a

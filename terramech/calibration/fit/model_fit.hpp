@@ -20,7 +20,8 @@ struct FitPlan {
   /// By index into soilParameters(), in the parameter's unit (for log_stiffness the step from the start).
   std::map<int, Estimate> soil_prior;
   std::map<int, Estimate> effect_prior;  ///< by index of the effect; prior of its first parameter
-  /// Reference value k_c + k_phi of log_stiffness; without a value that of the start model.
+  /// Reference value k_c + k_phi (sum of the sinkage moduli) of log_stiffness; nullopt: that of the start
+  /// model.
   std::optional<double> prior_modulus;
   /// Mean square of the whitened residuals (Birge's ratio) if the model is incomplete, else 1. The weight of
   /// the rows relative to the priors is divided by this factor.
@@ -33,12 +34,13 @@ struct FitPlan {
 /// A fitted model.
 struct Fit {
   RefinedModel model;
-  double chi2 = 0.0;  ///< of the whitened residuals, without priors
+  double chi2 = 0.0;  ///< sum of squares of the whitened residuals, without priors
   double prior_chi2 = 0.0;
   double cost() const { return chi2 + prior_chi2; }
 };
 
-/// Levenberg-Marquardt on the whitened residuals with bounded parameters. `solved` as in predictRows().
+/// Fits a model by the Levenberg-Marquardt method to the whitened residuals, with bounded parameters.
+/// `solved` is the cache of predictRows().
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
              SolvedContacts& solved);
 
@@ -61,8 +63,8 @@ double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
 
 /// Plan with all free parameters of a model: its effects, and the soil parameters that have a standard
 /// deviation, or with `fit_soil` all soil parameters under vague priors. The prior of an effect's first
-/// parameter is 0 with a standard deviation of fifty typical sizes, which is negligible if rows show the
-/// effect and removes the effect otherwise.
+/// parameter is 0 with a standard deviation of fifty typical sizes: negligible if the rows determine the
+/// effect; otherwise the fitted effect is 0.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
 /// Assigns default standard deviations to a soil whose file states none (ours): half the general uncertainty

@@ -21,9 +21,9 @@ bool hasCorrections(const TraceResult& result);
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 
-/// Limits the extrapolation of effects. Outside the trained rows an effect follows its formula as far as it
-/// predicted held-out ends of its column, and is constant beyond; without a predicted end it is constant from
-/// the edge of the rows.
+/// Limits the extrapolation of effects. Outside the trained rows the formula of an effect applies up to the
+/// held-out ends of its column that the formula predicted; beyond, the effect is constant. Without a
+/// predicted end the effect is constant from the edge of the rows on.
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
 /// Ranges of the columns for predictions, and the growth of the error outside each range: the rate by which

@@ -8,7 +8,8 @@
 
 namespace talus::terramech {
 
-/// Errors on held-out rows for one partition; those of the refined model within result.scope.
+/// Returns the errors on held-out rows for one partition. The errors of the refined model are those within
+/// result.scope.
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds);
 
 /// Holds out whole levels of the column of each found effect, one effect after another.

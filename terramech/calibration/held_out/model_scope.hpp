@@ -17,8 +17,8 @@ ModelScope scopeOf(const TraceResult& result);
 void keepConfirmed(HeldOut& held, const ModelScope& scope);
 void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
 
-/// Index of the last effect that was found in a channel whose held-out rows have larger errors with the
-/// effects than with the base; nothing if there is none.
+/// Returns the index of the last effect found in a channel in which the effects increase the errors on
+/// held-out rows; nullopt if no channel has larger errors.
 std::optional<std::size_t> lastRefuted(const TraceResult& result);
 
 /// Predictions of the refined model within its scope, rows x kChannels.

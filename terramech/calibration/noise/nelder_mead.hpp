@@ -8,7 +8,7 @@ namespace talus::terramech {
 /// Step and stopping criteria of the simplex method.
 struct NelderMeadOptions {
   double step = 0.5;        ///< initial edge length in every coordinate
-  int evaluations = 1000;   ///< maximum number
+  int evaluations = 1000;   ///< greatest number of function evaluations
   double tolerance = 1e-6;  ///< stops at this spread of the values over the simplex
 };
 

@@ -39,7 +39,8 @@ struct HeldOutFit {
   /// departure that a single fold determines does not count.
   Eigen::VectorXd prior_chi2;
   Eigen::MatrixXd steps;  ///< fitted to all rows, parameters x tables
-  /// log_likelihood - prior_chi2 / 2 (T34): no prior counts twice, and a soil that returns to its prior gains.
+  /// log_likelihood - prior_chi2 / 2 (T34): each prior counts once, and a soil closer to its prior has a
+  /// higher score.
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
@@ -51,13 +52,13 @@ class RunLikelihood {
   /// different folds count as different units.
   RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit, const Folds& folds);
 
-  /// Sets the tables: whitened residuals, rows*kChannels x tables.
+  /// Sets the tables: whitened residuals, (rows * kChannels) x tables.
   void setTables(const Eigen::MatrixXd& tables);
 
   RunSums sums(const LinearModel& model) const;
 
-  /// Sums for the columns of both models; costs only those of `added`. `known` and `added` are models as for sums(),
-  /// `of_known` the sums of `known`.
+  /// Returns the sums for the columns of `known` and `added` together, at the cost of those of `added`;
+  /// `of_known` are the sums of `known`.
   RunSums sums(const RunSums& of_known, const LinearModel& known, const LinearModel& added) const;
 
   /// Predicts each fold from the other folds, for `count` tables from `first` on.

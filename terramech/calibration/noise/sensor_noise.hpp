@@ -11,11 +11,11 @@
 
 namespace talus::terramech {
 
-/// Maximum a posteriori noise of sensors and inputs, from residuals without their smooth dependence on
-/// covariates, so that a missing effect is not taken for noise. Errors of slip and load are deviations that
-/// move all channels together along `slopes`. Stated standard deviations are priors with 25 % uncertainty;
-/// the others have priors of 3 % within a factor of 2. `level` contains the model's predictions, for relative
-/// errors.
+/// Returns the maximum a posteriori noise of sensors and inputs. Residuals are used without their smooth
+/// dependence on covariates, so that a missing effect does not increase the noise. Errors of slip and load
+/// are deviations that move all channels together along `slopes`. Stated standard deviations are priors with
+/// 25 % uncertainty; other standard deviations have the prior 3 % within a factor of 2. `level` contains the
+/// model's predictions, for relative errors.
 SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
                      const InputSlopes& slopes, const StatedSensors& stated);
 
@@ -32,8 +32,8 @@ std::vector<std::string> unstatedSensors(const Trial& trial, const StatedSensors
 Eigen::MatrixXd withoutSmooth(const Trial& trial, const Eigen::MatrixXd& residual,
                               const std::vector<std::string>& columns);
 
-/// Covariates of a trial used for smooths in the noise fit. Covariates that a screening selected but that are
-/// not significant (Trial::chance) are excluded, because they would absorb a part of the noise.
+/// Covariates of a trial used for smooths in the noise fit. Covariates that a screening kept without
+/// significance (Trial::chance) are excluded, because their smooths would absorb a part of the noise.
 std::vector<std::string> noiseColumns(const Trial& trial);
 
 /// The noise covariates that do not determine the slip.

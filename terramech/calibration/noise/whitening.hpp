@@ -36,8 +36,8 @@ struct Whitening {
   MomentSlip slip{};     ///< slip error shared by rows of a moment
   SharedError common{};  ///< error shared by rows of a run
 
-  /// Effect of each shared error component on every row of rowByRow(), after removal of the moments' slip
-  /// error.
+  /// Returns the effect of each shared error component on every row of rowByRow(), after removal of the slip
+  /// error of moments.
   std::vector<SharedFactor> shared() const;
 
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
@@ -50,8 +50,8 @@ struct Whitening {
 /// Whitening of the rows marked by `keep`.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
 
-/// Linearised effect of soil strength and stiffness on each row at the model's predictions; empty on a drive,
-/// along which the soil changes like the slip.
+/// Linearised effect of soil strength and stiffness on each row at the model's predictions; empty for a
+/// drive, on which soil and slip vary together.
 std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
                                     const Eigen::MatrixXd& level, const SolvedContacts& solved);
 

@@ -24,7 +24,7 @@ class CalibratedRows {
   /// Sets the covariance of the error shared by rows of a unit.
   void setRunError(const RunError& run);
 
-  /// Computes the residuals of another model with unchanged noise.
+  /// Replaces the residuals by those of another model, with unchanged noise.
   void compare(const RefinedModel& model, SolvedContacts& solved);
 
   const Trial& trial() const { return trial_; }
@@ -33,8 +33,8 @@ class CalibratedRows {
   const Whitening& whitening() const { return whitening_; }
   const Eigen::VectorXd& white() const { return white_; }  ///< whitened residuals, rows*kChannels
 
-  /// Change of the predictions for one standard deviation of the slip error shared by all rows; empty if rows
-  /// vary in slip and in speed.
+  /// Change of the predictions for one standard deviation of the slip error shared by all rows; nullopt if
+  /// rows vary in slip and in speed.
   const std::optional<Eigen::MatrixXd>& bySharedSlip() const { return by_slip_; }
 
   Eigen::VectorXd sinkages_m() const;  ///< sinkages of the model
@@ -47,7 +47,7 @@ class CalibratedRows {
   /// quantities.
   void settle(const Eigen::MatrixXd& noise_alone, const Eigen::MatrixXd& level,
               const InputSlopes& measured_slopes, RefinedModel& model, SolvedContacts& solved);
-  /// Determines the units whose rows share an error, and the noise without the shared error.
+  /// Determines the units (groups of rows with a shared error), and the noise without the shared error.
   void shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level, const InputSlopes& measured_slopes,
                    RefinedModel& model, SolvedContacts& solved);
 

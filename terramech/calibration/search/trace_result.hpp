@@ -19,14 +19,14 @@ struct TraceOptions {
   double significance = 0.05;  ///< probability of finding an effect in a table without effects, (0, 1)
   int max_effects = 7;         ///< greatest number of effects
   double least_share = 0.0;    ///< least chi-squared per value that an effect must explain [-]
-  int fits = 6;                ///< known forms fitted in the full model per round; half as many curves
+  int fits = 6;                ///< number of known forms fitted in the full model per round; curves: half
+                               ///< this number
   int draws = 199;             ///< tables drawn from the null model: the least p-value is 1 / (draws + 1)
-  /// Greatest number of rows that are searched; of a larger table a sample (rowSample()). More rows only cost time: an
-  /// effect of a tenth of the scatter of single readings has 3 standard errors with a thousand rows.
+  /// Greatest number of rows that are searched; a larger table is sampled (rowSample()). A thousand rows
+  /// suffice: an effect of a tenth of the scatter of single readings then has 3 standard errors.
   int most_rows = 1000;
   int most_columns =
-      24;  ///< greatest number of additional columns that are searched; of more columns those with the
-           ///< greatest gains (screenColumns())
+      24;  ///< greatest number of additional columns that are searched, selected by screenColumns()
   bool fit_soil = false;  ///< fit the soil of the base to the data, with vague priors
   std::uint64_t seed = 1;
 };
@@ -60,11 +60,11 @@ struct TracedEffect {
   Explanation chosen;
   Channel channel = Channel::DrawbarPull;  ///< channel in which the effect is largest
   std::vector<double> parameter_std;       ///< of the fitted parameters of chosen.candidate, in order
-  double p_value = 1.0;                    ///< of its gain in a table without the effect
-  /// Other causes that the rows cannot distinguish from the effect: in its place the gain of each is higher, or lower
-  /// by at most closeGain(); best first.
+  double p_value = 1.0;                    ///< probability of its gain in a table without the effect
+  /// Other causes that the rows cannot distinguish from the effect, best first. In place of the effect, each
+  /// has a gain no lower than that of the effect minus closeGain().
   std::vector<Explanation> equal;
-  std::vector<Effect> correction;  ///< curves of the same covariate that describe the residual of the form
+  std::vector<Effect> correction;  ///< curves of the same covariate for the remaining residual of the form
 };
 
 /// An alternative cause, and the model with this cause.
@@ -84,8 +84,9 @@ struct EndLevel {
   ChannelErrors base_rmse{}, refined_rmse{};
   bool law = false;  ///< true if the formula of an effect of this column predicted the level better than
                      ///< its value at `edge`
-  /// For each effect of the refined model the distance from `edge` to which its formula is confirmed: that of the
-  /// farthest held-out row, or 0 if not confirmed or of another column.
+  /// For each effect of the refined model, the distance from `edge` up to which its formula is confirmed: the
+  /// distance of the farthest held-out row, or 0 if the formula is not confirmed or the effect is of another
+  /// column.
   std::vector<double> reach{};
 };
 
@@ -99,9 +100,10 @@ struct GroupErrors {
 /// Errors on held-out rows. The parameters are refitted without each fold; the choice of effects used all rows.
 struct HeldOut {
   std::string scheme;         ///< the kind of rows that are held out together
-  ChannelErrors base_rmse{};  ///< of the base model, its soil refitted if it was fitted
+  ChannelErrors base_rmse{};  ///< errors of the base model, with refitted soil if the soil is fitted
   ChannelErrors refined_rmse{};
-  std::vector<GroupErrors> groups;  ///< of each text column with an effect on a single group
+  std::vector<GroupErrors> groups;  ///< errors by group, for each text column with an effect on a single
+                                    ///< group
 };
 
 /// Errors on the rows of a large table that the search did not use [-].
@@ -118,21 +120,21 @@ struct TraceResult {
   Trial trial;           ///< the searched rows, with calibrated inputs
   UnsearchedRows unsearched;
   std::vector<TracedEffect> effects;
-  std::vector<RivalCause> rivals;     ///< for each effect the best alternatives; without effects those of
-                                      ///< the rejected explanations
-  std::vector<Explanation> rejected;  ///< fitted and not chosen in the last round, or below the threshold
-  std::vector<Promise> first_promises, last_promises;  ///< of base and refined model, best first
+  std::vector<RivalCause> rivals;     ///< best alternatives of each effect; without effects, the best
+                                      ///< rejected explanations
+  std::vector<Explanation> rejected;  ///< explanations fitted in the last round and not accepted
+  std::vector<Promise> first_promises, last_promises;  ///< candidates for the base and for the refined model,
+                                                       ///< best first
   double threshold = 0.0;                              ///< gain that noise exceeds at `significance`
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
-  std::vector<StrainedSensor> strained;  ///< sensors whose fitted noise exceeds the stated noise, with the
-                                         ///< refined model
+  std::vector<StrainedSensor> strained;  ///< sensors whose fitted noise for the refined model exceeds the
+                                         ///< stated noise
   ChannelErrors declared_floor{};        ///< noise_floor with the stated errors of these sensors
-  std::optional<Estimate>
-      first_prior;  ///< prior of the first parameter of the first effect found, from outside the model
+  std::optional<Estimate> first_prior;   ///< external prior of the first parameter of the first effect found
   SharedError base_shared,
       shared;                  ///< error common to the rows of a run, for the base and for the refined model
   std::vector<EndLevel> ends;  ///< errors beyond the trained rows
-  HeldOut held_out;            ///< with the folds of foldsOf()
+  HeldOut held_out;            ///< errors on held-out rows, for the folds of foldsOf()
   ModelScope scope;            ///< channels and ranges in which held-out rows confirmed the effects
 };
 

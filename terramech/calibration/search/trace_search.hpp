@@ -10,11 +10,11 @@
 
 namespace talus::terramech {
 
-/// A search that compares candidates beside a model and adds the accepted candidates. Used by
-/// traceResiduals().
+/// Search of traceResiduals(): compares candidate additions to a model and adds the accepted candidates.
 class TraceSearch {
  public:
-  /// `go_on` is called between steps of work with the completed share; false ends each call early.
+  /// `go_on` is called between steps of work with the completed share; a return value of false ends the call
+  /// early.
   TraceSearch(
       const RefinedModel& base, const Trial& trial, const TraceOptions& options,
       std::function<bool(double)> go_on = [](double) { return true; });
@@ -46,7 +46,7 @@ class TraceSearch {
   /// rows (the first with the middle row, and so on) changes the log-likelihood by more than closeGain().
   bool dependsOn(const RefinedModel& model, const std::string& column) const;
 
-  /// Gains of pairs of candidates, the first fitted before the second is searched; best first.
+  /// Gains of pairs of candidates, best first; the first candidate is fitted before the second is searched.
   std::vector<Explanation> pairs();
 
   /// Adds a candidate to the model, refits all parameters and re-estimates the noise.
@@ -61,10 +61,11 @@ class TraceSearch {
   /// Refits all parameters and re-estimates the noise.
   void settleAll();
 
-  /// Gain of accepted candidate k beside the others, with unchanged noise.
+  /// Gain of accepted candidate k relative to the model without k, with unchanged noise.
   double gainOf(std::size_t k) const;
 
-  /// Gain of part `part` of accepted candidate k beside all others, with unchanged noise.
+  /// Gain of part `part` of accepted candidate k relative to the model without the part, with unchanged
+  /// noise.
   double gainOfPart(std::size_t k, std::size_t part) const;
 
   /// Returns true if accepted candidate k changes the predictions of some channel by at least a fiftieth of
@@ -72,8 +73,8 @@ class TraceSearch {
   /// searched.
   bool acts(std::size_t k) const;
 
-  /// Removes those parts of accepted candidate k, last first, that gain no more than `least`; at least one
-  /// part remains.
+  /// Removes the parts of accepted candidate k with a gain of at most `least`, from the last part on; at
+  /// least one part remains.
   void thin(std::size_t k, double least);
 
   /// Removes those parts of accepted candidate k that have no effect according to acts(), regardless of their
@@ -110,7 +111,8 @@ class TraceSearch {
   std::function<bool(double)> go_on_;
   TrialFit fit_;
   std::optional<Estimate> first_prior_;  ///< of the first parameter of the first accepted effect
-  std::size_t given_effects_;            ///< leading effects, of the base; fitted, never removed
+  std::size_t given_effects_;            ///< number of leading effects, those of the base; fitted, never
+                                         ///< removed
   std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
 };
 

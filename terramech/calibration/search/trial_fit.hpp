@@ -14,7 +14,7 @@
 
 namespace talus::terramech {
 
-/// A model fitted to rows, and scores of other models on the same rows with the same noise.
+/// Fits a model to rows, and scores other models on the same rows with the same noise.
 class TrialFit {
  public:
   /// Estimates the noise for `base` and fits its free parameters, or the whole soil if `fit_soil`. `go_on` is called
@@ -51,8 +51,8 @@ class TrialFit {
   /// Sets the model, then fits all parameters and re-estimates the noise, twice.
   void settle(const RefinedModel& start);
 
-  /// Fits all parameters again if `again`, sets the model's free parameters and their covariance, and returns the
-  /// covariance.
+  /// Sets the free parameters of the model and their covariance, after another fit of all parameters if
+  /// `again` is true. Returns the covariance.
   Eigen::MatrixXd finish(bool again);
 
   /// The channel in which the removal of an effect changes the predictions most, relative to the noise.

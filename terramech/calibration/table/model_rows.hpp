@@ -19,7 +19,8 @@ struct ModelRows {
   RefinedModel model;  ///< the given model; sets slip_along_travel if slipIsAlongTravel() of the rows
   Trial trial;
   Trial beyond_axle;                  ///< rows with z >= r: beyondAxle()
-  std::vector<RejectedRow> rejected;  ///< of the table, including rows with a side force but no slip angle
+  std::vector<RejectedRow> rejected;  ///< rejected rows of the table, including rows with a side force but no
+                                      ///< slip angle
 };
 
 /// Selects the rows of a table for a model. Throws InputError as leaveOutWithoutSlipAngle() and makeTrial().

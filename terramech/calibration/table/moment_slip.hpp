@@ -8,8 +8,8 @@
 /// moment share the slip error.
 namespace talus::terramech {
 
-/// Effect of the shared slip error on otherwise independent rows of unit variance: their covariance is I + u
-/// u^T within each moment. Empty if rows share no error.
+/// Effect of the shared slip error on otherwise independent rows of unit variance: within each moment the
+/// covariance of the rows is I + u u^T. Empty if rows share no error.
 struct MomentSlip {
   std::vector<int> moment;  ///< number of each row's moment, from 0
   Eigen::MatrixXd moved;    ///< u, rows x channels: change for one standard deviation of the slip error

@@ -20,8 +20,9 @@ struct Trial {
   Eigen::VectorXd slip_variance;   ///< variance of the true slip about the slip of `states`
   Eigen::VectorXd load_variance;   ///< relative variance of the true load about the load of `states`
   std::vector<int> run;  ///< run number of each row; each row without a run label has its own number
-  /// Moment number of each row if a rover drove with several wheels of unmeasured drawbar pull; DP/W of the
-  /// first row of a moment is then that of the whole rover, from the slope. Otherwise empty.
+  /// Moment number of each row for a drive of a rover with several wheels and no measured drawbar pull DP;
+  /// DP/W of the first row of a moment is then that of the whole rover, from the slope. Empty for other
+  /// tables.
   std::vector<int> moment;
   std::vector<std::string> covariates;  ///< numeric columns that vary, without answers
   std::vector<std::string> groupings;   ///< text columns with few distinct values, without runs
@@ -73,8 +74,8 @@ std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel&
 /// plane, according to speed_mps and rim_speed_mps of rows with a slip angle; false if undecided.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
-/// Marks rows with z >= r: the wheel is sunk to its axle or deeper. In all contact models the rim's contact
-/// ends at the height of the axle; such rows would distort a fit.
+/// Marks rows with z >= r (wheel sunk to its axle or deeper), which would distort a fit: in all contact
+/// models the contact of the rim ends at the height of the axle.
 std::vector<char> beyondAxle(const Trial& trial);
 
 /// Values of a covariate over the rows; "sinkage_m" is the sinkage of the model; NaN = missing.

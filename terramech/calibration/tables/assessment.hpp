@@ -17,11 +17,11 @@ struct AssessOptions {
   TableFile table;                       ///< the CSV
   std::string formula = "single-force";  ///< one of pullFormulas(), used without a model
   std::string model;  ///< file of a base or refined model; empty: pull from the readings T, z and i
-  std::string rover;  ///< library name or file; supplies missing wheel dimensions; may be empty
+  std::string rover;  ///< library name or file with default wheel dimensions; may be empty
   double slope_rad = 0.17453292519943295;  ///< 10 deg (thesis Fig. 3.12)
   double margin_rad = 0.0;                 ///< uncertainty of the slope, +-
   double z_threshold = 0.5;                ///< z/r above which the category drops one level
-  double z_critical = 0.75;                ///< z/r above which it is dangerous
+  double z_critical = 0.75;                ///< z/r above which the ground is dangerous
   double noise = 0.05;                     ///< relative standard deviation of each reading [-]
   double reference_slip = 0.5;             ///< slip of the forecasts of `extrapolate`
   bool extrapolate = false;                ///< also forecast pull at the reference slip and maximum pull
@@ -31,7 +31,7 @@ struct AssessOptions {
 struct Assessment {
   std::size_t line = 0;                   ///< line of the table
   double slip = 0.0;                      ///< measured slip [-]
-  Estimate pull;                          ///< DP/W
+  Estimate pull;                          ///< drawbar pull over load, DP/W [-]
   Estimate sinkage_over_radius;           ///< z/r [-]
   double torque_over_load_radius = 0.0;   ///< T/(W r) [-]
   Category category = Category::Unknown;  ///< category of the mean pull and sinkage

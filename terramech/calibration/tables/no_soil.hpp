@@ -39,8 +39,9 @@ UnexplainedColumn unexplained(const SoilAnswer& answer);
 /// Returns true if more than half of the channel and more than 0.1 of load or radius are unexplained.
 bool leavesUnexplained(const SoilAnswer& answer, Channel channel);
 
-/// Reason why no soil explains the rows. Empty if the estimated strength is plausible
-/// (SoilEstimate::implausible()), and the misfit is at most kMisfit or no column is unexplained.
+/// Returns the reason why no soil explains the rows. Returns an empty text if the estimated strength is
+/// plausible (SoilEstimate::implausible()), and either the misfit is at most kMisfit or no column is
+/// unexplained.
 std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer);
 
 }  // namespace talus::terramech

@@ -23,17 +23,18 @@ struct EstimateOptions {
   std::string method;           ///< one of estimateMethods()
   std::string shear_modulus;    ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
   std::string prior;            ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
-  std::string rover;            ///< library name or file; supplies missing wheel dimensions; may be empty
+  std::string rover;            ///< library name or file with default wheel dimensions; may be empty
   std::string model;            ///< wong-reece: refined model whose effects are applied; empty: none
   bool whole_equation = false;  ///< linear-offset: include M1 of Eq. 2.9
   bool recursive = false;       ///< process rows one by one and store each estimate
-  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] without such a column; 0: none
+  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] for a table without a width column; 0:
+                                ///< not given
   double noise = 0.05;          ///< relative standard deviation of each reading [-]
 };
 
 /// Estimate after a row of the table; NaN if not available yet.
 struct RunningSoil {
-  /// No value.
+  /// Marks a value that is not available.
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
   std::size_t line = 0;                                          ///< line of the table
@@ -43,8 +44,8 @@ struct RunningSoil {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
 };
 
-/// options.shear_modulus as a number [m]; nothing if it is not a number. Throws InputError if the number is
-/// not > 0.
+/// Returns options.shear_modulus as a number [m]; nullopt if the text is not a number. Throws InputError if
+/// the number is not > 0.
 std::optional<double> statedModulus(const EstimateOptions& options);
 
 /// Standard deviation of phi [rad] from that of tan(phi), linearised at phi.

@@ -10,7 +10,7 @@ namespace talus::terramech {
 
 /// Tests whether one soil explains all groups of rows. Returns one line with the text column (soil, run, ...)
 /// whose groups deviate from the fit significantly and by at least half a standard deviation of the readings;
-/// empty if there is none.
+/// an empty text without such a column.
 std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& posterior,
                                const ReadingErrors& noise);
 

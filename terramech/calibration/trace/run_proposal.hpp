@@ -18,8 +18,8 @@ struct Cause {
 };
 
 /// The refined model, then the refined model with one effect replaced by a rival. Rivals are the causes that
-/// the rows cannot separate from the effect, or without such causes the candidate with the next greatest
-/// gain. Contains the refined model only if no candidate has a gain.
+/// the rows cannot distinguish from the effect or, without such causes, the candidate with the next greatest
+/// gain. If no candidate has a gain, returns the refined model alone.
 std::vector<Cause> causesOf(const TraceResult& result);
 
 /// A cause's prediction of the mean of a run's rows, in the unit of each answer; NaN for answers that the
@@ -39,10 +39,11 @@ struct ProposedRun {
 };
 
 /// Proposes at most `count` runs, in the order of selection, within the range of the rows. Columns of the
-/// causes and the load take the ends and the middle of their ranges; other columns are as in the middle row.
-/// Each run minimises the sum over pairs of causes of exp(-B), with B the Bhattacharyya distance of their
-/// predictions (bhattacharyya_1943), which bounds the probability of confusing the causes. Predictions
-/// include the errors of sensors, parameters and the error shared by rows of a run.
+/// causes and the load have the values at the ends and in the middle of their ranges; other columns have the
+/// values of the middle row. Each run minimises the sum over pairs of causes of exp(-B), with B the
+/// Bhattacharyya distance of their predictions (bhattacharyya_1943), which bounds the probability of
+/// confusing the causes. Predictions include the errors of sensors, parameters and the error shared by rows
+/// of a run.
 std::vector<ProposedRun> proposeRuns(const TraceResult& result, int count);
 
 /// Score of a cause from measured rows.

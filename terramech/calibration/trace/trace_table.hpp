@@ -27,9 +27,9 @@ struct TableTrace {
   Answer answer;                      ///< conclusion
   Applicability applies;              ///< applicability of the model
   int beyond_axle = 0;                ///< number of rows with z >= r, which were left out
-  ChannelErrors beyond_axle_rmse{};   ///< of the refined model on those rows
+  ChannelErrors beyond_axle_rmse{};   ///< errors of the refined model on those rows
 
-  /// Number of rows that the base was compared with; in a large table more than the number of searched rows.
+  /// Number of rows compared with the base model; exceeds the number of searched rows for a large table.
   int rowsUsed() const { return result.trial.rows() + result.unsearched.rows; }
 
   /// Text of the refined model as a file for loadModel().

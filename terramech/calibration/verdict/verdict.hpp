@@ -22,7 +22,8 @@ struct Answer {
   Verdict verdict = Verdict::NothingMissing;  ///< the conclusion
   Channel channel = Channel::DrawbarPull;     ///< channel whose residual exceeds its floor most
   bool open = false;                          ///< some residual exceeds its floor
-  double rest = 0.0, floor = 0.0;             ///< rms there of the refined model, and of the sensors [-]
+  double rest = 0.0, floor = 0.0;             ///< rms residual of the refined model in `channel`, and rms
+                                              ///< sensor error [-]
   std::string column;                         ///< column over which the residual varies most; may be empty
   double gain = 0.0;                          ///< gain of that column, to compare with TraceResult::threshold
   std::vector<StrainedSensor> strained;       ///< sensors whose error would be far larger than stated
@@ -32,13 +33,13 @@ struct Answer {
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
   std::string unit = "run";  ///< unit of rows that share the error: a run, or a stretch of time
   std::string inapplicable;  ///< reason why the model does not apply; empty if it applies
-  std::string measure;       ///< rows that would discriminate; empty if no residual exceeds its floor
+  std::string measure;       ///< measurements that would discriminate; empty if no residual exceeds its floor
 };
 
-/// Derives the conclusion. The floor is that of the stated sensor errors if the fitted errors would be far
-/// larger; without a statement that of the fitted noise. A residual exceeds its floor if its variance is
-/// larger by more than three standard errors of the variance of as many normal errors. The verdict is
-/// Explained if the found effects carry more than half of the base model's residual above the floor.
+/// Derives the conclusion. The floor is the rms of the fitted noise, or of the stated sensor errors if the
+/// fitted errors are far larger than stated. A residual exceeds its floor if its variance is larger by more
+/// than three standard errors of the variance of the same number of normal errors. The verdict is Explained
+/// if the found effects explain more than half of the base model's residual above the floor.
 Answer answerOf(const TraceResult& result);
 
 /// A soil parameter that the rows moved far from its prior.
@@ -57,9 +58,9 @@ std::vector<std::string> soilAtBounds(const RefinedModel& model);
 /// Names of fitted parameters of an effect at a bound of their range.
 std::vector<std::string> atBounds(const Effect& effect);
 
-/// The refined model with additional error terms for predictions: the error shared by rows of a new run, and
-/// the error of held-out rows in excess of this error and the floor (by three standard errors), which has no
-/// explanation.
+/// Returns the refined model with additional error terms for predictions: the error shared by rows of a new
+/// run, and the unexplained error of held-out rows, i.e. the part that exceeds the shared error and the floor
+/// by three standard errors.
 RefinedModel forPrediction(const TraceResult& result);
 
 }  // namespace talus::terramech
