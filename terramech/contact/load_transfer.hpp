@@ -11,9 +11,9 @@ namespace talus::terramech {
 /// moment of the downhill weight component, at the height h of the centre of mass, transfers load to the
 /// rear:
 ///   N_k = m g cos(alpha) (1/n - tan(alpha) h a_k / sum a^2)
-/// For two axles at distance L the transferred load is the textbook's m g sin(alpha) h / L. No load falls
-/// below 0.1 m g cos(alpha) / n: a wheel that lifts off would drive no more. The other loads are not reduced
-/// for the limit. Returns an empty vector if along_m is empty.
+/// For two axles at distance L the transferred load is m g sin(alpha) h / L. Loads are limited to at least
+/// 0.1 m g cos(alpha) / n, so that no wheel lifts off; the other loads are not reduced to compensate. Returns
+/// an empty vector if along_m is empty.
 std::vector<double> wheelLoads_N(const Rover& rover, double gradient, const std::vector<double>& along_m);
 
 }  // namespace talus::terramech

@@ -4,7 +4,8 @@
 #include <talus/terramech/contact/wheel.hpp>
 
 /// Pneumatic tyre on rigid and on soft ground (thesis C.2.2, C.2.3; wong_2001 chapter 2). The tyre flattens
-/// if the sum of inflation and carcass pressure is below the contact pressure of a rigid wheel.
+/// if inflation pressure p_i plus carcass pressure p_c is below the critical pressure p_cr, the contact
+/// pressure of a rigid wheel.
 namespace talus::terramech {
 
 /// Pneumatic tyre with the outer radius and the width of `wheel`.

@@ -47,7 +47,7 @@ struct RimQuadrature {
   static_assert(Power == 2 || Power == 3);
 };
 using FineRimRule = RimQuadrature<24, 3>;  ///< relative error <= 1e-9 for any n in use
-/// Relative error 1e-6 for driven wheels; for fits, which solve the contact millions of times.
+/// Relative error 1e-6 for driven wheels; for fits, which need millions of contact solutions.
 using QuickRimRule = RimQuadrature<8, 2>;
 using BrakedRimRule = RimQuadrature<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
 
@@ -60,7 +60,7 @@ inline double along(const Tangent& tangent) {
   return tangent.along;
 }
 
-/// Break points of the integral in s, in [0, 1]: both ends and the sign change of the shear displacement.
+/// Break points in s, in [0, 1], of the integral: both ends and the sign change of the shear displacement.
 struct Breaks {
   std::array<double, 3> s{0.0, 1.0, 1.0};
   int count = 2;
@@ -169,14 +169,15 @@ namespace detail {
 /// on logarithms, inside a bracket that rejects overlong steps. Typical cost: 4 to 6 evaluations.
 class EntrySearch {
  public:
-  enum class Status { Searching, Found, Sunk };  ///< Sunk: the load is not carried even at entry angle pi/2
+  enum class Status { Searching, Found, Sunk };  ///< Sunk: the load exceeds the force at entry angle pi/2
 
   explicit EntrySearch(const RimLoad& wanted);
 
   /// Next trial entry angle [rad], in (0, pi/2].
   double entry_rad() const { return entry_; }
 
-  /// Accepts the load [N] at entry_rad(). If the search continues, entry_rad() is the next trial angle.
+  /// Receives the load [N] computed at entry_rad(). While the status is Searching, entry_rad() is the next
+  /// trial angle.
   Status take(double load_N);
 
   /// d log W / d log theta_1 between the last two trials; the initial value before two trials.

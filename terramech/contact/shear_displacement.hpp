@@ -61,8 +61,9 @@ class ShearDisplacement {
     return p_.radius_m * ((p_.entry_angle_rad - theta_rad) - travel_ * (sin_entry_ - std::sin(theta_rad)));
   }
 
-  /// Returns the angle in (lowest_rad, theta_1) at which j changes sign, or NaN if j does not. A sign change
-  /// occurs only for braked or towed wheels: the rim moves ahead of the soil at the entry and lags below.
+  /// Returns the angle in (lowest_rad, theta_1) at which j changes sign; NaN without a sign change. A sign
+  /// change occurs only for braked or towed wheels, whose rim shears the soil backwards at the entry and
+  /// forwards below.
   double signChange_rad(double lowest_rad) const;
 
  private:

@@ -33,9 +33,10 @@ struct Soil {
 
 /// Returns the soil for a lower gravity than that of its tests: c, k_c and k_phi times (g / g_test)^exponent,
 /// and test_gravity_m_s2 = 0. If g >= g_test the soil is returned unchanged. With exponent 1 a rover of the
-/// same mass has the same sinkage and the same DP/W in both gravities. Equal sinkage was measured between 1/6
-/// and 2 times Earth's gravity (kobayashi_2010, wong_kobayashi_2012). Scaling the cohesion is conservative
-/// (ours), because cohesion does not depend on weight. Friction angle and K are not scaled.
+/// same mass has the same sinkage and the same DP/W (drawbar pull over load) in both gravities. Equal sinkage
+/// was measured between 1/6 and 2 times Earth's gravity (kobayashi_2010, wong_kobayashi_2012). Scaling the
+/// cohesion is conservative (ours), because cohesion does not depend on weight. Friction angle and K are not
+/// scaled.
 Soil underGravity(Soil soil, double gravity_m_s2, double exponent = 1.0);
 
 /// Returns k = k_c/b + k_phi [N/m^(n+2)] for a wheel or plate of smaller dimension b = width_m [m] (thesis

@@ -2,9 +2,9 @@
 
 namespace talus::terramech {
 
-/// Smallest and greatest accepted turning radius [m] other than 0. A curve of a smaller radius is no longer
-/// than a turn in place and is not resolved in double precision (a radius of 1e-9 m ended the process). The
-/// greatest radius is above that of any rover; tables grow with the radius.
+/// Smallest and greatest accepted turning radius [m] other than 0. The smallest radius keeps arcs resolvable
+/// in double precision (a radius of 1e-9 m ended the process); smaller radii are practically turns in place.
+/// The greatest radius exceeds that of any rover and limits the size of tables.
 inline constexpr double kSmallestTurn_m = 1e-3;
 inline constexpr double kLargestTurn_m = 1000.0;
 

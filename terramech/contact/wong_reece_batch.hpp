@@ -15,14 +15,14 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
 /// Solves one case with equilibrium() of wong_reece.hpp; throws as that function.
 WheelForces equilibrium(const WheelCase& wheel_case);
 
-/// Returns whether the batch kernel accepts a case: every field in the kernel's range; at slip angle 0 slip
-/// in [0.01, 1].
+/// Returns whether the batch kernel accepts a case: every field must be in the range of the kernel, and at
+/// slip angle 0 the slip must be in [0.01, 1].
 bool isFastCase(const WheelCase& wheel_case);
 
 /// Treatment of a case that the kernel does not solve.
 enum class Leftover {
   Equilibrium,  ///< solved by equilibrium()
-  Nan           ///< set to NaN, for a caller with a solver of its own
+  Nan           ///< set to NaN; the caller solves the case
 };
 
 /// Implementation of a batch. All implementations give identical bits.

@@ -19,13 +19,13 @@ struct Reading {
   double load_N = 0.0;
   double radius_m = 0.0;
   double sinkage_m = 0.0;
-  double dug_m = 0.0;  ///< component of the model's sinkage that a driven wheel excavates; never measured
+  double dug_m = 0.0;  ///< component of the model's sinkage that a driven wheel excavates; not a measurement
   double torque_Nm = 0.0;
   double drawbar_pull_N = 0.0;
   double side_force_N = 0.0;
 
   double denominator(Channel channel) const;      ///< r for sinkage, r W for torque, otherwise W
-  double scaled(Channel channel) const;           ///< DP/W, z/r, T/(rW) or F/W [-]
+  double scaled(Channel channel) const;           ///< ratio DP/W (pull), z/r, T/(rW) or F/W (side force) [-]
   void addScaled(Channel channel, double value);  ///< adds to the scaled channel [-]
 };
 

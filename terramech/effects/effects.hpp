@@ -9,18 +9,18 @@
 #include <talus/terramech/effects/wheel_contact.hpp>
 #include <talus/terramech/effects/wheel_state.hpp>
 
-/// Effects missing in the Wong-Reece model, as composable corrections. Each effect changes the contact before
-/// the equilibrium is solved, or the readings afterwards. Each effect has bounds, formula, source and
-/// signature.
+/// Effects missing in the Wong-Reece model, as composable corrections. An effect changes the contact before
+/// the equilibrium is solved, or the readings afterwards. The library states bounds, formula, source and
+/// signature of each effect.
 namespace talus::terramech {
 
 /// Parameter of an effect.
 struct EffectParameter {
   const char* name;
   const char* unit;    ///< "-" if dimensionless
-  double low, high;    ///< physical bounds, also of a fit
-  double typical;      ///< initial value of a fit, and size in trials of the effect
-  bool fitted = true;  ///< false: set from the data (a first pass, a start time), never fitted
+  double low, high;    ///< physical bounds, which also limit a fit
+  double typical;      ///< initial value of a fit; also the size at which a candidate is tested
+  bool fitted = true;  ///< false: computed from the data (a first pass, a start time) and not fitted
 };
 
 /// Arguments of an effect.
@@ -56,21 +56,21 @@ const EffectForm* findEffect(std::string_view name);
 
 /// Effect of a model: a library form with parameters, or a curve of a measured residual. The curve (name
 /// "empirical") is a natural cubic spline through (knots, parameters), added to one scaled channel and
-/// constant beyond its ends. In channel F/W the curve is multiplied by sin beta, because a mirrored wheel has
-/// the opposite side force and a straight wheel none.
+/// constant beyond its ends. In the channel F/W (side force over load) the curve is multiplied by sin beta,
+/// beta the slip angle: the side force is odd in beta.
 struct Effect {
-  std::string name{};       ///< of a library form, or with the prefix "empirical"
+  std::string name{};       ///< name of a library form, or "empirical..." for a curve
   std::string covariate{};  ///< column on which the effect depends
   Channel channel = Channel::DrawbarPull;
   std::vector<double> parameters{};  ///< library form: its parameters; curve: values at the knots [-]
   /// Ascending [covariate]; library form: none, or the 2 limits to which the covariate is clamped.
   std::vector<double> knots{};
-  std::string only_column{};  ///< name of a grouping column that restricts the effect ...
-  std::string only_value{};   ///< ... to rows with this text; empty: all rows
+  std::string only_column{};  ///< text column that restricts the effect to one group
+  std::string only_value{};   ///< text of that group in `only_column`; empty: all rows
 
-  /// Returns whether the effect is a curve. "empirical" adds to one scaled channel. "empirical_stiffness"
-  /// multiplies k, and any other name with the prefix multiplies c and tan phi, by the exponential of the
-  /// curve; both change every channel.
+  /// Returns whether the effect is a curve. The curve "empirical" is added to one scaled channel. The
+  /// exponential of the curve "empirical_stiffness" multiplies the sinkage modulus k, that of any other curve
+  /// cohesion c and tan phi.
   bool empirical() const { return name.starts_with("empirical"); }
 
   /// Returns the factor on a curve in one channel at this slip angle: sin beta for F/W, otherwise 1.

@@ -54,7 +54,7 @@ struct RefinedModel {
   Soil soil;
   /// Prior means of soilParameters() by field name.
   std::map<std::string, double> soil_prior_mean;
-  /// Prior standard deviations by field name; fields without an entry are exact.
+  /// Prior standard deviations by field name; a field without an entry is exactly known.
   std::map<std::string, double> soil_prior_std;
   std::vector<Effect> effects;  ///< applied in this order
   bool slip_along_travel =

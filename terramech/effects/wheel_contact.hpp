@@ -15,7 +15,7 @@ struct WheelContact {
   double load_N = 0.0;          ///< vertical load > 0
   double slip = 0.0;            ///< along the wheel plane, [-1, 1], defined in shear_displacement.hpp
   double slip_angle_rad = 0.0;  ///< beta, from the wheel plane to the travel direction; 0: no side force
-  double rolling = 1.0;         ///< r omega / v with the full speed v [-], 0 locked; used by effects only
+  double rolling = 1.0;         ///< r omega / v with the full speed v [-], 0 locked; input of effects only
 
   double radius_m = 0.1;        ///< radius of the contact arc, > 0
   double width_m = 0.1;         ///< b > 0
@@ -28,8 +28,8 @@ struct WheelContact {
   double shear_modulus_m = 0.02;  ///< K
   double density_kg_m3 = 1600.0;  ///< for forces that move soil
   double gravity_m_s2 = 9.80665;  ///< for forces that move soil
-  /// Slip sinkage, and digging and side bulldozing at a slip angle, see Soil; an effect that has its own law
-  /// sets the value to 0.
+  /// Slip sinkage, and digging and side bulldozing at a slip angle, see Soil; an effect with another law sets
+  /// the value to 0.
   double slip_sinkage_exponent = 0.0;
   double digging_exponent = 0.0;
   double side_bulldozing = 0.0;
@@ -46,7 +46,8 @@ struct WheelContact {
   double dug_m = 0.0;            ///< along the wheel plane, by lugs
   double ploughed_m = 0.0;       ///< across the wheel plane
   double extra_sinkage_m = 0.0;  ///< by other causes
-  /// Share of dug that lies behind: contact ends at theta_2 for kappa z + rear_fill dug.
+  /// Share of `dug` that refills behind the wheel: contact ends at theta_2 for the depth kappa z + rear_fill
+  /// dug.
   double rear_fill = 0.0;
 
   bool operator==(const WheelContact&) const = default;
@@ -70,9 +71,9 @@ WheelContact contactOf(const Soil& soil, const Wheel& wheel);
 
 /// Returns the forces on the wheel at the sinkage that carries its load. `entry_guess_rad` and `growth` are
 /// initial values of the search, from the ContactForces of a similar contact; 0: default. Digging and side
-/// bulldozing at a slip angle are those of wong_reece.hpp. If the load is not carried with the axle at the
-/// surface, the result is the wheel sunk to its axle with the stress scaled to carry the load, because fits
-/// pass through such points. The entry angle is at most pi/2 at any sinkage. Never throws. Thread-safe.
+/// bulldozing at a slip angle are those of wong_reece.hpp. If the soil cannot carry the load with the axle at
+/// the surface, the result is the wheel sunk to its axle, with the stress scaled to carry the load, because
+/// fits evaluate such soils. The entry angle is at most pi/2 at any sinkage. Never throws. Thread-safe.
 /// Integrals: rimForces();
 ///   tau = (c + sigma tan phi)(1 - e^{-j/K}) along the resultant displacement j = hypot(j_x, j_y),
 /// the friction circle of an isotropic soil (ishigami_2007).

@@ -10,9 +10,9 @@
 #include <talus/terramech/numerics/estimate.hpp>
 
 /// Drawbar pull divided by load, DP/W [-], from readings of load, torque, sinkage (and slip), without soil
-/// parameters (thesis chapter 3). rms error over thesis Table 2.1, noise-free: Eqs. 3.6 and 3.15 0.013, Eq.
-/// 3.21 0.028, ours 0.002. Every function throws std::invalid_argument unless load_N > 0; functions that use
-/// theta_1 also unless 0 <= sinkage_m < 2 r.
+/// parameters (thesis chapter 3). The rms errors over thesis Table 2.1 without noise are 0.013 (Eqs. 3.6 and
+/// 3.15), 0.028 (Eq. 3.21) and 0.002 (ours). Every function throws std::invalid_argument unless load_N > 0;
+/// functions that use theta_1 also unless 0 <= sinkage_m < 2 r.
 namespace talus::terramech {
 
 /// Returns T/(rW) [-].
@@ -22,8 +22,8 @@ double torqueOverLoadRadius(const Wheel& wheel, const WheelSample& sample);
 /// - tan(theta) (thesis Eq. 3.4).
 double pullOfSingleForce(const Wheel& wheel, const WheelSample& sample, double theta_rad);
 
-/// Returns DP/W = T/(rW) - theta_1/2 (thesis Eqs. 3.6 and 3.15; the printed z/r ~ theta_1 is z/r ~
-/// theta_1^2/2).
+/// Returns DP/W = T/(rW) - theta_1/2 (thesis Eqs. 3.6 and 3.15; erratum: the printed z/r ~ theta_1 should be
+/// z/r ~ theta_1^2/2).
 double pullAtSmallAngle(const Wheel& wheel, const WheelSample& sample);
 
 /// Returns DP/W for triangular stresses (thesis Eq. 3.12), simplified to a form that does not cancel at small
@@ -83,8 +83,8 @@ struct PullAngleModel {
 /// Returns DP/W by thesis Eq. 3.4 at the angle of the model (ours). The standard deviation includes the
 /// errors of the readings and of the model. The four coefficients were fitted to Wong-Reece simulations:
 /// soils of thesis Table 2.1, radius 0.05 to 0.25 m, width 0.4 to 1.5 r, slip 0.05 to 0.95, z/r below 0.6,
-/// one half with the thesis' wheel. rms error: 0.002 for the thesis' wheel, 0.003 for the others, 0.007 for
-/// soils far outside Table 2.1.
+/// and half of the simulations with the wheel of the thesis. rms error: 0.002 for the thesis' wheel, 0.003
+/// for the others, 0.007 for soils far outside Table 2.1.
 Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample,
                       const ReadingErrors& noise = ReadingErrors::relative(0.0),
                       const PullAngleModel& model = {});

@@ -3,8 +3,8 @@
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 
-/// True drawbar pull of a base or refined model, without sensor errors (ours). In contrast, predict() returns
-/// the sensor readings.
+/// True drawbar pull of a base or refined model, without sensor errors (ours); predict() returns the readings
+/// with sensor errors.
 namespace talus::terramech {
 
 /// Returns whether an effect changes a sensor reading and leaves the contact unchanged.
@@ -15,7 +15,7 @@ bool isSensorFault(const Effect& effect);
 /// the soil's prior is used as covariance.
 RefinedModel groundTruthOf(const RefinedModel& model);
 
-/// DP/W, z/r and T/(rW) of a wheel.
+/// Drawbar pull DP/W, sinkage z/r and torque T/(rW) of a wheel, as ratios [-].
 struct ModelPull {
   Estimate pull_over_load;
   Estimate sinkage_over_radius;
@@ -27,7 +27,7 @@ struct ModelPull {
 ModelPull pullOf(const RefinedModel& truth, const WheelState& state);
 
 /// Returns the pull at the reference slip, in (0, 1], and at the slip of maximum pull among kForecastSlips.
-/// Slip is an exact input here, without reading error. Throws std::invalid_argument for a reference slip
+/// The slip is an exact input without reading error. Throws std::invalid_argument for a reference slip
 /// outside (0, 1].
 PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, double reference_slip = 0.5);
 

@@ -7,8 +7,8 @@
 
 namespace talus::terramech {
 
-/// Names of the formulas of drawbar_pull.hpp for DP/W from readings: "single-force" (ours, pullOverLoad()),
-/// "small-angle" (thesis Eq. 3.6), "triangular" (Eq. 3.12), "plane" (Eq. 3.21).
+/// Names of the formulas of drawbar_pull.hpp for drawbar pull over load, DP/W, from readings: "single-force"
+/// (ours, pullOverLoad()), "small-angle" (thesis Eq. 3.6), "triangular" (Eq. 3.12), "plane" (Eq. 3.21).
 const std::vector<std::string>& pullFormulas();
 
 /// Returns DP/W [-] by the named formula. The standard deviation includes the errors of the readings and the

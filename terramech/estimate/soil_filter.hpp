@@ -32,7 +32,7 @@ class SoilFilter {
   /// Adds one sample. Throws std::invalid_argument for a sample not of a driven wheel and leaves the filter
   /// unchanged.
   void add(const WheelSample& sample);
-  void add(const WheelReading& reading);  ///< with a wheel of its own
+  void add(const WheelReading& reading);  ///< sample of another wheel
 
   /// Returns the current posterior by importance sampling over the window and the removed samples. Slower
   /// than add(). Throws std::domain_error before the first sample.

@@ -36,12 +36,14 @@ struct CredibleInterval {
 
 /// Posterior of the soil: summary and weighted draws.
 struct SoilPosterior {
-  ContactSoil mean;  ///< mean of c, phi, n, k, K; c1 and c2 of the draw with the largest weight
+  ContactSoil mean;  ///< mean of c, phi, n, k, K (soil_mixture.hpp); c1, c2 of the draw with the largest
+                     ///< weight
   SoilMatrix covariance = SoilMatrix::Zero();                     ///< of (c, phi, n, k, K), SI
   double tan_friction = 0.0;                                      ///< mean of tan(phi) [-]
   Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi)
   /// 95 % of the posterior lie where (x - mean)' strength_covariance^-1 (x - mean) <= ellipse_95, x = (c, tan
-  /// phi). 5.99 for a Gaussian; less if the bounds of a class cut the posterior.
+  /// phi). ellipse_95 is 5.99 for a Gaussian posterior, and less if the bounds of a class truncate the
+  /// posterior.
   double ellipse_95 = 0.0;
   CredibleInterval cohesion_Pa;
   CredibleInterval friction_angle_rad;

@@ -11,7 +11,8 @@
 /// Prior of a soil: a mixture of soil classes.
 namespace talus::terramech {
 
-/// Parameters c, phi, n, k, K, the first five columns of ContactDerivative.
+/// Number of parameters: cohesion c, friction angle phi, sinkage exponent n, sinkage modulus k, shear modulus
+/// K, in the order of the first columns of ContactDerivative.
 inline constexpr int kSoilParameters = 5;
 using SoilVector = Eigen::Matrix<double, kSoilParameters, 1>;
 using SoilMatrix = Eigen::Matrix<double, kSoilParameters, kSoilParameters>;

@@ -19,11 +19,11 @@ struct SampleMisfit {
   Eigen::Vector2d residual;                              ///< S^-1/2 ((W, T) - f)
   Eigen::Matrix<double, 2, kSoilParameters> derivative;  ///< of -residual by y
   double cost = 0.0;                                     ///< -log p, up to a constant
-  double weight = 1.0;  ///< weight in Gauss-Newton: derivative of the robust loss
+  double weight = 1.0;  ///< derivative of the robust loss, the weight in Gauss-Newton
 };
 
-/// Quadratic expansion of -log likelihood about a point: cost + gradient (y - at) + (y - at)' information (y
-/// - at) / 2. All zero without samples.
+/// Quadratic expansion of -log likelihood about a point `at`: cost + gradient (y - at) + (y - at)'
+/// information (y - at) / 2. Without samples all terms are 0.
 struct SoilQuadratic {
   SoilVector at = SoilVector::Zero();
   double cost = 0.0;
@@ -73,8 +73,8 @@ class SoilObjective {
   /// corrected by those of W and T.
   ContactState likelyState(const ContactSoil& soil, const WheelReading& reading) const;
 
-  /// Returns the objective without outliers, to search an initial value far from the mode: there every sample
-  /// looks like an outlier and the robust loss is flat.
+  /// Returns the objective with outlier_share = 0, for the search of an initial value: far from the mode the
+  /// residual of every sample is that of an outlier, and the robust loss is flat.
   SoilObjective trusting() const {
     return {*soil_, {setting_.noise, 0.0, setting_.population, setting_.watch}};
   }

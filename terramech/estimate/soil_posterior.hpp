@@ -6,9 +6,9 @@
 
 /// Bayesian estimate of the soil under a wheel with the complete Wong-Reece contact (ours).
 ///
-/// Every reading has an error, z and i as well as W and T. Given a soil, the (z, i) of a sample predict (W,
-/// T). The errors of z and i propagate through the derivative J_s of the contact, so that the residual e =
-/// (W, T) - f(soil; z, i) has the covariance
+/// Every reading (load W, torque T, sinkage z, slip i) has an error. Given a soil, the (z, i) of a sample
+/// predict (W, T). The errors of z and i propagate through the derivative J_s of the contact, so that the
+/// residual e = (W, T) - f(soil; z, i) has the covariance
 ///     S = diag(s_W^2, s_T^2) + J_s diag(s_z^2, s_i^2) J_s'
 /// A fraction of outliers has ten times the standard deviation. The vehicle determines load and slip, the
 /// soil determines sinkage and torque; the prior is therefore uniform in log W, not in log z, and each sample
@@ -19,7 +19,7 @@
 namespace talus::terramech {
 
 /// Returns the squared Mahalanobis distance of a soil from the mean in (c, tan phi), to compare with
-/// ellipse_95. A component without posterior variance does not count.
+/// ellipse_95. A component without posterior variance is omitted.
 double strengthDistance(const SoilPosterior& posterior, const ContactSoil& soil);
 
 /// Returns the posterior of the soil. Throws std::domain_error without samples or classes, or if no soil of

@@ -4,9 +4,8 @@
 #include <talus/terramech/numerics/estimate.hpp>
 
 /// Distribution of the true loads and slips of a drive, estimated from the readings (ours: empirical Bayes).
-/// A reading far from all others is probably a large error. Without the distribution the scatter of the
-/// errors is mistaken for that of the true values, and the estimate is biased, the more confidently the more
-/// rows there are.
+/// A reading far from all others probably has a large error. Without the distribution, the scatter of the
+/// errors would count as scatter of the true values and bias the estimate, independent of the number of rows.
 namespace talus::terramech {
 
 /// Gaussian distribution of the true ln W and of the true slip, updated by one reading at a time in constant

@@ -32,9 +32,9 @@ struct TableFile {
   std::vector<MappedColumn> columns{};  ///< columns with another name or unit in the file
   std::vector<std::pair<std::string, double>>
       constants{};                  ///< columns missing in the file, with the same value in each row
-  std::vector<std::string> also{};  ///< columns known to the caller in addition to those of telemetry
-  /// Receives one sentence for each change to a column. If set, a known column in another unit (`sinkage_mm`)
-  /// is converted; if empty, such a column is an error.
+  std::vector<std::string> also{};  ///< additional columns known to the caller
+  /// Callback with one sentence for each change to a column. With a callback, a known column in another unit
+  /// (`sinkage_mm`) is converted; without a callback, such a column is an error.
   std::function<void(const std::string&)> note{};
 };
 

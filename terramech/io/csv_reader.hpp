@@ -21,9 +21,9 @@ struct CsvRow {
 };
 
 /// Streams a CSV file with a header row through libcsv, 64 KiB at a time. Skips blank lines and UTF-8 byte
-/// order marks; accepts LF, CRLF and CR. Fields are separated by commas, or by semicolons or tabs if the
-/// header has more of them; numbers may then have a decimal comma. Columns have the names and units that the
-/// TableFile requests. Not copyable; use from one thread.
+/// order marks; accepts LF, CRLF and CR. The separator is the most frequent of comma, semicolon and tab in
+/// the header; with semicolons or tabs, numbers may have a decimal comma. Columns have the names and units
+/// that the TableFile requests. Not copyable; not thread-safe.
 class CsvReader {
  public:
   /// Throws InputError if the file cannot be read, is not text, has no header or more than 1000 columns, a

@@ -44,7 +44,7 @@ struct TrainedRange {
 /// Range in which the corrections of a refined model are applied.
 struct ModelScope {
   std::vector<TrainedRange> trained;  ///< ranges of the rows of the fit; empty: unknown
-  std::optional<RefinedModel> base;   ///< model without corrections; empty: nothing to revert
+  std::optional<RefinedModel> base;   ///< model without corrections; nullopt: the model has no corrections
   /// Channels whose corrections held-out rows confirmed.
   std::array<bool, kChannels> kept{true, true, true, true};
 

@@ -12,7 +12,7 @@
 /// A soil file is a mapping of the fields of Soil (name, cohesion_Pa, friction_angle_rad, sinkage_exponent,
 /// cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2, density_kg_m3, slip_sinkage_exponent,
 /// test_gravity_m_s2, digging_exponent, side_bulldozing), bare or under `soil:`. Every field is a number; all
-/// except name and test_gravity_m_s2 may be {mean: M, std: S}. A list under `soils:` holds several soils,
+/// except name and test_gravity_m_s2 may be {mean: M, std: S}. A list under `soils:` contains several soils,
 /// selected by PATH#NAME. A rover file is a mapping of the fields of Rover, bare or under `rover:`. Units and
 /// checks: yaml_fields.hpp.
 namespace talus::terramech {

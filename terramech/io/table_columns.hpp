@@ -19,8 +19,8 @@ class TableColumns {
 
   const std::vector<std::string>& header() const noexcept { return header_; }
 
-  /// Converts the numbers of a row and appends the constants. If `whole`, fields beyond the header are blank
-  /// and are removed first.
+  /// Converts the numbers of a row and appends the constants. With `whole`, blank fields beyond the header
+  /// are removed first.
   void apply(std::vector<std::string>& fields, bool whole) const;
 
  private:

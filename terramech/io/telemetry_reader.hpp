@@ -20,12 +20,12 @@ struct TelemetryOptions {
 };
 
 /// Reads a telemetry CSV with a header row, columns in any order; format: CsvReader. Empty fields are missing
-/// values. A row is left out, with line and reason in Telemetry::rejected, if a known column holds text, NaN,
-/// infinity or a value outside its range (load <= 0, sinkage outside [0, 2r), slip outside [-1, 1], ...), if
-/// a required field is empty, or if the row has a wrong number of fields. In unknown columns NaN is a missing
-/// value. Memory holds the columns, never the whole file. Throws InputError if the file cannot be read, has
-/// no header, has a column twice or in another unit or spelling (column_units.hpp), lacks a required column,
-/// or has no usable row.
+/// values. A row is left out, with line and reason in Telemetry::rejected, if a known column contains text,
+/// NaN, infinity or a value outside its range (load <= 0, sinkage outside [0, 2r), slip outside [-1, 1],
+/// ...), if a required field is empty, or if the row has a wrong number of fields. In unknown columns NaN is
+/// a missing value. The columns are kept in memory, not the text of the file. Throws InputError if the file
+/// cannot be read, has no header, has a column twice or in another unit or spelling (column_units.hpp), lacks
+/// a required column, or has no usable row.
 Telemetry readTelemetry(const TableFile& table, const TelemetryOptions& options = {},
                         const ProgressMonitor& watch = {});
 

@@ -13,7 +13,7 @@ namespace talus::terramech {
 /// Rows of wheel telemetry that are usable by an estimator, and rejected rows.
 struct WheelRows {
   std::string source;     ///< file name
-  Wheel wheel;            ///< wheel of the first row, which all rows have if one_wheel is true
+  Wheel wheel;            ///< wheel of the first row; of all rows if one_wheel is true
   bool one_wheel = true;  ///< false: wheels of several sizes
   std::vector<WheelSample> samples;
   std::vector<Wheel> wheels;            ///< one per sample

@@ -5,7 +5,7 @@
 /// Traversability categories of the ground under a wheel (thesis 3.5).
 namespace talus::terramech {
 
-/// Traversability category, best first. Unknown: no category for lack of data.
+/// Traversability category, best first. Unknown: the data are insufficient for a category.
 enum class Category { Safe, Marginal, Dangerous, Unknown };
 
 /// Returns "safe", "marginal", "dangerous" or "unknown".
@@ -49,8 +49,8 @@ void validate(const CategoryThresholds& thresholds);
 
 /// Returns the category by the rule of thesis 3.5, with its strict inequalities: DP/W < dp_low dangerous, >
 /// dp_high safe, otherwise marginal; z > critical dangerous, z < threshold no change, otherwise one level
-/// down; torque likewise. Levels lost to sinkage and to torque add up (open in the thesis). Unknown if a
-/// given number is NaN.
+/// down; torque likewise. The level reductions by sinkage and by torque are added (not specified in the
+/// thesis). The category is Unknown if a given number is NaN.
 Category categorise(const WheelCondition& condition, const CategoryThresholds& thresholds);
 
 }  // namespace talus::terramech

@@ -17,8 +17,8 @@ struct ConditionEstimate {
 /// Probabilities of Safe, Marginal and Dangerous, with sum 1.
 using CategoryProbability = std::array<double, 3>;
 
-/// Returns the probability of each category of categorise() (future work in the thesis, there by fuzzy sets).
-/// Error below 1e-6 for |correlation| <= 0.999. Throws std::invalid_argument if DP/W, z/r, a standard
+/// Returns the probability of each category of categorise() (ours; the thesis proposes fuzzy sets as future
+/// work). Error below 1e-6 for |correlation| <= 0.999. Throws std::invalid_argument if DP/W, z/r, a standard
 /// deviation, the correlation or a limit is outside its range or NaN.
 CategoryProbability categoryProbability(const ConditionEstimate& belief,
                                         const CategoryThresholds& thresholds);

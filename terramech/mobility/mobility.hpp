@@ -21,7 +21,7 @@ struct MobilityState {
   double slip = 0.0;       ///< driven in [0, 1], braked in [-1, 0)
   double sinkage_m = 0.0;  ///< of each wheel; of the first axle if axles differ
   double torque_Nm = 0.0;  ///< of each wheel; the mean if axles differ; negative when braking
-  /// Energy of all wheels and hotel power per metre along the surface; braking recovers none.
+  /// Energy of all wheels and hotel power per metre along the surface; braking recovers no energy.
   double energy_J_per_m = 0.0;
   double speed_mps = 0.0;  ///< travel speed along the surface
   /// Drawbar-pull margin over load [-]: the smaller of DP/N at the reference slip minus tan(slope), and
@@ -39,7 +39,7 @@ struct MobilityReference {
   double torque_over_load_radius = 0.0;  ///< T/(rW) [-]
 };
 
-struct MobilitySolver;  ///< Private: source of the forces of a curve.
+struct MobilitySolver;  ///< Private: computes the forces of a curve.
 
 /// Slip, sinkage, torque, energy and speed as functions of the slope along the heading, for one soil and one
 /// rover in its own gravity. On a slope alpha each of the equal wheels carries W cos(alpha) and needs the
@@ -54,8 +54,8 @@ class MobilityCurve {
 
   /// Curve of a model with effects. Sensor errors are ignored; effects with unknown covariates (a dust index,
   /// a session) do not act. Known covariates are slope, speed, rim speed (the rover's maximum) and the pass
-  /// of each axle. With an effect of passes the axles are solved separately under equal loads, and their
-  /// pulls and torques averaged. If the pull falls with slip, the lower slip is used, so that the table stays
+  /// of each axle. With a multipass effect each axle is solved separately under an equal load, and the pulls
+  /// and torques are averaged. If the pull falls with slip, the lower slip is used, so that the table is
   /// monotone. Throws std::invalid_argument as above, and for the base linear-formula, which needs a measured
   /// torque.
   MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options = {});
@@ -64,8 +64,8 @@ class MobilityCurve {
   /// slip, sinkage, torque, speed and energy are those of the nearest one, and `feasible` is false.
   MobilityState at(double slope_rad) const noexcept;
 
-  /// Steepest slopes [rad] with a steady drive, uphill (> 0 on firm soil) and downhill, without
-  /// the torque limit. max < min if the soil cannot carry the wheel.
+  /// Steepest slopes [rad] on which a constant speed is possible, uphill (> 0 on firm soil) and downhill,
+  /// without the torque limit; max < min if the soil cannot carry the wheel.
   double maxSlope_rad() const noexcept { return max_slope_rad_; }
   double minSlope_rad() const noexcept { return min_slope_rad_; }
 

@@ -14,8 +14,8 @@ struct Planar {
 };
 
 /// Loads of the wheels of a rover on a plane. Wheels are in pairs on axles evenly spaced over the wheelbase.
-/// The loads have the least sum of squares, as with a load-equalising suspension; for two axles N = m g
-/// cos(alpha) (1/4 +- ...), the textbook's load transfer in pitch and roll. Immutable; thread-safe.
+/// The loads have the least sum of squares, as with a load-equalising suspension; for two axles this is the
+/// usual load transfer in pitch and roll. Immutable; thread-safe.
 class RoverStance {
  public:
   static constexpr int kMostWheels = 12;

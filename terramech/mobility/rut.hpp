@@ -6,8 +6,8 @@ namespace talus::terramech {
 
 /// Stiffness of soil on reloading by a driven wheel, relative to the first loading [-] (ours, number
 /// unverified). Reloaded by a plate, soil is some tens of times stiffer (wong_2001, response to repetitive
-/// loading), but a slipping wheel continues to dig. The second wheel is known to have about half the
-/// resistance of the first, which grows with the root of the sinkage.
+/// loading), but a slipping wheel continues to dig. The resistance of the second wheel is about half that of
+/// the first; the resistance grows with the root of the sinkage.
 inline constexpr double kReloadStiffness = 4.0;
 
 /// Divisor of the shear modulus K on reloading [-]. Compacted soil has a smaller K (in senatore_sandu_2011 K

@@ -25,10 +25,11 @@ Planar demandOf(const Gradient& gradient) noexcept;
 
 /// Options of an equilibrium.
 struct SlopeOptions {
-  double max_slip = 0.8;  ///< above this slip: immobilised; (0, 1], as MobilityOptions::max_slip (ours)
+  double max_slip = 0.8;  ///< slip above which the rover is immobilised; (0, 1], as MobilityOptions::max_slip
+                          ///< (ours)
   double max_slip_angle_rad =
-      /// Above this slip angle: sliding; (0, 1.04]. The wheel model was compared with data up to 45 deg
-      /// (ours).
+      /// Slip angle above which the rover slides; (0, 1.04]. The wheel model was compared with data up to 45
+      /// deg (ours).
       0.7854;
 };
 
@@ -50,7 +51,8 @@ const char* name(SlopeFailure failure);
 struct SlopeState {
   SlopeFailure failure = SlopeFailure::None;
   SlopeFailure grip =
-      SlopeFailure::None;  ///< failure without tip-over; loads are limited to those shortly before tip-over
+      SlopeFailure::None;  ///< failure other than tip-over; loads are limited to those shortly before
+                           ///< tip-over
   double stability_margin_rad = 0.0;  ///< RoverStance::stabilityMargin_rad() at the body's angle on the plane
   double slip = 0.0;                  ///< along the wheel planes; skid rover: mean of left and right
   double slip_angle_rad =
@@ -63,12 +65,13 @@ struct SlopeState {
   double sinkage_m = 0.0;             ///< of the deepest wheel
   double torque_Nm = 0.0;             ///< largest in magnitude of all wheels, signed
   double side_force_over_load = 0.0;  ///< largest |F|/N of a wheel
-  double energy_J_per_m = 0.0;  ///< all wheels and hotel power, per metre of travel; braking recovers none
+  double energy_J_per_m = 0.0;  ///< all wheels and hotel power, per metre of travel; braking recovers no
+                                ///< energy
   double speed_mps = 0.0;       ///< travel speed at maximum rim speed
   double pull_reserve =
-      0.0;  ///< [-] possible change of the demand along, up or down, at the same slip angle; < 0: fails
+      0.0;  ///< change of the demand along, up or down, until failure at the same slip angle [-]; < 0: failed
   double side_reserve =
-      0.0;  ///< [-] possible increase of the demand across at the same demand along; < 0: fails
+      0.0;  ///< increase of the demand across until failure at the same demand along [-]; < 0: failed
 
   /// Returns whether there is an equilibrium without failure.
   bool holds() const { return failure == SlopeFailure::None; }
@@ -105,7 +108,7 @@ class SlopeEquilibrium {
   /// Returns the steady motion over a plane, or the reason of failure.
   SlopeState at(const Gradient& gradient) const noexcept;
 
-  /// Returns each wheel of a state that holds, front to rear, left before right.
+  /// Returns each wheel of a state without failure, front to rear, left before right.
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
 
   /// Returns one wheel under its even load on level ground; slip in [-1, 1], slip angle within 60 deg.
@@ -124,8 +127,8 @@ class SlopeEquilibrium {
   std::shared_ptr<const Solver> solver_;
 };
 
-/// Returns the assumptions made for missing values of a rover file, one sentence each; empty if none is
-/// missing.
+/// Returns the assumptions made for missing values of a rover file, one sentence each; empty for a complete
+/// file.
 std::vector<std::string> slopeAssumptions(const Rover& rover);
 
 }  // namespace talus::terramech

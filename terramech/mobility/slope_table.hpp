@@ -10,14 +10,14 @@ namespace talus::terramech {
 struct SlopeTableOptions {
   SlopeOptions slope;
   double step = 0.03;          ///< node spacing, rise over run, [1e-3, 0.5]
-  double max_gradient = 0.75;  ///< in both directions, [step, 2]; beyond it every state fails
+  double max_gradient = 0.75;  ///< in both directions, [step, 2]; steeper gradients fail
 };
 
 /// Equilibria of one ground and rover, tabulated over the gradients along and across, for cost functions. A
-/// state between nodes holds only if all four surrounding nodes hold. The table therefore rejects less than
-/// one step of gradient that would hold, and accepts no failing gradient except inside a cell with four
-/// holding corners. Numbers are interpolated; the failure is that of the first failing corner; `grip` is not
-/// tabulated. Immutable; thread-safe.
+/// state between nodes is an equilibrium only if all four surrounding nodes are. The table therefore rejects
+/// feasible gradients within less than one step of the limit, and accepts an infeasible gradient only between
+/// four feasible nodes. Numbers are interpolated; the failure is that of the first failing corner; `grip` is
+/// not tabulated. Immutable; thread-safe.
 class SlopeTable {
  public:
   /// Throws std::invalid_argument if an option is outside its range.

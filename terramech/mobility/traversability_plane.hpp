@@ -7,7 +7,7 @@
 
 namespace talus::terramech {
 
-/// Raster of categories over (T/(rW), z/r), as thesis Fig. 3.12.
+/// Raster of categories over torque T/(rW) and sinkage z/r, as thesis Fig. 3.12.
 struct TraversabilityPlane {
   double max_torque = 1.0;         ///< T/(rW) at the right edge [-]; the left edge is 0
   double max_sinkage = 1.0;        ///< z/r at the upper edge [-]; the lower edge is 0
@@ -41,8 +41,8 @@ struct PlaneSize {
 TraversabilityPlane traversabilityPlane(const PullFromTorqueAndSinkage& pull,
                                         const CategoryThresholds& thresholds, const PlaneSize& size = {});
 
-/// Returns T/(rW) at which DP/W reaches a threshold at z/r, by bisection in [0, max_torque]; NaN if there is
-/// no crossing. The slanted lines of the figure.
+/// Returns T/(rW) at which DP/W reaches a threshold at z/r, by bisection in [0, max_torque]; NaN without a
+/// crossing. These are the slanted lines of thesis Fig. 3.12.
 double torqueForPull(const PullFromTorqueAndSinkage& pull, double pull_threshold, double sinkage_over_radius,
                      double max_torque);
 

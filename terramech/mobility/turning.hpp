@@ -26,18 +26,18 @@ struct TurnEfforts {
 
 /// Returns the bulldozing force [N] on the side of a wheel dragged sideways, (rho g z^2 K_p / 2 + 2 c z
 /// sqrt(K_p)) l, with Rankine's passive earth pressure K_p = tan^2(pi/4 + phi/2) and the chord l = 2 sqrt(2 r
-/// z - z^2) of the wheel at the surface. Ours; the full depth z instead of the mean depth makes it
+/// z - z^2) of the wheel at the surface. Ours; the use of the full depth z instead of the mean depth is
 /// conservative.
 double bulldozing_N(const Soil& soil, const Rover& rover, double sinkage_m) noexcept;
 
 /// Returns the efforts of a turn for a rover with evenly spaced wheels in two rows. Energy by Steering:
 ///   Skid:                sum_k (mu N_k + B) |x_k|   each axle is dragged sideways through |x_k| (wong_2001,
-///                                                   ch. 6, for wheels), on an arc and in place; in place
-///                                                   the rows also roll against each other, R_m b / 2
+///                                                   ch. 6, for wheels), on an arc and in place; in place,
+///                                                   rolling adds R_m b / 2
 ///   Ackermann, AllWheel: R_m mean rho_k in place    each wheel rolls on a circle of radius rho_k about the
-///                                                   centre; nothing on an arc
-/// Time per radian: no wheel exceeds max_speed_mps, so that the outer row needs (b/2) / v more on an arc, and
-/// a turn in place takes max rho_k / v (Skid: (b/2) / v). Hotel power is consumed during that time.
+///                                                   centre; 0 on an arc
+/// Time per radian, with no wheel above v = max_speed_mps: (b/2) / v in addition on an arc, because of the
+/// outer row; max rho_k / v in place (Skid: (b/2) / v). Hotel power is consumed during that time.
 TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcept;
 
 }  // namespace talus::terramech

@@ -5,11 +5,11 @@
 /// Elementary functions of one double or of four doubles at once, with identical bits in each lane: every
 /// lane executes the same additions and multiplications in the same order, without tables and without
 /// contraction. Private to the batch kernels, which inline the functions for their own target. The accuracy
-/// suffices for wheel forces to 1e-7, not to the last bit. Arguments outside the stated range give a finite,
-/// meaningless result and never trap.
+/// suffices for wheel forces to 1e-7, but is below double precision. Results for arguments outside the stated
+/// range are finite and undefined; no argument traps.
 namespace talus::terramech::lanes {
 
-/// Four doubles, in one vector register where the machine has one.
+/// Four doubles, in one vector register if the machine supports this.
 using Four = double __attribute__((vector_size(32)));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
 

@@ -27,7 +27,7 @@ Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
     const double value = f(rung(i));
     if (value < best.value) best = {rung(i), value}, index = i;
   }
-  // 26 bits are half of a double's precision: closer to the minimum a smooth f is constant within rounding.
+  // 26 bits are half of a double's precision: nearer to the minimum, a smooth f is constant within rounding.
   const auto [at, value] = boost::math::tools::brent_find_minima(
       std::forward<F>(f), rung(std::max(0, index - 1)), rung(std::min(rungs - 1, index + 1)), 26);
   const Minimum refined{at, value};

@@ -5,8 +5,8 @@
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
 /// Wheel method of Iagnemma: triangular stresses, theta_m = theta_1/2 (thesis App. B.3; iagnemma_2002). The
-/// method over-estimates the cohesion of cohesive soil, by about 5 kPa on clay of 6 kPa, noise-free; see
-/// linear_offset.hpp.
+/// method over-estimates the cohesion of cohesive soil: without noise, by about 5 kPa on clay of 6 kPa;
+/// linear_offset.hpp has the corrected method.
 namespace talus::terramech {
 
 /// Peak stresses of the triangular distributions [Pa].

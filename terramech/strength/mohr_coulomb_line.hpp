@@ -16,7 +16,7 @@ struct StressPair {
 
 /// Cohesion and friction with their covariance, and the parameters that are not identifiable.
 struct ShearStrength {
-  double cohesion_Pa = 0.0;   ///< c; negative values, which indicate an error of the method, are not clipped
+  double cohesion_Pa = 0.0;   ///< c; not clipped; a negative value indicates an error of the method
   double tan_friction = 0.0;  ///< tan(phi) [-]
   /// Covariance of (c [Pa], tan phi [-]) from the residuals: [Pa^2, Pa; Pa, -]. NaN with fewer than three
   /// samples.
@@ -35,8 +35,8 @@ struct ShearStrength {
 /// Recursive least squares of shear = c + normal tan(phi) (thesis Eqs. 2.13 to 2.16, B.9 to B.12, A.2).
 ///
 /// Constant memory: count, means and central second moments (Welford). The result equals the batch solution
-/// within rounding; the normal equations as printed lose accuracy for almost equal stresses. A value type;
-/// const is thread-safe.
+/// within rounding; the normal equations as printed lose accuracy for almost equal stresses. Copyable; const
+/// members are thread-safe.
 class MohrCoulombLine {
  public:
   /// Adds one sample in constant time. The weight [-], > 0, is the inverse of the relative variance of the

@@ -7,9 +7,9 @@
 #include <talus/terramech/contact/wheel_sample.hpp>
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
-/// Shear deformation modulus K from wheel readings (thesis App. D). Bias over Table 2.1: the minimum of D.1
-/// is 0.8 K noise-free and 0.65 K at 5 % noise; D.8 as printed gives 0.5 to 0.6 K. If the watch stops a
-/// search, the returned K is meaningless.
+/// Shear deformation modulus K from wheel readings (thesis App. D). Mean ratio of estimate to true K over
+/// thesis Table 2.1: 0.8 for D.1 without noise, 0.65 for D.1 with 5 % noise, 0.5 to 0.6 for D.8 as printed.
+/// If the watch stops a search, the returned K is meaningless.
 namespace talus::terramech {
 
 /// Search range of K [m], 0 < low_m < high_m.

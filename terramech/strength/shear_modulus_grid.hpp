@@ -24,8 +24,8 @@ inline StressPair linearOffsetPair(const Wheel& wheel, const WheelSample& sample
 }
 
 /// Recursive estimate of K, c and tan(phi). For each K of a fixed grid the object stores the sums for the
-/// criterion and for the linear method, so that memory and time per sample are constant. A value type; const
-/// is thread-safe.
+/// criterion and for the linear method, so that memory and time per sample are constant. Copyable; const
+/// members are thread-safe.
 class ShearModulusGrid {
  public:
   struct Options {
@@ -52,7 +52,7 @@ class ShearModulusGrid {
   std::size_t samples() const { return count_; }
 
  private:
-  // Spacing 28 %: with the parabola a finer grid is slower and no more accurate.
+  // 17 values have a spacing of 28 %; with the parabola, a finer grid is slower and no more accurate.
   static constexpr std::size_t kValues = 17;
 
   struct GridValue {
