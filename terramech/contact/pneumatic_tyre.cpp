@@ -41,8 +41,7 @@ double integral(double a, double b, const Function& f) {
   return sum * (b - a);
 }
 
-/// Tyre flattened over flat_length_m at depth z_0; in front of the flat the tyre is a circular arc up to the
-/// surface.
+/// Tyre with a flat of flat_length_m at depth z_0, and a circular arc in front of the flat up to the surface.
 class FlattenedTyre {
  public:
   FlattenedTyre(const Tyre& tyre, const Soil& soil, double slip, double deflection_m)

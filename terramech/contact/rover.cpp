@@ -26,7 +26,7 @@ void validate(const Rover& rover) {
   check.above("track_m", rover.track_m, 0.0);
   check.above("clearance_m", rover.clearance_m, 0.0);
   check.atLeast("centre_of_mass_height_m", rover.centre_of_mass_height_m, 0.0);
-  // With the centre of mass outside the wheels the rover would tip.
+  // A rover with the centre of mass outside the wheels would tip.
   const double most_ahead = 0.499 * rover.wheelbase_m, most_left = 0.499 * rover.track_m;
   check.within("centre_of_mass_ahead_m", rover.centre_of_mass_ahead_m, {-most_ahead, most_ahead});
   check.within("centre_of_mass_left_m", rover.centre_of_mass_left_m, {-most_left, most_left});
@@ -37,7 +37,8 @@ void validate(const Rover& rover) {
   check.above("max_torque_Nm", rover.max_torque_Nm, 0.0);
   check.above("max_speed_mps", rover.max_speed_mps, 0.0);
   check.atLeast("hotel_power_W", rover.hotel_power_W, 0.0);
-  // Outside these limits a value is a unit error, and the footprint would be no usable number of grid cells.
+  // A value outside these limits is assumed to have a wrong unit; a footprint of that size is not usable on a
+  // grid.
   check.within("mass_kg", rover.mass_kg, {0.1, 1e6});
   check.within("gravity_m_s2", rover.gravity_m_s2, {1e-4, 1e3});
   check.within("wheels.count", rover.wheel_count, {2.0, 100.0});
@@ -49,8 +50,8 @@ void validate(const Rover& rover) {
   check.within("max_torque_Nm", rover.max_torque_Nm, {0.0, 1e6});
   check.within("max_speed_mps", rover.max_speed_mps, {1e-4, 100.0});
   check.within("hotel_power_W", rover.hotel_power_W, {0.0, 1e6});
-  // A clearance above the larger of length and width is a unit error; steps and rocks would pass undetected
-  // below the belly.
+  // A clearance above the larger of length and width is assumed to have a wrong unit; steps and rocks would
+  // not be detected as hazards.
   check.within("clearance_m", rover.clearance_m, {1e-3, std::max(rover.wheelbase_m, rover.track_m)});
 }
 

@@ -153,7 +153,7 @@ std::vector<RimStress> stressDistribution(const Soil& soil, const Wheel& wheel,
   std::vector<RimStress> stresses;
   for (int k = 0; k < count; ++k) {
     const double theta = exit + (entry - exit) * k / (count - 1.0);
-    // In the rear half: the angle in front of the peak with the same stress (C.3).
+    // Angle in front of the peak with the same stress, for a point in the rear half (C.3).
     const double mirrored = theta >= peak ? theta : entry - (entry - peak) * (theta - exit) / (peak - exit);
     const double depth = wheel.radius_m * (std::cos(mirrored) - std::cos(entry));
     const double sigma = law.pressure_Pa(depth > 0.0 ? depth : 0.0);

@@ -67,8 +67,8 @@ WheelForces general(const WheelCase& c, Leftover leftover) {
 /// Flags of the up to four cases that a group solves.
 using Taken = std::array<bool, kLanes>;
 
-/// Solves the flagged cases and clears the flag of each case left unsolved. Unused lanes hold copies of the
-/// first flagged case.
+/// Solves the flagged cases and clears the flag of each case left unsolved. Unused lanes contain copies of
+/// the first flagged case.
 void solveTaken(std::span<const WheelCase> cases, std::span<WheelForces> forces, Group group, Taken& taken) {
   const auto first = std::find(taken.begin(), taken.end(), true);
   if (first == taken.end()) return;

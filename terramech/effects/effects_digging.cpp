@@ -3,7 +3,7 @@
 
 #include <talus/terramech/effects/effects.hpp>
 
-/// Effects by which a wheel sinks deeper than under its load alone; z0 is the sinkage under the load alone.
+/// Effects that increase the sinkage of a wheel above z0, the sinkage under the load alone.
 namespace talus::terramech::detail {
 namespace {
 

@@ -71,7 +71,7 @@ FaceForces faceForces(const WheelContact& c, double z, double slip_angle_rad, do
   return {push, -tan_wall * push * along / slide};
 }
 
-/// Switches off the base model's side bulldozing, because the effect has a law of its own.
+/// Switches off the side bulldozing of the base model, which the effect replaces.
 void noBaseBulldozing(Input, WheelContact& c) {
   c.side_bulldozing = 0.0;
 }
@@ -122,7 +122,7 @@ std::vector<EffectForm> bulldozing() {
   };
 }
 
-/// Bulldozing of a wheel that may also dig, brake or slide sideways.
+/// Returns the forms of bulldozing by a wheel that may also dig, brake or slide sideways.
 std::vector<EffectForm> pushing() {
   return {
       {.name = "bulldozing_ahead",

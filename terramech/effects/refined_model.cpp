@@ -87,8 +87,8 @@ WheelContact Bound::contact(const WheelState& state) const {
   contact.rolling = rolling(state, model_.slip_along_travel);
   for (const BoundEffect& e : effects_) {
     if (!applies(*e.effect, state)) continue;
-    // The sinkage is not solved yet, so 0 is passed as sinkage_m. Effects that change the contact must not
-    // depend on the sinkage.
+    // The sinkage is not known before the solution; effects that change the contact must not depend on the
+    // sinkage, and 0 is passed.
     const double x = covariateOf(*e.effect, state, 0.0);
     if (!std::isfinite(x)) continue;
     if (!e.form) {
@@ -180,7 +180,7 @@ RefinedModel withoutSensors(RefinedModel model) {
     const EffectForm* form = findEffect(e.name);
     return form && form->of_sensor;
   });
-  model.fitted.clear();  // holds indices of the removed effects
+  model.fitted.clear();  // would contain indices of removed effects
   model.covariance.clear();
   return model;
 }

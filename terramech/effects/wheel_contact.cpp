@@ -88,8 +88,8 @@ std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess, doubl
   return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return sideways(c, entry); });
 }
 
-/// Forces at an entry angle. A braked rim slides far, so that its shear stress rises steeply at the entry and
-/// needs the finer rule.
+/// Forces at an entry angle. The shear stress of a braked rim, with long displacements, rises steeply at the
+/// entry and needs the finer rule.
 RimForces forcesAt(const WheelContact& c, double entry, double pressure_scale) {
   return c.slip < 0.0 ? forcesBy<BrakedRimRule>(c, entry, pressure_scale)
                       : forcesBy<QuickRimRule>(c, entry, pressure_scale);

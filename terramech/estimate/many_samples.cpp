@@ -16,10 +16,11 @@ constexpr std::size_t kFirst = 512;    // samples of the first search
 constexpr std::size_t kGrowth = 16;    // growth factor of the number of samples per stage
 constexpr std::size_t kWeighed = 300;  // up to this number of samples each draw is weighted with all of them
 constexpr std::size_t kCurved = 1024;  // samples for the correction of the curvature
-constexpr double kHopeless = 25.0;  // classes with a log probability lower than the best by more are dropped
-constexpr double kEnough = 1e-2;    // gain of log probability below which the search ends
+constexpr double kHopeless = 25.0;     // log probability below that of the best class at which a class is
+                                       // excluded
+constexpr double kEnough = 1e-2;       // increase of log probability below which the search ends
 
-// Progress of a search with an unknown number of passes: each pass takes half of the remaining fraction.
+// Progress of a search with an unknown number of passes: each pass counts as half of the remaining fraction.
 class PassWatch {
  public:
   PassWatch(const ProgressMonitor& outer, double from, double to)
@@ -114,8 +115,7 @@ SoilQuadratic curved(SoilQuadratic q, const SoilMatrix& correction) {
 }
 
 // Finds the most likely soil of a class from `start`, by Newton's method in the box of the prior. In the
-// coordinates x of findMode() the minimum over k and n of k z^n is a curved valley; here the valley is
-// straight.
+// coordinates x of findMode() the correlation of k and n (pressure k z^n) is curved; in y it is straight.
 SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReading> samples,
                       const SoilVector& start) {
   constexpr int kMostPasses = 20;
@@ -137,7 +137,7 @@ SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReadi
 }
 
 // Returns the mean of the truncated Gaussian approximation of a class' posterior. If the bounds of the class
-// cut the likelihood, the mean is far from the mode.
+// truncate the likelihood, the mean is far from the mode.
 SoilVector middle(const SoilObjective& objective, const SoilQuadratic& likelihood) {
   constexpr int kDraws = 64;
   const TruncatedGaussian allowed = proposal(objective.soilClass(), likelihood);
@@ -185,9 +185,9 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
 
 namespace {
 
-// The first-order propagation of the errors of z and i leaves an error of up to 2 % of phi and K at any
-// number of samples. Above kTrusted samples the likelihood is therefore not sharpened further (ours; see
-// docs/measurements/terramech.md).
+// First-order propagation of the errors of sinkage and slip causes an error of up to 2 % in friction angle
+// and shear modulus for any number of samples. Above kTrusted samples the likelihood is therefore not
+// sharpened further (ours; docs/measurements/terramech.md).
 SoilQuadratic noSurerThanTheModel(SoilQuadratic q, std::size_t samples) {
   constexpr double kTrusted = 4000.0;
   const double share = std::min(1.0, kTrusted / static_cast<double>(samples));

@@ -9,7 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-// Up to this number of samples the modes are searched without an initial value, because they still move far.
+// Number of samples up to which modes are searched without an initial value, because each sample changes the
+// modes much.
 constexpr std::size_t kFresh = 4;
 
 }  // namespace
@@ -29,7 +30,7 @@ struct SoilFilter::State {
   Options options;
   std::vector<Track> tracks{};
   std::vector<WheelReading> window{};  // oldest first
-  StatePopulation population{};        // of all samples
+  StatePopulation population{};        // population of all samples
   std::size_t count = 0;
 };
 

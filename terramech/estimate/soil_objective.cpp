@@ -182,8 +182,8 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> 
     const Local there = at(x + step);
     const double gain = here.cost - there.cost;
     damping *= gain > 0.0 ? 0.1 : 10.0;
-    // The downhill direction neglects the slowly varying normalisation of the cost, so that a step with a
-    // small expected gain is not retried.
+    // The step direction neglects the slowly varying normalisation of the cost; a step with a small expected
+    // gain is therefore not retried.
     const double promise = 0.5 * step.dot(here.downhill);
     if (std::abs(gain) < 1e-3 || (gain < 0.0 && promise < 1e-2)) break;
     if (gain > 0.0) x += step, here = there;

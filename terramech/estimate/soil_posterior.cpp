@@ -13,10 +13,10 @@
 namespace talus::terramech {
 namespace {
 
-// Classes with a lower probability are not sampled.
+// Probability below which classes are not sampled.
 constexpr double kNegligible = 1e-6;
 
-// Largest number of samples for which the mode of Gauss-Newton suffices, which neglects the gradient of the
+// Number of samples up to which the mode of Gauss-Newton suffices; Gauss-Newton neglects the gradient of the
 // normalisation.
 constexpr std::size_t kFew = 20;
 

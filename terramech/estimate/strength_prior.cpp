@@ -10,8 +10,8 @@
 namespace talus::terramech {
 namespace {
 
-// Smallest variances of c and tan(phi), the squares of 1 Pa and 1e-4: a line through readings without scatter
-// would have variances of 0.
+// Smallest variances of cohesion c and tan(phi), (1 Pa)^2 and (1e-4)^2: readings without scatter would have
+// variances of 0.
 const Eigen::Vector2d kLeastVariance(1.0, 1e-8);
 
 struct Component {

@@ -105,18 +105,18 @@ struct KnownColumn {
   }
 };
 
-// Suffixes that are also indices or words: slip_t, speed_min.
+// Whether a suffix may be an index or a word, as in slip_t and speed_min.
 bool mayBeNoUnit(std::string_view suffix) {
   return suffix.size() < 2 || suffix == "min";
 }
 
-/// Returns why an unknown name is probably this known column, which the file lacks; empty if the name is the
-/// user's own.
+/// Returns why an unknown name is probably this known column; empty if the name is accepted as an unknown
+/// column.
 std::string faultOf(const std::string& name, const KnownColumn& column) {
   const std::string text = plain(name);
   const std::string small = lower(text), stem = lower(column.stem);
   if (small == lower(column.name)) return "is not spelled as it is read";
-  // `time` without unit may be a date, a single letter an axis.
+  // `time` without unit may be a date, and a single letter may be an axis.
   const bool of_time = kindOf(column.unit) == Kind::Time;
   if (small == stem) return of_time || stem.size() < 2 ? "" : "names no unit";
   if (!small.starts_with(stem + '_'))  // one typing error per 8 letters: drawbar_pul_N
@@ -125,7 +125,7 @@ std::string faultOf(const std::string& name, const KnownColumn& column) {
   const std::string_view suffix = std::string_view(text).substr(stem.size() + 1);
   const auto kind = kindOf(suffix);
   if (column.takes(suffix, kind)) return "is in another unit than it is read in";
-  // A single letter may be an axis in front of any quantity.
+  // A single letter in front of a suffix may be an axis of any quantity.
   if (!kind || mayBeNoUnit(suffix) || stem.size() < 2) return {};
   return "has a unit of another kind than it is read in";
 }

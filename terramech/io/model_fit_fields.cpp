@@ -9,13 +9,14 @@
 namespace talus::terramech {
 namespace {
 
-/// Returns why a row-major matrix is not a covariance; empty if it is one. A negative variance would be read
-/// as certainty.
+/// Returns why a row-major matrix is not a covariance; empty if it is one. A negative variance would count as
+/// an exact value.
 std::string faultOfCovariance(const std::vector<double>& values, std::size_t size) {
   const auto n = static_cast<Eigen::Index>(size);
   const Eigen::MatrixXd given = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
   constexpr double kRounding =
-      1e-6;  // of a correlation: allows an inverse of condition number 1e10 and 17 digits in the file
+      1e-6;  // rounding tolerance of a correlation, for an inverse of condition number 1e10 and 17 digits in
+             // the file
   Eigen::MatrixXd correlation = given;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (given(i, i) < 0.0)

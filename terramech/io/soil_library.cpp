@@ -34,7 +34,7 @@ std::vector<std::string> libraryNames(const std::map<std::string, std::string>& 
 }
 
 /// Returns the root mapping of a library entry or file. Throws InputError with the nearest library entry if
-/// there is neither.
+/// neither exists.
 YamlFields open(const std::string& name, const std::map<std::string, std::string>& texts,
                 const std::string& what) {
   if (const auto* text = findText(texts, name)) return YamlFields::text(*text, "talus library, " + name);
@@ -92,7 +92,8 @@ SoilPrior soilOfClass(const YamlFields& classes, const std::string& key, const s
   }
 }
 
-// Each number has one spelling, because two entries for one class would be ambiguous.
+// Returns the class number of a key. Only one spelling is accepted, because two entries for one class would
+// be ambiguous.
 int classNumber(const YamlFields& classes, const std::string& key) {
   const bool digits = !key.empty() && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; });
   if (!digits || (key.size() > 1 && key.front() == '0'))
@@ -140,7 +141,7 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 
 SoilPrior readSoil(const YamlFields& fields) {
   const std::vector<std::string> known = namesOf(soilKeys());
-  // The names in a file of another kind are not listed in the message, but a misspelt field is.
+  // For a file of another kind the message does not list unknown names; a misspelt field is listed.
   const auto foreign = [&](const std::string& key) { return meantKey(key, known).empty(); };
   if (std::ranges::none_of(known, [&](const std::string& name) { return fields.has(name); }) &&
       std::ranges::all_of(fields.names(), foreign))

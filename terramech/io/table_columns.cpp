@@ -24,7 +24,7 @@ constexpr std::pair<std::string_view, const char*> kSymbols[] = {
     {"Fz", "load_N"},       {"Fn", "load_N"},    {"Fx", "drawbar_pull_N"}, {"DP", "drawbar_pull_N"},
     {"Fy", "side_force_N"}, {"Mx", "torque_Nm"}, {"My", "torque_Nm"},      {"Mt", "torque_Nm"}};
 
-// Returns the unit at the end of a name, including percent; empty if there is none.
+// Returns the unit at the end of a name, including percent; empty for a name without a unit.
 std::string suffixOf(const std::string& name) {
   for (const auto& [share, factor] : kShares)
     if (name.ends_with("_" + std::string(share))) return std::string(share);
@@ -41,7 +41,7 @@ std::string shortest(double value) {
   return {digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr};
 }
 
-// Decimal comma: "1,5" becomes "1.5" if commas are not separators.
+// Replaces a decimal comma: "1,5" becomes "1.5". Used if commas are not separators.
 void withPoint(std::string& field) {
   const std::size_t comma = field.find(',');
   if (comma == std::string::npos || field.find(',', comma + 1) != std::string::npos) return;
@@ -117,7 +117,7 @@ void TableColumns::convertUnits(const TableFile& table) {
   std::vector<std::string> all = knownTelemetryColumns();
   all.insert(all.end(), table.also.begin(), table.also.end());
   for (const std::string& known : all) {
-    if (has(known) || stemOf(known).size() < 2) continue;  // z_mm may be any quantity
+    if (has(known) || stemOf(known).size() < 2) continue;  // a single letter, as in z_mm, may be any quantity
     for (const std::string& name : std::vector<std::string>(header_)) {
       if (name.empty() || has(known) || stemOf(name) != stemOf(known) || suffixOf(name).empty()) continue;
       if (columnFactor(suffixOf(name), known)) map({.known = known, .name = name}, table);

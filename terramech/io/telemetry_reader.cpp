@@ -35,7 +35,7 @@ constexpr Rule kRules[] = {
     {"load_N", [](double x) { return x > 0.0 && x <= 1e7; }, "> 0 and at most 1e7"},
     {"sinkage_m", [](double x) { return x >= 0.0; }, ">= 0"},
     {"slip", [](double x) { return x >= -1.0 && x <= 1.0; }, "in [-1, 1]"},
-    // A right angle with measurement error: tables of wheels pulled across their travel reach 1.577.
+    // Limit above a right angle, because of measurement errors: tables of wheels pulled sideways reach 1.577.
     {"slip_angle_rad", [](double x) { return std::abs(x) <= 1.6; }, "in [-1.6, 1.6]"},
     {"slope_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
     {"roll_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
@@ -86,8 +86,8 @@ Column columnNamed(const std::string& name, const TelemetryOptions& options) {
   return column;
 }
 
-/// Parses a decimal beyond the range of double as the largest double, or as 0: "1e999" is at least known to
-/// be large.
+/// Parses a decimal beyond the range of double as the largest double or as 0, because "1e999" is known to be
+/// large.
 bool beyondDouble(const std::string& field, double& value) {
   std::istringstream in(field);
   in.imbue(std::locale::classic());
@@ -179,7 +179,7 @@ class Table {
            shown(2.0 * radius);
   }
 
-  /// Fills `numbers` from `words` if every non-empty field is a number and there is at least one.
+  /// Fills `numbers` from `words` if every non-empty field is a number and some field is not empty.
   static bool allNumbers(Column& column) {
     if (column.name == "run" || column.name == "wheel") return false;
     bool any = false;

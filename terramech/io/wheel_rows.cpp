@@ -57,8 +57,7 @@ std::optional<std::string> unusable(const WheelSample& s, const Wheel& wheel, do
   return std::nullopt;
 }
 
-// Returns why a row with a side force but without a slip angle is rejected; slip angle 0 marks a straight
-// wheel.
+// Returns why a row is rejected that has a side force but no slip angle; a straight wheel has slip angle 0.
 std::string angleFault(const Telemetry& table, std::size_t row) {
   const auto* force = table.find("side_force_N");
   const auto* angle = table.find("slip_angle_rad");
@@ -89,7 +88,8 @@ void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   keep(t.lines);
 }
 
-// Numeric columns not used by an estimator of straight wheels. The shear modulus is used by the caller.
+// Returns the numeric columns that an estimator of straight wheels does not use. The caller uses the shear
+// modulus.
 std::vector<std::string> ignoredOf(const Telemetry& table) {
   constexpr std::string_view kRead[] = {"load_N",         "torque_Nm",      "sinkage_m",
                                         "slip",           "slip_angle_rad", "side_force_N",

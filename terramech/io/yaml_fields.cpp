@@ -73,7 +73,7 @@ std::string kindOf(const YAML::Node& node) {
   return node.IsNull() ? "empty" : "'" + shortened(node.Scalar()) + "'";
 }
 
-/// Returns the length of the UTF-8 character at the start of a text; 0 if there is none, or a NUL.
+/// Returns the length of the UTF-8 character at the start of a text; 0 for a NUL or invalid bytes.
 std::size_t letterBytes(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

@@ -16,7 +16,7 @@ int rankOf(double dp, const CategoryThresholds& t) {
   return dp > t.dp_high ? kSafe : kMarginal;
 }
 
-/// Levels lost to a quantity that should stay small.
+/// Number of levels by which a quantity with an upper limit lowers the category.
 int demotion(double value, std::optional<double> threshold, std::optional<double> critical) {
   if (critical && value > *critical) return kDangerous;
   return threshold && !(value < *threshold) ? 1 : 0;

@@ -23,8 +23,8 @@ struct Bands {
   double low, high;
 };
 
-/// Limits of a band in standard deviations from the mean. An exact quantity (std 0) is inside its band with
-/// probability 1: the limits are -infinity and infinity; for the other bands both are infinity.
+/// Limits of a band in standard deviations from the mean. For an exact quantity (std 0) the limits of its
+/// band are -infinity and infinity (probability 1), and both limits of the other bands are infinity.
 Bands standardised(Bands edges, int band, double mean, double std, int known_band) {
   if (std == 0.0) return band == known_band ? Bands{-kInfinity, kInfinity} : Bands{kInfinity, kInfinity};
   const double low = (edges.low - mean) / std, high = (edges.high - mean) / std;
@@ -40,7 +40,7 @@ void check(const ConditionEstimate& belief) {
   range.within("correlation", belief.correlation, {-1.0, 1.0});
 }
 
-/// Category of a pair of bands of DP/W and z/r, with the torque and slip of the mean.
+/// Category of a pair of bands of drawbar pull DP/W and sinkage z/r, with torque and slip of the mean.
 Category categoryOf(const ConditionEstimate& belief, const CategoryThresholds& t, int pull_band,
                     int sinkage_band) {
   WheelCondition condition = belief.mean;

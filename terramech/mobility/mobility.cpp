@@ -40,8 +40,9 @@ struct Drive {
   WheelForces wheel;
 };
 
-/// Returns the steady drive at a given slip: DP(i, W cos alpha) = W sin alpha. Fixed-point iteration, because
-/// DP/N hardly depends on the load N. Empty if the soil cannot carry the wheel.
+/// Returns the steady drive at a given slip: DP(i, W cos alpha) = W sin alpha. Solved by fixed-point
+/// iteration, because the drawbar pull over load, DP/N, hardly depends on the load N. nullopt if the soil
+/// cannot carry the wheel.
 std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, double slip) {
   const double weight_N = wheelLoad_N(rover);
   Drive drive{slip, 0.0, {}};
@@ -58,8 +59,8 @@ std::optional<Drive> driveAt(const CarriedForces& carried, const Rover& rover, d
   return drive;
 }
 
-/// Appends drives at the given slips until one has no solution. Keeps only drives with a slope beyond all
-/// before, uphill (sign 1) or downhill (sign -1).
+/// Appends drives at the given slips until a slip has no solution. Keeps only drives with a steeper slope
+/// than all drives before, uphill (sign 1) or downhill (sign -1).
 void follow(const CarriedForces& carried, const Rover& rover, const std::vector<double>& slips, double sign,
             std::vector<Drive>& drives) {
   for (const double slip : slips) {

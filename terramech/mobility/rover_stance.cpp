@@ -39,7 +39,7 @@ RoverStance::RoverStance(const Rover& rover)
 }
 
 RoverStance::Loads RoverStance::shares(const Planar& demand) const {
-  // Intersection of the line of the weight with the plane.
+  // Point at which the line of action of the weight meets the plane.
   const Planar at{centre_m_.x - height_m_ * demand.x, centre_m_.y - height_m_ * demand.y};
   Loads shares{};
   bool lifts = false;

@@ -14,7 +14,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kSunk = 0.999;  // z/r of a wheel sunk to its axle
+constexpr double kSunk = 0.999;  // sinkage over radius, z/r, of a wheel sunk to its axle
 
 /// Returns the force components along and across the direction of travel, for a wheel plane at angle beta to
 /// the right of that direction.
@@ -100,8 +100,8 @@ double SlopeEquilibrium::Solver::normal_N(const Gradient& g) const noexcept {
   return rover_.mass_kg * rover_.gravity_m_s2 / std::sqrt(1.0 + g.along * g.along + g.across * g.across);
 }
 
-/// Load shares for a demand in body axes. The demand is limited to 0.97 of tip-over, because grip cannot be
-/// assessed with all weight on one axle or side.
+/// Load shares for a demand in body axes. The demand is limited to 0.97 of tip-over, because grip is not
+/// defined with all weight on one axle or side.
 RoverStance::Loads SlopeEquilibrium::Solver::shares(const Planar& demand) const noexcept {
   constexpr double kMost = 0.97;
   const Planar centre = stance_.centre_m();
@@ -303,7 +303,8 @@ SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept
     const double rolling = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
     const bool sunk = rolling > kSunk || rolling * rover_.wheel.radius_m >= rover_.clearance_m;
     state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // body angle unknown
-    // If even loads would hold the rover, the failure is that of the larger component of the gradient.
+    // If the rover has an equilibrium under even loads, the failure is that of the larger component of the
+    // gradient.
     const bool lacks_pull = !scanned.pulls || (scanned.found && std::abs(gradient.across) <= gradient.along);
     state.grip = sunk                                 ? SlopeFailure::Sinks
                  : lacks_pull && gradient.along > 0.0 ? SlopeFailure::CannotPull

@@ -12,8 +12,8 @@ namespace talus::terramech {
 namespace {
 
 constexpr double kRightAngle = 1.5707963267948966;
-// Loads of the table over the even load: the range of load transfer in pitch and roll, up to a corner wheel
-// of eight near tip-over, and of steep planes.
+// Loads of the table, relative to the even load. The range covers load transfer in pitch and roll, up to a
+// corner wheel of an eight-wheeled rover near tip-over, and steep planes.
 constexpr std::array<double, WheelForcesTable::kLoads> kLoadShares{0.2, 0.6, 1.2, 2.4, 4.8};
 
 using Node = std::array<double, kWheelChannels>;
@@ -23,7 +23,7 @@ Node ratios(const WheelForces& f, double load_N, double radius_m) {
           f.sinkage_m / radius_m};
 }
 
-/// Forces of a wheel that the soil cannot carry: sunk to its axle, z/r = 1.
+/// Forces of a wheel that the soil cannot carry: the wheel is sunk to its axle, sinkage over radius 1.
 Node onAxle(const Soil& soil, const Rover& rover, const WheelMotion& m) {
   const ImposedContact at = forcesAtEntry(
       soil, rover.wheel,

@@ -9,8 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-// Smallest ratio of plate widths from which k_c/b and k_phi can be separated (ours): within one soil k
-// scatters by 20 % and more from place to place.
+// Smallest ratio of plate widths b from which the moduli k_c/b and k_phi can be separated (ours): in one soil
+// k = k_c/b + k_phi varies by 20 % and more between places.
 constexpr double kLeastWidthRatio = 1.2;
 constexpr double kLeastModulus_m = 1e-4;
 constexpr double kMostModulus_m = 0.2;

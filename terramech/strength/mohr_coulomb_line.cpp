@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace {
 
-// Half the range of soils (thesis Table 2.3, dry to cohesive): a parameter with a larger standard deviation
+// Half the ranges of soils (thesis Table 2.3, dry to cohesive). A parameter with a larger standard deviation
 // is not identified.
 constexpr double kWidestCohesion_Pa = 5000.0;
 constexpr double kWidestTanFriction = 0.25;

@@ -47,7 +47,7 @@ TrialSoil soilOf(const std::string& name, const std::vector<FittedTrial>& trials
   soil.exponent = randomEffect(exponents);
   soil.fit.sinkage_exponent = soil.exponent.mean.value;
   soil.fit.exponent_std = soil.exponent.mean.std;
-  std::map<double, std::vector<Estimate>> pressures;  // by plate size
+  std::map<double, std::vector<Estimate>> pressures;  // pressures by plate size
   for (const FittedTrial& t : trials)
     for (const PlateModulus& p : t.fit.plates)
       pressures[p.plate_width_m].push_back(

@@ -24,8 +24,8 @@ Eigen::VectorXd whole(const Trial& trial, Eigen::VectorXd column) {
   return column.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
 }
 
-/// True if a form whose first parameter is `first` acts in one direction only: values from 0 up, or a depth. A factor,
-/// which is 1 without effect, may act in both directions.
+/// True if the first parameter of a form only allows one sign of the effect: a number or depth >= 0. A
+/// factor, with the value 1 without effect, allows both signs.
 bool isOneSided(const EffectParameter& first) {
   const bool is_factor = first.low > 0.0 && first.low < 1.0 && first.high > 1.0;
   return first.low >= 0.0 && !is_factor;
@@ -62,7 +62,8 @@ Eigen::MatrixXd curveColumns(const Effect& curve, const ModelOnRows& at) {
   Eigen::MatrixXd basis = splineBasis(covariateValues(at.trial, curve.covariate, at.sinkage_m), curve.knots);
   for (int row = 0; row < at.trial.rows(); ++row)
     if (!applies(curve, at.trial.states[static_cast<std::size_t>(row)])) basis.row(row).setZero();
-  // All knots of a curve through the soil act through one number; one derivative therefore gives every column.
+  // All knots of a curve that changes the soil change the same number; one derivative therefore gives every
+  // column.
   Eigen::MatrixXd by_value = Eigen::MatrixXd::Zero(at.trial.rows(), kChannels);
   if (curve.name == "empirical") {
     for (int row = 0; row < at.trial.rows(); ++row)
@@ -122,7 +123,7 @@ LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whi
     linear.columns.col(k) *= scale;
     const auto prior = priorOf(fitted, plan, static_cast<std::size_t>(k));
     if (!prior) continue;
-    // value() of log_stiffness is 0, and its prior is a step from the model's current value.
+    // value() returns 0 for log_stiffness, whose prior is a step from the model's current value.
     linear.prior.mean[k] = (prior->value - value(fitted, p)) / scale;
     linear.prior.precision[k] = scale * scale / (prior->std * prior->std);  // (T26)
   }

@@ -27,8 +27,8 @@ Extent extentOf(const Eigen::VectorXd& x) {
   return v.empty() ? Extent{0.0, 1.0, 0.5} : Extent{v.front(), v.back(), v[v.size() / 2]};
 }
 
-/// True for a rim speed that is proportional to the speed over ground (one level of slip): the two speeds cannot be
-/// distinguished, and the rate forms use the speed over ground.
+/// True for a rim speed that is proportional to the speed over ground (one level of slip). The effects of
+/// both speeds cannot be distinguished; the rate forms then use the speed over ground.
 bool isTwin(const Trial& trial, const std::string& column) {
   if (column != "rim_speed_mps") return false;
   double n = 0.0, mean = 0.0, square = 0.0;
@@ -163,12 +163,12 @@ void lugs(Collector& to, const EffectForm& form) {
 }
 
 void drift(Collector& to, const EffectForm& form) {
-  if (form.parameters.size() == 5 && to.varies("heading_rad"))  // once and twice a turn
+  if (form.parameters.size() == 5 && to.varies("heading_rad"))  // periods of one turn and half a turn
     for (double period : {1.0, 0.5})
       for (double phase : {0.0, 1.57})
         to.add(form, "heading_rad",
                {{"start", 0.0}, {"span", 2.0 * std::numbers::pi}, {"period", period}, {"phase", phase}});
-  // Time may change a soil or a sensor by any of these forms; an additional column acts in proportion.
+  // Adds all drift forms for time, and the linear form only for additional columns.
   for (const std::string& column : to.covariates()) {
     if (column != "time_s" && !(isOwnColumn(column) && form.parameters.size() == 3)) continue;
     const Extent x = to.extent(column);
@@ -183,10 +183,10 @@ void drift(Collector& to, const EffectForm& form) {
   }
 }
 
-/// No candidate: these forms are added only together with forms that dig or slide.
+/// Adds no candidate: these forms are candidates only in together().
 void onlyTogether(Collector&, const EffectForm&) {}
 
-/// Only rows of a braked wheel determine this form.
+/// Adds the form if the table has rows of a braked wheel, which alone determine the form.
 void skid(Collector& to, const EffectForm& form) {
   if (to.extent("slip").low < -0.02) to.add(form, form.covariate);
 }
@@ -209,7 +209,8 @@ Rule ruleOf(const EffectForm& form) {
   return always;
 }
 
-/// Forms that act at once on a wheel that is dragged or slides sideways; each form alone explains little.
+/// Adds, as one candidate, the forms that act simultaneously on a braked or sideways sliding wheel; each form
+/// alone explains little.
 void together(Collector& to) {
   const bool braked = to.extent("slip").low < -0.02, sideways = to.varies("slip_angle_rad");
   if (!braked && !sideways) return;
@@ -247,7 +248,7 @@ Effect flatCurve(const char* name, const std::string& covariate, Channel channel
   return curve;
 }
 
-/// A curve in each measured channel alone, and curves through stiffness and through strength.
+/// Returns a curve for each measured channel, and curves of soil stiffness and strength.
 std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
                              const std::vector<double>& knots) {
   std::vector<Effect> all;
@@ -266,7 +267,7 @@ void addCurves(const Trial& trial, const std::string& covariate, const std::vect
     all.push_back({{std::move(curve)}, "empirical", static_cast<int>(knots.size())});
 }
 
-/// Number of distinct values, equal values of a run counted once: a column constant within runs has one value per run.
+/// Number of distinct pairs of run and value: a column that is constant within runs has one per run.
 std::size_t independentValues(const Trial& trial, const Eigen::VectorXd& x) {
   std::set<std::pair<int, double>> values;
   for (Eigen::Index row = 0; row < x.size(); ++row)
@@ -274,8 +275,8 @@ std::size_t independentValues(const Trial& trial, const Eigen::VectorXd& x) {
   return values.size();
 }
 
-/// Positions of a step: up to nine gaps between values, at even shares of the rows, each the widest gap within a
-/// twentieth of the rows.
+/// Returns the positions of a step: up to nine gaps between values at even shares of the rows. Each gap is
+/// the widest within a twentieth of the rows.
 std::vector<std::vector<double>> stepsOf(const Eigen::VectorXd& x) {
   const std::vector<double> v = finite(x);
   const int rows = static_cast<int>(v.size());
@@ -315,7 +316,7 @@ void addGroups(const Trial& trial, const std::string& column, std::vector<Candid
 /// Lines over products of an additional column with another additional column, or with slip, load or speed.
 void addProducts(const Trial& trial, std::vector<Candidate>& all) {
   constexpr std::size_t kMostOwn =
-      6;  // with more additional columns their pairs would outnumber all other candidates: no pairs
+      6;  // limit for pairs of additional columns, which would otherwise outnumber all other candidates
   std::vector<std::string> own, set;
   for (const std::string& column : trial.covariates)
     if (isOwnColumn(column) && !isProduct(column)) own.push_back(column);

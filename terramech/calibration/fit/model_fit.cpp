@@ -109,8 +109,8 @@ class FitPoint {
     return s;
   }
 
-  /// The step that solves the damped normal equations, with step 0 for parameters that are at a bound and would leave
-  /// it: limiting these parameters afterwards would leave the steps of the others wrong.
+  /// Solves the damped normal equations with step 0 for parameters at a bound that would leave the range.
+  /// Limiting these parameters after the solution would make the other steps wrong.
   Eigen::VectorXd stepInside(Eigen::MatrixXd damped, Eigen::VectorXd gradient) const {
     for (Eigen::Index held = 0; held <= gradient.size(); ++held) {
       const Eigen::VectorXd step = damped.ldlt().solve(gradient);
@@ -142,7 +142,7 @@ class FitPoint {
     return rangeOf(model_, plan_.free[static_cast<std::size_t>(k)]).scale;
   }
 
-  // Priors relative to the start of the search, from which a step of log_stiffness counts.
+  // Returns the prior; for log_stiffness as a step from the start of the search.
   std::optional<Estimate> priorOf(Eigen::Index k) const { return prior_[static_cast<std::size_t>(k)]; }
 
   bool leavesBound(Eigen::Index k, double step) const {
@@ -184,7 +184,7 @@ class FitPoint {
 
 std::optional<Estimate> priorOf(const RefinedModel& model, const FitPlan& plan, std::size_t k) {
   const FittedParameter& p = plan.free[k];
-  // The prior keeps a knot without nearby rows finite.
+  // This prior determines the value at a knot without nearby rows.
   if (p.effect >= 0 && model.effects[static_cast<std::size_t>(p.effect)].empirical())
     return Estimate{0.0, 0.3};
   if (p.effect >= 0 && p.index > 0) return {};

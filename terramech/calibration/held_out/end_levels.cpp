@@ -31,12 +31,12 @@ std::pair<double, double> rangeOver(const Values& x, const std::vector<char>& ro
 /// Extent of the held-out end of a column.
 enum class Depth { Level, Half };
 
-/// Gap between levels over the range of the column: the spacing of 25 even levels. Values closer together belong to one
-/// level.
+/// Least gap between levels relative to the range of the column: the spacing of 25 even levels. Values with
+/// smaller gaps belong to one level.
 constexpr double kLevelGap = 0.04;
 
-/// Rows of the outermost level, or of the levels with at most half of the rows; without levels the outermost tenth or
-/// half. Empty if no rows can be held out.
+/// Marks the rows of the outermost level (Depth::Level) or of the outer levels with at most half of the rows
+/// (Depth::Half); without levels the outermost tenth or half. Empty if no rows can be held out.
 std::vector<char> outermost(const Values& x, bool high, Depth depth) {
   Values sorted;
   for (double v : x)
@@ -77,8 +77,8 @@ double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& f
   return sum;
 }
 
-/// `level`: result for the outermost level if `held` is deeper, else null; an effect whose formula did not predict the
-/// outermost level has no reach.
+/// Errors of one end. `level`: result for the outermost level if `held` is Depth::Half, else null; an effect
+/// whose formula did not predict the outermost level has reach 0.
 EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std::string& column, bool high,
                const std::vector<char>& held, const EndLevel* level) {
   const Values x = valuesOf(result.trial, column);
@@ -102,7 +102,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   const auto likelihood = [&](const RefinedModel& model) {
     return logLikelihood(end.rows, rmseAsMeasured(model, unseen), result.noise_floor);
   };
-  // Gain that an irrelevant parameter reaches by chance: half a quantile of chi-squared with one degree of freedom.
+  // Gain of an irrelevant parameter by chance: half a quantile of chi-squared with one degree of freedom.
   const double chance = 0.5 * std::pow(normalQuantile(1.0 - 0.5 * options.significance), 2);
   const double reached = likelihood(by_law) - chance;
   RefinedModel earned = by_law;

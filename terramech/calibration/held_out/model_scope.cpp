@@ -9,8 +9,9 @@
 namespace talus::terramech {
 namespace {
 
-/// True if an end contradicts the refined model: its mean square exceeds those of the base and of the sensors by more
-/// than that of as many normal errors in 95 % of cases. False for a channel without measurements (NaN).
+/// True if an end contradicts the refined model: the mean square error exceeds those of the base and of the
+/// sensors by more than the 95 % quantile of the same number of normal errors. False for a channel without
+/// measurements (NaN).
 bool isWorse(const EndLevel& end, const ChannelErrors& floor, std::size_t channel) {
   const double chance = normalQuantile(1.0 - TraceOptions{}.significance) * std::sqrt(2.0 / end.rows);
   const double least = std::max(end.base_rmse[channel], floor[channel]);
@@ -22,9 +23,9 @@ void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& s
     if (!scope.kept[c]) refined[c] = base[c];
 }
 
-/// Sets the reach of the corrections at one side of a column. `ends`: the ends of this side, the nearest first. The
-/// corrections lose validity between the last end that confirms them and the first that contradicts them; none is
-/// applied from the middle between both on.
+/// Sets the reach of the corrections at one side of a column. `ends`: the ends of this side, the nearest
+/// first. Corrections end halfway between the last end that confirms and the first end that contradicts the
+/// corrections.
 void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>& ends,
               const ChannelErrors& floor) {
   for (std::size_t c = 0; c < kChannels; ++c) {

@@ -8,7 +8,8 @@
 namespace talus::terramech {
 namespace {
 
-/// Whitening by the errors of each model itself: the effect of the noise of slip and load depends on the model.
+/// Whitening of the rows for one model, because the effect of the noise of slip and load depends on the
+/// model.
 Whitening whiteningOf(const RefinedModel& model, const SharedError& shared, const TraceResult& result) {
   SolvedContacts solved;
   Whitening all = whitening(result.trial, predictRows(model, result.trial, solved),

@@ -39,7 +39,8 @@ std::vector<int> levels(const std::vector<double>& value, double width) {
 Folds foldsOf(const Trial& trial) {
   const std::set<int> runs(trial.run.begin(), trial.run.end());
   if (runs.size() >= kFolds && 2 * runs.size() <= trial.run.size()) {
-    // Consecutive moments of a drive have similar errors; therefore stretches of the drive are held out.
+    // Consecutive moments of a drive have similar errors; whole stretches of the drive are therefore held
+    // out.
     const bool moments = trial.run == trial.moment;
     const auto of = [&](int run) {
       const auto k = std::distance(runs.begin(), runs.find(run)),

@@ -11,7 +11,7 @@
 namespace talus::terramech {
 namespace {
 
-/// Steps of expectation maximisation: from a rough start, and from the covariance of the null.
+/// Steps of expectation maximisation from a rough start, and from the covariance of the null model.
 constexpr int kFirstSteps = 60, kFurtherSteps = 4;
 
 /// Draws errors of unit variance for each row, and errors of runs with the given covariance.
@@ -46,7 +46,7 @@ Eigen::VectorXd drawnSoil(const NullModel& null, std::mt19937_64& random) {
   return null.known.columns.leftCols(null.soil) * step;  // (T36)
 }
 
-/// Scores of contenders relative to the null, for each table.
+/// Scores of contenders relative to the null model, for each table.
 class Contest {
  public:
   Contest(const RunLikelihood& likelihood, const RunSums& known, const RunError& run)
@@ -54,7 +54,7 @@ class Contest {
 
   void setTables(Eigen::Index tables) { at_run_ = likelihood_.heldOut(known_, run_, 0, tables).score(); }
 
-  /// Gains of all tables with the run error of the null.
+  /// Gains on all tables with the run error of the null model.
   Eigen::VectorXd roughGains(const RunSums& both, bool positive) const {
     const HeldOutFit fit = likelihood_.heldOut(both, run_, 0, at_run_.size());
     Eigen::VectorXd gain = fit.score() - at_run_;
@@ -85,7 +85,8 @@ class Contest {
   Eigen::VectorXd at_run_;
 };
 
-/// Greatest gain on one table: among the kProfiled best at the run error of the null, each profiled.
+/// Returns the greatest profiled gain on one table, among the kProfiled contenders with the greatest gains at
+/// the run error of the null model.
 double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
                     const std::vector<char>& positive, const Eigen::MatrixXd& rough, Eigen::Index table) {
   std::vector<Eigen::Index> order(sums.size());

@@ -112,9 +112,9 @@ struct Posterior {
   double mean, variance;
 };
 
-/// Posterior of each true value under the most likely distribution of true values: a mixture of atoms whose positions
-/// and weights are found by expectation maximisation. `std_at`: noise at a true value. Values whose noise is below half
-/// the spacing of the atoms stay as measured.
+/// Posterior of each true value under the most likely distribution of true values: a mixture of atoms whose
+/// positions and weights are found by expectation maximisation. `std_at`: noise at a true value. Values with
+/// a noise below half the spacing of the atoms remain as measured.
 std::vector<Posterior> deconvolve(const std::vector<double>& measured,
                                   const std::function<double(double)>& std_at) {
   constexpr int kRounds = 200;
@@ -147,7 +147,8 @@ std::vector<Posterior> deconvolve(const std::vector<double>& measured,
   return out;
 }
 
-/// Posterior for normal values with normal errors: the share of the scatter that is not error is kept.
+/// Posterior for normal true values with normal errors: deviations from the mean are multiplied by the share
+/// of the scatter that is not error.
 std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
   const auto n = static_cast<Eigen::Index>(measured.size());
   const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
@@ -159,8 +160,9 @@ std::vector<Posterior> shrink(const std::vector<double>& measured, const std::ve
   return out;
 }
 
-/// Posterior slips at set speeds over ground: the share of the speeds' scatter that is not error is kept. The error of
-/// a run's mean is added to each row; that of a single mean is in sharedSlipStd().
+/// Posterior slips at set speeds over ground: deviations of the speeds are multiplied by the share of their
+/// scatter that is not error. The error of a run's mean is added to each row; sharedSlipStd() has the error
+/// of a single mean.
 std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<int>& group,
                                         const SensorNoise& noise) {
   const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
@@ -189,7 +191,8 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
     log_load[i] = std::log(trial.load_N[i]);
   }
   const std::vector<int> speed = setSpeeds(trial, noise);
-  // The mixture converges slowly for a single level; if the scatter is mostly error, shrink() loses nothing.
+  // The mixture converges slowly for a single level; if the scatter is mostly error, shrink() is equally
+  // accurate.
   const auto slips = !speed.empty() ? slipsAtSetSpeeds(trial, speed, noise)
                      : !slipIsSeen(trial, noise)
                          ? shrink(trial.slip, slip_std)
@@ -197,7 +200,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional
   const auto loads =
       set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
-    // The grid resolves no less than its step: precise inputs stay as measured.
+    // The grid does not resolve errors below its step; the variance of precise inputs is therefore limited.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));

@@ -8,8 +8,8 @@
 namespace talus::terramech {
 namespace {
 
-/// Greatest scatter of readings of one set load, and least distance of levels, relative: load cells in use have errors
-/// below 10 %.
+/// Greatest relative scatter of readings of one set load, and least relative distance of levels: load cells
+/// have errors below 10 %.
 constexpr double kLevel = 0.1;
 
 struct Groups {
@@ -68,7 +68,8 @@ Eigen::VectorXd centred(const Groups& g, const Eigen::VectorXd& x) {
   return out;
 }
 
-/// True if the rows have set loads: four rows per group on average, and no group with a greater scatter.
+/// True if the rows have set loads: at least four rows per group on average, and a scatter below kLevel in
+/// each group.
 bool areSet(const Groups& g, const Eigen::VectorXd& deviation) {
   if (static_cast<Eigen::Index>(4 * g.count) > deviation.size()) return false;
   const Eigen::VectorXd square = means(g, deviation.cwiseAbs2());

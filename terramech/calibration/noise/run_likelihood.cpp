@@ -61,15 +61,15 @@ StepPrior joined(const StepPrior& a, const StepPrior& b) {
   return both;
 }
 
-/// The covariance with strength and stiffness uncorrelated with each other and with the offsets.
+/// Removes the correlations of strength and stiffness with each other and with the offsets.
 RunError withoutCoupling(const RunError& run) {
   RunError r = RunError(run.diagonal().asDiagonal());
   r.topLeftCorner<kChannels, kChannels>() = run.topLeftCorner<kChannels, kChannels>();
   return r;
 }
 
-/// Precision about 0 that is added to every step: 1 / variance of 30 000 steps. Only a direction without prior that no
-/// row determines is affected.
+/// Precision about 0 that is added to every step: standard deviation of 30 000 steps. Only a direction that
+/// neither a prior nor a row determines is affected.
 constexpr double kLeastPrecision = 1e-9;
 
 /// Normal equations of the steps, including the prior: A step = b (T31).
@@ -83,8 +83,8 @@ struct Normal {
   }
   Eigen::MatrixXd steps() const { return solver.solve(right); }
 
-  /// Minimum of step^T A step - 2 b^T step for each table, at `steps`; rounding errors of `steps` enter in second order
-  /// only.
+  /// Minimum of step^T A step - 2 b^T step for each table, evaluated at `steps`; rounding errors of `steps`
+  /// have an effect of second order only.
   Eigen::VectorXd leastAt(const Eigen::MatrixXd& steps) const {
     return steps.cwiseProduct(precision * steps - 2.0 * right).colwise().sum().transpose();
   }

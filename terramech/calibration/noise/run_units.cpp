@@ -37,8 +37,9 @@ std::vector<std::vector<std::size_t>> inTime(const Trial& trial, const std::vect
   return all;
 }
 
-/// True if a column that sets the contact follows time within the runs (neighbours correlate by more than 0.3, which
-/// would pass a tenth of a missing effect on): the error of the model then persists like noise.
+/// True if a column that determines the contact depends on time within the runs (correlation of neighbours
+/// above 0.3, with which a tenth of a missing effect would appear as shared error): the error of the model
+/// then persists like noise.
 bool isInOrder(const Trial& trial, const std::vector<std::vector<std::size_t>>& runs) {
   for (const char* name : {"slip", "load_N", "slip_angle_rad", "slope_rad", "speed_mps", "pass_index"}) {
     if (std::find(trial.covariates.begin(), trial.covariates.end(), name) == trial.covariates.end()) continue;
@@ -107,7 +108,8 @@ std::vector<int> runUnits(const Trial& trial, const Whitening& whitening, const 
   std::vector<int> best = *std::max_element(run.begin(), run.end()) > 0 ? run : std::vector<int>{};
   double likely = logLikelihood(whitening, best, table);
   const auto runs = inTime(trial, run);
-  // On a drive the ground determines the slip in order of time, and errors persist: stretches are always tried.
+  // On a drive the slip follows the ground in order of time, and errors persist; stretches are therefore
+  // always tested.
   if (runs.empty() || (!drive && isInOrder(trial, runs))) return best;
   for (const std::size_t length : std::initializer_list<std::size_t>{16, 8, 4}) {
     if (3 * length * together > run.size()) continue;

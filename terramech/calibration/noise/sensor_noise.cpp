@@ -88,7 +88,7 @@ std::vector<StrainedSensor> strainedSensors(const Trial& trial, const Eigen::Mat
   };
   for (int c = 0; c < kChannels; ++c) {
     const auto channel = static_cast<Channel>(c);
-    // The pull of a drive is not a reading of a sensor.
+    // For a drive, the pull follows from the slope and is not a sensor reading.
     if (!trial.has(channel) || (channel == Channel::DrawbarPull && !trial.moment.empty())) continue;
     const auto declared = statedOf(stated, channel);
     if (!isStrained(kAnswers[static_cast<std::size_t>(c)], declared, errorOf(trial, level, noise, c)))

@@ -54,7 +54,7 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   for (const std::string& column : noiseColumns(trial_))
     if (column != "time_s") timeless.push_back(column);
   const std::vector<int> unit = runUnits(trial_, whitening_, withoutSmooth(trial_, residual_, timeless));
-  if (!unit.empty()) {  // the shared error is not noise of single rows
+  if (!unit.empty()) {  // excludes the shared error from the noise of single rows
     const double rows = trial_.rows(), kept = rows - (*std::max_element(unit.begin(), unit.end()) + 1);
     smooth -= unitMeans(smooth, whitening_.std, unit);
     if (kept > 4.0) settle(std::sqrt(rows / kept) * smooth, level, measured_slopes, model, solved);
@@ -65,8 +65,8 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   whitening_.common.run = roughRunError(whitening_);
 }
 
-/// Estimates the set load of each row. A smooth of the measured loads would follow their errors about the set loads, so
-/// that the noise would be estimated too small; the noise is therefore estimated from the set loads.
+/// Estimates the set load of each row. A smooth of the measured loads would absorb their errors about the set
+/// loads and underestimate the noise; the noise is therefore estimated from the set loads.
 void CalibratedRows::findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes) {
   std::vector<std::string> others = noiseColumns(trial_);
   std::erase(others, "load_N");
@@ -82,7 +82,7 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   const Eigen::MatrixXd level = predictRows(model, trial_, solved);
   const InputSlopes slopes = inputSlopes(model, trial_, solved);
   const Eigen::MatrixXd measured = trial_.measured - level;
-  // A slip that varies much is seen for any error; only otherwise the error must be estimated.
+  // If the slip varies more than any possible error, no estimate of the error is needed.
   const SensorNoise unlimited{.slip_relative = 1.0};
   findSetLoads(measured, slopes);
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));

@@ -45,7 +45,7 @@ std::vector<double> gainsOf(const RefinedModel& base, const Trial& trial, const 
       candidates.push_back(std::move(c));
       column.push_back(k);
     }
-  Trial without = trial;  // without the columns that are screened
+  Trial without = trial;  // trial without the screened columns
   std::erase_if(without.covariates, isOwnColumn);
   without.groupings.clear();
   const std::vector<double> each = TraceSearch{base, without, options, go_on}.gainsOf(candidates);

@@ -55,7 +55,7 @@ std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation>
     if (rivals.size() == kRivals || e.gain <= 0.0) break;
     if (!seen.insert(causeOf(e.candidate)).second) continue;
     RefinedModel model = search.modelWith(e.candidate);
-    // A constant curve depends on no column.
+    // Skips curves that are constant over their column.
     if (search.dependsOn(model, e.candidate.covariate()))
       rivals.push_back({in_place_of, e, std::move(model)});
   }
@@ -74,7 +74,7 @@ std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k) {
   for (const Promise& p : without.screen(0).promises) {
     if (tried.size() == kFits || p.gain <= 0.0) break;
     if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
-    // At most one curve per column, and each named form.
+    // Fits at most one curve per column, and each named form once.
     const std::string kind = p.candidate.empirical() ? p.candidate.covariate() : causeOf(p.candidate);
     if (tried.insert(kind).second) ranked.push_back(without.fitted(p.candidate));
   }

@@ -13,7 +13,7 @@
 namespace talus::terramech {
 namespace {
 
-/// True if the model contains a form of the candidate: joint forms are tried once.
+/// True if the model contains a form of the candidate: joint forms are tested once.
 bool shares(const RefinedModel& model, const Candidate& candidate) {
   return std::any_of(candidate.parts.begin(), candidate.parts.end(), [&](const Effect& part) {
     return std::any_of(model.effects.begin(), model.effects.end(),
@@ -65,8 +65,8 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
   const Trial& trial = fit_.rows().trial();
   const Eigen::VectorXd sinkage_m = fit_.rows().sinkages_m();
   std::vector<Candidate> all;
-  // On a drive slip, load, heading and time are correlated: a curve of one column can replace one of any other. Only
-  // forms that predict every channel can be distinguished.
+  // On a drive slip, load, heading and time are correlated, and curves of these columns are interchangeable.
+  // Only forms that predict every channel can be distinguished.
   const bool drive = !trial.moment.empty();
   for (Candidate& c : libraryCandidates(trial, sinkage_m))
     if ((c.parts.size() == 1 || !shares(model(), c)) && !(drive && c.family == "drift"))
@@ -128,9 +128,9 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
                         is = rows.whitening().marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
-  // A candidate that explains the rows reduces the residuals themselves. If the soil is not fitted, and a candidate
-  // increases the residuals by more than all of its gain, the gain is due to the error common to the rows of a run and
-  // is rejected. A fitted soil changes with the candidate, so that this test does not apply.
+  // With a fixed soil, a valid candidate reduces the residuals. A gain is rejected if the candidate increases
+  // the sum of squares by more than twice the gain, because the gain is then due to the error common to the
+  // rows of a run. A fitted soil changes with the candidate, so that this test does not apply.
   if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))  // (T41)
     e.gain = std::min(0.0, e.gain);
   return e;
@@ -326,7 +326,7 @@ void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::Matr
 }
 
 void TraceSearch::finish(TraceResult& result) {
-  // Without effects the refined model is the base.
+  // Without effects the refined model is the base, which needs no further fit.
   const Eigen::MatrixXd covariance = fit_.finish(!result.effects.empty());
   describe(result.effects, covariance);
   result.refined = model();

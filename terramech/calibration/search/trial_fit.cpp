@@ -85,7 +85,7 @@ NullModel TrialFit::standing(const RefinedModel& model, const Eigen::MatrixXd& r
                  static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
   const std::optional<Eigen::MatrixXd>& by_slip = rows_.bySharedSlip();
   if (!by_slip) return null;
-  // The slip error common to all rows is one more parameter, with prior 0 and standard deviation 1.
+  // The slip error common to all rows is an additional parameter with prior mean 0 and standard deviation 1.
   LinearModel& known = null.known;
   const Eigen::Index at = known.columns.cols();
   known.columns.conservativeResize(null.residual.size(), at + 1);

@@ -13,7 +13,8 @@ namespace {
 constexpr double kAccuracy = 0.03;  // error of the relation over soils [-]
 
 struct Split {
-  double inside = 0.0, outside = 0.0, squares = 0.0;  // sums of the errors, and of their squares inside
+  double inside = 0.0, outside = 0.0, squares = 0.0;  // sums of errors, and of squared errors inside the
+                                                      // group
   int in = 0, out = 0;
   double meanStd() const {
     const double mean = inside / in, variance = std::max(0.0, squares / in - mean * mean) * in / (in - 1.0);

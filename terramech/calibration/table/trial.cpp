@@ -109,8 +109,8 @@ std::vector<int> runNumbers(const std::vector<WheelState>& states) {
   return run;
 }
 
-// Moment number of each row: rows of one run at one time, each of a different wheel; empty if any row does
-// not fit this scheme.
+// Moment number of each row. Rows of one run at one time form a moment and must be of different wheels; empty
+// if some row violates this condition.
 std::vector<int> momentNumbers(const std::vector<WheelState>& states) {
   std::map<std::pair<std::string_view, double>, std::set<std::string_view>> wheels;
   std::map<std::pair<std::string_view, double>, int> numbers;
@@ -126,8 +126,8 @@ std::vector<int> momentNumbers(const std::vector<WheelState>& states) {
   return rows >= 2 * numbers.size() ? moment : std::vector<int>{};
 }
 
-// Sets DP/W in the first row of each moment to the rover's total from the slope: at constant speed sum(DP) =
-// tan(slope) sum(W), with loads normal to the ground.
+// Sets the drawbar pull over load, DP/W, in the first row of each moment to the total of the rover from the
+// slope: at constant speed sum(DP) = tan(slope) sum(W), with loads normal to the ground.
 void balance(Trial& trial) {
   std::set<int> seen;
   for (int row = 0; row < trial.rows(); ++row) {
@@ -266,7 +266,8 @@ std::vector<char> beyondAxle(const Trial& trial) {
 
 namespace {
 
-// The rover's pull is unknown if rows of some wheels are removed.
+// Removes the pull of moments of which some wheels are removed, because the pull of the rover is then
+// unknown.
 void dropBrokenMoments(const Trial& trial, const std::vector<char>& keep, Trial& part) {
   std::set<int> broken;
   for (std::size_t row = 0; row < trial.moment.size(); ++row)

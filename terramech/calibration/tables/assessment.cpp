@@ -24,7 +24,7 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
                                       limits);
 }
 
-// Pull at other slips from the posterior soils of all rows together, at the load of each row.
+// Forecasts the pull at other slips from the joint posterior of all rows, at the load of each row.
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
                  std::vector<Assessment>& result) {
   SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
@@ -74,7 +74,7 @@ RefinedModel modelOf(const AssessOptions& options, std::vector<std::string>& lef
   return groundTruthOf(file.model);
 }
 
-// A measured sinkage has precedence over the model's prediction.
+// Returns the measured sinkage, or the model's prediction without a measurement.
 Estimate sinkageOf(const std::vector<double>* read, std::size_t row, const WheelState& state,
                    const ModelPull& pull, double noise) {
   if (read == nullptr || !std::isfinite((*read)[row])) return pull.sinkage_over_radius;

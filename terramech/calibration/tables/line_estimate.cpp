@@ -56,8 +56,8 @@ std::optional<double> columnModulus(const EstimateOptions& options) {
   return column->front();
 }
 
-// K if it need not be estimated: the stated value, else that of the file, else that of the prior. NaN if the
-// method needs no K.
+// Known K: the stated value, else that of the file, else that of the prior; nullopt if K must be estimated,
+// NaN if the method needs no K.
 std::optional<double> knownModulus(const EstimateOptions& options, const std::vector<SoilPrior>& priors) {
   if (options.method == "sojourner") return kNan;
   if (const auto stated = statedModulus(options)) return stated;

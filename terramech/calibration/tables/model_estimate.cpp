@@ -72,10 +72,10 @@ SoilEstimate soilOf(const ModelSoil& found) {
   return estimate;
 }
 
-// Channel whose removal gives the best fit of a soil, if any.
+// Channel without which a soil fits best, if any.
 struct OddColumn {
   std::string column;         // empty: none
-  double misfit = kMisfit;    // of the other channels
+  double misfit = kMisfit;    // misfit of the other channels
   bool contradicted = false;  // the soil from at least two other channels does not explain this channel
 };
 
@@ -104,8 +104,8 @@ std::string remedyFor(const OddColumn& odd) {
                      odd.column, odd.misfit);
 }
 
-// Throws if no soil explains the rows, warns if the fit is poor. A large misfit alone may be an error of the
-// model if no single column is at fault, or if the other columns predict it approximately.
+// Throws if no soil explains the rows, and warns if the fit is poor. A large misfit may be a model error if
+// no single column causes the misfit, or if the other columns predict that column approximately.
 void judgeFit(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
               const ModelSoil& found, SoilEstimate& estimate) {
   const bool poor = found.misfit > kMisfit;

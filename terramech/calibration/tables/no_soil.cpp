@@ -9,10 +9,10 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kLeft = 0.5;  // relative to the root mean square of a channel's readings
+constexpr double kLeft = 0.5;  // unexplained share of the root mean square of a channel's readings
 
-// Residual of one channel relative to its readings; 0 if small compared to load or radius; infinite if the
-// predictions differ from readings that are all 0.
+// Residual of one channel relative to its readings; 0 if the residual is small compared to load or radius;
+// infinite if all readings are 0 and the predictions are not.
 double leftOf(const SoilAnswer& answer, int channel) {
   double readings = 0.0, residuals = 0.0;
   int rows = 0;

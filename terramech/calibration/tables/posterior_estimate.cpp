@@ -84,7 +84,7 @@ SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
   return answer;
 }
 
-// Warns of assumptions of the posterior that the rows contradict.
+// Adds warnings about assumptions of the posterior that the rows contradict.
 void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
                        std::vector<std::string>& warnings) {
   if (posterior.misfit > kMisfit) {
@@ -121,7 +121,7 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
                                          : fitSoil(rows.readings(), prior, fit);
   if (watch.stopped()) return estimate;
   take(*estimate.posterior, estimate);
-  // groupsThatDisagree() names the column that separates several soils in one table; each soil may be valid.
+  // If groupsThatDisagree() names a column, the table contains several soils, each of which may be valid.
   const std::string groups = groupsThatDisagree(rows, *estimate.posterior, fit.noise);
   if (const std::string why = noSoilExplains(estimate, answerOf(rows, *estimate.posterior));
       groups.empty() && !why.empty())

@@ -76,7 +76,8 @@ bool isText(const Trial& trial, const std::string& column) {
                      [&](const WheelState& s) { return !s.label(column).empty(); });
 }
 
-// Values of text columns may contain two dots; ranges apply to numeric columns only.
+// Rows with the given values or range. Ranges apply to numeric columns only, because text values may contain
+// two dots.
 LeftOut ofValues(const Trial& trial, const std::string& column, const std::string& values) {
   const auto dots = isText(trial, column) ? std::string::npos : values.find("..");
   if (dots != std::string::npos && values.front() != '"') {
@@ -230,7 +231,7 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
   errors.base = rmseOf(errors.base_told, unseen);
   errors.refined = rmseOf(errors.told, unseen);
   errors.floor = result.noise_floor;
-  Trial same = seen;  // uses the searched columns only
+  Trial same = seen;  // restricted to the searched columns below
   same.covariates = result.trial.covariates;
   errors.regression = regressionErrors(same, unseen);
   return errors;

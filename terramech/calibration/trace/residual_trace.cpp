@@ -33,8 +33,9 @@ TracedEffect traced(const Explanation& chosen, double p_value) {
   return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
 }
 
-/// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases held-out
-/// errors. The effect stays unless it changes no prediction: a soil fitted to all rows hides most of it.
+/// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases
+/// held-out errors. The effect is kept if it changes predictions, even with a small gain: a soil fitted to
+/// all rows absorbs most of the offset.
 bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
                    std::vector<TracedEffect>& effects) {
   const auto found = findClosureOffset(trial, seed);
@@ -85,14 +86,15 @@ long curves(const std::vector<Effect>& effects) {
   return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
 }
 
-/// Gain by which another explanation must exceed the present one to replace it: 0 if it has fewer curves, closeGain()
-/// for as many; for more curves at least the gain that noise gives to some curve.
+/// Least additional gain for the replacement of the present explanation by another: 0 for fewer curves,
+/// closeGain() for the same number of curves, and for more curves at least the gain of noise by some curve.
 double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
   const long more = curves(other) - curves(present);
   return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;  // (T45)
 }
 
-/// Removes, last first, the effects whose gain beside the others is at most that of noise.
+/// Removes, from the last on, the effects whose gain relative to the model without the effect is at most that
+/// of noise.
 void check(Path& path) {
   for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
     if (path.search.gainOf(k) > path.threshold) continue;  // (T44)
@@ -102,7 +104,8 @@ void check(Path& path) {
   }
 }
 
-/// Removes effects without influence on the predictions; of joint forms those remain whose gain exceeds that of noise.
+/// Removes effects without influence on the predictions, and parts of joint forms whose gain is at most that
+/// of noise.
 void dropIdle(Path& path) {
   for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
     TracedEffect& effect = path.effects[k];
@@ -174,7 +177,7 @@ void findRivals(const Path& path, TraceResult& result, const std::function<bool(
   if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
 }
 
-/// The accepted effects, independent of their order.
+/// Returns the accepted effects as a set, independent of their order.
 std::multiset<std::string> takenIn(const Path& path) {
   std::multiset<std::string> all;
   for (const TracedEffect& e : path.effects)
@@ -183,8 +186,8 @@ std::multiset<std::string> takenIn(const Path& path) {
   return all;
 }
 
-/// Accepts the best explanation until no gain exceeds that of noise, or until a set of effects recurs, which would
-/// repeat without end.
+/// Accepts the best explanation repeatedly, until no gain exceeds that of noise or a set of effects recurs
+/// (endless loop).
 void grow(Path& path, const Trial& trial, const TraceOptions& options,
           const std::function<bool(double)>& go_on) {
   std::set<std::multiset<std::string>> seen;
@@ -206,8 +209,8 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
   }
 }
 
-/// Tries two effects in place of the one or two that were found. Two for one must gain at least the threshold, two for
-/// two the margin; more curves require the sum of both.
+/// Tests two effects in place of the one or two that were found. In place of one effect the pair must gain at
+/// least the threshold, in place of two at least margin(); with more curves, at least the sum of both.
 void reconsiderPair(Path& path) {
   const std::size_t found = path.effects.size() - path.pinned;
   if (found < 1 || found > 2) return;
@@ -267,8 +270,9 @@ std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect
   return all;
 }
 
-/// Prior information on a rover's own drive. The pull has the error of the slope: 0.3 degrees of an inclinometer unless
-/// stated (ours). Wheels that follow another wheel drive in its rut (rut.hpp), whose stiffness is fitted.
+/// Prior information on a rover's own drive. The pull follows from the slope and has the error of an
+/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (rut.hpp),
+/// whose stiffness is fitted.
 RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   constexpr double kSlopeError_rad = 0.005;
   if (trial.moment.empty()) return model;
@@ -289,8 +293,8 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 
 namespace {
 
-/// Extent to which a kind of candidate can absorb another cause: a drift includes a constant, a curve includes a drift,
-/// and a product represents both of its columns.
+/// Rank of a kind of candidate by the causes that the kind can absorb: a drift includes a constant, a curve
+/// includes a drift, and a product represents both of its columns.
 int freedom(const Candidate& candidate) {
   return isProduct(candidate.covariate()) ? 3
          : candidate.empirical()          ? 2
@@ -322,7 +326,7 @@ bool accepted(const std::vector<Explanation>& ranked, double threshold) {
 
 namespace {
 
-/// Progress of work in an unknown number of rounds: each round takes half of the remaining share.
+/// Progress of work in an unknown number of rounds: each round counts as half of the remaining share.
 class Rounds {
  public:
   double at(double share) {
@@ -338,7 +342,7 @@ class Rounds {
 TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
                      const ProgressMonitor& watch) {
   TraceOptions options = given;
-  if (!trial.moment.empty()) {  // non-normal errors of slip and slope: docs/effects.md
+  if (!trial.moment.empty()) {  // errors of slip and slope are not normal: docs/effects.md
     options.max_effects = 1;
     options.least_share = 0.06;
   }

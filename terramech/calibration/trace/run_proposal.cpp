@@ -152,7 +152,7 @@ std::vector<WheelState> withEachLevel(const std::vector<WheelState>& states, con
   std::set<std::string> words;
   for (const WheelState& s : trial.states)
     if (!s.label(column).empty()) words.emplace(s.label(column));
-  // Time takes its greatest value only: no run can be made in the past.
+  // For time only the greatest value is used, because a proposed run lies in the future.
   std::set<double> levels{quantile(trial, column, 1.0)};
   if (column != "time_s") levels.insert({quantile(trial, column, 0.0), quantile(trial, column, 0.5)});
   for (const WheelState& s : states) {
@@ -170,7 +170,8 @@ std::vector<WheelState> withEachLevel(const std::vector<WheelState>& states, con
   return all;
 }
 
-/// Slips of the rows of a run: five if the rows of a run differ in slip, otherwise one run for each slip.
+/// Slips of the rows of each possible run: five slips in one run if measured runs vary in slip, otherwise one
+/// run for each slip.
 std::vector<std::vector<double>> slipsOf(const Trial& trial) {
   const double low = quantile(trial, "slip", 0.05), high = quantile(trial, "slip", 0.95);
   std::map<int, std::pair<double, double>> range;

@@ -16,7 +16,7 @@ TraceInput traceInput(const Telemetry& table, const ModelFile& base, const Trace
                       std::to_string(trial.rows()) +
                           " usable rows with sinkage below the wheel radius; tracing needs at least 5",
                       ""});
-  // A drive has too little information for both soil and effects.
+  // The rows of a drive do not determine both soil and effects.
   if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
   return input;
 }

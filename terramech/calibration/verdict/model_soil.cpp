@@ -40,7 +40,7 @@ class SoilModelFit {
  public:
   SoilModelFit(const Trial& trial, const FitPlan& plan, double noise)
       : trial_(trial), plan_(plan), noise_(noise) {
-    // The independent errors of slip and load of a row are the only information on the inputs.
+    // Slip and load of each row are fitted from their readings alone.
     const auto rows = static_cast<std::size_t>(trial_.rows());
     for (std::size_t row = 0; row < rows; ++row) slips_.push_back(trial_.slip[row]);
   }
@@ -92,7 +92,8 @@ RefinedModel withSoil(const RefinedModel& model, const Soil& soil, const ModelSo
   return other;
 }
 
-/// Covariance of (c, tan phi) from that of the fitted parameters; zero for parameters that are not fitted.
+/// Covariance of cohesion c and tan phi (phi: friction angle) from that of the fitted parameters; zero for
+/// parameters that are not fitted.
 Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& covariance, const Soil& soil) {
   const double by_phi = 1.0 + std::pow(std::tan(soil.friction_angle_rad), 2);
   const std::array<int, 2> index{indexOf("cohesion_Pa"), indexOf("friction_angle_rad")};
@@ -115,7 +116,7 @@ ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSo
   SoilModelFit search{trial, plan, options.noise};
   const Soil& afresh = options.prior ? options.prior->soil : unknownSoil().model.soil;
   Fit best = search.from(withSoil(model, afresh, options));
-  // The soil of the model is no start value if the prior fixes some of its parameters.
+  // With a prior, the soil of the model is not a start value, because the prior may fix parameters.
   if (!options.prior) {
     const Fit own = search.from(withSoil(model, model.soil, options));
     if (own.cost() < best.cost()) best = own;
