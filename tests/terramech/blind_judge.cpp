@@ -58,7 +58,7 @@ Marks judge(const World& world, const std::vector<Claim>& claims) {
   marks.hidden = static_cast<int>(world.hidden.size());
   marks.claimed = static_cast<int>(claims.size());
   std::vector<char> used(claims.size(), 0), met(world.hidden.size(), 0);
-  // A claim is first matched to the hidden effect of the same name, because two effects may share a column.
+  // Claims are first matched to hidden effects of the same name, because two effects may have one column.
   for (const bool by_name : {true, false})
     for (std::size_t h = 0; h < world.hidden.size(); ++h)
       for (std::size_t k = 0; k < claims.size(); ++k) {

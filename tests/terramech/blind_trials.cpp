@@ -1,8 +1,8 @@
 // Blind trials of residual tracing: blind_trials FIRST_SEED COUNT
-// [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign]
-// [scan|renamed]. Prints one line for each world and the rates. With scan, the plain scan (plain_scan.hpp)
-// is judged, by column alone; with renamed, whether other column names change the result. Seeds 1 to 9999
-// are for development; seeds from 100000 on are for judging and are reported once.
+// [library|other|double|none|scatter10|scatter20|site|tied|few|patch|product] [wide|campaign] [scan|renamed].
+// Prints one line for each world and the rates. The option scan judges the plain scan (plain_scan.hpp) by
+// columns alone; renamed tests whether other column names change the result. Seeds 1 to 9999 are for
+// development; seeds from 100000 on are for the final evaluation and are reported once.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -9,7 +9,7 @@ namespace talus::blind {
 /// Conditions of one row, in SI units.
 struct Conditions {
   double load, slip, speed, rim, pass, time, slope, grouser, temperature, dust, battery, radius, width;
-  double strength = 1.0, stiffness = 1.0;  // of the soil at the row, relative to the world's soil
+  double strength = 1.0, stiffness = 1.0;  // factors on the soil of the world at the row
 };
 
 /// Noise-free readings of a wheel, in SI units.

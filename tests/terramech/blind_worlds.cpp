@@ -67,11 +67,12 @@ struct Design {
   bool tied_speed = false;  ///< the travel speed is fixed, so that the rim speed follows from the slip
   bool both_speeds = false;
   int rows_a_run = 0;       ///< > 0: rows in a run
-  double run_offset = 0.0;  ///< standard deviation of the offset of a run in DP/W and z/r
+  double run_offset = 0.0;  ///< standard deviation of the offset of a run in drawbar pull DP/W and sinkage
+                            ///< z/r
   int idle_columns = 0;     ///< number of columns without an effect
   bool heavy_tails = false;
   bool campaign = false;
-  double absolute = 0.0;  ///< part of the noise of DP/W and T/(rW) that is independent of the reading
+  double absolute = 0.0;  ///< noise of drawbar pull DP/W and torque T/(rW) independent of the reading
 };
 
 Design plainDesign(Random& random) {
@@ -172,7 +173,7 @@ std::vector<double> measure(const World& world, const Design& design, const Cond
           c.width};
 }
 
-/// Whether the design of a campaign allows an effect to be identified.
+/// Whether an effect can be identified with the design of a campaign.
 bool shows(const Hidden& h, const Design& design) {
   const auto on = [&](const char* column) {
     return std::find(h.covariates.begin(), h.covariates.end(), column) != h.covariates.end();

@@ -34,8 +34,9 @@ struct World {
   std::vector<std::vector<double>>
       held;  ///< held-out rows under conditions that also occur in training, noisy
   std::vector<double> floor_pull,
-      floor_z;                    ///< noise-free truth less measured of held rows: what nobody can predict
-  std::vector<int> run;           ///< number of the run of each training row; empty: there are no runs
+      floor_z;                    ///< noise-free value minus measured value of held-out rows: the
+                                  ///< unpredictable error
+  std::vector<int> run;           ///< run number of each training row; empty: no runs
   std::vector<std::string> site;  ///< site of each training row; empty: not recorded
   std::vector<Hidden> hidden;
   Ground ground{};
@@ -69,13 +70,13 @@ struct WorldPlan {
   /// 12 to 25 runs with fixed wheel, load, speed, pass and slope; replaces `wide`
   bool campaign = false;
   bool wide =
-      false;  ///< designs and noise of many kinds: one slip level, a rim speed tied to slip, runs with
-              ///< offsets of their own, columns that mean nothing, drifting or heavy-tailed noise
+      false;  ///< many kinds of designs and noise: one slip level, a rim speed tied to slip, runs with
+              ///< different offsets, columns without an effect, drifting or heavy-tailed noise
   double scatter = 0.0;  ///< relative standard deviation of tan phi and c between runs
   /// Cases that cannot be resolved: "tied", the column of each effect is correlated with another; "few",
   /// eight rows; "patch", the last third of the runs is on another soil, not recorded.
   std::string untold{};
-  bool product = false;  ///< instead of other effects: a product of two columns
+  bool product = false;  ///< the only effect is a product of two columns
   bool sites =
       false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths
 };

@@ -14,7 +14,8 @@ inline RefinedModel sand() {
   return model;
 }
 
-/// Rows of the made sand with errors of a share of each reading; the pull of run number k off by `run_offset`.
+/// Rows of the synthetic sand with the relative error `noise` of each reading, and a pull offset of each run
+/// with the standard deviation `run_offset`.
 inline Trial noisyTrial(const RefinedModel& model, double noise, double run_offset = 0.0) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(4);

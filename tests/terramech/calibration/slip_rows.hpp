@@ -14,7 +14,7 @@ inline SensorNoise slipNoise(double relative) {
   return noise;
 }
 
-/// Rows whose measured slips are given; both speeds agree with them.
+/// Rows with the given measured slips, and with speeds consistent with these slips.
 inline Trial trialOf(const std::vector<double>& slips) {
   Trial trial;
   for (double slip : slips) {

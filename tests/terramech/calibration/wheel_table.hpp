@@ -19,12 +19,12 @@ inline const Soil kMadeSoil{.name = "made",
 
 inline constexpr Wheel kMadeWheel{.radius_m = 0.15, .width_m = 0.15};
 
-/// How row number k was driven, from 0.
+/// Load and slip of row number k, from 0.
 inline WheelOperation madeOperation(int k) {
   return {.load_N = 120.0 + 30.0 * (k % 3), .slip = 0.15 + 0.06 * k};
 }
 
-/// A row of a table; all its digits, so that it reads back to the same bits.
+/// A row of a table, with all digits, so that reading returns the same bits.
 inline std::string wheelLine(const WheelSample& s, const Wheel& wheel) {
   char text[200];
   std::snprintf(text, sizeof text, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", s.load_N, s.torque_Nm, s.sinkage_m,
@@ -34,7 +34,7 @@ inline std::string wheelLine(const WheelSample& s, const Wheel& wheel) {
 
 inline const std::string kWheelHead = "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m";
 
-/// Twelve exact rows of a wheel on the made soil.
+/// Twelve exact rows of a wheel on the synthetic soil.
 inline std::string madeRows() {
   std::string text = kWheelHead + "\n";
   for (int k = 0; k < 12; ++k) {
@@ -45,13 +45,13 @@ inline std::string madeRows() {
   return text;
 }
 
-/// The same as a file.
+/// The rows of madeRows() as a file.
 class WheelTable : public test::TemporaryFile {
  public:
   WheelTable() : TemporaryFile(madeRows()) {}
 };
 
-/// The made soil as a model file.
+/// The synthetic soil as a model file.
 inline const std::string kMadeSoilText =
     "soil: {name: made, cohesion_Pa: 1500, friction_angle_rad: 0.45, sinkage_exponent: 1.0, "
     "cohesive_modulus: 0, "

@@ -5,7 +5,7 @@
 namespace talus::terramech {
 namespace candidate_columns_test {
 
-/// Rows of the made sand whose torque is read as this share of it.
+/// Rows of the synthetic sand whose torque readings are multiplied by `share`.
 Trial rowsWithTorque(double share) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(6);
@@ -32,7 +32,7 @@ double gainOfEfficiency(double share) {
   return search.gainsOf({{{effect}, form.family, 1}}).front();
 }
 
-// Property: the bounds of eta, 0.3 to 2, allow a torque that is read too small as well as one that is read too great.
+// Property: the range of the factor eta, 0.3 to 2, allows torque readings that are too low and too high.
 TEST(CandidateColumns, AFactorGainsInEitherSense) {
   EXPECT_GT(gainOfEfficiency(1.15), 20.0);
   EXPECT_GT(gainOfEfficiency(0.87), 20.0);

@@ -60,7 +60,7 @@ TEST(EffectCandidates, CandidatesRequireTheirMeasuredColumns) {
   EXPECT_TRUE(slopes.contains("slope_load_transfer"));
 }
 
-// Property: a drift in proportion is open to every column of one's own, whatever it is called.
+// Property: linear drifts are candidates for every additional column, independent of its name.
 TEST(EffectCandidates, DriftIsOfferedForEveryUserColumnRegardlessOfItsName) {
   const auto drifts = [](const std::string& column) {
     std::set<std::string> all;
@@ -73,7 +73,7 @@ TEST(EffectCandidates, DriftIsOfferedForEveryUserColumnRegardlessOfItsName) {
   EXPECT_TRUE(drifts("speed_mps").empty());
 }
 
-// Property: every offer is a form of the library with all its parameters, within their bounds.
+// Property: every candidate is a form of the library with all parameters, within their bounds.
 TEST(EffectCandidates, CandidatesAreCompleteFormsWithinParameterBounds) {
   const auto all = offered(trialWith(
       {"time_s"}, [](int k) { return std::vector{10.0 * k}; }, -0.3));
@@ -119,7 +119,8 @@ TEST(EffectCandidates, EmpiricalCurvesStartFlatOnMeasuredChannels) {
       EXPECT_EQ(e.knots.size(), e.parameters.size());
       EXPECT_TRUE(std::is_sorted(e.knots.begin(), e.knots.end()));
       for (const double p : e.parameters) EXPECT_EQ(p, 0.0);
-      // A curve of the sinkage in the sinkage would explain it by itself.
+      // A curve over the sinkage must not be added to the channel sinkage, because any residual would be
+      // explained.
       EXPECT_FALSE(e.covariate == "sinkage_m" && e.channel == Channel::Sinkage);
     }
   }
@@ -137,7 +138,8 @@ TEST(EffectCandidates, ProductsContainAUserColumn) {
 }
 
 TEST(EffectCandidates, KnotCountIsLimitedByIndependentRuns) {
-  // Property: of ten runs a column that is fixed in them has three knots' worth, the slip of forty rows seven.
+  // Property: with ten runs, a column that is constant within runs has at most three knots; the slip of forty
+  // rows has seven.
   Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 4)}; });
   for (int row = 0; row < trial.rows(); ++row) trial.run[static_cast<std::size_t>(row)] = row / 4;
   std::map<std::string, std::size_t> most;
@@ -148,7 +150,8 @@ TEST(EffectCandidates, KnotCountIsLimitedByIndependentRuns) {
 }
 
 TEST(EffectCandidates, StepsAreInColumnsOfOnesOwn) {
-  // Property: the sinkage of the model is no such column; its curves begin at its least value, as all curves but steps do.
+  // Property: the sinkage of the model has no step candidates; all other curves begin at the least value of
+  // their column.
   const Trial trial = trialWith({"dust"}, [](int k) { return std::vector{0.1 * (k / 2)}; });
   const auto steps = [&](const std::string& column, double least) {
     int count = 0;

@@ -7,7 +7,8 @@
 namespace talus::terramech {
 namespace model_fit_test {
 
-// Rows of the made sand whose pull reads `offset_N` more, with a standard deviation of 1 N by its side.
+// Rows of the synthetic sand with pull readings that are too high by `offset_N`, with a sensor standard
+// deviation of 1 N.
 struct OffsetRows {
   RefinedModel model;
   Trial trial;
@@ -20,7 +21,7 @@ struct OffsetRows {
     for (int k = 0; k < count; ++k) {
       std::vector<double> row = wheelRow(model.soil, 60.0, 0.1 + 0.04 * k, 0.0, random);
       row[4] += offset_N + (k % 2 ? 0.5 : -0.5);
-      row[2] = row[3] = std::nan("");  // the pull alone
+      row[2] = row[3] = std::nan("");  // only the pull is measured
       rows.add(row);
     }
     trial = makeTrial(rows.telemetry(), model);
@@ -48,7 +49,8 @@ TEST(ModelFit, PriorWeighsAsAnAdditionalReading) {
   SolvedContacts solved;
   FitPlan plan{.free = {{.effect = 0, .index = 0}}, .effect_prior = {{0, {1.0, 0.25}}}, .iterations = 30};
   const Fit fit = fitModel(rows.model, rows.trial, rows.white, plan, solved);
-  // Closed form: weights 16 and 1/0.25^2 = 16 put it half way between 3 and 1; (2 - 1)^2/0.25^2 = 16.
+  // Closed form: with equal weights 16 and 1/0.25^2 = 16 the result is the mean of 3 and 1; (2 - 1)^2/0.25^2
+  // = 16.
   EXPECT_NEAR(fit.model.effects[0].parameters[0], 2.0, 1e-3);
   EXPECT_NEAR(fit.prior_chi2, 16.0, 0.05);
 }
@@ -60,10 +62,11 @@ TEST(ModelFit, MisfitFactorReducesWeightOfRowsAgainstPrior) {
                .effect_prior = {{0, {1.0, 0.25}}},
                .misfit = 4.0,
                .iterations = 30};
-  // Closed form: the rows weigh 16 / 4 against 16 of the prior: (4 * 3 + 16 * 1) / 20.
+  // Closed form: the rows have the weight 16 / 4, the prior 16: (4 * 3 + 16 * 1) / 20.
   EXPECT_NEAR(fitModel(rows.model, rows.trial, rows.white, plan, solved).model.effects[0].parameters[0], 1.4,
               1e-3);
-  // Closed form: residuals of +-0.5 about 3 N at 1 N are below the noise, of 3 N alone a mean square of 9.25.
+  // Closed form: residuals 3 N +- 0.5 N with a noise of 1 N have the mean square 9.25; a tenth of them is
+  // below the noise.
   const Eigen::VectorXd white =
       rows.white.apply(rows.trial.measured - predictRows(rows.model, rows.trial, solved));
   EXPECT_NEAR(misfitOf(white, rows.trial), 9.25, 1e-2);
@@ -76,7 +79,7 @@ TEST(ModelFit, EffectWithoutInformativeRowsFitsToZero) {
   rows.model.effects = {{.name = "slope_weight_component", .covariate = "slope_rad", .parameters = {0.7}}};
   const FitPlan plan = fitPlan(rows.model, false);
   ASSERT_EQ(plan.free.size(), 1U);
-  // Property: no row has a slope, so that the prior alone speaks: 0.
+  // Property: without rows on a slope the result is the mean of the prior, 0.
   EXPECT_NEAR(fitModel(rows.model, rows.trial, rows.white, plan, solved).model.effects[0].parameters[0], 0.0,
               1e-3);
 }
@@ -108,7 +111,8 @@ TEST(ModelFit, PlanFreesEffectsAndSoilParametersWithPriorStd) {
   model.soil_prior_std = {{"cohesion_Pa", 100.0}, {"sinkage_exponent", 0.0}};
   model.effects = {{.name = "multipass_stiffness", .covariate = "pass_index", .parameters = {0.4, 1.0, 1.0}}};
   const FitPlan plan = fitPlan(model, false);
-  // The first pass is the data's, never fitted; cohesion is the only soil parameter with a deviation.
+  // The first pass is computed from the data and not fitted; cohesion is the only soil parameter with a
+  // standard deviation.
   ASSERT_EQ(plan.free.size(), 3U);
   EXPECT_EQ(plan.free[0].effect, -1);
   EXPECT_STREQ(soilParameters()[static_cast<std::size_t>(plan.free[0].index)].name, "cohesion_Pa");
@@ -123,7 +127,7 @@ TEST(ModelFit, BoundsAreThoseOfTheEffectForm) {
                    {.name = "empirical", .covariate = "slip", .parameters = {0.0}, .knots = {0.3}}};
   EXPECT_EQ(rangeOf(model, {.effect = 0, .index = 0}).high,
             findEffect("elastic_rebound")->parameters[0].high);
-  EXPECT_LT(rangeOf(model, {.effect = 1, .index = 0}).low, -1.0);  // a curve may go either way
+  EXPECT_LT(rangeOf(model, {.effect = 1, .index = 0}).low, -1.0);  // a curve may be negative
   EXPECT_EQ(rangeOf(model, {.effect = -1, .index = 0}).low, soilParameters()[0].low);
 }
 
@@ -131,7 +135,7 @@ TEST(ModelFit, SoilWithoutStdIsFreeAndStatedStdIsKept) {
   RefinedModel model;
   model.soil.cohesion_Pa = 700.0;
   giveDefaultDeviations(model);
-  // Closed form: half of the vague soil's; the mean is the soil's own.
+  // Closed form: the standard deviation is half of that of the vague soil; the mean is that of the soil.
   EXPECT_EQ(model.soil_prior_std.at("cohesion_Pa"), 1000.0);
   EXPECT_EQ(model.soil_prior_mean.at("cohesion_Pa"), 700.0);
   EXPECT_EQ(fitPlan(model, false).free.size(), 7U);

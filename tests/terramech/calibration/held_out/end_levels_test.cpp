@@ -9,7 +9,8 @@
 namespace talus::terramech {
 namespace end_levels_test {
 
-/// Rows that `truth` makes at these slips and loads, three each, and a result whose refined model is the truth.
+/// Rows predicted by `truth` at these slips and loads, three of each, and a result whose refined model is
+/// `truth`.
 TraceResult resultOf(const RefinedModel& base, const RefinedModel& truth, const std::vector<double>& slips) {
   std::vector<std::string> columns = wheelColumns();
   columns.emplace_back("grouser_height_m");
@@ -39,7 +40,7 @@ RefinedModel sand(std::vector<Effect> effects = {}) {
   return model;
 }
 
-/// A law of slip-sinkage.
+/// An effect of slip sinkage with the parameter a.
 Effect digging(const char* name, double a) {
   return {.name = name, .covariate = "slip", .channel = Channel::Sinkage, .parameters = {a}};
 }
@@ -59,13 +60,14 @@ TEST(EndLevels, LawIsExtrapolatedByTheDistanceItPredictedHeldOutLevels) {
   EXPECT_EQ(high.rows, 6);
   EXPECT_NEAR(high.edge, 0.4, 1e-12);
   EXPECT_NEAR(high.distance, 0.1, 1e-12);
-  EXPECT_LT(high.refined_rmse[1], 0.1 * high.base_rmse[1]);  // rows without noise
+  EXPECT_LT(high.refined_rmse[1], 0.1 * high.base_rmse[1]);  // the rows have no noise
   boundEffects(result.refined, result.trial, ends);
-  // The deeper end, 0.4 and 0.5, was foretold from 0.3: so far beyond 0.5 goes the law, and no farther.
+  // The end with slips 0.4 and 0.5 was predicted from 0.3; the formula therefore applies to 0.2 beyond 0.5,
+  // up to 0.7.
   WheelState beyond{.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 80.0, .slip = 0.69};
   EXPECT_EQ(predict(result.refined, beyond).sinkage_m, predict(truth, beyond).sinkage_m);
   beyond.slip = 0.9;
-  // Closed form: 1 + a i at i = 0.7 is that of a = 0.7/0.9 at 0.9.
+  // Closed form: 1 + a i is constant beyond i = 0.7, as with a = 0.7/0.9 at i = 0.9.
   EXPECT_NEAR(predict(result.refined, beyond).sinkage_m, predict(with(0.7 / 0.9), beyond).sinkage_m, 1e-9);
 }
 
@@ -73,7 +75,8 @@ TEST(EndLevels, EachEffectOfAColumnHasItsOwnExtrapolationRange) {
   const RefinedModel truth = sand({digging("skid_sinkage", 0.3), digging("slip_sinkage_linear", 1.0)});
   TraceResult result = resultOf(sand(), truth, {-0.8, -0.6, -0.4, -0.2, 0.1, 0.2});
   boundEffects(result.refined, result.trial, endLevels(result, {}));
-  // How braked wheels sink foretells levels far off, how driven ones do 0.2 from 0.1 alone.
+  // Levels of braked wheels are predicted from distant levels; of driven wheels only slip 0.2 is predicted,
+  // from 0.1.
   EXPECT_LT(result.refined.effects[0].knots[0], -0.9);
   EXPECT_NEAR(result.refined.effects[1].knots[1], 0.3, 1e-12);
 }
@@ -84,12 +87,12 @@ TEST(EndLevels, EffectSeenAtOneLevelIsConstantBeyondIt) {
   const auto ends = endLevels(result, {});
   const EndLevel& high = endOf(ends, "slip", true);
   EXPECT_FALSE(high.law);
-  // Property: no other level shows the effect, so that none of it is foretold.
+  // Property: no other level contains the effect, so that the effect at the end is not predicted.
   EXPECT_NEAR(high.refined_rmse[1], high.base_rmse[1], 0.05 * high.base_rmse[1]);
   boundEffects(result.refined, result.trial, ends);
   const WheelState beyond{
       .wheel = {.radius_m = 0.1, .width_m = 0.1, .grouser_height_m = 0.01}, .load_N = 80.0, .slip = 0.9};
-  // Closed form: a h i/(1-i) at i = 0.2 is that of a = 0.5 (0.2/0.8) / (0.9/0.1) at 0.9.
+  // Closed form: a h i/(1-i) is constant beyond i = 0.2, as with a = 0.5 (0.2/0.8) / (0.9/0.1) at i = 0.9.
   EXPECT_NEAR(predict(result.refined, beyond).sinkage_m, predict(with(0.5 * 0.25 / 9.0), beyond).sinkage_m,
               1e-9);
 }
@@ -105,7 +108,8 @@ TEST(EndLevels, StdGrowsByHeldOutErrorAboveNoiseFloorPerDistance) {
   EXPECT_NEAR(slip->above[0], 0.04 / 0.2, 1e-12);  // Closed form: sqrt(0.05^2 - 0.03^2) over the distance
   EXPECT_EQ(slip->above[1], 0.0);
   EXPECT_EQ(slip->below[0], 0.0);
-  // Closed form: a farther end that shows nothing counts by its rows: 4 (0.05^2 - 0.03^2) over 4 0.2^2 + 12 0.4^2.
+  // Closed form: each end has the weight of its rows, also a farther end without excess: 4 (0.05^2 - 0.03^2)
+  // / (4 0.2^2 + 12 0.4^2).
   EndLevel half{.column = "slip", .high = true, .distance = 0.4, .rows = 12};
   half.base_rmse = half.refined_rmse = {0.03, 0.002, NAN, NAN};
   EXPECT_NEAR(trainedRanges(result.trial, {end, half},

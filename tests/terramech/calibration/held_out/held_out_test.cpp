@@ -16,8 +16,8 @@ TEST(HeldOut, HeldOutErrorIsReducedOnHiddenLibraryEffect) {
   EXPECT_LT(held.refined_rmse[1], held.base_rmse[1]);
 }
 
-/// Runs of one moisture each, which takes pull away in proportion to slip: no form of the library. The soil is known to a
-/// tenth, the sensors are stated.
+/// Runs of constant moisture, which reduces the pull in proportion to slip: not a form of the library. The
+/// standard deviation of the soil is 10 %, and the sensor errors are stated.
 TraceResult moistRuns(unsigned seed) {
   std::vector<std::string> columns = wheelColumns();
   columns.emplace_back("moisture_pct");

@@ -22,7 +22,7 @@ EndLevel greatestSlip(double distance, const ChannelErrors& base, const ChannelE
           .refined_rmse = refined};
 }
 
-/// Rows at slips from 0 to 0.3; a refined model with slip-sinkage beside a base without.
+/// Rows at slips from 0 to 0.3, with a refined model that has slip sinkage and a base that has not.
 TraceResult resultOf() {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(5);
@@ -36,7 +36,7 @@ TraceResult resultOf() {
   result.noise_floor = {0.01, 0.01, 0.01, kNan};
   result.held_out.base_rmse = {0.05, 0.05, 0.05, kNan};
   result.held_out.refined_rmse = {0.02, 0.02, 0.06, kNan};
-  // Drawbar pull holds at the first distance alone, sinkage at both.
+  // The corrections of drawbar pull are confirmed at the first distance only, those of sinkage at both.
   result.ends = {greatestSlip(0.1, {0.04, 0.04, 0.04, kNan}, {0.03, 0.03, 0.03, kNan}),
                  greatestSlip(0.25, {0.04, 0.04, 0.04, kNan}, {0.05, 0.03, 0.03, kNan})};
   return result;
@@ -47,7 +47,7 @@ WheelState stateAt(double slip) {
 }
 
 TEST(ModelScope, LastEffectRefutedByHeldOutRowsIsReturned) {
-  TraceResult result = resultOf();  // torque errs more than with the base
+  TraceResult result = resultOf();  // the torque error is larger than that of the base
   EXPECT_EQ(lastRefuted(result), std::nullopt);
   for (const Channel c : {Channel::Torque, Channel::Torque, Channel::Sinkage, Channel::SideForce}) {
     result.effects.emplace_back();
@@ -62,14 +62,15 @@ TEST(ModelScope, LastEffectRefutedByHeldOutRowsIsReturned) {
 
 TEST(ModelScope, CorrectionShareFallsToZeroBetweenConfirmedAndRefutedSlip) {
   const ModelScope scope = scopeOf(resultOf());
-  // Closed form: drawbar pull fails at 0.25 after 0.1: none from 0.175 beyond on, all to half of that.
+  // Closed form: pull is confirmed at distance 0.1 and contradicted at 0.25; share 1 up to 0.0875, 0 from
+  // 0.175 on.
   const struct {
     double slip, pull, sinkage;
   } cases[] = {{0.3, 1.0, 1.0}, {0.3875, 1.0, 1.0}, {0.43125, 0.5, 1.0}, {0.475, 0.0, 1.0}, {0.9, 0.0, 1.0}};
   for (const auto& c : cases) {
     EXPECT_NEAR(scope.share(stateAt(c.slip), 0), c.pull, 1e-9) << c.slip;
     EXPECT_NEAR(scope.share(stateAt(c.slip), 1), c.sinkage, 1e-9) << c.slip;
-    EXPECT_EQ(scope.share(stateAt(c.slip), 2), 0.0);  // worse inside already
+    EXPECT_EQ(scope.share(stateAt(c.slip), 2), 0.0);  // contradicted inside the range
   }
 }
 
@@ -86,7 +87,8 @@ TEST(ModelScope, HeldOutErrorPerChannelNeverExceedsThatOfTheBase) {
 
 TEST(ModelScope, HeldOutErrorWithinSensorNoiseRefutesNothing) {
   TraceResult result = resultOf();
-  // Closed form: one row, and an error of 1.5 floors, of whose square 1 + 1.645 sqrt(2) = 3.3 is chance; 2 floors are not.
+  // Closed form: for one row a squared error up to 1 + 1.645 sqrt(2) = 3.3 floors squared is chance: 1.5
+  // floors are chance, 2 are not.
   result.ends = {greatestSlip(0.1, {0.001, 0.001, 0.001, kNan}, {0.015, 0.02, 0.001, kNan})};
   result.ends[0].rows = 1;
   const ModelScope scope = scopeOf(result);
@@ -115,7 +117,8 @@ TEST(ModelScope, PredictionsOutsideScopeEqualTheBaseAndScopeRoundTrips) {
   const Eigen::MatrixXd base = predictRows(result.base, far, solved),
                         refined = predictRows(result.refined, far, other);
   const Eigen::MatrixXd mixed = predictInScope(result, far);
-  // Property: at 0.9 drawbar pull is the base's, sinkage the refined model's; torque is the base's everywhere.
+  // Property: at slip 0.9 the pull is that of the base and the sinkage that of the refined model; the torque
+  // is always that of the base.
   EXPECT_NEAR(mixed(0, 0), base(0, 0), 1e-12);
   EXPECT_NEAR(mixed(0, 1), refined(0, 1), 1e-12);
   EXPECT_GT(std::abs(base(0, 1) - refined(0, 1)), 0.01);

@@ -6,7 +6,7 @@ namespace talus::terramech {
 namespace refit_test {
 
 TEST(SquaredErrors, AreRootMeanSquaresByChannelWithoutNaN) {
-  // Closed form: residuals 3 and 4 have the mean square 12.5; a channel without a value has none.
+  // Closed form: residuals 3 and 4 have the mean square 12.5; a channel without values has NaN.
   Eigen::MatrixXd residual = Eigen::MatrixXd::Constant(2, kChannels, std::nan(""));
   residual(0, 0) = 3.0;
   residual(1, 0) = 4.0;
@@ -19,7 +19,8 @@ TEST(SquaredErrors, AreRootMeanSquaresByChannelWithoutNaN) {
 }
 
 TEST(RefittedBase, KeepsRunOffsetsOutOfTheSoilFit) {
-  // Property: offsets in the pull of runs that are known to have some do not bend the soil; as errors of rows they would.
+  // Property: pull offsets of runs do not change the soil if modelled as shared errors; as errors of single
+  // rows they change the soil.
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(7);
   TraceResult result;

@@ -12,7 +12,7 @@ Trial trialOf(const MadeRows& rows, const std::string& column = "") {
   return makeTrial(rows.telemetry(column), RefinedModel{});
 }
 
-/// Each value of a key lies in one fold, each row in one of the folds.
+/// Expects that all rows with one value of the key are in one fold, and each row in a valid fold.
 void expectWhole(const Folds& folds, const std::vector<double>& key) {
   std::map<double, std::set<int>> seen;
   ASSERT_EQ(folds.of_row.size(), key.size());
@@ -62,7 +62,7 @@ TEST(Folds, LevelsOfSignedColumnAreHeldOutOneByOne) {
   const Folds folds = levelFolds(trialOf(rows), "slip_angle_rad");
   EXPECT_EQ(folds.count, 4);
   expectWhole(folds, angle);
-  EXPECT_EQ(levelFolds(trialOf(rows), "load_N").count, 0);  // one level alone
+  EXPECT_EQ(levelFolds(trialOf(rows), "load_N").count, 0);  // a single level
 }
 
 TEST(Folds, HeldOutAndTrainingRowsAreComplementary) {

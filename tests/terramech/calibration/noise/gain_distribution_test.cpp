@@ -6,7 +6,7 @@ namespace talus::terramech {
 namespace gain_distribution_test {
 
 TEST(GainDistribution, FalseAlarmRateIsFivePercentWithRunErrors) {
-  // Property: of 120 tables with errors by run, 6 exceed their own threshold of 5 %; 13 or more have
+  // Property: of 120 tables with errors by run, about 6 exceed the threshold of 5 %; 13 or more have
   // probability 0.006.
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
@@ -20,7 +20,8 @@ TEST(GainDistribution, FalseAlarmRateIsFivePercentWithRunErrors) {
 }
 
 TEST(GainDistribution, EffectConstantWithinRunsIsFoundDespiteRunErrors) {
-  // Property: the covariance of the runs' error is found again with the effect in the model.
+  // Property: the covariance of the runs' error is estimated again together with the effect, so that the
+  // effect is found.
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SyntheticTable table(16, 10, 0.3, seed);
@@ -33,7 +34,8 @@ TEST(GainDistribution, EffectConstantWithinRunsIsFoundDespiteRunErrors) {
 }
 
 TEST(GainDistribution, RunErrorsRaiseNoAlarmForCovariatesThatVaryByRun) {
-  // Property: with an error of runs five times the noise of rows, one run in twelve that stands out is no cause.
+  // Property: with an error of runs of five times the noise of rows, one run in twelve with a large error is
+  // not found as a cause.
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SyntheticTable table(12, 20, 5.0, seed);
@@ -44,8 +46,8 @@ TEST(GainDistribution, RunErrorsRaiseNoAlarmForCovariatesThatVaryByRun) {
 }
 
 TEST(GainDistribution, GainIncludesReturnOfTheSoilToItsPrior) {
-  // Closed form: a constant of 3 that a known number took, eight of its standard deviations from its prior. A
-  // contender of the same shape lets it return: that alone is worth 32.
+  // Closed form: a known parameter fits a constant of 3 at eight standard deviations from its prior. A
+  // contender of the same shape allows the parameter to return to its prior, a gain of 8^2 / 2 = 32.
   SyntheticTable table(10, 10, 0.0, 7);
   table.null.unit.clear();
   const std::vector<double> constant(100, 1.0);
@@ -55,7 +57,8 @@ TEST(GainDistribution, GainIncludesReturnOfTheSoilToItsPrior) {
 }
 
 TEST(GainDistribution, NullTablesDrawTheirSoilFromThePrior) {
-  // Property: how far the rows moved the soil changes what they gain, not what a table without an effect would.
+  // Property: the departure of the fitted soil from its prior affects the gain of the table, but not the
+  // gains of tables drawn from the null model.
   SyntheticTable table(10, 10, 0.0, 7);
   table.null.unit.clear();
   table.null.soil = 1;
@@ -66,7 +69,7 @@ TEST(GainDistribution, NullTablesDrawTheirSoilFromThePrior) {
   };
   const double here = threshold(0.0);
   EXPECT_NEAR(threshold(-30.0), here, 0.5 + 0.2 * here);
-  EXPECT_LT(here, 10.0);  // 32 and more were soils drawn where the rows moved them
+  EXPECT_LT(here, 10.0);  // soils drawn about the fitted soil would give 32 and more
 }
 
 TEST(GainDistribution, NonNegativeContenderHasZeroGainForNegativeStep) {

@@ -9,14 +9,15 @@ namespace input_calibration_test {
 
 TEST(InputCalibration, SlipVariesOnlyIfScatterExceedsTwiceItsError) {
   EXPECT_FALSE(slipIsSeen(trialOf(scattered(0.3, 0.01, 200)), slipNoise(0.03)));
-  // Property: scatter beyond twice the error is seen, however large an error is claimed.
+  // Property: scatter beyond twice the error is recognised as variation of slip, also for a large stated
+  // error.
   EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.025, 200)), slipNoise(0.03)));
   EXPECT_TRUE(slipIsSeen(trialOf(scattered(0.3, 0.1, 200)), slipNoise(0.9)));
 }
 
 TEST(InputCalibration, ErrorsAboutOneSlipLevelAreRemoved) {
-  // Closed form: scatter equal to the error keeps nothing of it; the speed over ground, had from the slip,
-  // follows.
+  // Closed form: scatter equal to the error is removed entirely; the speed over ground, computed from the
+  // slip, is updated.
   const std::vector<double> measured = scattered(0.4, 0.012, 400);
   Trial trial = trialOf(measured);
   double mean = 0.0;
@@ -45,7 +46,8 @@ TEST(InputCalibration, StdOfMeanSlipIsSigmaOverRootN) {
   EXPECT_NEAR(shared[7], 0.02 / 10.0, 1e-12);
 }
 
-/// True slips over a range, rims that make one travel speed of them; measured slips err by `relative`.
+/// Rows at slips over a range, with rim speeds for a constant travel speed. The measured slips have the
+/// relative error `relative`.
 Trial atOneSpeed(double relative, double speed_scatter) {
   const std::vector<double> error = scattered(0.0, 1.0, 120), other = scattered(0.0, speed_scatter, 120);
   std::vector<double> slips;
@@ -71,7 +73,7 @@ TEST(InputCalibration, ConstantTravelSpeedDeterminesSlips) {
   double worst = 0.0;
   for (std::size_t k = 0; k < 120; ++k)
     worst = std::max(worst, std::abs(trial.states[k].slip - (0.1 + 0.005 * static_cast<double>(k))));
-  // Property: errors of 0.004 to 0.03 become what is left of them in the mean speed.
+  // Property: slip errors of 0.004 to 0.03 are reduced to the error of the mean speed.
   EXPECT_LT(worst, 0.003);
 }
 
@@ -92,7 +94,8 @@ TEST(InputCalibration, SpeedConstantWithinEachRunDeterminesSlips) {
     EXPECT_NEAR(trial.states[k].speed_mps, trial.states[static_cast<std::size_t>(trial.run[k])].speed_mps,
                 1e-3);
   }
-  // Property: errors of 4 % of slips of 0.4, 0.017 rms, become those of means of 20 rows, some 1 / sqrt(20) of them.
+  // Property: slip errors of 4 % at slips of 0.4, 0.017 rms, are reduced by about 1 / sqrt(20), the means of
+  // 20 rows.
   EXPECT_LT(std::sqrt(square), 0.007);
 }
 

@@ -17,7 +17,7 @@ TEST(NelderMead, MinimisesAQuadratic) {
 }
 
 TEST(NelderMead, MinimisesRosenbrock) {
-  // Closed form: the least value is 0 at (1, 1); start of nelder_mead_1965.
+  // Closed form: the least value is 0 at (1, 1). The start is that of nelder_mead_1965.
   const auto valley = [](const std::vector<double>& p) {
     return 100.0 * std::pow(p[1] - p[0] * p[0], 2) + std::pow(1.0 - p[0], 2);
   };
@@ -34,7 +34,7 @@ TEST(NelderMead, LimitsEvaluationsAndNeverIncreasesTheCost) {
       return std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
     };
     const auto found = nelderMead(cost, {3.0, -4.0, 5.0}, {.evaluations = most});
-    EXPECT_LE(calls, most + 4) << most;  // a step that began is finished: two tries and a shrink at most
+    EXPECT_LE(calls, most + 4) << most;  // the current step is completed: at most two trials and a shrink
     EXPECT_LE(cost(found), 12.0);
   }
 }
@@ -42,7 +42,7 @@ TEST(NelderMead, LimitsEvaluationsAndNeverIncreasesTheCost) {
 TEST(NelderMead, StopsAtOnceOnAConstantFunction) {
   int calls = 0;
   nelderMead([&](const std::vector<double>&) { return ++calls, 7.0; }, {0.0, 0.0}, {});
-  EXPECT_EQ(calls, 3);  // the corners of the first simplex
+  EXPECT_EQ(calls, 3);  // evaluations at the corners of the first simplex
 }
 
 }  // namespace nelder_mead_test

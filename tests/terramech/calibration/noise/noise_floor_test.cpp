@@ -7,8 +7,9 @@
 namespace talus::terramech {
 namespace noise_floor_test {
 
-// Closed form: independent errors add in squares. Rows of 50 N at slip 0.3, DP/W = 0.2 in every second row: 1 N of the cell are
-// 0.02, 10 % of the reading are 0.02, a slip error of 3 % of 0.3 times a slope of 1 is 0.009, 2 % of load times 0.5 is 0.01.
+// Closed form: independent errors add in squares. Rows of load 50 N at slip 0.3, drawbar pull over load 0.2
+// in every second row. Errors: 1 N of the load cell is 0.02, 10 % of the reading 0.02, a slip error of 3 % of
+// 0.3 times a slope of 1 is 0.009, 2 % of the load times 0.5 is 0.01.
 TEST(NoiseFloor, ErrorsAddInSquares) {
   Trial trial = trialOf(std::vector<double>(8, 0.3));
   trial.measured.setConstant(std::nan(""));

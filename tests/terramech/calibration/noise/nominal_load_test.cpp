@@ -7,8 +7,9 @@
 namespace talus::terramech {
 namespace nominal_load_test {
 
-/// Twenty runs of ten rows, each at a load of its own, read with 3 % error; z/r follows the load that a share of the
-/// deviation of the reading is not error of, and has an error of its own.
+/// Twenty runs of ten rows, each run at another load, with a load-reading error of 3 %. Sinkage over radius
+/// follows the true load, with an independent error; `error_share` is the share of reading error in the
+/// deviations.
 struct Campaign {
   Trial trial = trialOf(std::vector<double>(200, 0.3));
   Eigen::MatrixXd residual = Eigen::MatrixXd::Constant(200, kChannels, std::nan(""));
@@ -23,7 +24,7 @@ struct Campaign {
       trial.run.push_back(row / 10);
       trial.load_N[r] = (first_N + step_N * (row / 10)) * std::exp(deviation[r]);
       slopes.by_load(row, kSink) = 0.1;
-      // A run is off by as much as its load and more: what is set together is no evidence.
+      // Each run also has an offset of sinkage: differences between runs are not evidence of the share.
       residual(row, kSink) = 0.02 * (row / 10) - error_share * 0.1 * deviation[r] + 0.001 * own[199 + r];
     }
   }
@@ -35,7 +36,8 @@ TEST(NominalLoad, LoadReadingsUnrelatedToContactAreReplacedByRunMeans) {
   const auto set = Campaign(1.0).found();
   ASSERT_TRUE(set);
   EXPECT_EQ(set->error_share, 1.0);
-  // Property: the scatter of 200 errors of 0.03 about 20 means, to three of its standard errors.
+  // Property: the result is the scatter of 200 errors of 0.03 about 20 means. Tolerance: three standard
+  // errors.
   EXPECT_NEAR(set->errorStd(), 0.03, 3.0 * 0.03 / std::sqrt(360.0));
   for (int row = 0; row < 200; ++row) EXPECT_NEAR(set->load_N(row, 40.0), std::exp(set->log_mean[row]), 1e-9);
 }
@@ -44,7 +46,8 @@ TEST(NominalLoad, PartialLoadErrorShareIsEstimatedAndRemoved) {
   const Campaign half(0.5);
   const auto set = half.found();
   ASSERT_TRUE(set);
-  // Closed form: its standard error is 0.001 / (0.1 * 0.03 * sqrt(180)) = 0.025; three of them.
+  // Closed form: the standard error of the share is 0.001 / (0.1 * 0.03 * sqrt(180)) = 0.025. Tolerance:
+  // three standard errors.
   EXPECT_NEAR(set->error_share, 0.5, 0.075);
   EXPECT_NEAR(std::log(set->load_N(7, half.trial.load_N[7])) - set->log_mean[7],
               (1.0 - set->error_share) * (std::log(half.trial.load_N[7]) - set->log_mean[7]), 1e-12);

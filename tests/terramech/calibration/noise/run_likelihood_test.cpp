@@ -12,7 +12,7 @@ namespace run_likelihood_test {
 
 constexpr int kRuns = 6, kRows = 4;
 
-/// Rows of four channels, whitened by factors of their own; runs of four rows; folds of two runs.
+/// Rows of four channels with random shared factors; runs of four rows; folds of two runs.
 struct Made {
   std::vector<SharedFactor> factor;
   std::vector<int> unit;
@@ -42,7 +42,7 @@ struct Made {
     run = root * root.transpose();
   }
 
-  /// Covariance of all whitened readings, written out.
+  /// Dense covariance of all whitened readings.
   Eigen::MatrixXd covariance() const {
     Eigen::MatrixXd v = Eigen::MatrixXd::Identity(table.size(), table.size());
     for (std::size_t i = 0; i < unit.size(); ++i)
@@ -62,7 +62,8 @@ struct Made {
   }
 };
 
-/// Of a fold's readings given the others', of which mean and covariance of all are written out.
+/// Log density of the readings `unseen` given those of `seen`, from the dense mean and covariance of all
+/// readings.
 double logDensity(const Eigen::VectorXd& table, const Eigen::VectorXd& mean,
                   const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& seen,
                   const std::vector<Eigen::Index>& unseen) {
@@ -73,8 +74,8 @@ double logDensity(const Eigen::VectorXd& table, const Eigen::VectorXd& mean,
 }
 
 TEST(RunLikelihood, EqualsTheDenseGaussian) {
-  // Independent derivation: parameters integrated out beforehand, so that all readings are one Gaussian, and each fold's are
-  // conditioned on the others'. The third parameter shows in fold 0 alone.
+  // Independent derivation: with the parameters integrated out, all readings are one Gaussian, and the
+  // readings of each fold are conditioned on the others. Only fold 0 depends on the third parameter.
   Made made(1);
   made.model.columns.conservativeResize(Eigen::NoChange, 3);
   made.model.columns.col(2).setZero();
@@ -95,8 +96,9 @@ TEST(RunLikelihood, EqualsTheDenseGaussian) {
 }
 
 TEST(RunLikelihood, NoPriorCountsTwice) {
-  // Independent derivation: generalised least squares with the covariance written out. The prior of a parameter that one fold
-  // alone determines is in the density of that fold; of others it is what the rows show without any one fold.
+  // Independent derivation: generalised least squares with the dense covariance. The prior of a parameter
+  // that only one fold determines counts in the density of that fold; for other parameters the least
+  // departure over all fits without one fold counts.
   Made made(5);
   const Eigen::MatrixXd v = made.covariance();
   const Eigen::MatrixXd precision = made.model.prior.precision.asDiagonal();
@@ -121,9 +123,9 @@ TEST(RunLikelihood, NoPriorCountsTwice) {
 }
 
 TEST(RunLikelihood, AKnotOfHeldOutRunsAloneCostsItsPriorNotItsHeight) {
-  // Closed form: 24 readings of unit variance in one fold, all 50 above the others; a parameter of that fold alone, known to
-  // 0 give or take s = 100. ln p = -(h^2 / s^2 + ln(1 + n s^2)) / 2 to first order in 1 / (n s^2), where h = 50 alone costs
-  // n h^2 / 2 = 30 000.
+  // Closed form: n = 24 readings of unit variance in one fold, all higher by h = 50 than the others, and a
+  // parameter of that fold alone with the prior 0 +- s, s = 100. ln p = -(h^2 / s^2 + ln(1 + n s^2)) / 2 to
+  // first order in 1 / (n s^2); without the parameter the loss is n h^2 / 2 = 30 000.
   const int rows = 24;
   std::vector<int> fold;
   Eigen::VectorXd table = Eigen::VectorXd::Zero(2 * rows * kChannels), column = table;
@@ -153,8 +155,8 @@ TEST(RunLikelihood, SumsOfPartsAreThoseOfTheWhole) {
 }
 
 TEST(RunLikelihood, FindsTheErrorThatRunsShareAndBetweenWhichChannels) {
-  // Property: 400 runs of 5 rows, an error of 0.8 in the first channel that the third shares by half. A
-  // covariance of 400 draws is known to 7 %; tolerance four times that.
+  // Property: 400 runs of 5 rows have an error of 0.8 in the first channel, and half of that error in the
+  // third. Tolerance: four times the 7 % standard error of a covariance from 400 draws.
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   std::vector<int> unit, fold;

@@ -9,7 +9,7 @@ namespace sensor_noise_test {
 
 using testing::ElementsAre;
 
-// Rows of slips from 0.1 to 0.6 that measure the pull alone.
+// Rows at slips from 0.1 to 0.6 with measurements of the pull only.
 Trial pullAlone(int rows) {
   std::vector<double> slips;
   for (int k = 0; k < rows; ++k) slips.push_back(0.1 + 0.5 * ((k * 37) % rows) / rows);
@@ -19,7 +19,7 @@ Trial pullAlone(int rows) {
   return trial;
 }
 
-// A normal error of the pull over load.
+// Returns residuals with a normal error of the pull over load.
 Eigen::MatrixXd pullError(const Trial& trial, double std) {
   Eigen::MatrixXd residual = trial.measured;
   const std::vector<double> error = scattered(0.0, std, trial.rows());
@@ -33,8 +33,8 @@ TEST(SensorNoise, RecoversNoiseStdFromPureNoise) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(400, kChannels);
   for (const double std : {0.01, 0.04}) {
     const SensorNoise noise = fitNoise(trial, pullError(trial, std), level, {none, none}, {});
-    // Closed form: absolute and relative parts of a level of 0.2 of 50 N add in squares. Tolerance: 400 values
-    // know their standard deviation to 3.5 %.
+    // Closed form: absolute and relative parts at a pull of 0.2 times 50 N add in squares. Tolerance: 3.5 %
+    // is the standard error of a standard deviation from 400 values.
     EXPECT_NEAR(std::hypot(noise.absolute[0] / 50.0, 0.2 * noise.relative[0]), std, 0.12 * std);
   }
 }
@@ -44,13 +44,13 @@ TEST(SensorNoise, FewRowsKeepStatedNoise) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(8, kChannels);
   const SensorNoise noise =
       fitNoise(trial, pullError(trial, 0.02), none, {none, none}, {.drawbar_pull_N = 1.0});
-  // Property: within three times the 25 % by which a stated number is believed.
+  // Tolerance: three times the 25 % uncertainty of a stated standard deviation.
   EXPECT_NEAR(std::log(noise.absolute[0] / 1.0), 0.0, 0.75);
 }
 
 TEST(SensorNoise, SensorWithNoiseFarAboveItsStatedStdIsListed) {
-  // Closed form: 0.6 and 0.8 of 0.2 times 50 N add to 1 N in squares, 1.6 times and 1.7 times what is stated;
-  // e^0.5 = 1.65.
+  // Closed form: errors of 0.6 N, and of 8 % of 0.2 times 50 N, add in squares to 1 N, 1.6 times and 1.7
+  // times the stated error; the limit is e^0.5 = 1.65.
   const Trial trial = pullAlone(20);
   const Eigen::MatrixXd level = Eigen::MatrixXd::Constant(20, kChannels, 0.2);
   SensorNoise fitted;
@@ -75,13 +75,14 @@ TEST(SensorNoise, WithoutSmoothRemovesLinearTrends) {
   const Trial trial = pullAlone(200);
   Eigen::MatrixXd line = trial.measured;
   for (int row = 0; row < 200; ++row) line(row, 0) = 3.0 - 4.0 * trial.slip[static_cast<std::size_t>(row)];
-  // Closed form: a spline holds lines.
+  // Closed form: a natural spline represents a line exactly.
   EXPECT_LT(withoutSmooth(trial, line, {"slip"}).col(0).norm(), 1e-9);
   EXPECT_TRUE(std::isnan(withoutSmooth(trial, line, {"slip"})(0, 1)));
 }
 
-// Property: of noise the mean square stays, for the freedom that was taken is made up for. Tolerance: four
-// standard errors of the ratio over 300 tables, for which four columns of forty rows make a tenth.
+// Property: the mean square of noise is unchanged, because the removed degrees of freedom are corrected for.
+// Tolerance: four standard errors of the ratio over 300 tables of forty rows with four spline columns, a
+// correction of a tenth.
 TEST(SensorNoise, WithoutSmoothPreservesNoiseVariance) {
   const Trial trial = pullAlone(40);
   std::mt19937_64 random(3);

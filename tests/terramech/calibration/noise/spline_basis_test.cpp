@@ -35,7 +35,7 @@ TEST(SplineBasis, KnotsAreDistinctLevelsOrQuantiles) {
   const auto knots = quantileKnots(Eigen::VectorXd::LinSpaced(101, 0.0, 100.0), 5);
   EXPECT_THAT(knots, ElementsAre(0.0, 25.0, 50.0, 75.0, 100.0));
   EXPECT_TRUE(quantileKnots(Eigen::VectorXd::Constant(3, std::nan("")), 5).empty());
-  // Property: knots ascend and none lie closer than a fiftieth of the range.
+  // Property: knots ascend, with distances of at least a fiftieth of the range.
   Eigen::VectorXd crowded(102);
   crowded << Eigen::VectorXd::LinSpaced(100, 0.0, 0.5), 50.0, 100.0;
   const auto apart = quantileKnots(crowded, 6);
@@ -44,7 +44,7 @@ TEST(SplineBasis, KnotsAreDistinctLevelsOrQuantiles) {
 
 TEST(SplineBasis, OrthonormalColumnsSpanTheSameSpace) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Random(12, 4);
-  columns.col(3) = 2.0 * columns.col(0) - columns.col(1);  // of rank three
+  columns.col(3) = 2.0 * columns.col(0) - columns.col(1);  // makes the rank three
   const Eigen::MatrixXd q = orthonormal(columns);
   ASSERT_EQ(q.cols(), 3);
   EXPECT_LT((q.transpose() * q - Eigen::Matrix3d::Identity()).norm(), 1e-12);

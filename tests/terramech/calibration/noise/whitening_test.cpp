@@ -17,7 +17,7 @@ std::vector<int> units() {
   return unit;
 }
 
-/// Rows of unit noise in one channel, each unit with an offset of its own.
+/// Rows of unit noise in one channel, with a random offset for each unit.
 Eigen::MatrixXd residual(double offset_std, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -37,8 +37,8 @@ Whitening plain() {
 }
 
 TEST(Whitening, SharedErrorLimitsTheWeightOfAMean) {
-  // Closed form: with variance q shared and 1 of its own, the mean of m rows has variance q + 1/m, so that a
-  // constant of 1 is worth units / (q + 1/m) in chi-squared.
+  // Closed form: with the shared variance q and the independent variance 1, the mean of m rows has variance q
+  // + 1/m, so that a constant of 1 has the chi-squared units / (q + 1/m).
   Whitening w = plain();
   w.common.unit = units();
   w.common.run(0, 0) = 4.0;
@@ -55,7 +55,7 @@ TEST(Whitening, ResidualsWithoutSharedErrorAreUnchanged) {
 }
 
 TEST(Whitening, IsTheInverseRootOfTheWholeCovariance) {
-  // Independent derivation: r^T V^-1 r with the covariance of the rows written out.
+  // Independent derivation: r^T V^-1 r with the dense covariance V of the rows.
   Whitening w;
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;

@@ -7,7 +7,8 @@
 namespace talus::terramech {
 namespace calibrated_rows_test {
 
-// Property: residuals over their own noise have unit variance. Tolerance: 480 values know theirs to 6.5 %.
+// Property: whitened residuals have unit variance. Tolerance: 6.5 % is the standard error of a variance from
+// 480 values.
 TEST(CalibratedRows, WhitenedResidualsHaveUnitVariance) {
   for (const double noise : {0.01, 0.05}) {
     RefinedModel model = sand();
@@ -22,7 +23,7 @@ TEST(CalibratedRows, RecoversSensorNoise) {
   RefinedModel model = sand();
   SolvedContacts solved;
   CalibratedRows{noisyTrial(model, 0.05)}.calibrate(model, solved);
-  // Closed form: 5 % of a torque of some T = 0.3 r W = 2.4 Nm, as absolute and relative parts together.
+  // Closed form: 5 % of a torque of about T = 0.3 r W = 2.4 Nm, absolute and relative parts combined.
   EXPECT_NEAR(std::hypot(model.noise.absolute[2], 2.4 * model.noise.relative[2]), 0.12, 0.04);
 }
 
@@ -37,7 +38,7 @@ TEST(CalibratedRows, LevelOfAnotherModelKeepsTheNoise) {
   rows.compare(softer, solved);
   EXPECT_EQ(rows.whitening().std, std);
   EXPECT_GT((rows.level() - level).cwiseAbs().maxCoeff(), 0.0);
-  // Property: measured is level and residual; NaN where nothing is measured.
+  // Property: the measured value is the sum of level and residual; NaN for missing measurements.
   EXPECT_NEAR((rows.trial().measured - rows.level() - rows.residual()).leftCols(3).norm(), 0.0, 1e-12);
 }
 

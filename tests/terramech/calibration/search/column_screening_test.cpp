@@ -18,7 +18,7 @@ RefinedModel base() {
   return model;
 }
 
-/// Rows in runs of ten, with columns of chance; DP/W follows the last but one.
+/// Rows in runs of ten, with random columns; the drawbar pull depends on the last but one.
 Trial wide(int rows, int columns, double size) {
   MadeRows made(wheelColumns());
   std::mt19937_64 random(5);
@@ -41,7 +41,7 @@ bool isIn(const std::vector<std::string>& names, const std::string& name) {
 }
 
 TEST(ColumnScreening, SampleIsStratifiedByRun) {
-  // Closed form: stretches of five rows, one of each, whatever the period of the design.
+  // Closed form: one row of each stretch of five rows is drawn, for any period of the design.
   const Trial trial = wide(200, 2, 0.0);
   const auto keep = rowSample(trial, 40, 1);
   EXPECT_EQ(std::count(keep.begin(), keep.end(), 1), 40);
@@ -74,7 +74,7 @@ TEST(ColumnScreening, RelevantColumnIsKeptAmongForty) {
   EXPECT_EQ(screened.dropped.size(), 34U);
   EXPECT_TRUE(isIn(screened.covariates, "own38"));
   EXPECT_FALSE(isIn(screened.chance, "own38"));
-  // Property: noise may link one column of forty to the residuals in one table of twenty.
+  // Property: most of the kept columns have a gain that noise reaches by chance.
   EXPECT_GE(screened.chance.size(), 4U);
   EXPECT_TRUE(std::isnan(screened.states[0].covariate(screened.dropped[0])));
   // Closed form: ln(40 / 6).
@@ -96,13 +96,14 @@ TEST(ColumnScreening, RowsOutsideTheSampleValidateTheEffect) {
   EXPECT_EQ(result.unsearched.rows, 250);
   ASSERT_EQ(result.effects.size(), 1U);
   EXPECT_EQ(result.effects[0].chosen.candidate.covariate(), "own1");
-  // Property: an effect of 0.02 beside noise that is less is most of the error on rows that nothing was fitted to.
+  // Property: an effect of 0.02, larger than the noise, causes most of the error on rows that were not used
+  // for the fit.
   EXPECT_LT(result.unsearched.refined_rmse[0], 0.7 * result.unsearched.base_rmse[0]);
 }
 
 TEST(ColumnScreening, AcceptedEffectsReduceHeldOutErrorAndRejectedColumnsAreUnused) {
-  // Property: with runs held out of the search, what it takes in lowers the error on them; what it leaves out is in no
-  // effect, and they err as the sensors do without it.
+  // Property: the accepted effect reduces the error on runs held out of the search to that of the sensors;
+  // without an effect in the data no effect is found.
   Trial trial = wide(240, 4, 0.02);
   for (std::size_t row = 0; row < 240; ++row)
     trial.states[row].group.emplace_back("site", row / 10 % 4 == 3 ? "east" : "west");

@@ -18,7 +18,7 @@ std::vector<std::string> columns(const TracedEffect& effect) {
   return all;
 }
 
-/// A pull that dust takes, beside a column that goes with dust.
+/// A world in which dust reduces the pull, with a second column correlated with dust.
 blind::World tied() {
   const blind::World world = blind::makeWorld({.seed = 8, .effects = 1, .library = false, .untold = "tied"});
   EXPECT_EQ(world.hidden[0].kind, "form:pull_dust_saturating");
@@ -26,7 +26,7 @@ blind::World tied() {
 }
 
 TEST(RivalCauses, CollinearColumnsAreReportedAsEqualCauses) {
-  // Property: each of two columns, one a multiple of the other, explains what the other does.
+  // Property: two columns, one a multiple of the other, are reported as equal causes.
   const TraceResult result = traced(tied());
   ASSERT_EQ(result.effects.size(), 1U);
   EXPECT_EQ(columns(result.effects[0]), (std::vector<std::string>{"dust_index", "tied_0"}));
@@ -37,7 +37,7 @@ TEST(RivalCauses, CollinearColumnsAreReportedAsEqualCauses) {
 }
 
 TEST(RivalCauses, IdentifiableCauseHasNoEqual) {
-  // Property: the same world without the column that goes with dust.
+  // Property: without the correlated column the same world has one cause.
   blind::World world = tied();
   world.columns.pop_back();
   for (auto& row : world.rows) row.pop_back();
@@ -47,7 +47,8 @@ TEST(RivalCauses, IdentifiableCauseHasNoEqual) {
 }
 
 TEST(RivalCauses, ConstantOffsetHasNoDriftAsEqualCause) {
-  // Property: the zero of the sinkage is off in every row; a drift or a curve that is nearly level is the same offset.
+  // Property: with a constant zero error of the sinkage, a drift or a nearly constant curve is the same
+  // offset and not a rival.
   const blind::World world =
       blind::makeWorld({.seed = 1303, .effects = 1, .library = true, .campaign = true});
   ASSERT_EQ(world.hidden[0].kind, "sinkage_datum");

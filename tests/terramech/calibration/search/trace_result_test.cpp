@@ -19,7 +19,8 @@ TEST(TraceResult, ErrorsAreRootMeanSquaresPerChannel) {
     rows.add(row);
   }
   const ChannelErrors errors = rmseOf(model, makeTrial(rows.telemetry(), model));
-  // Closed form: sqrt((0.03^2 + 0.04^2) / 2) in DP/W, nothing in the others; NaN where nothing is measured.
+  // Closed form: sqrt((0.03^2 + 0.04^2) / 2) in drawbar pull over load, 0 in other channels; NaN for channels
+  // without measurements.
   EXPECT_NEAR(errors[0], std::sqrt(0.00125), 1e-6);
   EXPECT_NEAR(errors[1], 0.0, 1e-6);
   EXPECT_NEAR(errors[2], 0.0, 1e-6);

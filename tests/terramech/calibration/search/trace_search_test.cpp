@@ -14,7 +14,7 @@ RefinedModel sand() {
   return model;
 }
 
-// Rows of the made sand with 2 % errors, the torque 0.8 Nm more.
+// Rows of the synthetic sand with 2 % errors, and with a torque offset of 0.8 Nm.
 Trial offsetTrial() {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(6);
@@ -45,8 +45,8 @@ TEST(TraceSearch, ScreeningRanksTheHiddenEffectFirst) {
 }
 
 TEST(TraceSearch, ScreenedGainEqualsFittedGainForALinearEffect) {
-  // Property: an offset is linear, so that what it gains to first order it gains when fitted, up to the noise of
-  // slip and load that its relative part moves.
+  // Property: an offset is linear, so that the linearised gain equals the fitted gain. Tolerance: the offset
+  // changes the relative noise of slip and load.
   TraceSearch search(sand(), offsetTrial(), {});
   const Promise promise = search.screen(0).promises.front();
   EXPECT_NEAR(search.fitted(promise.candidate).gain, promise.gain, 0.02 * promise.gain);
@@ -56,8 +56,8 @@ TEST(TraceSearch, AcceptedEffectIsFittedAndLeftOutEffectIsRemoved) {
   TraceSearch search(sand(), offsetTrial(), {});
   const double before = search.chi2();
   search.accept(torqueOffset());
-  // Property: the number that made the rows, within three standard deviations of a mean of 120 errors of 0.05 Nm
-  // and the slip's share.
+  // Property: the offset of the rows is found. Tolerance: three standard deviations of a mean of 120 errors
+  // of 0.05 Nm, and the contribution of slip errors.
   ASSERT_EQ(search.parts(0).size(), 1U);
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.8, 0.05);
   EXPECT_LT(search.chi2(), before);
@@ -74,7 +74,7 @@ TEST(TraceSearch, LeavingAnEffectOutKeepsTheNoise) {
   const double with = search.chi2();
   const SensorNoise noise = search.model().noise;
   search.leaveOut(0);
-  EXPECT_GT(search.chi2(), 3.0 * with);  // 0.8 Nm against errors of 0.05 Nm
+  EXPECT_GT(search.chi2(), 3.0 * with);  // the offset is 0.8 Nm, the errors are 0.05 Nm
   EXPECT_EQ(search.model().noise.absolute, noise.absolute);
 }
 
@@ -86,7 +86,8 @@ TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
 }
 
 TEST(TraceSearch, PairRankingSeparatesTwoSensorFaults) {
-  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  // Property: offsets of torque (0.8 Nm) and pull (0.05 W) are found together; no single candidate explains
+  // both.
   TraceSearch search(sand(), makeTrial(twoFaults(madeSand()), sand()), {});
   const auto ranked = search.pairs();
   ASSERT_FALSE(ranked.empty());
@@ -102,7 +103,7 @@ TEST(TraceSearch, EffectOfSizeZeroIsInactive) {
   search.accept(torqueOffset());
   EXPECT_TRUE(search.acts(0));
   EXPECT_NEAR(search.gainOfPart(0, 0), search.gainOf(0), 1e-6 * search.gainOf(0));
-  // Nothing yields, so that the fit ends at the bound of a rebound.
+  // The rows contain no rebound, so that the fit of a rebound ends at the bound 0.
   search.accept({{{.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}}}, "rebound", 1});
   EXPECT_FALSE(search.acts(1));
 }

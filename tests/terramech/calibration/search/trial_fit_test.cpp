@@ -15,9 +15,9 @@ TEST(TrialFit, SharedRunErrorIsSeparatedFromRowNoise) {
   const TrialFit together(sand(), noisyTrial(sand(), 0.02, 0.1), false, always);
   const Whitening& whitening = together.rows().whitening();
   ASSERT_EQ(whitening.common.unit.size(), 160U);
-  // Property: ten offsets of 0.1 know their own variance to 45 %.
+  // Tolerance: 45 % is the standard error of a variance from ten offsets of 0.1.
   EXPECT_NEAR(std::sqrt(whitening.common.run(0, 0)), 0.1, 0.05);
-  // Property: the offsets' 0.1 of the load is not taken for the sensor's 2 % of a pull of some 0.3 W.
+  // Property: run offsets of 0.1 of the load do not increase the sensor noise, 2 % of a pull of about 0.3 W.
   const SensorNoise& noise = together.model().noise;
   EXPECT_LT(std::hypot(noise.absolute[0] / 80.0, 0.3 * noise.relative[0]), 0.03);
   const TrialFit alone(sand(), noisyTrial(sand(), 0.02), false, always);
@@ -30,11 +30,13 @@ TEST(TrialFit, GivenSoilIsKeptAndUnknownSoilIsFitted) {
   const TrialFit given(start, noisyTrial(sand(), 0.02), false, always);
   EXPECT_EQ(given.model().soil.friction_angle_rad, 0.4);
   const TrialFit fitted(start, noisyTrial(sand(), 0.02), true, always);
-  // Property: the friction angle that made the rows; 480 readings of 2 % know it better than the 0.15 rad it was off by.
+  // Property: the friction angle of the rows is found from 480 readings of 2 %, although the initial value is
+  // wrong by 0.15 rad.
   EXPECT_NEAR(fitted.model().soil.friction_angle_rad, 0.55, 0.05);
 }
 
-// Property: the model that made the rows scores above one of another soil, under the noise of either.
+// Property: the model that generated the rows has a higher score than a model of another soil, for the noise
+// of either model.
 TEST(TrialFit, GeneratingModelScoresHigherThanAnotherSoil) {
   const TrialFit fit(sand(), noisyTrial(sand(), 0.02), false, always);
   RefinedModel softer = fit.model();
@@ -50,8 +52,8 @@ TEST(TrialFit, StrongestChannelIsThatOfTheFaultySensor) {
   EXPECT_EQ(fit.strongest(0), Channel::Torque);
 }
 
-// Property: what is known of an effect that was found says nothing of the base's own. A pull that is off by 4 N shares its
-// errors with the torque: tolerances of a quarter of it.
+// Property: trust() sets the prior of the first effect found, not of the effects of the base. Tolerance: a
+// quarter of the offset of 4 N, because errors of pull and torque are correlated.
 TEST(TrialFit, TrustIsInTheFirstEffectBehindTheBases) {
   const Effect offset{
       .name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.0}};

@@ -15,7 +15,8 @@ Soil sand(double cohesion_Pa, double friction_rad) {
           .shear_modulus_m = 0.015};
 }
 
-/// Two sources on two soils; the second's force sensor reads off by a share of the load.
+/// Rows of two sources on two soils. The force sensor of the second source has the offset `offset` times the
+/// load.
 Trial twoSources(double offset) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random{5};
@@ -35,7 +36,7 @@ TEST(ClosureOffset, FindsTheSourceAndSizeOfTheOffset) {
     ASSERT_TRUE(found.has_value()) << offset;
     EXPECT_EQ(found->value, "b");
     EXPECT_LE(found->p_value, 0.01);
-    // Property: what was put in lies within two of the stated standard deviations.
+    // Property: the true offset lies within two standard deviations of the estimate.
     EXPECT_NEAR(found->offset, offset, 2.0 * found->std);
     EXPECT_LT(found->std, 0.03);
   }
@@ -46,7 +47,8 @@ TEST(ClosureOffset, DifferentSoilsYieldNoOffset) {
 }
 
 TEST(ClosureOffset, ClosureRelationIsValidForAnySoil) {
-  // Property: the stated accuracy, against the integral over a grid of soils and slips.
+  // Property: the relation has the stated accuracy relative to the integrated forces, over a grid of soils
+  // and slips.
   std::mt19937_64 random{6};
   MadeRows rows(wheelColumns());
   for (const double friction : {0.35, 0.5, 0.65})

@@ -9,7 +9,8 @@
 namespace talus::terramech {
 namespace moment_slip_test {
 
-// Seven rows of two channels in three moments, one of them of a single row that nothing moves.
+// Seven rows of two channels in three moments; the single row of the third moment does not depend on the
+// slip.
 MomentSlip someSlip() {
   std::mt19937_64 random{5};
   std::normal_distribution<double> normal;
@@ -39,7 +40,7 @@ TEST(MomentSlip, WhiteningYieldsIndependentRows) {
     slip.takeOut(unit);
     taken.col(k) = unit;
   }
-  // Closed form: a whitening matrix turns the covariance, built densely, into the identity.
+  // Closed form: the whitening matrix A and the dense covariance V give A V A^T = I.
   EXPECT_LT((taken * covarianceOf(slip) * taken.transpose() - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-12);
 }
 

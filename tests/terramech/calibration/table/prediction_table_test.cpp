@@ -57,7 +57,7 @@ TEST(PredictionTable, PredictionForPlainSoilIsTheEquilibrium) {
   ASSERT_EQ(std::sscanf(row.c_str(), "80,0.3,0.1,0.1,%lf,%lf,%lf,%lf,%lf", &pull, &pull_std, &sinkage,
                         &sinkage_std, &torque),
             5);
-  // Property: two integrators of one model; 1e-6 of the load.
+  // Property: two integrators of one model agree. Tolerance: 1e-6 of the load.
   EXPECT_NEAR(pull, f.drawbar_pull_N, 1e-6 * 80.0);
   EXPECT_NEAR(sinkage, f.sinkage_m, 1e-6 * f.sinkage_m);
   EXPECT_NEAR(torque, f.torque_Nm, 1e-6 * 8.0);
@@ -81,7 +81,8 @@ TEST(PredictionTable, RowOutsideTrainingRangeIsFlaggedWithLargerStd) {
   const double plain = stdOf(1.0, inside), widened = stdOf(0.4, outside);
   EXPECT_EQ(inside, "\n");
   EXPECT_EQ(outside, "slip\n");
-  EXPECT_NEAR(widened, std::hypot(plain, 0.5 * 0.2), 1e-9);  // Closed form: 0.2 beyond at 0.5 a unit
+  EXPECT_NEAR(widened, std::hypot(plain, 0.5 * 0.2), 1e-9);  // Closed form: distance 0.2 times a growth of
+                                                             // 0.5 per unit
 }
 
 TEST(PredictionTable, BeyondScopePredictionIsTheBaseWithTheDifferenceInItsStd) {

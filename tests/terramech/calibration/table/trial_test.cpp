@@ -11,7 +11,7 @@ namespace trial_test {
 
 constexpr double kMissing = WheelState::kUnknown;
 
-// Two wheels, the front one's load `front_N`, at three moments on rising slopes.
+// Rows of two wheels, with the load `front_N` of the front wheel, at three moments on increasing slopes.
 Telemetry drive(double front_N, double pull_N = kMissing) {
   Telemetry t;
   t.source = "drive.csv";
@@ -43,13 +43,13 @@ TEST(Trial, RoverDrawbarPullEqualsTangentOfSlope) {
   ASSERT_EQ(trial.moment, (std::vector<int>{0, 0, 1, 1, 2, 2}));
   EXPECT_EQ(trial.run, trial.moment);
   for (int row = 0; row < 6; ++row) {
-    // Closed form: steady motion, sum(DP) = tan(slope) sum(W), said of the first wheel of each moment.
+    // Closed form: steady motion, sum(DP) = tan(slope) sum(W), in the row of the first wheel of each moment.
     if (row % 2 == 0)
       EXPECT_NEAR(trial.measured(row, 0), std::tan(0.05 * (row / 2 + 1)), 1e-15);
     else
       EXPECT_TRUE(std::isnan(trial.measured(row, 0)));
   }
-  // What the pull was had from is no cause of it.
+  // The slope, from which the pull was computed, is not a covariate.
   EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "slope_rad"), 0);
   EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "pass_index"), 1);
 }
@@ -80,7 +80,7 @@ TEST(Trial, RoverPullIsNanIfAWheelIsMissing) {
 TEST(Trial, RowsNotFromADriveHaveNoMoments) {
   EXPECT_TRUE(makeTrial(drive(80.0, 5.0), RefinedModel{}).moment.empty());  // the pull is measured
   Telemetry same = drive(80.0);
-  same.words[1].values.assign(6, "front");  // repeats of one wheel
+  same.words[1].values.assign(6, "front");  // several rows of one wheel at one time
   EXPECT_TRUE(makeTrial(same, RefinedModel{}).moment.empty());
   Telemetry unnamed = drive(80.0);
   unnamed.words.pop_back();

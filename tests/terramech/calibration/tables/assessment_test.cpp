@@ -41,7 +41,8 @@ TEST(Assessment, SoilModelPredictsItsOwnPull) {
   }
 }
 
-// Closed form: above its threshold the sinkage costs one category, above the critical one it is dangerous.
+// Closed form: a sinkage above the threshold lowers the category by one; above the critical value the
+// category is dangerous.
 TEST(Assessment, SinkageAboveThresholdsLowersTheCategory) {
   const WheelTable table;
   const auto category = [&](double threshold, double critical) {

@@ -21,7 +21,8 @@ TEST(EstimateSoil, ExactRowsRecoverTheSoil) {
   EXPECT_NEAR(found.friction_angle_rad, kMadeSoil.friction_angle_rad, 0.02);
 }
 
-// Rows of the made soil at slip angles to either side, with or without what the wheel holds.
+// Rows of the synthetic soil at slip angles to both sides, with or without the side force, multiplied by
+// `times`.
 std::string angledRows(bool side_force, double times = 1.0) {
   RefinedModel model;
   model.soil = kMadeSoil;
@@ -46,14 +47,14 @@ TEST(EstimateSoil, SideForcesAreFittedWithTheFullModel) {
   EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
   EXPECT_NEAR(found.tan_friction, std::tan(0.45), 3.0 * std::sqrt(found.covariance(1, 1)));
   EXPECT_LT(std::sqrt(found.covariance(1, 1)), 0.05);
-  // Without their side force, or by a line, only the six straight rows say something.
+  // Without side forces, or with a linear method, only the six rows of straight wheels are used.
   EXPECT_EQ(estimateSoil({.table = without.path(), .method = "wong-reece", .noise = 0.01}, {}).rows_used, 6U);
   EXPECT_EQ(estimateSoil({.table = with.path(), .method = "linear-offset"}, {}).rejected.size(), 18U);
   EXPECT_THAT([&] { estimateSoil({.table = with.path(), .method = "wong-reece", .recursive = true}, {}); },
               ThrowsMessage<InputError>(HasSubstr("side forces, which are fitted all at once")));
 }
 
-// Property: side forces of another unit are those of no soil, whatever the bounds of the search make of them; the column is named.
+// Property: side forces in a wrong unit, which no soil can explain, are rejected with the name of the column.
 TEST(EstimateSoil, SideForcesInWrongUnitsAreRejectedNamingTheColumn) {
   for (const double times : {100.0, 1000.0}) {
     const test::TemporaryFile table{angledRows(true, times)};
@@ -65,7 +66,7 @@ TEST(EstimateSoil, SideForcesInWrongUnitsAreRejectedNamingTheColumn) {
   }
 }
 
-// Rows of the made soil at one slip angle, with pull and a side force of so much of the load.
+// Rows of the synthetic soil at one slip angle, with pull and with the given side force over load.
 std::string heldRows(double slip_angle_rad, double side_over_load) {
   RefinedModel model;
   model.soil = kMadeSoil;
@@ -83,8 +84,8 @@ std::string heldRows(double slip_angle_rad, double side_over_load) {
   return text;
 }
 
-// Property: a wheel that runs straight holds nothing across, and one at an angle something; what reads otherwise is named, and no
-// soil is bent to it, be the misfit small.
+// Property: a side force of a straight wheel, no side force at a slip angle, and a side force of the wrong
+// sign or size are rejected with the name of the column, also for a small misfit.
 TEST(EstimateSoil, ContradictorySideForceIsRejectedNamingTheColumn) {
   for (const auto& [angle, side] : {std::pair{0.0, 0.5}, {0.3, 0.0}, {0.3, 0.5}, {0.3, -1.5}}) {
     const test::TemporaryFile table{heldRows(angle, side)};
@@ -96,7 +97,7 @@ TEST(EstimateSoil, ContradictorySideForceIsRejectedNamingTheColumn) {
   }
 }
 
-// Property: a sensor's offset across is no side force of the soil.
+// Property: a small sensor offset of the side force of straight wheels does not change the soil.
 TEST(EstimateSoil, SmallSideForceOfStraightWheelsIsIgnored) {
   const test::TemporaryFile none{heldRows(0.0, 0.0)}, little{heldRows(0.0, 0.05)};
   EXPECT_EQ(estimateSoil({.table = none.path(), .method = "wong-reece"}, {}).cohesion_Pa,

@@ -12,7 +12,7 @@ namespace line_estimate_test {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-// Rows of the world whose stresses are those of the method.
+// Rows of a world with the stresses that the method assumes.
 std::string linearRows(const LinearWorld& world, double second_radius_m = kMadeWheel.radius_m) {
   std::string text = kWheelHead + "\n";
   int k = 0;
@@ -29,8 +29,8 @@ SoilEstimate estimate(const std::string& content, EstimateOptions options) {
   return lineEstimate(options, {});
 }
 
-// Closed form: c = 3000 Pa, tan phi = 0.5 made the rows. Tolerance: the samples' quadrature, 1e-7, times what
-// the line's spread makes of it.
+// Closed form: the rows have cohesion c = 3000 Pa and tan phi = 0.5 (phi: friction angle). Tolerance: the
+// quadrature of the samples, 1e-7, amplified by the fit of the line.
 TEST(LineEstimate, IsExactForDataOfItsOwnModel) {
   const SoilEstimate offset =
       estimate(linearRows({}), {.method = "linear-offset", .shear_modulus = "0.02", .whole_equation = true});
@@ -54,7 +54,7 @@ TEST(LineEstimate, RecursiveEstimateEqualsBatchEstimate) {
     ASSERT_EQ(b.running.size(), 10U) << method;
     EXPECT_NEAR(b.cohesion_Pa, a.cohesion_Pa, 1e-6 * std::abs(a.cohesion_Pa)) << method;
     EXPECT_NEAR(b.running.back().cohesion_Pa, a.cohesion_Pa, 1e-6 * std::abs(a.cohesion_Pa)) << method;
-    EXPECT_TRUE(std::isnan(b.running.front().cohesion_Pa)) << method;  // one row is no line
+    EXPECT_TRUE(std::isnan(b.running.front().cohesion_Pa)) << method;  // one row does not determine a line
     EXPECT_EQ(b.running.front().line, 2U);
   }
 }

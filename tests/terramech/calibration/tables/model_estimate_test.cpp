@@ -16,7 +16,7 @@ const std::string kEffect =
     "effects:\n  - {name: slip_sinkage_linear, covariate: slip, channel: sinkage_over_radius, parameters: "
     "[0.8]}\n";
 
-// Rows of the made soil under a wheel that digs; one more beyond the axle where asked.
+// Rows of the synthetic soil under a wheel that digs; with `sunk` one additional row beyond the axle.
 std::string diggingRows(bool sunk = false) {
   RefinedModel model;
   model.soil = kMadeSoil;

@@ -9,7 +9,7 @@ using testing::HasSubstr;
 
 constexpr double kNone = RunningSoil::kNan;
 
-// Two rows that measure pull and side force.
+// Two rows with measured pull and side force.
 SoilAnswer answer(double side, double predicted_side, double misfit) {
   SoilAnswer a{.measured = Eigen::MatrixXd::Constant(2, kChannels, kNone),
                .predicted = Eigen::MatrixXd::Constant(2, kChannels, 0.2),
@@ -29,7 +29,7 @@ SoilEstimate sand() {
   return e;
 }
 
-// Closed form: one level a column, so that what is left is |y - f| / |y|.
+// Closed form: with constant columns the unexplained share is |y - f| / |y|.
 TEST(NoSoil, ColumnWithMoreThanHalfUnexplainedIsNamed) {
   const UnexplainedColumn worst = unexplained(answer(1.0, 0.4, 10.0));
   EXPECT_EQ(worst.column, "side_force_N");

@@ -19,7 +19,7 @@ std::string number(double value) {
   return text;
 }
 
-// tau = (c + sigma tan phi)(1 - e^{-j/K}) with c = 900 Pa, tan phi = 0.6, K = 0.015 m.
+// Rows of tau = (c + sigma tan phi)(1 - e^{-j/K}) with c = 900 Pa, tan phi = 0.6, K = 0.015 m.
 std::string shearRows() {
   std::string text = "normal_stress_Pa,shear_stress_Pa,shear_displacement_m\n";
   for (const double sigma : {1000.0, 3000.0, 8000.0})
@@ -29,7 +29,7 @@ std::string shearRows() {
   return text;
 }
 
-// p = (k_c/b + k_phi) z^n with k_phi = 4e5, n = 0.8, b = 50, 80 and 120 mm.
+// Rows of p = (k_c/b + k_phi) z^n with k_phi = 4e5, n = 0.8, b = 50, 80 and 120 mm.
 std::string plateRows(double cohesive_modulus) {
   std::string text = "plate_width_m,pressure_Pa,sinkage_m\n";
   for (const double b : {0.05, 0.08, 0.12})
@@ -52,7 +52,7 @@ TEST(PlateEstimate, ExactShearTestsRecoverTheSoil) {
   EXPECT_NEAR(found.cohesion_Pa, 900.0, 0.01);
   EXPECT_NEAR(found.tan_friction, 0.6, 1e-6);
   EXPECT_NEAR(found.shear_modulus_m, 0.015, 1e-7);
-  // Closed form: over the share that is mobilised every point lies on the line.
+  // Closed form: divided by the mobilised share, every point lies on the line.
   ASSERT_EQ(found.points.size(), 9U);
   for (const StressPair& p : found.points) EXPECT_NEAR(p.shear_Pa, 900.0 + 0.6 * p.normal_Pa, 0.05);
 }
@@ -65,7 +65,7 @@ TEST(PlateEstimate, ExactPlateTestsRecoverTheModuli) {
   EXPECT_NEAR(*found.frictional_modulus, 4e5, 0.1);
   EXPECT_EQ(found.plates.size(), 3U);
   EXPECT_TRUE(found.warnings.empty());
-  EXPECT_TRUE(std::isnan(found.cohesion_Pa));  // plates alone do not shear
+  EXPECT_TRUE(std::isnan(found.cohesion_Pa));  // pressure tests do not determine the cohesion
 }
 
 TEST(PlateEstimate, NegativeOrUnidentifiableModuliAreReported) {
@@ -81,7 +81,7 @@ TEST(PlateEstimate, PriorAppliesToShearTestsOnly) {
       "cohesive_modulus: 0, frictional_modulus: 1.0e6, shear_modulus_m: 0.02}\n",
       ".yaml"};
   EXPECT_NEAR(estimate(shearRows(), {.prior = prior.path()}).cohesion_Pa, 900.0,
-              1.0);  // exact rows know better
+              1.0);  // exact rows reduce the standard deviation
   EXPECT_THAT([&] { estimate(plateRows(0.0), {.prior = prior.path()}); },
               ThrowsMessage<InputError>(HasSubstr("the table has no shear test")));
 }

@@ -18,7 +18,7 @@ TEST(PosteriorEstimate, EstimateEqualsPosteriorMean) {
   EXPECT_EQ(found.cohesion_Pa, found.posterior->mean.cohesion_Pa);
   EXPECT_EQ(found.frictional_modulus, found.posterior->mean.sinkage_modulus);
   EXPECT_EQ(found.class_names.size(), found.posterior->class_probabilities.size());
-  // Property: the soil that made the rows lies within three of the standard deviations told.
+  // Property: the soil of the rows lies within three standard deviations of the estimate.
   EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
   EXPECT_NEAR(found.tan_friction, std::tan(kMadeSoil.friction_angle_rad),
               3.0 * std::sqrt(found.covariance(1, 1)));
@@ -38,11 +38,11 @@ TEST(PosteriorEstimate, RecursiveEstimateHasAResultPerRowWithDecreasingVariance)
   ASSERT_EQ(found.running.size(), 12U);
   EXPECT_EQ(found.running.front().line, 2U);
   EXPECT_EQ(found.running.back().cohesion_Pa, found.cohesion_Pa);
-  // Property: rows add knowledge.
+  // Property: additional rows reduce the variance.
   EXPECT_LT(found.running.back().covariance(1, 1), found.running.front().covariance(1, 1));
 }
 
-// Rows of one load whose torque changes by so much [N m] from each to the next.
+// Rows of one load whose torque increases by step_Nm from row to row.
 std::string torqueRows(double first_Nm, double step_Nm) {
   std::string text = kWheelHead + "\n";
   for (int k = 0; k < 12; ++k)
@@ -72,13 +72,13 @@ TEST(PosteriorEstimate, MixedWheelWidthsAndImplausibleTorquesProduceWarnings) {
   const test::TemporaryFile two{widths};
   EXPECT_THAT(posteriorEstimate({.table = two.path()}, {}).warnings,
               Contains(HasSubstr("0.1 to 0.15 m wide")));
-  // A torque that falls by half over the slips, which that of no soil does, but of the size of one.
+  // A torque of plausible size that falls by half with increasing slip, as on no soil.
   const test::TemporaryFile falling{torqueRows(15.0, -0.6)};
   EXPECT_THAT(posteriorEstimate({.table = falling.path(), .noise = 0.02}, {}).warnings,
               Contains(HasSubstr("no soil of the prior")));
 }
 
-// Property: a torque three times that of any soil under the load is no reading of one, and no estimate comes of it.
+// Property: a torque three times that of any soil under the load is rejected without an estimate.
 TEST(PosteriorEstimate, ImplausibleTorqueIsRejectedNamingTheColumn) {
   const test::TemporaryFile none{torqueRows(45.0, 1.0)};
   EXPECT_THAT([&] { posteriorEstimate({.table = none.path()}, {}); },

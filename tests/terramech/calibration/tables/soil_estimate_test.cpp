@@ -22,7 +22,7 @@ TEST(SoilEstimate, StatedModulusMustBePositiveAndFinite) {
 }
 
 TEST(SoilEstimate, FrictionStdFollowsFromTangentStdByTheDeltaMethod) {
-  // Closed form: d(phi) = d(tan phi) cos^2(phi); a quarter at 60 deg.
+  // Closed form: d(phi) = d(tan phi) cos^2(phi) for the friction angle phi; the factor is 1/4 at 60 deg.
   Eigen::Matrix2d covariance;
   covariance << 1e4, 3.0, 3.0, 0.01;
   EXPECT_NEAR(frictionStd_rad(covariance, std::numbers::pi / 3), 0.025, 1e-12);
@@ -53,13 +53,13 @@ TEST(SoilEstimate, CopiesStrengthAndCovarianceOfAFittedLine) {
 
 TEST(SoilEstimate, ImplausibleIsBeyondTwoStandardDeviationsOfPlausibleBounds) {
   SoilEstimate estimate;
-  estimate.covariance << 1e4, 0.0, 0.0, 0.01;  // 100 Pa, 0.1
+  estimate.covariance << 1e4, 0.0, 0.0, 0.01;  // standard deviations 100 Pa and 0.1
   const auto said = [&](double cohesion_Pa, double tan_friction) {
     estimate.cohesion_Pa = cohesion_Pa;
     estimate.tan_friction = tan_friction;
     return estimate.implausible();
   };
-  // Closed form: two standard deviations either way, 200 Pa and 0.2.
+  // Closed form: the limits are two standard deviations, 200 Pa and 0.2, beyond the physical range.
   EXPECT_EQ(said(-199.0, 0.5), "");
   EXPECT_THAT(said(-201.0, 0.5), testing::StartsWith("a cohesion outside"));
   EXPECT_EQ(said(0.0, -0.19), "");

@@ -11,8 +11,8 @@ namespace soil_groups_test {
 
 using testing::HasSubstr;
 
-// Thirty rows in three groups of a column "box" and of a column "run" that says nothing; the torque of box B
-// reads more by a share, and each torque errs by 5 %.
+// Thirty rows in three groups of the column "box", and a column "run" without effect. The torque readings of
+// box B are higher by `share`; each torque has an error of 5 %.
 WheelRows rowsOf(double share) {
   WheelRows rows;
   rows.words = {{"run", {}}, {"box", {}}};

@@ -12,7 +12,7 @@
 namespace talus::terramech {
 namespace table_applicability_test {
 
-/// A table of 60 rows: readings of a wheel on sand, or, shuffled, of a wheel that no soil explains.
+/// A table of 60 rows: readings of a wheel on sand or, if shuffled, readings that no soil explains.
 std::string tableOf(bool shuffled) {
   RefinedModel sand;
   sand.soil = {.cohesion_Pa = 800.0,

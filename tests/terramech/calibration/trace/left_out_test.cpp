@@ -41,7 +41,8 @@ TEST(LeftOut, ValuesAndRangesSelectTheirRows) {
   EXPECT_EQ(rowsIn(leftOut(trial(), "wheel=a", "t.csv").front()), 24);
 }
 
-// Property: a level with a comma or a quote is one value, in the loop over all levels and in quotes as a CSV field.
+// Property: a level that contains a comma or a quote is one value, both in the loop over all levels and in
+// quotes as a CSV field.
 TEST(LeftOut, QuotedValueMayContainCommas) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(3);
@@ -59,7 +60,7 @@ TEST(LeftOut, QuotedValueMayContainCommas) {
                 testing::ThrowsMessage<InputError>(HasSubstr("does not end with a quote")));
 }
 
-// Property: two dots are a range of numbers, and part of a word.
+// Property: two dots separate the ends of a numeric range, and are part of a text value.
 TEST(LeftOut, TextValueMayContainTwoDots) {
   MadeRows rows(wheelColumns());
   std::mt19937_64 random(3);
@@ -90,15 +91,16 @@ TEST(LeftOut, ErrorsAreThoseOfPredictingTheLeftOutRows) {
   const auto part = leftOut(trial(), "slip=0.2", "t.csv").front();
   const LeftOutErrors errors = traceWithout(base, trial(), part, {}, {});
   EXPECT_EQ(errors.rows, 12);
-  // Property: the soil is the true one and nothing is missing: no effect, both models err by the noise alone.
+  // Property: with the true soil and no missing effect, no effect is found, and both models have the error of
+  // the noise.
   EXPECT_TRUE(errors.effects.empty());
   EXPECT_EQ(errors.base[1], errors.refined[1]);
   EXPECT_LT(errors.refined[1], 2.0 * errors.floor[1]);
-  // Property: the errors are those of what was foretold of these rows.
+  // Property: the errors are those of the returned predictions.
   for (const auto& [told, rmse] :
        {std::pair{errors.base_told, errors.base}, std::pair{errors.told, errors.refined}})
     EXPECT_NEAR((errors.trial.measured - told).col(1).norm() / std::sqrt(12.0), rmse[1], 1e-12);
-  // Property: a regression on columns knows nothing of wheels and is no better.
+  // Property: a regression on columns without a wheel model is not better.
   EXPECT_GT(errors.regression[1], 0.5 * errors.refined[1]);
 }
 

@@ -31,8 +31,8 @@ TEST(ModelValidity, SandIsApplicable) {
 }
 
 TEST(ModelValidity, SnowInconsistentWithMohrCoulombIsNotApplicable) {
-  // Made up after snow: it is strongest unsheared and breaks with slip, is compacted to a stop whatever the
-  // load, and the wheel is pulled harder than its torque could.
+  // Synthetic readings that resemble snow: the strength falls with slip, the sinkage is independent of the
+  // load, and the pull exceeds the value possible with the torque.
   MadeRows rows(wheelColumns());
   std::mt19937_64 random{3};
   std::normal_distribution<double> noise(1.0, 0.03);

@@ -15,14 +15,14 @@ Explanation explanation(double gain) {
 }
 
 TEST(ResidualTrace, BestCandidateIsAcceptedOnlyAboveThreshold) {
-  // Closed form: the rule itself, at either side of the threshold.
+  // Closed form: the rule is evaluated on both sides of the threshold.
   EXPECT_FALSE(accepted({}, 5.0));
   EXPECT_FALSE(accepted({explanation(4.9), explanation(4.0)}, 5.0));
   EXPECT_TRUE(accepted({explanation(5.1), explanation(4.0)}, 5.0));
 }
 
 TEST(ResidualTrace, EmpiricalCurveMustExceedKnownFormsByTheThreshold) {
-  // Closed form: the rule itself, at a threshold of 6.
+  // Closed form: the rule is evaluated at a threshold of 6.
   const auto named = [](double gain, const char* name, const char* family) {
     Explanation e = explanation(gain);
     e.candidate = {{{.name = name}}, family, 1};
@@ -42,14 +42,15 @@ TEST(ResidualTrace, EmpiricalCurveMustExceedKnownFormsByTheThreshold) {
   Explanation more = named(16.0, "torque_offset_viscous", "torque_sensor");
   more.candidate.parameters = 2;
   EXPECT_EQ(first({more, far}), 13.0);
-  // A form that noise would reach is none.
+  // A form with a gain below the threshold is not preferred.
   EXPECT_EQ(first({named(8.0, "empirical", "empirical"), named(5.9, "sinkage_datum", "sinkage_datum")}), 8.0);
   std::vector<Explanation> none;
   preferSimple(none, 6.0);
 }
 
 TEST(ResidualTrace, HiddenEffectIsIdentifiedAndErrorReachesTheNoiseFloor) {
-  // Property: worlds of an independent generator; which effect each hides is decided by its seed.
+  // Property: the hidden effects of worlds from an independent generator are found; the seed determines the
+  // effect.
   for (const std::uint64_t seed : {5U, 17U, 40U}) {
     const blind::World world = blind::makeWorld({.seed = seed, .effects = 1, .library = true});
     const TraceResult result = traced(world);
@@ -68,15 +69,16 @@ TEST(ResidualTrace, TablesWithoutEffectsYieldNone) {
 }
 
 TEST(ResidualTrace, CandidateThatIncreasesReadingErrorIsRejected) {
-  // Property: no effect in 18 runs at loads of their own; a curve over the speeds of runs gained 24 while the error of
-  // DP/W rose fourfold.
+  // Property: no effect is found in 18 runs at different loads. (Regression: a curve over the speeds of runs
+  // had a gain of 24 and increased the pull error fourfold.)
   const TraceResult result =
       traced(blind::makeWorld({.seed = 191001, .effects = 0, .library = true, .campaign = true}));
   EXPECT_TRUE(result.effects.empty());
 }
 
 TEST(ResidualTrace, LoadErrorsYieldNoLoadEffect) {
-  // Property: a rate effect among runs at loads of their own, read with 5 % error: it alone, and no effect of that error.
+  // Property: a rate effect in runs at different loads, with load readings of 5 % error, is the only effect
+  // found.
   const blind::World world =
       blind::makeWorld({.seed = 190801, .effects = 1, .library = true, .campaign = true});
   const TraceResult result = traced(world);
@@ -85,7 +87,8 @@ TEST(ResidualTrace, LoadErrorsYieldNoLoadEffect) {
 }
 
 TEST(ResidualTrace, TwoSensorFaultsAreBothIdentified) {
-  // Property: a torque off by 0.8 Nm and a pull by 0.05 W; no single candidate carries both.
+  // Property: offsets of torque (0.8 Nm) and pull (0.05 W) are found together; no single candidate explains
+  // both.
   RefinedModel base;
   base.soil = madeSand();
   std::set<Channel> channels;
@@ -95,8 +98,8 @@ TEST(ResidualTrace, TwoSensorFaultsAreBothIdentified) {
 }
 
 TEST(ResidualTrace, TwoEffectsOfACampaignAreBothIdentified) {
-  // Property: a pile behind the wheel or a wheel that yields, and load shifted by the slope of the run. While a
-  // speed set for a run held the error of its slips, a rate effect took the place of the slope.
+  // Property: a pile behind the wheel or a flexible wheel is found together with the load transfer on slopes.
+  // (Regression: a rate effect replaced the slope while set speeds of runs contained slip errors.)
   for (const std::uint64_t seed : {1400U, 1405U}) {
     const blind::World world =
         blind::makeWorld({.seed = seed, .effects = 2, .library = true, .campaign = true});
@@ -107,8 +110,9 @@ TEST(ResidualTrace, TwoEffectsOfACampaignAreBothIdentified) {
 }
 
 TEST(ResidualTrace, SoilScatterBetweenRunsYieldsNoEffect) {
-  // Property: tan phi and c scatter by 10 and 20 % from run to run and nothing else acts. With an offset of each
-  // channel as the only error that runs share these tables had a grouser's thrust and daily drifts at p = .005.
+  // Property: no effect is found if only tan phi and cohesion vary between runs, by 10 and 20 %. (Regression:
+  // with offsets of channels as the only shared error, grouser thrust and daily drifts were found at p =
+  // 0.005.)
   for (const auto& [seed, scatter] : {std::pair{501U, 0.1}, {509U, 0.1}, {604U, 0.2}})
     EXPECT_TRUE(traced(blind::makeWorld({.seed = seed, .effects = 0, .campaign = true, .scatter = scatter}))
                     .effects.empty())
@@ -123,7 +127,7 @@ TEST(ResidualTrace, FormOutsideTheLibraryIsClassifiedEmpirical) {
 }
 
 TEST(ResidualTrace, ResultIsIndependentOfColumnNames) {
-  // Property: a pull that a column of one's own takes, whatever the column and its neighbours are called.
+  // Property: an additional column that reduces the pull is found for any names of the columns.
   const std::map<std::string, std::string> other{
       {"temperature_C", "operator"}, {"dust_index", "moisture_pct"}, {"battery_V", "hours_since_rain"}};
   blind::World world = blind::makeWorld({.seed = 8, .effects = 1, .library = false});

@@ -12,12 +12,12 @@
 namespace talus::terramech {
 namespace run_proposal_test {
 
-/// A pull that dust takes, beside a column that goes with dust.
+/// Trace of a world in which dust reduces the pull, with a second column correlated with dust.
 TraceResult tied() {
   return traced(blind::makeWorld({.seed = 8, .effects = 1, .library = false, .untold = "tied"}));
 }
 
-/// The proposed runs as a cause would make them, with errors of the sensors.
+/// Simulates the proposed runs with the model of a cause, with sensor errors.
 Trial made(const std::vector<ProposedRun>& runs, const RefinedModel& truth, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Trial trial;
@@ -48,7 +48,7 @@ Trial made(const std::vector<ProposedRun>& runs, const RefinedModel& truth, std:
 }
 
 TEST(RunProposal, SimulatedRunsIdentifyTheTrueCause) {
-  // Property: either of two equal causes as the truth, twenty times each.
+  // Property: simulated runs identify the true cause of two equal causes; twenty repetitions for each cause.
   const TraceResult result = tied();
   const std::vector<Cause> causes = causesOf(result);
   ASSERT_EQ(causes.size(), 2U);
@@ -65,7 +65,8 @@ TEST(RunProposal, SimulatedRunsIdentifyTheTrueCause) {
 }
 
 TEST(RunProposal, EqualCausesDifferByTwoStdInTheProposedRun) {
-  // Property: in the first run, somewhere, by more than two standard deviations of either.
+  // Property: in the first run the predictions differ in some channel by more than two standard deviations of
+  // either cause.
   const TraceResult result = tied();
   const std::vector<ProposedRun> runs = proposeRuns(result, 1);
   ASSERT_EQ(runs.size(), 1U);

@@ -7,7 +7,8 @@
 namespace talus::terramech {
 namespace trace_table_test {
 
-/// Forty rows of the made sand whose torque reads 0.8 Nm more, one sunk to the axle, two with a side force and no slip angle.
+/// Forty rows of the synthetic sand with a torque offset of 0.8 Nm; one row sunk to the axle, two rows with a
+/// side force but no slip angle.
 Telemetry table() {
   std::vector<std::string> columns = wheelColumns();
   columns.insert(columns.end(), {"side_force_N", "slip_angle_rad"});
@@ -45,7 +46,7 @@ TEST_F(TraceTable, EveryRowIsUsedOrReported) {
   ASSERT_EQ(trace_->rejected.size(), 2U);
   EXPECT_EQ(trace_->rejected[0].line, 12U);
   EXPECT_EQ(trace_->beyond_axle, 1);
-  // Property: z/r = 1.1 was written where the model sinks to a tenth of the radius.
+  // Property: the row sunk to the axle has z/r = 1.1, and the model predicts about 0.1.
   EXPECT_GT(trace_->beyond_axle_rmse[1], 0.5);
 }
 
@@ -62,7 +63,7 @@ TEST_F(TraceTable, HeldOutErrorsListTheSearchFirst) {
   EXPECT_EQ(trace_->held_out[0].refined_rmse[1], trace_->result.held_out.refined_rmse[1]);
 }
 
-// Property: the file reads back to the bits that it was written from.
+// Property: the written model file is read back without any change.
 TEST_F(TraceTable, ModelFileRoundTrips) {
   const test::TemporaryFile file{trace_->modelText()};
   const ModelFile read = loadModel(file.path());
@@ -71,7 +72,7 @@ TEST_F(TraceTable, ModelFileRoundTrips) {
   EXPECT_EQ(read.model.effects[0].parameters, trace_->result.refined.effects[0].parameters);
 }
 
-// Property: rows left out before, as a reader leaves them out, change nothing.
+// Property: rows that the reader rejects do not change the result.
 TEST(ReadTraceTable, RejectsRowsThatTracingRejects) {
   const test::TemporaryFile file{
       "load_N,slip,sinkage_m,side_force_N,wheel_radius_m,wheel_width_m\n"

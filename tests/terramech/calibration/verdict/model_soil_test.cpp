@@ -26,7 +26,7 @@ RefinedModel digging() {
   return model;
 }
 
-/// Forty rows as the model reads, each reading with a normal error of 2 %.
+/// Forty rows predicted by the model, each reading with a normal error of 2 %.
 Trial drive(const RefinedModel& model) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> error(1.0, 0.02);
@@ -40,7 +40,7 @@ Trial drive(const RefinedModel& model) {
   return makeTrial(rows.telemetry(), model);
 }
 
-/// The model as a file holds it that was traced on another ground.
+/// The model as stored in a file after tracing on another ground.
 RefinedModel elsewhere(RefinedModel model) {
   model.soil = {.name = "other",
                 .cohesion_Pa = 200.0,
@@ -56,7 +56,7 @@ TEST(ModelSoil, SoilIsRecoveredOnlyWithTheActiveEffects) {
   const RefinedModel truth = digging();
   const Trial trial = drive(truth);
   const ModelSoil with = soilUnder(elsewhere(truth), trial, {.noise = 0.02});
-  // Property: within three of its own standard deviations of the soil that made the rows.
+  // Property: the soil of the rows is found within three standard deviations.
   EXPECT_NEAR(with.soil.cohesion_Pa, 900.0, 3.0 * std::sqrt(with.strength_covariance(0, 0)));
   EXPECT_NEAR(std::tan(with.soil.friction_angle_rad), std::tan(0.52),
               3.0 * std::sqrt(with.strength_covariance(1, 1)));
@@ -65,7 +65,7 @@ TEST(ModelSoil, SoilIsRecoveredOnlyWithTheActiveEffects) {
   RefinedModel bare = elsewhere(truth);
   bare.effects.clear();
   const ModelSoil without = soilUnder(bare, trial, {.noise = 0.02});
-  // Property: no soil alone does what the effects did.
+  // Property: a soil without the effects does not explain the rows.
   EXPECT_GT(without.misfit, 3.0 * with.misfit);
 }
 

@@ -7,7 +7,7 @@
 namespace talus::terramech {
 namespace verdict_test {
 
-/// A hundred rows in runs of ten of drawbar pull alone, with these errors of the base and the refined model.
+/// A hundred rows of drawbar pull only, in runs of ten, with the given errors of base and refined model.
 TraceResult resultOf(double base, double refined, double floor, std::size_t effects) {
   TraceResult result;
   for (int row = 0; row < 100; ++row) {
@@ -37,7 +37,8 @@ TEST(Verdict, DistinguishesExplainedUnexplainedAndNothingMissing) {
 }
 
 TEST(Verdict, ComparesResidualsWithDeclaredSensorNoise) {
-  // Property: errors that a fitted noise of 0.0141 holds, where the load cell is declared at a tenth of it.
+  // Property: errors equal to a fitted noise of 0.0141 exceed the floor of a load cell with a tenth of this
+  // noise stated.
   TraceResult result = resultOf(0.0141, 0.0141, 0.0141, 0);
   EXPECT_EQ(answerOf(result).verdict, Verdict::NothingMissing);
   result.strained = {{"drawbar_pull_N", 0.07, 0.7}};
@@ -50,15 +51,15 @@ TEST(Verdict, ComparesResidualsWithDeclaredSensorNoise) {
 }
 
 TEST(Verdict, StrengthScatterIsReportedIfItDominatesTheResidual) {
-  // Closed form: a strength that scatters by 0.1 moves DP/W by 0.03, of 0.0345^2 - 0.0141^2 = 0.0315^2 above the
-  // floor.
+  // Closed form: a scatter of strength of 0.1 changes drawbar pull over load by 0.03, most of the excess
+  // 0.0345^2 - 0.0141^2 = 0.0315^2 above the floor.
   TraceResult result = resultOf(0.0345, 0.0345, 0.0141, 0);
   result.shared.run(kChannels, kChannels) = 0.1 * 0.1;
   result.shared.by_soil.assign(100, SoilFactor::Zero());
   for (SoilFactor& f : result.shared.by_soil) f(0, 0) = 0.3;
   EXPECT_NEAR(answerOf(result).strength_scatter, 0.1, 1e-12);
   EXPECT_EQ(answerOf(result).measure, "rows that record what else changed from run to run");
-  // Stretches of five rows are no runs, runs of ten are.
+  // Units of five rows are stretches of time; units of ten rows are runs.
   for (int row = 0; row < 100; ++row) result.shared.unit.push_back(row / 5);
   EXPECT_EQ(answerOf(result).measure,
             "rows that record what else changed from stretch of time to stretch of time");
@@ -114,9 +115,9 @@ TEST(Verdict, PredictionNoiseIncludesUnexplainedResidual) {
   result.refined.noise.absolute[0] = 0.03 * 50.0;
   result.held_out.refined_rmse[0] = 0.05;
   EXPECT_EQ(answerOf(result).verdict, Verdict::Unexplained);
-  // Closed form: the floor of 0.03 and the 0.04 above it are 0.05 of the load of 50 N.
+  // Closed form: hypot(0.03, 0.04) = 0.05 (floor and excess), times the load of 50 N.
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 2.5, 1e-12);
-  result.held_out.refined_rmse[0] = 0.035;  // 36 % more variance, within three standard errors
+  result.held_out.refined_rmse[0] = 0.035;  // variance higher by 36 %, within three standard errors
   EXPECT_NEAR(forPrediction(result).noise.absolute[0], 1.5, 1e-12);
 }
 
