@@ -1,5 +1,5 @@
-// Printing errors of the thesis, each shown by quadrature or by the thesis' own equations. The list is in
-// docs/validation.md.
+// Printing errors of the thesis, each demonstrated by quadrature or by other equations of the thesis.
+// docs/validation.md has the list.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -55,7 +55,8 @@ TEST(Errata, Equation29FollowsFromTheCorrectedFormOnly) {
 }
 
 TEST(Errata, EntryAngleIsAnArccosine) {
-  // z/r = 1/2 is 60 degrees (as the thesis states after Eq. 3.12); arctan(1 - z/r) would be 27 degrees.
+  // Sinkage over radius z/r = 1/2 gives 60 degrees (stated in the thesis after Eq. 3.12); arctan(1 - z/r)
+  // would be 27 degrees.
   EXPECT_NEAR(entryAngle_rad(kThesisWheel, 0.05), std::acos(0.5), 1e-15);
   EXPECT_GT(std::abs(std::atan(0.5) - std::acos(0.5)), 0.5);
 }
@@ -80,7 +81,8 @@ TEST(Errata, Equation314FactorToSecondOrder) {
     return std::pow(std::sin(0.25 * t1) / (0.25 * t1), 2) / std::cos(0.5 * t1);
   };
   EXPECT_NEAR((exact(0.01) - 1.0) / 1e-4, 5.0 / 48.0, 1e-4);  // printed: 1/4
-  // At 60 degrees: exact 1.129, printed 1.274, consistent 1.114, finally used 1.
+  // Values at 60 degrees: exact 1.129, printed expansion 1.274, correct expansion 1.114, used in the thesis
+  // 1.
   EXPECT_NEAR(exact(std::acos(0.5)), 1.129, 5e-4);
 }
 
@@ -100,8 +102,8 @@ TEST(Errata, PeakAngleIsNotHalfTheEntryAngle) {
 }
 
 TEST(Errata, MobilisationTermsDifferFromOneOverTable21) {
-  // App. D.2 sets B to 1 and A(i_max) to 1; over Table 2.1 the median of A at slip 0.8 is about 0.66, of B at
-  // 0.2 about 0.42.
+  // App. D.2 assumes B = 1 and A(i_max) = 1. Over Table 2.1 the medians are about 0.66 for A at slip 0.8 and
+  // 0.42 for B at slip 0.2.
   ThesisRuns runs(1);
   std::vector<double> a, b;
   for (int k = 0; k < 101; ++k) {

@@ -13,9 +13,10 @@ inline double gaussian(double away, double std) {
   return std::exp(-0.5 * away * away / (std * std)) / std;
 }
 
-/// p(readings of one sample | soil) up to a factor, integrated over true sinkage and slip. Every error is
-/// the share `noise` of the true value; the priors are flat in log W and in slip. Gauss-Hermite quadrature
-/// with weight exp(-x^2/2)/sqrt(2 pi), the inner seven of nine points (Abramowitz and Stegun 25.10 scaled).
+/// p(readings of one sample | soil) up to a factor, integrated over true sinkage and slip. Every error has
+/// the standard deviation `noise` times the true value; the priors are uniform in log W and in slip.
+/// Gauss-Hermite quadrature with weight exp(-x^2/2)/sqrt(2 pi), the inner seven of nine points (Abramowitz
+/// and Stegun 25.10 scaled).
 inline double exactLikelihood(const ContactSoil& soil, const WheelSample& read, double noise) {
   constexpr double kNode[] = {0.0, 1.023255663789133, 2.076847978677830, 3.205429002856470};
   constexpr double kShare[] = {0.4063492063492063, 0.2440975028949394, 0.0499164067652179,

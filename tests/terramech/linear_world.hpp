@@ -6,8 +6,8 @@
 #include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/wheel_sample.hpp>
 
-/// A world with exactly the stresses that the linear-offset method assumes, where its estimators must be
-/// exact. For tests.
+/// Readings of a wheel with exactly the stresses that the linear-offset method assumes, for which the
+/// estimators of the method are exact. For tests.
 namespace talus::terramech {
 
 struct LinearWorld {

@@ -19,7 +19,8 @@ TEST(ContactGeometry, EntryAngleIsArccosOfOneMinusSinkageOverRadius) {
 }
 
 TEST(ContactGeometry, EntryAngleIsAccurateAtSmallSinkage) {
-  // Closed form: theta_1 = sqrt(2 z/r) (1 + z/(12 r) + ...); arccos(1 - z/r) has lost half its digits here.
+  // Closed form: theta_1 = sqrt(2 z/r) (1 + z/(12 r) + ...); arccos(1 - z/r) is accurate to half of the
+  // digits only.
   const double ratio = 1e-10;
   EXPECT_NEAR(entryAngle_rad(kWheel, ratio * 0.1) / std::sqrt(2.0 * ratio), 1.0 + ratio / 12.0, 1e-15);
 }

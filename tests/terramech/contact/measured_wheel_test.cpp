@@ -15,7 +15,8 @@ namespace talus::terramech {
 namespace measured_wheel_test {
 
 struct Errors {
-  double side = 0.0, pull = 0.0, sinkage = 0.0;  // root mean squares, over load, load and radius
+  double side = 0.0, pull = 0.0, sinkage = 0.0;  // root mean square errors of side force and pull over load,
+                                                 // and of sinkage over radius
   int runs = 0;
 };
 
@@ -47,9 +48,9 @@ Errors errorsAt(double angle_deg, const Soil& soil, const std::string& path) {
   return errors;
 }
 
-// Measured by others: the authors' soil (cohesion by hand, friction measured, k and n of their plates).
-// Three parameters are fitted to the runs at 0 degrees alone: K, c1 and the slip sinkage. docs/slopes.md
-// states the errors at 45 degrees, where the goals are missed.
+// Measured by others: the soil of the authors (cohesion estimated, friction measured, k and n from plate
+// tests). Three parameters, K, c1 and the slip sinkage, are fitted to the runs at 0 degrees only.
+// docs/slopes.md states the errors at 45 degrees, where the goals are missed.
 TEST(MeasuredWheel, ThreeParametersFittedStraightPredictRunsAt15Degrees) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";

@@ -53,7 +53,8 @@ TEST(PneumaticTyre, HighInflationIsRigidModeAndLowInflationIsFlattenedMode) {
   EXPECT_LT(soft.sinkage_m, hard.sinkage_m);
   EXPECT_GT(soft.flat_length_m, 0.0);
   EXPECT_GT(soft.drawbar_pull_N,
-            hard.drawbar_pull_N);  // Measured by others: why tyres are let down on sand (wong_2001).
+            hard.drawbar_pull_N);  // Measured by others: on sand, a lower tyre pressure increases the pull
+                                   // (wong_2001).
 }
 
 TEST(PneumaticTyre, ForcesEqualTheIntegratedStresses) {

@@ -17,8 +17,8 @@ TEST(ShearDisplacement, IsEquationC6ForDrivenWheels) {
 }
 
 TEST(ShearDisplacement, IntegratesTheSlidingVelocityOfARimPoint) {
-  // Closed form: dj = (r omega - v cos theta) dt, theta falling at omega; v/(r omega) = 1/(1 + slip) when
-  // braked.
+  // Closed form: dj = (r omega - v cos theta) dt with d theta = -omega dt; v/(r omega) = 1/(1 + slip) for a
+  // braked wheel.
   for (const double slip : {-0.6, -0.2, 0.0, 0.4}) {
     const double q = slip < 0.0 ? 1.0 / (1.0 + slip) : 1.0 - slip;
     double sum = 0.0;
@@ -38,7 +38,7 @@ TEST(ShearDisplacement, LockedWheelHasInfiniteShearDisplacement) {
 
 TEST(ShearDisplacement, SignChangesOnlyForTowedWheelsAtSmallNegativeSlip) {
   EXPECT_TRUE(std::isnan(at(0.0).signChange_rad(0.0)));
-  EXPECT_TRUE(std::isnan(at(-0.5).signChange_rad(0.0)));  // the rim lags behind the soil from the entry on
+  EXPECT_TRUE(std::isnan(at(-0.5).signChange_rad(0.0)));  // the rim is slower than the soil from the entry on
   const double zero = at(-0.1).signChange_rad(0.0);
   ASSERT_GT(zero, 0.0);
   EXPECT_NEAR(at(-0.1).at_m(zero), 0.0, 1e-15);

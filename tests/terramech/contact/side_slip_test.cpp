@@ -42,8 +42,7 @@ TEST(SideSlip, ConvergesToTheStraightWheelAtZeroAngle) {
   for (const double slip : {-1.0, -0.6, -0.1, 0.0, 0.05, 0.4, 1.0}) {
     const WheelForces straight = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip});
     const WheelForces askew = equilibrium(sand(), {}, {.load_N = 60.0, .slip = slip, .slip_angle_rad = 1e-9});
-    // Property: the forces are continuous in the angle; at 1e-9 rad the soil moves sideways by 1e-9 of the
-    // path.
+    // Property: the forces are continuous in the slip angle, here 1e-9 rad.
     EXPECT_NEAR(askew.drawbar_pull_N, straight.drawbar_pull_N, 1e-6) << slip;
     EXPECT_NEAR(askew.torque_Nm, straight.torque_Nm, 1e-7) << slip;
     EXPECT_NEAR(askew.sinkage_m / straight.sinkage_m, 1.0, 1e-7) << slip;
@@ -76,8 +75,8 @@ TEST(SideSlip, LockedWheelOnHardGroundIsCoulombFriction) {
   const double mu = std::tan(hard.friction_angle_rad);
   for (const double angle : {0.2, 0.8, 1.3, kRight}) {
     const WheelForces f = equilibrium(hard, {}, {.load_N = 80.0, .slip = -1.0, .slip_angle_rad = angle});
-    // Closed form: F = -mu W along the sliding; the rim's curvature theta_1 is below 1e-5 here, and 90 deg
-    // counts as 89.94, cos of which is 1e-3.
+    // Closed form: F = -mu W along the sliding direction. Tolerance: theta_1 is below 1e-5, and 90 deg is
+    // clamped to 89.94 deg, whose cosine is 1e-3.
     EXPECT_NEAR(f.side_force_N / 80.0, -mu * std::sin(angle), 2e-5) << angle;
     EXPECT_NEAR(f.drawbar_pull_N / 80.0, -mu * std::cos(angle), angle < 1.5 ? 2e-5 : 1.1e-3) << angle;
   }
@@ -121,7 +120,7 @@ TEST(SideSlip, ShearForceNeverExceedsSoilStrength) {
     const double face_N =
         faceResistance_N(push, {wheel.radius_m, f.entry_angle_rad}) * std::abs(std::sin(how.slip_angle_rad));
     const double rim_side_N = std::abs(f.side_force_N) - face_N;
-    // Property: |int tau| <= int (c + sigma tan phi); 1e-4 for the trapezoid sum of the strength.
+    // Property: |int tau| <= int (c + sigma tan phi). Tolerance: 1e-4 for the trapezoid sum of the strength.
     EXPECT_LE(std::hypot(f.torque_Nm / wheel.radius_m, rim_side_N), strength_N * (1.0 + 1e-4)) << k;
     EXPECT_GE(rim_side_N, -1e-6 * how.load_N);
   }
@@ -129,8 +128,7 @@ TEST(SideSlip, ShearForceNeverExceedsSoilStrength) {
 }
 
 TEST(SideSlip, ResultantSlipMatchesLimitCases) {
-  // Closed form: straight on |i|, locked 1 at any angle, rolling at 90 deg |(r omega, v)| / v with r omega =
-  // v.
+  // Closed form: |i| at slip angle 0, 1 for a locked wheel at any angle, sqrt 2 at 90 deg with r omega = v.
   EXPECT_EQ(resultantSlip(0.3, 0.0), 0.3);
   EXPECT_EQ(resultantSlip(-0.3, 0.0), 0.3);
   EXPECT_NEAR(resultantSlip(-1.0, 0.7), 1.0, 1e-12);
@@ -148,7 +146,7 @@ TEST(SideSlip, DiggingIncreasesSinkageAndReducesPull) {
   const WheelForces shallow = equilibrium(soil, {}, how);
   soil.digging_exponent = 0.4;
   const WheelForces deep = equilibrium(soil, {}, how);
-  // Property: softer ground at every depth below 1 m.
+  // Property: ground that is softer at every depth below 1 m increases the sinkage and reduces the pull.
   EXPECT_GT(deep.sinkage_m, 1.2 * shallow.sinkage_m);
   EXPECT_LT(deep.drawbar_pull_N, shallow.drawbar_pull_N);
 }

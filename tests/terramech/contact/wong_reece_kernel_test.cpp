@@ -6,7 +6,8 @@
 namespace talus::terramech::lanes {
 namespace wong_reece_kernel_test {
 
-// Closed form: int_0^1 s^k ds = 1/(k + 1). A rule of N points in t is exact while s^k ds is of degree 2 N - 1.
+// Closed form: int_0^1 s^k ds = 1/(k + 1). A rule of N points in t is exact if s^k ds has at most degree 2 N
+// - 1 in t.
 TEST(WongReeceKernel, QuadratureRulesAreExactForPolynomials) {
   const auto integral = [](const auto& rule, double exponent) {
     double sum = 0.0;

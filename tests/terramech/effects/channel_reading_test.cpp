@@ -9,7 +9,7 @@ namespace channel_reading_test {
 
 constexpr std::array kAll{Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
 
-// Closed form: DP/W, z/r, T/(r W), F/W.
+// Closed form: pull DP/W, sinkage z/r, torque T/(r W), side force F/W.
 TEST(ChannelReading, ChannelsAreScaledByLoadAndRadius) {
   const Reading reading{.load_N = 50.0,
                         .radius_m = 0.2,

@@ -22,7 +22,7 @@ TEST(EffectsContact, SideForceIsContinuousAtNinetyDegrees) {
     WheelState s = state(slip);
     s.slip_angle_rad = 1.55;
     const double before = predict(model, s).scaled(Channel::SideForce);
-    s.slip_angle_rad = 0.5 * std::numbers::pi + 0.003;  // 90 deg as a test bed measures it
+    s.slip_angle_rad = 0.5 * std::numbers::pi + 0.003;  // 90 deg with a measurement error
     const double at = predict(model, s).scaled(Channel::SideForce);
     // Property: sideways travel shears the soil even if the longitudinal displacement is zero.
     EXPECT_LT(at, -0.1) << slip;
@@ -36,7 +36,8 @@ TEST(EffectsContact, RateEffectsAreAPowerOrLogarithmOfSpeed) {
   const WheelContact shear = acted("rate_shear", {0.1, 0.05}, 0.05 * std::exp(1.0));
   EXPECT_NEAR(shear.cohesion_Pa, 1100.0, 1e-9);
   EXPECT_NEAR(shear.tan_friction, 0.55, 1e-12);
-  // Closed form: the rim slides at i r omega = 0.5 x 0.2 m/s = e v0; without a rim speed at i v / (1 - i).
+  // Closed form: the sliding speed of the rim is i r omega = 0.5 x 0.2 m/s = e v0; without a measured rim
+  // speed i v / (1 - i).
   WheelState s{.slip = 0.5, .rim_speed_mps = 0.2};
   EXPECT_NEAR(acted("rate_shear_slip_velocity", {0.1, 0.1 / std::exp(1.0)}, 0.0, s).cohesion_Pa, 1100.0,
               1e-9);
@@ -48,7 +49,7 @@ TEST(EffectsContact, RateEffectsAreAPowerOrLogarithmOfSpeed) {
 }
 
 TEST(EffectsContact, MultipassEffectsSaturate) {
-  // Closed form: 1 - e^{-(p - first)/p0} = 1/2 at p = first + p0 ln 2; nothing at the first pass.
+  // Closed form: 1 - e^{-(p - first)/p0} = 1/2 at p = first + p0 ln 2, and 0 at the first pass.
   const double half = 1.0 + 3.0 * std::log(2.0);
   EXPECT_NEAR(acted("multipass_stiffness", {0.4, 3.0, 1.0}, half).sinkage_modulus, 1.2e6, 1e-6);
   EXPECT_EQ(acted("multipass_stiffness", {0.4, 3.0, 1.0}, 1.0), plainContact());
@@ -100,8 +101,8 @@ TEST(EffectsContact, DingExponentGrowsWithAbsoluteSlip) {
   EXPECT_EQ(acted("slip_sinkage_ding_quadratic", {-1.0, -3.0}, 1.0, {.slip = 1.0}).sinkage_exponent, 0.1);
 }
 
-// Property: the base's slip sinkage and Ding's effect are one law; together they act as the sum of their
-// parameters.
+// Property: the slip sinkage of the base and Ding's effect have the same formula; together they equal one
+// effect with the sum of both parameters.
 TEST(EffectsContact, BaseSlipSinkageEqualsTheDingEffect) {
   for (const double slip : {-0.4, 0.2, 0.7}) {
     RefinedModel effect = base(), soil = base(), both = base();

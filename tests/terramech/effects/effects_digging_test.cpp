@@ -7,7 +7,7 @@ namespace talus::terramech {
 namespace effects_digging_test {
 
 TEST(EffectsDigging, BrakedWheelSinkageIsQuadraticInSkid) {
-  // Closed form: 0.3 r (1 - r omega/v)^2 with r omega/v = 1 + slip; none where the wheel drives.
+  // Closed form: 0.3 r (1 - r omega/v)^2 with r omega/v = 1 + slip; 0 for a driven wheel.
   RefinedModel model = base();
   model.effects = {typical(*findEffect("skid_sinkage"))};
   for (const double slip : {-1.0, -0.6, -0.2, 0.3}) {
@@ -45,7 +45,8 @@ TEST(EffectsDigging, SlipSinkageMatchesLinearAndReeceLaws) {
     const double z0 = predict(base(), straightOn(slip)).sinkage_m, i = std::max(0.0, slip);
     RefinedModel model = base();
     model.effects = {with("slip_sinkage_linear", {0.5})};
-    // Closed form: z0 (1 + a i), and z0 + a h i / (1 - i) with h = 10 mm; a braked wheel does not dig so.
+    // Closed form: z0 (1 + a i), and z0 + a h i / (1 - i) with h = 10 mm; a braked wheel does not dig by
+    // these effects.
     EXPECT_NEAR(predict(model, straightOn(slip)).sinkage_m, z0 * (1.0 + 0.5 * i), 1e-9) << slip;
     model.effects = {with("slip_sinkage_reece", {0.4})};
     EXPECT_NEAR(predict(model, straightOn(slip)).sinkage_m, z0 + 0.4 * 0.01 * i / (1.0 - i), 1e-9) << slip;
@@ -75,7 +76,7 @@ TEST(EffectsDigging, RearFillIncreasesPullAndDugDepthIsExcludedFromBulldozing) {
 
 TEST(EffectsDigging, PloughingGrowsWithTheLateralPathShare) {
   // Closed form: J = sin b / (sin b + m cos b) at 45 deg is 1/2 for m = 1 and 1/4 for m = 3; a r J^2 with
-  // a r = 0.1 m, and contact behind 1 - (1 - J). A locked wheel only drags.
+  // a r = 0.1 m, and contact behind 1 - (1 - J). The locked wheel has no other digging effect.
   const WheelContact one = acted("side_ploughing", {0.5, 1.0}, std::numbers::pi / 4),
                      three = acted("side_ploughing", {0.5, 3.0}, -std::numbers::pi / 4);
   EXPECT_NEAR(one.ploughed_m, 0.1 / 4, 1e-12);

@@ -92,7 +92,7 @@ TEST(EffectsForce, SmoothFaceCoulombPressureEqualsRankine) {
 
 TEST(EffectsForce, RearPileAndSlopeWeightComponentMatchClosedForm) {
   const WheelContact c = soilOf(std::numbers::pi / 6);
-  // Closed form: a W (i - i0)^2 = 0.5 x 100 x 0.04; gamma b h^2 Kp / 2 with h = 0.5 x 0.2; nothing below i0.
+  // Closed form: a W (i - i0)^2 = 0.5 x 100 x 0.04; gamma b h^2 Kp / 2 with h = 0.5 x 0.2; 0 below i0.
   EXPECT_NEAR(readWith("rear_pile", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N, 2.0, 1e-12);
   EXPECT_EQ(readWith("rear_pile", {0.5, 0.4}, 0.3, {}, c, sunk(0.01)).drawbar_pull_N, 0.0);
   EXPECT_NEAR(readWith("rear_pile_passive", {0.5, 0.4}, 0.6, {}, c, sunk(0.01)).drawbar_pull_N,
@@ -103,8 +103,9 @@ TEST(EffectsForce, RearPileAndSlopeWeightComponentMatchClosedForm) {
 }
 
 TEST(EffectsForce, RoughFaceMatchesCoulombPressure) {
-  // Closed form: phi = delta = 30 deg gives Kp = cos 30 deg / (1 - sqrt(1/2))^2 = 10.095. A locked wheel at
-  // 90 deg slides along its face upwards alone, so that all friction counts and none pulls or brakes.
+  // Closed form: phi = delta = 30 deg gives Kp = cos 30 deg / (1 - sqrt(1/2))^2 = 10.095. The pushed soil
+  // moves only upwards along the face of a locked wheel at 90 deg: all friction increases the pressure, and
+  // the pull is 0.
   WheelContact c = soilOf(std::numbers::pi / 6);
   c.cohesion_Pa = 0.0;
   c.rolling = 0.0;
@@ -121,7 +122,7 @@ TEST(EffectsForce, SideEffectsReplaceTheSideTermsOfTheBase) {
   const Reading plain = predict(model, state());
   RefinedModel bare = model;
   bare.soil.digging_exponent = bare.soil.side_bulldozing = 0.0;
-  // Property: a form with parameter 0 replaces the base's term of its kind, and no other term.
+  // Property: a form with parameter 0 switches off the corresponding term of the base, and no other term.
   model.effects = {with("side_bulldozing", {0.0}), with("side_slip_sinkage", {0.0})};
   const Reading none = predict(model, state()), want = predict(bare, state());
   EXPECT_EQ(none.side_force_N, want.side_force_N);
@@ -137,7 +138,7 @@ TEST(EffectsForce, BaseAtSlipAngleMatchesTheEquilibrium) {
     const Reading r = predict(base(), s);
     const WheelForces f = equilibrium(base().soil, s.wheel,
                                       {.load_N = s.load_N, .slip = slip, .slip_angle_rad = s.slip_angle_rad});
-    // Property: two solvers of one wheel agree; 1e-4 for the faster rule of a dragged wheel.
+    // Property: two solvers of one wheel agree. Tolerance: 1e-4 for the faster quadrature of a sliding wheel.
     EXPECT_NEAR(r.side_force_N / s.load_N, f.side_force_N / s.load_N, 1e-4) << slip;
     EXPECT_NEAR(r.drawbar_pull_N / s.load_N, f.drawbar_pull_N / s.load_N, 1e-4) << slip;
     EXPECT_NEAR(r.sinkage_m / f.sinkage_m, 1.0, 1e-4) << slip;

@@ -28,7 +28,7 @@ TEST(Effects, EveryFormHasAFiniteEffectAtItsTypicalSize) {
     model.effects = {typical(form)};
     const WheelState at = state(std::string(form.name) == "skid_sinkage" ? -0.5 : 0.5);
     const double moved = change(predict(model, at), predict(base(), at));
-    if (std::string(form.name) == "layered_hardpan") continue;  // acts only if the layer is above the sinkage
+    if (std::string(form.name) == "layered_hardpan") continue;  // acts only if the sinkage reaches the layer
     if (std::string(form.name) == "rear_fill") continue;        // acts only on soil dug by other forms
     EXPECT_GT(moved, 1e-6) << form.name;
     EXPECT_LT(moved, 10.0) << form.name;

@@ -19,7 +19,7 @@ TEST(RefinedModel, LinearFormulaUsesMeasuredTorqueAndSinkage) {
   model.base = BaseModel::LinearFormula;
   WheelState s = state();
   const Reading solved = predict(model, s);
-  // Closed form: T/(rW) - z/r - 0.1.
+  // Closed form: DP/W = T/(rW) - z/r - 0.1 (drawbar pull from torque and sinkage).
   EXPECT_NEAR(solved.scaled(Channel::DrawbarPull),
               solved.scaled(Channel::Torque) - solved.scaled(Channel::Sinkage) - 0.1, 1e-12);
   s.measured_torque_Nm = 0.4 * 80.0 * 0.12;
@@ -70,8 +70,8 @@ TEST(RefinedModel, SlipStdIsLimitedNearALockedWheel) {
   EXPECT_DOUBLE_EQ(noise.slipStd(-0.5), std::hypot(0.03, 0.02));
   EXPECT_DOUBLE_EQ(noise.slipStd(0.0), 0.03);
   EXPECT_DOUBLE_EQ(noise.slipStd(1.0), 0.05);
-  // A locked wheel dragged along its axle would dig in if a slip error turned it forwards; no slip error is
-  // therefore propagated.
+  // Property: no slip error is propagated for a locked wheel dragged along its axle, which with a slip error
+  // would turn and dig.
   RefinedModel model = base();
   WheelState locked = state();
   locked.slip = -1.0;
@@ -157,8 +157,8 @@ TEST(RefinedModel, FittedParametersRoundTripThroughSetValue) {
 }
 
 TEST(RefinedModel, StdIncludesFittedParameters) {
-  // Closed form: DP_m = DP + F0, so that the standard deviation of DP/W is that of F0 over W; other channels
-  // have none.
+  // Closed form: DP_m = DP + F0, so that the standard deviation of drawbar pull over load is that of F0 over
+  // W; that of other channels is 0.
   RefinedModel model = base();
   model.effects = {with("drawbar_zero", {1.0})};
   model.fitted = {{.effect = 0, .index = 0}};

@@ -109,7 +109,7 @@ TEST(WheelContact, LongitudinalAndLateralDiggingCombineByPath) {
   c.extra_sinkage_m = 0.001;
   const ContactForces forces = solveContact(c);
   EXPECT_NEAR(forces.sinkage_m, z0 + 0.005 + 0.001, 1e-12);  // Closed form: hypot(3, 4) = 5.
-  EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: the share of the squares.
+  EXPECT_NEAR(forces.dug_m, 0.005 * 9.0 / 25.0, 1e-12);      // Closed form: share 3^2 / 5^2.
 }
 
 }  // namespace wheel_contact_test

@@ -33,7 +33,7 @@ TEST(DrawbarPull, TriangularStressAsPrintedEqualsTheStableForm) {
 }
 
 TEST(DrawbarPull, TriangularStressIsExactForTriangularStresses) {
-  // Property: against the pull integrated over a world of triangular stresses (midpoint rule, 1e-6).
+  // Property: the pull equals the integral over triangular stresses (midpoint rule, 1e-6).
   const LinearWorld world{.cohesion_Pa = 800.0, .offset = false};
   const WheelSample s = sampleOf(kThesisWheel, world, {.sinkage_m = 0.02, .slip = 0.4});
   const double theta_1 = entryAngle_rad(kThesisWheel, s.sinkage_m);
@@ -50,7 +50,7 @@ TEST(DrawbarPull, TriangularStressIsExactForTriangularStresses) {
 }
 
 TEST(DrawbarPull, FormulasAgreeAtVanishingSinkage) {
-  // Property: 3.6 is 3.12 to first order in theta_1.
+  // Property: Eq. 3.6 equals Eq. 3.12 to first order in theta_1.
   WheelSample s = kSample;
   s.sinkage_m = 1e-8;
   EXPECT_NEAR(pullOfTriangularStress(kThesisWheel, s), pullAtSmallAngle(kThesisWheel, s), 1e-7);
@@ -111,14 +111,16 @@ double rms(const Wheel& wheel) {
 }
 
 TEST(DrawbarPull, RmsErrorIsWithinItsStatedAccuracy) {
-  // Property: the stated rms, 0.002 on the thesis' wheel, and below 0.006 on wheels of other sizes.
+  // Property: the rms error is the stated 0.002 for the wheel of the thesis, and below 0.006 for wheels of
+  // other sizes.
   EXPECT_LT(rms(kThesisWheel), 0.003);
   EXPECT_LT(rms({.radius_m = 0.16, .width_m = 0.16}), 0.006);
   EXPECT_LT(rms({.radius_m = 0.065, .width_m = 0.08}), 0.006);
 }
 
 TEST(DrawbarPull, StdEqualsScatterOfNoisyReadings) {
-  // Property: over 400 repeats of 5 % noise, to 15 % (sampling and curvature).
+  // Property: the stated standard deviation equals the scatter over 400 repetitions with 5 % noise.
+  // Tolerance: 15 % (sampling and curvature).
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   double squares = 0.0;

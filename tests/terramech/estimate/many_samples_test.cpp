@@ -17,8 +17,8 @@ std::vector<WheelReading> numbered(std::size_t count) {
 
 TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
   // Property: over twelve soils of known class with 600 samples each, the RMS errors of c, phi and K are
-  // within a factor of two of the posterior standard deviations. A search without the slope of the
-  // normalisation exceeds them five times.
+  // within a factor of two of the posterior standard deviations. In a search that neglects the gradient of
+  // the normalisation, the errors are five standard deviations.
   ThesisRuns runs(71);
   double squares[3] = {};
   constexpr int kSoils = 12;
@@ -40,7 +40,7 @@ TEST(ManySamples, StdMatchesTheRmsErrorForSixHundredSamples) {
 }
 
 TEST(ManySamples, QuadraticAndWeightedPosteriorsAgreeAtTheSwitch) {
-  // Property: from the 301st sample on another method is used, which gives the same result.
+  // Property: the method for more than 300 samples gives the same result as the method for 300 samples.
   ThesisRuns runs(72);
   const ThesisRun run = runs.next({.noise = 0.05, .samples = 301});
   const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};

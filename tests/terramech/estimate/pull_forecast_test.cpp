@@ -25,8 +25,8 @@ TEST(PullForecast, PullAtTheSamplesMatchesTheTruth) {
 }
 
 TEST(PullForecast, PullUsesTheMostLikelyStateInsteadOfTheRawReading) {
-  // Property: on a known soil a sinkage read 10 % too high changes the pull by less than half of the
-  // uncorrected change, because load and torque contradict the sinkage.
+  // Property: on a known soil, a sinkage reading 10 % too high changes the pull by less than half of the
+  // change without correction, because load and torque correct the sinkage.
   ThesisRuns runs(33);
   for (int k = 0; k < 6; ++k) {
     const ThesisRun run = runs.next({.noise = 0.0});

@@ -16,8 +16,8 @@ TEST(PullFormula, EachNameSelectsItsFormula) {
   EXPECT_EQ(by("small-angle").value, pullAtSmallAngle(wheel, s));
   EXPECT_EQ(by("triangular").value, pullOfTriangularStress(wheel, s));
   EXPECT_EQ(by("plane").value, kThesisPlane.at(wheel, s));
-  // Property: each formula has its own model error, stated in drawbar_pull.hpp, in addition to those of the
-  // readings.
+  // Property: the standard deviation includes the model error of the formula (drawbar_pull.hpp) in addition
+  // to the errors of the readings.
   for (const char* name : {"small-angle", "triangular", "plane"}) EXPECT_GT(by(name).std, ours.std) << name;
   EXPECT_THROW(by("no-such"), std::invalid_argument);
   for (const std::string& name : pullFormulas()) EXPECT_NO_THROW(by(name.c_str()));

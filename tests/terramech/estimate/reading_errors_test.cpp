@@ -15,7 +15,7 @@ TEST(ReadingErrors, RelativeErrorAppliesToAllFourReadings) {
   const ReadingErrors errors = ReadingErrors::relative(0.1);
   for (const ReadingError* e : {&errors.load, &errors.torque, &errors.sinkage, &errors.slip})
     EXPECT_DOUBLE_EQ(e->std(2.0), 0.2);
-  EXPECT_DOUBLE_EQ(ReadingErrors{}.slip.std(0.4), 0.02);  // Printed in: the thesis, 5 % on everything
+  EXPECT_DOUBLE_EQ(ReadingErrors{}.slip.std(0.4), 0.02);  // Printed in: the thesis, 5 % error of each reading
 }
 
 }  // namespace reading_errors_test

@@ -7,8 +7,8 @@ namespace talus::terramech {
 namespace soil_filter_test {
 
 TEST(SoilFilter, EqualsTheBatchEstimateWithinTheWindow) {
-  // Property: filter and batch fit find the same modes to the tolerance of the search, hence almost the same
-  // draws.
+  // Property: filter and batch fit have the same modes within the tolerance of the search, and therefore
+  // almost equal draws.
   ThesisRuns runs(8);
   const ThesisRun run = runs.next({.noise = 0.05});
   SoilFilter filter(kThesisWheel, thesisSoils(), {});

@@ -18,8 +18,8 @@ SoilClass known(const ContactSoil& soil) {
 }
 
 TEST(SoilObjective, ResidualsVanishForTheTrueSoil) {
-  // Property: for exact readings the residuals are small; the 10-point quadrature is within 1e-4 of the
-  // load, errors are 5 %.
+  // Property: for exact readings the residuals are small. Tolerance: 10-point quadrature, 1e-4 of the load,
+  // relative to errors of 5 %.
   ThesisRuns runs(3);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilClass exact = known(run.soil);
@@ -54,7 +54,7 @@ TEST(SoilObjective, CostIsTheMarginalLikelihoodOverSinkageAndSlipErrors) {
 }
 
 TEST(SoilObjective, LikelyStateCorrectsAReadingTowardsTheTruth) {
-  // Property: a sinkage read 10 % too high is corrected by the load, which contradicts it.
+  // Property: the load reading corrects a sinkage reading that is 10 % too high.
   ThesisRuns runs(4);
   const ThesisRun run = runs.next({.noise = 0.0});
   const SoilMixture classes = thesisSoils();

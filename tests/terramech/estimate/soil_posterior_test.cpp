@@ -51,8 +51,8 @@ TEST(SoilPosterior, MatchesImportanceSamplingFromThePrior) {
 }
 
 TEST(SoilPosterior, EllipseCoverageIs95PercentIncludingTruncatedClasses) {
-  // Property: within one class the posterior fills a box, all of which lies in the covariance ellipse at
-  // chi-squared 5.99. At the stated level the ellipse contains the truth in 90 to 99 of 100 cases.
+  // Property: the ellipse at the stated level contains the truth in 90 to 99 of 100 cases. (At chi-squared
+  // 5.99 the ellipse would contain the whole box of a class.)
   ThesisRuns runs(41);
   int held = 0, held_by_chi_squared = 0;
   for (int k = 0; k < 100; ++k) {
@@ -149,7 +149,7 @@ TEST(SoilPosterior, OneOutlierMovesTheMeanByLessThanOneStd) {
 }
 
 TEST(SoilPosterior, FindsASoilFarFromThePriorCentre) {
-  // Property: at 1 % errors every sample is an outlier at the prior mean; the soil is nevertheless found.
+  // Property: the soil is found, although with errors of 1 % every sample is an outlier at the prior mean.
   ThesisRuns runs(14);
   const ThesisRun run = runs.next({.noise = 0.01});
   const SoilMixture wide{thesisSoilsOrOther(0.5).back()};

@@ -25,7 +25,7 @@ TEST(StatePopulation, ShrinksReadingsTowardsThePopulation) {
   // reduced by the factor sqrt(V / (V + s^2)), as is its standard deviation. 4000 readings determine the
   // spread to 2 %.
   constexpr int kCount = 4000;
-  constexpr double kSpread = 0.08;  // of ln W
+  constexpr double kSpread = 0.08;  // standard deviation of ln W
   StatePopulation population;
   std::vector<double> truth;
   std::vector<WheelSample> readings;
@@ -49,7 +49,7 @@ TEST(StatePopulation, ShrinksReadingsTowardsThePopulation) {
   const double share = kSpread * kSpread / (kSpread * kSpread + 0.05 * 0.05);
   EXPECT_NEAR(std::sqrt(squares), 0.05 * std::sqrt(share), 0.002);
   EXPECT_NEAR(std::sqrt(stated), 0.05 * std::sqrt(share), 0.002);
-  EXPECT_LT(std::sqrt(slip_squares), 0.005);  // all at one slip, read with an error of 0.02
+  EXPECT_LT(std::sqrt(slip_squares), 0.005);  // all rows have one slip and a reading error of 0.02
 }
 
 }  // namespace state_population_test

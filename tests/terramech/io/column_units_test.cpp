@@ -26,7 +26,7 @@ std::string errorOf(const std::vector<std::string>& header) {
   return "";
 }
 
-// Property: a misspelled known column is rejected with a suggestion; any other word is a user's own column.
+// Property: a misspelled known column is rejected with a suggestion; any other name is accepted.
 TEST(ColumnUnits, MisspelledKnownColumnIsRejectedWithASuggestion) {
   EXPECT_THAT(errorOf({"drawbar_pul_N"}), HasSubstr("write column drawbar_pull_N"));
   EXPECT_THAT(errorOf({"torqe_Nm"}), HasSubstr("write column torque_Nm"));
@@ -88,7 +88,7 @@ TEST(ColumnUnits, KnownColumnWithoutUnitIsRejected) {
   for (const std::string& column : knownTelemetryColumns()) {
     const std::size_t end = column.rfind('_');
     if (column == "slip" || column == "pass_index" || column == "grouser_count") continue;
-    if (column == "time_s" || end == 1) continue;  // a date, an axis
+    if (column == "time_s" || end == 1) continue;  // may be a date or an axis
     EXPECT_THAT(errorOf({column.substr(0, end)}),
                 HasSubstr("names no unit; write column " + column + ", in "));
   }
@@ -105,7 +105,7 @@ TEST(ColumnUnits, KnownColumnWithOtherCaseOrPunctuationIsRejected) {
   EXPECT_THAT(errorOf({"speed [m/s]"}), HasSubstr("write column speed_mps"));
 }
 
-// Property: every known name is accepted, and so are own names that resemble a known one.
+// Property: every known name is accepted, and so are other names that resemble a known name.
 TEST(ColumnUnits, UserColumnsAreAccepted) {
   EXPECT_EQ(errorOf(knownTelemetryColumns()), "");
   for (const char* name : {"",
@@ -183,8 +183,8 @@ TEST(ColumnUnits, MeasuredDataFilesAreAccepted) {
     if (entry.path().extension() != ".csv") continue;
     ++files;
     std::vector<std::string> header = CsvReader(entry.path()).header();
-    // These tables hold digitised points over the slope in degrees; as wheel telemetry the column is
-    // rejected.
+    // These tables contain digitised points over the slope in degrees and are not telemetry, in which the
+    // column would be rejected.
     if (entry.path().parent_path().filename() == "slope_slip") std::erase(header, "slope_deg");
     EXPECT_EQ(errorOf(header), "") << entry.path();
   }

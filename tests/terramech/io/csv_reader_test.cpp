@@ -73,7 +73,7 @@ std::string errorOf(const std::string& path) {
   return "no error";
 }
 
-// Property: rows after an unbalanced quote are reported, whether another quote closes it or none.
+// Property: rows after an unbalanced quote are reported, with and without a later closing quote.
 TEST(CsvReader, UnbalancedQuoteSpanningRowsIsRejected) {
   std::string many = "a,b\n1,2\n3,\"4\n";
   for (int k = 0; k < 20000; ++k) many += "5,6\n";
@@ -101,7 +101,7 @@ TEST(CsvReader, MissingEmptyAndAmbiguousFilesAreRejected) {
   EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));
 }
 
-// Formats that spreadsheets write in many countries.
+// Property: the formats of spreadsheets with semicolons, tabs and decimal commas are read.
 TEST(CsvReader, ReadsSemicolonsTabsAndDecimalCommas) {
   for (const std::string part : {";", "\t"}) {
     const auto rows = rowsOf("a" + part + "b" + part + "c\n1,5" + part + "-2,25e1" + part + "some, words\n" +
@@ -110,7 +110,7 @@ TEST(CsvReader, ReadsSemicolonsTabsAndDecimalCommas) {
     EXPECT_THAT(rows[0].fields, ElementsAre("1.5", "-2.25e1", "some, words"));
     EXPECT_THAT(rows[1].fields, ElementsAre("3", "4.5", "1,2,3"));
   }
-  // The header determines the separator: commas separate fields if they do so in the header.
+  // The header determines the separator, here a comma.
   EXPECT_THAT(rowsOf("a,b;c\n1,5\n").front().fields, ElementsAre("1", "5"));
 }
 

@@ -120,8 +120,7 @@ std::string faultOf(const std::string& yaml) {
   return "no error";
 }
 
-// Property: an invalid covariance would be read as certainty (standard deviation 0) and is rejected with its
-// line.
+// Property: an invalid covariance, which would count as standard deviation 0, is rejected with its line.
 TEST(ModelFile, InvalidCovarianceIsRejected) {
   const auto fault = [](const std::string& covariance) {
     return faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}]\ncovariance: [" +
@@ -134,7 +133,7 @@ TEST(ModelFile, InvalidCovarianceIsRejected) {
   EXPECT_THAT(fault("1e4, 0.5, 0.4, 1e-3"), HasSubstr("is not symmetric in row 1"));
   EXPECT_THAT(fault("1e4, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
   EXPECT_THAT(fault("0, 4, 4, 1e-3"), HasSubstr("correlation beyond 1"));
-  // Each pair of correlations is possible, the three together are not.
+  // Any two of the three correlations are possible together, but not all three.
   EXPECT_THAT(
       faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}, {effect: -1, index: 2}]\n"
               "covariance: [1, 0.9, 0.9, 0.9, 1, -0.9, 0.9, -0.9, 1]\n"),

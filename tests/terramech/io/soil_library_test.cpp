@@ -85,7 +85,7 @@ TEST(SoilLibrary, SoilErrorsNameTheirLine) {
         Case{"cohesion_kPa: {mean: 2}\n", ":1: cohesion_Pa lacks its std"},
         Case{"cohesion_kPa: {mean: 2, sd: 3}\n", ":1: cohesion_Pa: unknown key 'sd'"},
         Case{"cohesion_kPa: {mean: 2, std: -3}\n", ":1: cohesion_Pa.std must be > 0"},
-        // A std of 0 must not be taken for a missing one, which would be replaced by the default.
+        // A std of 0 must not count as missing, because a missing std is replaced by the default.
         Case{"cohesion_kPa: {mean: 2, std: 0}\n", ":1: cohesion_Pa.std must be > 0; no measurement is exact"},
         Case{"- 1\n- 2\n", "the file is a list"}, Case{"just words\n", "the file is a text, no mapping"},
         Case{"a: [1\n", "not YAML"}, Case{"", "is empty"}}) {
@@ -259,8 +259,7 @@ TEST(TerrainClasses, ErrorsNameTheirLine) {
   EXPECT_THAT(error("1: sand\n2: loan\n"), HasSubstr(":2: class 2: no soil 'loan'; did you mean loam?"));
   EXPECT_THAT(error("1: sand\ntwo: loam\n"), HasSubstr(":2: 'two' is not a class number"));
   EXPECT_THAT(error("classes: {}\n"), HasSubstr("names no terrain class"));
-  // Each number has one spelling; otherwise 1 and 01 would be one class, and the later soil would replace
-  // the earlier.
+  // Other spellings of a class number are rejected; otherwise 01 would replace the soil of class 1.
   for (const char* key : {"01", "+1", "-1", "1.0", "0x1", "1e0", "\" 1\"", "00"})
     EXPECT_THAT(error("classes:\n  1: mars_drift\n  " + std::string(key) + ": bedrock\n"), HasSubstr(":3: '"))
         << key;

@@ -28,7 +28,7 @@ std::string refusal(const std::string& content, const std::vector<MappedColumn>&
   }
 }
 
-// Closed form: percent and millimetres.
+// Closed form: conversion from percent and millimetres.
 TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
   const test::TemporaryFile file{kStudent};
   TableFile table(file.path());
@@ -53,7 +53,8 @@ TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
                   "drawbar_pull_N=Fx"));
 }
 
-// An unmapped unit is rejected, because an unnoticed conversion could be wrong.
+// Property: a column in another unit is rejected without a mapping, because an unnoticed conversion could be
+// wrong.
 TEST(TableColumns, OtherUnitWithoutMappingIsRejected) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.2,12\n"};
   EXPECT_THROW(readTelemetry(file.path()), InputError);

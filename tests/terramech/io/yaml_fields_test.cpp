@@ -134,7 +134,7 @@ TEST(YamlFields, NearestNameUsesEditDistance) {
   EXPECT_EQ(nearestName("completely_else", {"a", "b"}), "");
 }
 
-// The parsed tree takes up to 360 bytes for each byte of text.
+// Property: large files are rejected, because the parsed tree needs up to 360 bytes for each byte of text.
 TEST(YamlFields, FileLargerThan256KilobytesIsRejected) {
   const std::string path = testing::TempDir() + "talus_large.yaml";
   std::ofstream(path) << "a: 1\n#" << std::string(262'144, ' ') << "\n";

@@ -48,14 +48,14 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
     counted[static_cast<std::size_t>(category)] += 1.0 / kDraws;
   }
   for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(p[k], counted[k], 5e-3);  // four standard errors of counting
+    EXPECT_NEAR(p[k], counted[k], 5e-3);  // tolerance: four standard errors of the counts
   EXPECT_NEAR(p[0] + p[1] + p[2], 1.0, 1e-15);
 }
 
 TEST(CategoryProbability, OneExactValueKeepsTheUncertaintyOfTheOther) {
   const ConditionEstimate belief{.mean = {.drawbar_pull_over_load = 0.36, .sinkage_over_radius = 0.2},
                                  .drawbar_pull_over_load_std = 0.05};
-  EXPECT_NEAR(categoryProbability(belief, kLimits)[0], 0.5, 1e-9);  // Closed form: on the edge.
+  EXPECT_NEAR(categoryProbability(belief, kLimits)[0], 0.5, 1e-9);  // Closed form: the mean is on the edge.
 }
 
 TEST(CategoryProbability, TorqueAndSteeringLimitsAreIncluded) {

@@ -14,7 +14,7 @@ namespace talus::terramech {
 namespace measured_slope_test {
 
 // NASA Glenn's MGRU3 on a tilt bed of loose GRC-1 (88 kg, wheels of 0.25 by 0.20 m with 24 lugs of 25 mm;
-// 2022, digitised from a secondary source). Values that the source lacks are ours.
+// 2022, digitised from a secondary source). Values missing in the source are ours.
 Rover mgru3(double lug_thrust) {
   Rover rover{.name = "mgru3",
               .mass_kg = 88.0,
@@ -45,8 +45,8 @@ Soil lunar() {
           .density_kg_m3 = 1500.0};
 }
 
-// Measured by others: nothing is fitted to these measurements. The slip is within 0.101 up to 15.3 degrees;
-// on steeper slopes Talus predicts more slip than measured.
+// Measured by others: no parameter is fitted to these measurements. The slip is within 0.101 up to 15.3
+// degrees; on steeper slopes Talus predicts more slip than measured.
 TEST(MeasuredSlope, GrouserWheelSlipOnSlopesMatchesMeasurements) {
   const char* folder = std::getenv("TALUS_MEASURED_DATA");
   if (!folder) GTEST_SKIP() << "TALUS_MEASURED_DATA is not set";

@@ -38,7 +38,7 @@ TEST(Mobility, SlipBalancesThePullRequiredByTheSlope) {
   const MobilityCurve curve{loam(), rover()};
   for (double slope = -0.4; slope < curve.maxSlope_rad() - 0.01; slope += 0.0317) {
     if (slope < curve.minSlope_rad()) continue;
-    // Closed form: root of DP(i) = N tan(slope), found without the table.
+    // Closed form: root of DP(i) = N tan(slope) by a separate search.
     EXPECT_NEAR(curve.at(slope).slip, slipOnSlope(loam(), rover(), slope), 1e-3) << slope;
   }
 }
@@ -59,8 +59,8 @@ TEST(Mobility, MatchesTheExactSolutionForRandomSoilsAndRovers) {
     const MobilityCurve curve{soil, any};
     for (int q = 0; q < 4 && curve.minSlope_rad() < curve.maxSlope_rad(); ++q) {
       const double slope = between(curve.minSlope_rad() + 1e-3, curve.maxSlope_rad() - 1e-3);
-      // Closed form: root of DP(i) = N tan(slope), found without the table; 1e-3 is the table's stated
-      // accuracy.
+      // Closed form: root of DP(i) = N tan(slope) by a separate search. Tolerance: 1e-3, the stated accuracy
+      // of the table.
       EXPECT_NEAR(curve.at(slope).slip, slipOnSlope(soil, any, slope), 1e-3) << k << " " << slope;
     }
   }
@@ -135,8 +135,8 @@ TEST(Mobility, ReferenceIsTheWheelAtReferenceSlipUnderItsLoad) {
   EXPECT_GE(curve.strongest().drawbar_pull_over_load, curve.reference().drawbar_pull_over_load);
 }
 
-// Property: both are bit-identical, on soils that carry the wheel and on one that does not, with and without
-// effects.
+// Property: mobilityReference() is bit-identical to reference() of the curve, on soils that carry the wheel
+// and on a soil that does not, with and without effects.
 TEST(Mobility, ReferenceFunctionEqualsThatOfTheCurve) {
   Soil bottomless = loam();
   bottomless.frictional_modulus = 1e3;
@@ -194,7 +194,8 @@ TEST(Mobility, ModelWithoutEffectsEqualsItsSoil) {
   model.soil = loam();
   const MobilityCurve of_model{model, rover()};
   for (const double slope : {-0.15, -0.05, 0.0, 0.1}) {
-    // Property: two quadrature rules of one integral, 1e-6 of the load apart.
+    // Property: the curves of soil and model agree. Tolerance: two quadrature rules that differ by 1e-6 of
+    // the load.
     EXPECT_NEAR(of_model.at(slope).slip, of_soil.at(slope).slip, 1e-5) << slope;
     EXPECT_NEAR(of_model.at(slope).energy_J_per_m, of_soil.at(slope).energy_J_per_m, 1e-3) << slope;
   }
@@ -245,12 +246,12 @@ TEST(Mobility, AxlesInOneRutShareThePull) {
       pull_N += predict(model, wheel).drawbar_pull_N;
       torque_Nm += predict(model, wheel).torque_Nm;
     }
-    // Closed form: one wheel of each axle at its own pass, by the model; tolerance: the table's stated
-    // accuracy.
+    // Closed form: sum over one wheel of each axle at the pass of the axle, by the model. Tolerance: the
+    // stated accuracy of the table.
     EXPECT_NEAR(pull_N / (3.0 * wheel.load_N), std::tan(slope), 1e-3) << slope;
     EXPECT_NEAR(torque_Nm / 3.0, s.torque_Nm, 1e-3) << slope;
-    // Property: the rover sinks as its first wheel does; its slip is lower than on fresh ground and higher
-    // than in a rut.
+    // Property: the sinkage is that of the first wheel; the slip of the rover is lower than on fresh ground
+    // and higher than in a rut.
     EXPECT_GT(s.sinkage_m, rut.at(slope).sinkage_m) << slope;
     EXPECT_LT(s.slip, first.at(slope).slip) << slope;
     EXPECT_GT(s.slip, rut.at(slope).slip) << slope;

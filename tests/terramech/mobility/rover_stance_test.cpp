@@ -23,9 +23,9 @@ Rover rover(int wheels = 4) {
 TEST(RoverStance, PitchAndRollTransferLoad) {
   const RoverStance stance{rover()};
   const auto n = stance.shares({0.2, 0.1});
-  // Closed form: load transfer h/L tan and h/T tan, half of it at each wheel.
+  // Closed form: load transfer h/L tan(pitch) and h/T tan(roll), half at each wheel.
   const double back = 0.3 / 0.8 * 0.2 / 2.0, right = 0.3 / 0.6 * 0.1 / 2.0;
-  EXPECT_NEAR(n[0], 0.25 - back - right, 1e-12);  // front left, uphill in both
+  EXPECT_NEAR(n[0], 0.25 - back - right, 1e-12);  // front left, uphill in both directions
   EXPECT_NEAR(n[1], 0.25 - back + right, 1e-12);
   EXPECT_NEAR(n[2], 0.25 + back - right, 1e-12);
   EXPECT_NEAR(n[3], 0.25 + back + right, 1e-12);

@@ -16,7 +16,8 @@ TEST(Rut, SecondPassSinksLessAndPullsMore) {
   for (const double slip : {0.1, 0.3, 0.6}) {
     const WheelForces first = equilibrium(sand, wheel, {.load_N = 56.0, .slip = slip});
     const WheelForces second = equilibrium(rutted(sand), wheel, {.load_N = 56.0, .slip = slip});
-    // Property: the resistance falls with the root of the sinkage, which falls by 4 to the power 2/(2n + 1)
+    // Property: the sinkage is reduced by the factor 4^(2/(2n + 1)), and the resistance in proportion to the
+    // root of the sinkage.
     EXPECT_NEAR(second.sinkage_m / first.sinkage_m, 0.397, 0.03) << slip;
     EXPECT_GT(second.drawbar_pull_N, first.drawbar_pull_N) << slip;
   }

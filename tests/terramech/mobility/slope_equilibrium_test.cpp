@@ -125,8 +125,8 @@ TEST(SlopeEquilibrium, StraightUpSlopeMatchesTheMobilityCurve) {
     const MobilityState want = curve.at(slope);
     ASSERT_EQ(state.holds(), want.feasible) << slope;
     if (!want.feasible) continue;
-    // Property: two implementations agree; the tables are off by up to 0.004 in DP/N, times the slope of
-    // slip over DP/N.
+    // Property: two implementations agree. Tolerance: table errors up to 0.004 in pull over load, times the
+    // derivative of slip by pull over load.
     EXPECT_NEAR(state.slip, want.slip, 0.006) << slope;
     EXPECT_NEAR(state.energy_J_per_m, want.energy_J_per_m, 0.02 * want.energy_J_per_m + 0.5) << slope;
     EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
@@ -174,9 +174,9 @@ TEST(SlopeEquilibrium, BodyYawsUphillUnlessAllWheelsSteer) {
   EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
 }
 
-/// Whether some slip and slip angle within the limits give the required force along and at least the
-/// required force across, with all wheels equal under equal loads: existence of an equilibrium without load
-/// transfer, by brute force.
+/// Whether an equilibrium without load transfer exists, by brute force: some slip and slip angle within the
+/// limits give the required force along and at least the required force across, with equal wheels under equal
+/// loads.
 bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
   const double steep = std::sqrt(1.0 + g.along * g.along + g.across * g.across);
   const double load = wheelLoad_N(r) / steep;
@@ -240,8 +240,8 @@ TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
   Rover low = rover();
   low.clearance_m = 0.9 * SlopeEquilibrium(sand(), rover()).at({}).sinkage_m;
   EXPECT_EQ(SlopeEquilibrium(sand(), low).at({}).failure, SlopeFailure::Sinks);
-  // Straight uphill, where the load transfer prevents a sufficient pull that equal loads would give: the
-  // rover does not slide.
+  // Straight uphill, load transfer makes the pull insufficient that is sufficient under equal loads; the
+  // failure is not sliding.
   Rover tall = rover();
   tall.centre_of_mass_height_m = 0.5 * tall.wheelbase_m / 0.3;
   for (double along = 0.05; along < 0.5; along += 0.01) {
@@ -266,7 +266,7 @@ TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
 // Closed form: the point where the line of the weight meets the plane, in the body's axes, against the
 // rectangle of the wheels. The rover is short, wide and tall, and turns uphill on cross slopes.
 TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
-  int tipped = 0, turned = 0;  // the turn of the body alone tips these
+  int tipped = 0, turned = 0;  // cases that tip only because the body turns
   for (const auto& [steering, cohesion_Pa] : {std::pair{Steering::Skid, 4000.0},
                                               {Steering::Ackermann, 4000.0},
                                               {Steering::AllWheel, 4000.0},

@@ -29,8 +29,8 @@ TEST(TraversabilityPlane, CategoriesMatchThesisFigure312) {
 }
 
 TEST(TraversabilityPlane, ThesisExampleSoilsAreDangerousByEquation321) {
-  // Printed in: thesis 3.5, pairs (0.1, 0.2) "dangerous" and (0.3, 0.4) "safe"; 3.21 gives -0.2 for both, so
-  // the second does not reproduce.
+  // Printed in: thesis 3.5, pairs (0.1, 0.2) "dangerous" and (0.3, 0.4) "safe". Eq. 3.21 gives -0.2 for both;
+  // the second pair cannot be reproduced.
   for (const auto& [torque, sinkage] : {std::pair{0.1, 0.2}, {0.3, 0.4}})
     EXPECT_EQ(categorise({.drawbar_pull_over_load = eq321(torque, sinkage), .sinkage_over_radius = sinkage},
                          kFig312),

@@ -38,7 +38,7 @@ TEST(Turning, AllWheelSteeringRollsAboutTheCentre) {
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J,
                    30.0);  // Closed form: half the diagonal of 1.2 by 0.9 m is 0.75 m.
   EXPECT_DOUBLE_EQ(efforts.on_arc.energy_J, 0.0);
-  // Closed form: of six wheels the middle ones roll half the track.
+  // Closed form: the two middle wheels of six roll half the track.
   Rover six = fourWheels(Steering::AllWheel);
   six.wheel_count = 6;
   EXPECT_DOUBLE_EQ(turnEfforts(six, {.rolling_J_per_m = 40.0}).in_place.energy_J,
@@ -49,7 +49,8 @@ TEST(Turning, TurnTimeIsLimitedByTheFastestWheel) {
   auto rover = fourWheels(Steering::AllWheel);
   rover.hotel_power_W = 10.0;
   const TurnEfforts efforts = turnEfforts(rover, {});
-  // Closed form: the outer row rolls 0.45 m further a radian at 0.5 m/s; in place every wheel rolls 0.75 m.
+  // Closed form: on an arc the outer row rolls 0.45 m more per radian at 0.5 m/s; in place every wheel rolls
+  // 0.75 m.
   EXPECT_DOUBLE_EQ(efforts.on_arc.time_s, 0.9);
   EXPECT_DOUBLE_EQ(efforts.in_place.time_s, 1.5);
   EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 15.0);

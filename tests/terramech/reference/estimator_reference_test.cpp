@@ -8,7 +8,7 @@
 #include "estimator_cases.hpp"
 
 // Closed form: every intermediate and result of the linear estimators by an independent implementation.
-// Tolerance: the coefficients are closed forms, 1e-10; least squares loses digits by its condition, 1e-7.
+// Tolerance: 1e-10 for coefficients in closed form, 1e-7 for least squares because of the condition number.
 namespace talus::terramech {
 namespace estimator_reference_test {
 

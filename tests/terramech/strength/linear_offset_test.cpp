@@ -19,7 +19,7 @@ TEST(LinearOffset, WholeEquationIsExactForLinearStresses) {
   for (const WheelSample& s : linearSamples(kWheel, world)) {
     const LinearOffsetCoefficients m = linearOffset(kWheel, s, world.shear_modulus_m);
     const double left = m.m1 * 5000.0 * 0.45 + 5000.0 + m.m3_Pa * 0.45;
-    EXPECT_NEAR(left, m.m4_Pa, 1e-5 * m.m4_Pa);  // the world's midpoint rule
+    EXPECT_NEAR(left, m.m4_Pa, 1e-5 * m.m4_Pa);  // tolerance: midpoint rule of the samples
     fit.add(m);
   }
   EXPECT_NEAR(fit.estimate().cohesion_Pa, 5000.0, 1.0);

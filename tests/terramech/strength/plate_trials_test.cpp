@@ -22,7 +22,8 @@ PlateTrial trial(const std::string& soil, double k, double n, double z_low, doub
 }
 
 TEST(PlateTrials, ExponentIsFittedWithinTrialsOfDifferentModulus) {
-  // Closed form: every trial has n = 1.2; the firm ones are shallow, so that pooled readings show a smaller n.
+  // Closed form: every trial has n = 1.2; firm trials are shallow, so that a fit of pooled readings has a
+  // smaller n.
   std::vector<PlateTrial> trials;
   PressureSinkageFit pooled;
   for (const double k : {1e6, 2e6, 4e6}) {
@@ -36,7 +37,8 @@ TEST(PlateTrials, ExponentIsFittedWithinTrialsOfDifferentModulus) {
   EXPECT_NEAR(soils[0].exponent.spread, 0.0, 1e-6);
   EXPECT_LT(pooled.estimate().sinkage_exponent, 0.8);
   // Closed form: ln k of the three trials is 0, ln 2, 2 ln 2: a standard deviation of ln 2.
-  EXPECT_NEAR(soils[0].pressure_spread, std::log(2.0), 1e-5);  // weights of exact trials round
+  EXPECT_NEAR(soils[0].pressure_spread, std::log(2.0), 1e-5);  // tolerance: rounding of the weights of exact
+                                                               // trials
   EXPECT_NEAR(soils[0].fit.plates.at(0).sinkage_modulus, 2e6, 1.0);
 }
 
@@ -69,7 +71,8 @@ TEST(PlateTrials, TrialWithASingleDepthIsExcluded) {
 }
 
 TEST(RandomEffect, RecoversMeanAndSpread) {
-  // Property: 400 trials of spread 0.3 with errors of 0.1; the spread to 5 %, the mean to three standard errors.
+  // Property: spread and mean of 400 trials of spread 0.3 with errors of 0.1 are found. Tolerance: 5 % of the
+  // spread, three standard errors of the mean.
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   std::vector<Estimate> values;

@@ -65,8 +65,8 @@ TEST(ShearModulusGrid, EffectiveTorqueIsAccurateOnlyAtFullMobilisation) {
 }
 
 TEST(ShearModulusGrid, MaximumSlipSampleIsExcludedFromItsOwnEquation) {
-  // Property: with one slower slip, sampled three times, beside the fastest, K is the solution of A(i) =
-  // T/T_max, K = -j / ln(1 - T/T_max), as in the batch form (thesis D.8 as printed).
+  // Property: with the highest slip and one lower slip, sampled three times, K solves A(i) = T/T_max, K = -j
+  // / ln(1 - T/T_max), as in the batch form (thesis D.8 as printed).
   const auto run = steadyRun(0.02);
   const std::vector<WheelSample> samples{run[2], run[2], run[2], run.back()};
   const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::EffectiveTorque});
