@@ -165,7 +165,7 @@ void OutputFile::fail(const std::string& reason) const {
 void OutputFile::failToGrow(const std::string& reason) const {
   const std::string block(65536, '\0');
   const Descriptor file(temporary_, O_WRONLY | O_APPEND);
-  // On a full disk the first may still be written in part.
+  // On a full disk, the first write may still succeed in part; a second write is therefore tested.
   const bool grows = *file < 0 || (::write(*file, block.data(), block.size()) >= 0 &&
                                    ::write(*file, block.data(), block.size()) >= 0);
   fail(grows ? reason : std::strerror(errno));

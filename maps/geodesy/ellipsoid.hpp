@@ -25,9 +25,9 @@ inline constexpr Ellipsoid kEarth{6378137.0, 1.0 / 298.257223563};              
 inline constexpr Ellipsoid kMoon{1737400.0, 0.0};                                  ///< IAU 2015 sphere
 inline constexpr Ellipsoid kMars{3396190.0, (3396190.0 - 3376200.0) / 3396190.0};  ///< IAU 2015
 
-/// Returns the name of the body with such an equatorial radius ("Earth", "Moon", "Mars", ...), or "body of
-/// radius R km" for an unknown radius. The radius may also be a local one, because maps use spheres of local
-/// radius.
+/// Returns the name of the body with this equatorial radius ("Earth", "Moon", "Mars", ...), or "body of
+/// radius R km" for an unknown radius. Local radii of a body are recognised, too, because maps use spheres of
+/// local radius.
 std::string bodyName(const Ellipsoid& ellipsoid);
 
 /// Converts a geographic latitude [rad] to the planetocentric one:

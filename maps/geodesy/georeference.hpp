@@ -21,9 +21,9 @@ struct CoordinateSystem {
 class Transform;
 
 /// Converts between map coordinates [m] and latitude and longitude on the ellipsoid of the body (WGS 84 on
-/// Earth). Latitudes are planetocentric or geographic as CoordinateSystem::planetocentric states. Uses
-/// GeographicLib [karney2013] for the projections that GeographicLib has (agreement with PROJ: 1 mm), or a
-/// given Transform. Immutable, cheap to copy, thread-safe.
+/// Earth). Latitudes are planetocentric or geographic as CoordinateSystem::planetocentric states. Uses the
+/// projections of GeographicLib [karney2013] (agreement with PROJ: 1 mm), or a given Transform. Immutable,
+/// cheap to copy, thread-safe.
 class Georeference {
  public:
   /// @throws std::invalid_argument if a parameter is out of range

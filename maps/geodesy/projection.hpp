@@ -9,7 +9,7 @@ enum class ProjectionMethod {
   Equirectangular = 2,        ///< PROJ's eqc on the equatorial sphere; true along standard_parallel_1_rad
   PolarStereographic = 3,     ///< `scale` along standard_parallel_1_rad, whose sign selects the pole
   LambertConformalConic = 5,  ///< standard parallels 1 and 2 (equal for a single parallel)
-  Foreign = 12,  ///< defined by the WKT alone: any other projection, or a datum of Earth other than WGS 84
+  Foreign = 12,  ///< defined by the WKT only: any other projection, or a datum of Earth other than WGS 84
 };
 
 /// Parameters of a projection; parameters that the method does not use are ignored.

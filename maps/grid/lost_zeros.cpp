@@ -7,7 +7,8 @@
 namespace talus::maps {
 namespace {
 
-// Includes positive numbers below 1e-37: a number at the edge of a lost byte range keeps only its low bytes.
+// Whether a value counts as 0, including positive numbers below 1e-37: a number at the edge of a lost byte
+// range keeps only its low bytes.
 bool isZero(float value) {
   constexpr float kTiny = 1e-37F;
   return !std::signbit(value) && value < kTiny;
@@ -85,8 +86,8 @@ void LostZeros::look(const Step& step, Region& region) const {
   region.abrupt += greatest > 0.0F && first > kAbrupt * greatest ? 1U : 0U;
 }
 
-// Finds the runs of zeros in a row. The kBehind rows on both sides must have been added, as far as they
-// exist.
+// Finds the runs of zeros in a row. The kBehind rows on both sides must have been added before, except beyond
+// the map.
 void LostZeros::search(int row) {
   above_ = here_;
   here_ = runs_.size();

@@ -29,8 +29,8 @@ struct LostCells {
 ///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.
 ///   - A border step to level cells (a wall on a plain), or to cells that are unknown beyond the first, is
 ///     not abrupt.
-///   - Border steps to unknown cells are left out. A region without any other border step (a level map) is
-///     not lost.
+///   - Border steps to unknown cells are omitted. A region without other border steps (a level map) is not
+///     lost.
 /// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
 /// byte range: every row of the region spans the full width of the region; only its first row may begin later
 /// and only its last row may end earlier.

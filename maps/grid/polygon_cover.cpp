@@ -64,7 +64,7 @@ struct Inside {
   bool ground() const { return windings != 0 && !hole; }
 };
 
-// Of all edges, or of those that reach the height.
+// Whether the rings enclose ground at height y. `edges`: all edges, or those that reach y.
 template <class Edges>
 bool hasGroundAt(double y, double thinnest, const Edges& edges) {
   struct Crossing {
@@ -85,7 +85,7 @@ bool hasGroundAt(double y, double thinnest, const Edges& edges) {
   return false;
 }
 
-// Whether the rings enclose ground, looked for between each two heights of positions from south to north.
+// Whether the rings enclose ground. Tests one height between each two neighbouring heights of positions.
 bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
   std::vector<double> heights;
   heights.reserve(edges.size());
@@ -133,7 +133,8 @@ class RowCover {
   }
 
   /// Sets the covered cells of the row, clears its edges, and returns whether any cell is covered. A cell
-  /// that no outer edge touches lies entirely inside or outside the outer ring, so its centre decides.
+  /// that no outer edge touches lies entirely inside or outside the outer ring; its centre is therefore
+  /// tested.
   bool close(std::uint8_t* cells) {
     Inside inside;
     bool any = false;
@@ -162,11 +163,11 @@ class RowCover {
 
   std::vector<Inside> crossings_;  // change of the winding from the centre of the previous cell
   std::vector<std::uint8_t> touched_;
-  std::size_t first_ = crossings_.size(), end_ = 0;  // cells between are visited
+  std::size_t first_ = crossings_.size(), end_ = 0;  // range of the cells that are visited
 };
 
-/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in its first
-/// row, or in none if they end below it.
+/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in the first
+/// row, and omitted if they also end below.
 class EdgesByRow {
  public:
   EdgesByRow(const std::vector<Edge>& edges, int rows) : ends_(static_cast<std::size_t>(rows) + 1, 0) {
@@ -196,7 +197,7 @@ class EdgesByRow {
     return static_cast<std::size_t>(std::max(0.0, std::floor(edge.least())));
   }
 
-  std::vector<std::size_t> ends_;  // the number of edges begun in a row and those before
+  std::vector<std::size_t> ends_;  // number of edges that begin in this row and in all rows before
   std::vector<const Edge*> edges_{};
 };
 
@@ -217,7 +218,7 @@ bool enclosesGround(const Polygon& polygon) {
   }
   constexpr double kThinnest = 1e-9;
   const double thinnest_x = kThinnest * (east - west), thinnest_y = kThinnest * (north - south);
-  // Most rings have ground at a height that no position has by intention: no need to sort.
+  // Most rings enclose ground at one of these two heights, so that no sort is needed.
   for (const double part : {0.381966, 0.618034})
     if (hasGroundAt(south + part * (north - south), thinnest_x, edges)) return true;
   return hasGround(thinnest_x, thinnest_y, edges);

@@ -64,7 +64,7 @@ class ClassicHeader {
     offset_bytes_ = magic[3] == 1 ? 4 : 8;
     const std::uintmax_t stated = number(countBytes());
     const bool streamed =
-        // number of records unknown when the header was written
+        // value for an unknown number of records
         stated == (wide_ ? UINTMAX_MAX : UINTMAX_C(0xffffffff));
     readDimensions();
     skipAttributes();
@@ -144,7 +144,7 @@ class ClassicHeader {
       variables_.push_back({number(offset_bytes_), bytes, by_record});
     }
   }
-  // Size of one record [bytes]. Record variables are padded to 4 bytes unless there is only one.
+  // Size of one record [bytes]. Record variables are padded to 4 bytes, except a single record variable.
   std::uintmax_t recordBytes() const {
     std::uintmax_t sum = 0, own = 0, count = 0;
     for (const Variable& v : variables_)
@@ -211,7 +211,7 @@ bool lost(GDALRasterBand& band) {
 
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
 
-// Accepts a decimal comma, as GDAL does.
+// Whether a word is a number for GDAL, which accepts a decimal comma.
 bool isNumber(std::string_view word) {
   if (word.size() > kLongest) return false;
   std::string text(word);

@@ -20,8 +20,8 @@ struct HeightConversion {
 /// to `notes`.
 HeightConversion heightCode(GDALRasterBand& band, double body_radius_m, std::vector<std::string>& notes);
 
-/// Converts values to heights in place. The no-data value becomes NaN; without a stated no-data value, so
-/// does a customary undeclared one. Magnitudes above 1e30 become NaN.
+/// Converts values to heights in place. Values equal to the no-data value become NaN; without a stated
+/// no-data value, a customary one (such as -9999) is used. Magnitudes above 1e30 become NaN.
 void decodeHeights(std::vector<float>& values, const HeightConversion& code, std::vector<std::string>& notes);
 
 }  // namespace talus::maps

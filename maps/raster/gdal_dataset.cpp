@@ -64,7 +64,7 @@ void registerDrivers() {
     CPLSetConfigOption("CPL_DEBUG", "OFF");
     CPLSetConfigOption("GDAL_CONFIG_FILE", "");
     CPLSetConfigOption("GDAL_CACHEMAX", "5%");
-    // without this option, the missing rest of a truncated JPEG reads as grey
+    // Without this option, the missing rest of a truncated JPEG would be read as grey.
     CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");
     OSRSetPROJEnableNetwork(FALSE);  // prevents PROJ from downloading datum shift grids
     GDALAllRegister();

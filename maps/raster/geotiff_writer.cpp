@@ -52,7 +52,8 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
                        static_cast<GSpacing>(sizeof(T)), line, nullptr);
 }
 
-// A missing PROJ database prevents the output of any CRS; the remedy then names PROJ instead of the folder.
+// Throws InputError. Without a PROJ database no CRS can be written; the remedy then names PROJ instead of the
+// folder.
 [[noreturn]] void fail(const OutputFile& file, const std::string& path, const GdalErrors& errors) {
   const std::string reason = errors.last();
   if (reason.starts_with("PROJ"))
@@ -69,7 +70,7 @@ void finish(Dataset dataset, OutputFile& file, const std::string& path, const Gd
   file.sync();
 }
 
-// The caller's file, or one of the call's own.
+// The output file of the caller, or a file that this object opens and commits.
 class Target {
  public:
   explicit Target(const GeoTiff& file) : file_(file.into != nullptr ? *file.into : own_.emplace(file.path)) {}

@@ -25,7 +25,8 @@ struct Layer {
 struct GeoTiff {
   std::string path{};
   const Georeference* georeference = nullptr;  ///< null: local metres without a CRS
-  OutputFile* into = nullptr;  ///< null: a file of its own; else the caller commits it, as one of several
+  OutputFile* into = nullptr;  ///< output file that the caller commits; null: the function writes and commits
+                               ///< `path`
 };
 
 /// Writes layers on a common grid as a tiled, compressed GeoTIFF. The file replaces `path` atomically

@@ -16,9 +16,9 @@
 namespace talus::maps {
 namespace {
 
-// GDAL searches a shorter start of the file for the keywords of a label.
+// Number of bytes searched for keywords of a label; GDAL searches fewer bytes.
 constexpr std::size_t kBeginning = std::size_t{64} << 10U;
-constexpr std::size_t kMostText = std::size_t{16} << 20U;  // no label or VRT is longer
+constexpr std::size_t kMostText = std::size_t{16} << 20U;  // size limit of a label or VRT
 // Memory of the XML tree [bytes] per byte of text: the 4 bytes "<a/>" become a node of 100 bytes, and GDAL
 // builds the tree twice.
 constexpr double kTreePerByte = 50.0;

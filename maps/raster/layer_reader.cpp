@@ -193,7 +193,7 @@ void changePixels(GDALDataset& band, const std::string& path, Change change) {
 }
 
 // Bijection between class numbers and ranks, the weakest class with the greatest rank, so that the maximum
-// selects the weakest class. A class that `weakest_last` does not name is weaker than all that it names.
+// selects the weakest class. A class missing in `weakest_last` is weaker than all classes of `weakest_last`.
 class ClassRanks {
  public:
   explicit ClassRanks(std::span<const int> weakest_last) {
@@ -250,7 +250,7 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
     throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
   Dataset band = inMemory(*file, source.band.value_or(1), map, source.path);
   AddedJoules added;
-  // The maximum ignores NaN; values beyond any cost represent unknown and impassable pixels.
+  // Unknown and impassable pixels are represented by values beyond any cost, because the maximum ignores NaN.
   constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
   const auto marked = [&](float v) {
     if (std::isnan(v)) return kUnknown;

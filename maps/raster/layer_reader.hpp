@@ -38,8 +38,8 @@ struct RockAbundance {
 RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map);
 
 /// Additional drive cost [J/m] on the grid of the map: the maximum of all pixels of the file that overlap a
-/// cell. Infinite: the cell is impassable, even if only a part of it is infinite. NaN: a part of the cell has
-/// no data and no part is infinite.
+/// cell. Infinite: the cell is impassable, because at least one pixel is infinite. NaN: no pixel is infinite,
+/// and a part of the cell has no data.
 struct AddedJoules {
   Raster<float> J_per_m;
   float dearest_J_per_m = 0.0F;  ///< maximum finite value of the whole file

@@ -15,7 +15,7 @@
 namespace talus::maps {
 namespace {
 
-constexpr std::size_t kMostHeader = 10'000;  // limit of NumPy; it also bounds the recursion of std::regex
+constexpr std::size_t kMostHeader = 10'000;  // limit of NumPy; also limits the recursion of std::regex
 
 struct Header {
   char kind = 'f';       // integer (i), unsigned (u) or float (f)

@@ -25,7 +25,7 @@ using Arrays = std::map<std::string, NumpyArray>;
 // Largest accepted file size [bytes]; larger rasters should be GeoTIFFs.
 constexpr vsi_l_offset kMostBytes = vsi_l_offset{2} << 30;
 
-// Limit of the compression ratio of large arrays; measured heights never compress as far.
+// Limit of the compression ratio of arrays larger than kLarge; measured heights have lower ratios.
 constexpr std::uint64_t kMostPacked = 500, kLarge = std::uint64_t{64} << 20;
 
 struct Limits {

@@ -24,9 +24,9 @@ struct BandCriteria {
   std::vector<std::string_view> others{};  ///< lower-case substrings of the description that exclude a band
 };
 
-/// The selected band, else the first band whose description fits, else the first band. A choice among several
-/// bands is recorded in `notes`. @throws InputError for a band that does not exist, or for a colour image
-/// without a selected band
+/// Returns the selected band, else the first band whose description fits, else the first band. A choice among
+/// several bands is recorded in `notes`. @throws InputError for a band that does not exist, or for a colour
+/// image without a selected band
 int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::string>& notes);
 
 /// A rectangle of pixels, counted from the upper left corner.
@@ -39,10 +39,10 @@ struct PixelBox {
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
 };
 
-/// Reads raw values of a band, first row first; masked pixels and infinities are NaN. With overview > 1,
-/// returns the mean of each block of overview x overview pixels, from the overviews of the file if it has
-/// any. The width and height of the box are multiples of `overview`, or less than one. @throws InputError
-/// with GDAL's message
+/// Reads raw values of a band in file order; masked pixels and infinities are NaN. With overview > 1, returns
+/// the mean of each block of overview x overview pixels, from the overviews of the file if present. The width
+/// and height of the box are multiples of `overview`, or less than one. @throws InputError with GDAL's
+/// message
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
 

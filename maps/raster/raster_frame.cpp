@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMostStretch = 0.05;  // scale error of the projection [-] above which a map is resampled
 constexpr double kWidestSpan_rad =
-    20 * kDegree;  // limit for a geographic raster: a single local projection is not accurate beyond
+    20 * kDegree;  // greatest extent of a geographic raster for a single local projection
 
 // GDAL's geotransform: x = c[0] + column c[1] + row c[2], y = c[3] + column c[4] + row c[5].
 struct Pixels {
@@ -40,7 +40,7 @@ struct Pixels {
   }
   bool areUpright() const { return c[2] == 0 && c[4] == 0 && c[1] > 0; }
   double side() const { return std::abs(c[1]); }
-  // Upright, and the difference of the pixel sides accumulates to at most 0.05 cells across the raster.
+  // Whether pixels are upright, and their sides differ by at most 0.05 cells in total across the raster.
   bool areSquare() const {
     return areUpright() && std::abs(side() - std::abs(c[5])) * std::max(width, height) <= 0.05 * side();
   }
@@ -83,7 +83,7 @@ FramedRaster local(Dataset file, int band, double resolution_m, const std::strin
   return out;
 }
 
-// Centre of the window, or of the whole file without a window in degrees.
+// Returns the centre of a window in degrees, else of the whole file.
 GeoPoint geographicCentre(const Pixels& p, const ReadOptions& options) {
   if (options.window) {
     const auto* a = std::get_if<GeoPoint>(&options.window->first);

@@ -63,7 +63,7 @@ Projection mercatorFromEquator(const Parameters& p) {
   return out;
 }
 
-// Polar aspect only; other aspects are Foreign.
+// Converts the polar aspect; other aspects become Foreign.
 Projection stereographic(const Parameters& p) {
   const bool polar = std::abs(p.angle(SRS_PP_LATITUDE_OF_ORIGIN)) > std::numbers::pi / 2 - 1e-9;
   return polar ? trueAtOrigin(ProjectionMethod::PolarStereographic, p)
@@ -115,8 +115,8 @@ bool isOcentric(const OGRSpatialReference& reference) {
   return reference.GetInvFlattening() > 0 && holdsNoCase(text(reference.GetAttrValue("GEOGCS")), "ocentric");
 }
 
-// Geographic CRS for latitude and longitude: WGS 84 on Earth. Elsewhere the geographic CRS of `reference`,
-// converted to eastward longitudes and geographic latitudes on the same ellipsoid.
+// Returns the geographic CRS for latitude and longitude: WGS 84 on Earth; on other bodies the geographic CRS
+// of `reference`, converted to eastward longitudes and geographic latitudes on the same ellipsoid.
 OGRSpatialReference placesOf(const OGRSpatialReference& reference) {
   if (bodyName({reference.GetSemiMajor(), 0.0}) == bodyName(kEarth)) {
     OGRSpatialReference out;
@@ -174,7 +174,7 @@ constexpr double kAgreement_m = 0.01;  // GeographicLib and PROJ differ by 1 mm,
 
 bool agree(GeoPoint ours, GeoPoint theirs, double radius_m) {
   if (std::isnan(ours.latitude_rad) && std::isnan(theirs.latitude_rad))
-    return true;  // beyond the edge of the body
+    return true;  // points beyond the edge of the body do not count
   const double north_m = (ours.latitude_rad - theirs.latitude_rad) * radius_m;
   const double turn = std::remainder(ours.longitude_rad - theirs.longitude_rad, 2 * std::numbers::pi);
   return std::hypot(north_m, turn * std::cos(ours.latitude_rad) * radius_m) <= kAgreement_m;

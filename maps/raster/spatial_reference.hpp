@@ -18,9 +18,9 @@ CoordinateSystem coordinateSystem(const OGRSpatialReference& reference, const st
 /// else from its parameters.
 OGRSpatialReference spatialReference(const CoordinateSystem& system);
 
-/// Georeference of a map that contains the given points. Latitude and longitude refer to WGS 84 on Earth,
-/// else to the ellipsoid of the system. Uses GeographicLib if it agrees with PROJ within 0.01 m at each
-/// point; otherwise uses PROJ and sets ProjectionMethod::Foreign.
+/// Makes the georeference of a map that contains the given points. Latitude and longitude refer to WGS 84 on
+/// Earth, and to the ellipsoid of the system on other bodies. Uses GeographicLib if it agrees with PROJ
+/// within 0.01 m at each point; otherwise uses PROJ and sets ProjectionMethod::Foreign.
 Georeference georeferenceAt(CoordinateSystem system, std::span<const Point> points);
 
 /// georeferenceAt() for the corners and the centre of a grid.

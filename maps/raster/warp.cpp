@@ -20,7 +20,7 @@ std::string exact(double value) {
   return text.data();
 }
 
-// A virtual raster with a single band: the warper would resample all bands.
+// Makes a virtual raster with a single band, because the warper would resample all bands.
 Dataset oneBand(GDALDataset& source, int band) {
   CPLStringList words;
   for (const std::string& word :

@@ -48,8 +48,8 @@ double Crater::freshness(double distance_m) const {
 }
 
 std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options) {
-  // Margin for craters outside the grid whose rim or ejecta reach in. The ejecta of the largest craters reach
-  // farther: 1.5 diameters.
+  // Margin for craters outside the grid whose rim or ejecta extend into the grid. Ejecta of the largest
+  // craters beyond one diameter (of 1.5) are neglected.
   const double margin_m = options.greatest_diameter_m;
   const double width_m = grid.width * grid.resolution_m + 2 * margin_m;
   const double height_m = grid.height * grid.resolution_m + 2 * margin_m;

@@ -17,7 +17,7 @@ struct SiteOptions {
   int width = 512;            ///< number of columns, 8 to 20000
   int height = 512;           ///< number of rows, 8 to 20000
   double resolution_m = 1.0;  ///< side length of a cell, 0.01 to 1000
-  std::uint64_t seed = 1;     ///< same seed, same bytes, on any machine and for any number of threads
+  std::uint64_t seed = 1;     ///< equal seeds give equal bytes on any machine and for any number of threads
   int threads = 1;
 };
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
 }
 
 /// Sequence of uniform random numbers in [0, 1) from a seed: mixed() of a counter. Each generator of a site
-/// has a sequence of its own.
+/// uses a separate sequence.
 class RandomSequence {
  public:
   explicit RandomSequence(std::uint64_t seed) noexcept : state_(seed) {}

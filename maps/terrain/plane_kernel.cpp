@@ -19,7 +19,7 @@ using Lanes = float __attribute__((vector_size(kPlaneLanes * sizeof(float))));
   std::memcpy(to, &from, static_cast<std::size_t>(count) * sizeof(float));
 }
 
-// Heights are relative to the central cell, which keeps them small enough for single precision.
+// Heights are relative to the central cell and therefore small enough for single precision.
 // a = sum(h) / n,  b = sum(x h) / sum(x^2),  c = sum(y h) / sum(y^2)       (sums of x, y, x y vanish)
 [[gnu::always_inline]] inline void fitBlock(const Footprint& footprint, const PlaneRow& row, int column) {
   const auto count = static_cast<float>(footprint.offsets.size());

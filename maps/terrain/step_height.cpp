@@ -23,7 +23,8 @@ struct Offset {
 // The directions of pairs: east, north, and both diagonals.
 constexpr std::array<Offset, 4> kLines{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
 
-// Raises `out` to |rise - minmod(before, after)|, the rise between two cells without the shared slope.
+// Sets `out` to the maximum of `out` and |rise - minmod(before, after)|, the rise between two cells without
+// the shared slope.
 template <bool kHoles>
 [[gnu::always_inline]] inline void excess(StepLanes& out, StepLanes rise, StepLanes before, StepLanes after,
                                           bool diagonal) {
@@ -86,8 +87,8 @@ struct Clean {
   int from = 0, past = 0;
 };
 
-// Most rows have missing heights in the margin only; all blocks but the outermost then use the faster
-// variant.
+// Returns the columns for the faster variant without missing heights: in most rows all blocks except the
+// outermost.
 [[gnu::always_inline]] inline Clean cleanColumns(const float* const* rows, int width, int span) {
   if (width < kStepLanes) return {};
   for (int row = -2 * span; row <= 2 * span; ++row)

@@ -7,8 +7,8 @@ namespace talus::maps {
 /// Pairs of cells that form a step, and the cells to which the pairs are assigned.
 struct StepReach {
   /// Pairs of cells up to span_cells apart (>= 1). A pair is assigned to the cells whose centres lie within
-  /// the radius [cells] of either cell of the pair: edges lie half way between cells, and the rover may stand
-  /// anywhere in its cell.
+  /// the radius [cells] of either cell of the pair, because an edge lies half way between cells, and the
+  /// rover may stand anywhere in its cell.
   static StepReach of(double radius_cells, int span_cells);
 
   /// Returns the greatest column or row offset of the cells that the step of a cell depends on.
@@ -32,11 +32,12 @@ inline constexpr int kStepLanes = 8;
 /// Computes the greatest step [m] near each cell. The step of two cells of a row, column or diagonal is the
 /// rise between the cells without the slope that both sides share (ours):
 ///   |d - minmod(a, b)|,  minmod(a, b) = the lesser in magnitude if the signs agree, else 0,
-/// with d the rise between the two cells, and a and b the rises over the same distance before and after. The
-/// step is 0 on a plane and the full height for a vertical step on a plane; at a change of slope, the step is
-/// the rise d minus the rise of the gentler side. If one side has no data, the other side replaces it. If
-/// both sides have no data, minmod is 0 in rows and columns, and a diagonal pair is omitted. GESTALT and the
-/// step filter of grid maps use height differences within a window (goldberg_2002, wermelinger_2016).
+/// where d is the rise between the two cells, and a and b are the rises over the same distance before and
+/// after. The step is 0 on a plane and the full height for a vertical step on a plane; at a change of slope,
+/// the step is the rise d minus the rise of the gentler side. If one side has no data, the other side
+/// replaces it. If both sides have no data, minmod is 0 in rows and columns, and a diagonal pair is omitted.
+/// GESTALT and the step filter of grid maps use height differences within a window (goldberg_2002,
+/// wermelinger_2016).
 using StepKernel = void (*)(const StepReach& reach, const StepRows& rows);
 
 /// Kernels for any processor and for processors with AVX2; both give the same bits.

@@ -110,8 +110,7 @@ void check(const FootprintOptions& options) {
     throw std::invalid_argument("footprint: threads = " + std::to_string(options.threads) + ", must be >= 1");
 }
 
-// Standard error of a gradient for n residuals of root mean square 1; the plane takes three degrees of
-// freedom.
+// Standard error of a gradient for n residuals of root mean square 1, with n - 3 degrees of freedom.
 double gradientStd(const Footprint& footprint, double resolution_m) {
   const auto n = static_cast<double>(footprint.offsets.size());
   return std::sqrt(n / (n - 3)) / (resolution_m * std::sqrt(footprint.sum_xx));

@@ -8,8 +8,7 @@ namespace talus::maps {
 /// Options of terrainMetrics().
 struct FootprintOptions {
   double radius_m =
-      0.0;  ///< radius of the disc under the rover; a disc without the diagonal neighbours is replaced by 3x3
-            ///< cells
+      0.0;  ///< radius of the disc under the rover; a disc smaller than 3x3 cells is replaced by 3x3 cells
   double step_span_m = 0.0;  ///< greatest distance of heights that form a step, >= 0; at least one cell
   int threads = 1;           ///< >= 1; the result does not depend on the number of threads
 };
@@ -22,8 +21,8 @@ struct TerrainMetrics {
   Raster<float> roughness_m;  ///< root mean square of the residuals
   Raster<float> relief_m;     ///< greatest minus least residual
   Raster<float>
-      step_m;  ///< greatest step under the rover without the slope on both sides (step_height.hpp); relief_m
-               ///< has only 0.5 to 0.8 of a vertical step, because the plane tilts
+      step_m;  ///< greatest step under the rover, reduced by the slope on both sides (step_height.hpp);
+               ///< relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts
   int footprint_cells = 0;                  ///< number of cells of a complete footprint
   bool fell_back = false;                   ///< whether 3x3 cells replace a smaller footprint
   double gradient_std_per_roughness = 0.0;  ///< standard error of a gradient for roughness 1 m [1/m]

@@ -78,7 +78,8 @@ std::optional<std::string> crsName(const json& document) {
   return name != nullptr && name->is_string() ? name->get<std::string>() : crs->dump();
 }
 
-// The name comes from an untrusted file: no file or network access is permitted for its interpretation.
+// Interprets the name of a CRS. The name is from an untrusted file; file and network access are therefore
+// excluded.
 OGRSpatialReference systemNamed(const std::string& crs) {
   const GdalErrors errors;
   OGRSpatialReference system;
@@ -111,7 +112,7 @@ void checkCrs(const json& document, const std::optional<Georeference>& of_map, c
   checkBody(system, of_map->body(), named, path);
 }
 
-// Refuses duplicate members of an object, of which the last would be used without notice.
+// Refuses duplicate members of an object, of which the parser would use the last.
 class OnceEach {
  public:
   explicit OnceEach(const std::string& path) : path_(path) {}

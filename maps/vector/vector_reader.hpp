@@ -19,7 +19,7 @@ using FeatureVisitor = std::function<void(const std::string& name, const OGRGeom
 
 /// Visits a vector file. Returns the document of a GeoJSON file in longitude and latitude, or of a map
 /// without a CRS. For any other file, calls `visit` for each feature, with one feature in memory at a time,
-/// and returns nothing. @throws InputError as readVector()
+/// and returns nullopt. @throws InputError as readVector()
 std::optional<nlohmann::json> visitVector(const std::string& path, const ElevationMap& map,
                                           const FeatureVisitor& visit);
 

@@ -88,7 +88,7 @@ TEST(OutputFile, DevicesAndFifosAreNotReplaced) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_THAT(refusal(folder / "pipe"),
-              HasSubstr("cannot be written"));  // nobody reads: told, not waited for
+              HasSubstr("cannot be written"));  // without a reader, the FIFO is an error and does not block
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }
 
@@ -100,7 +100,7 @@ TEST(OutputFile, PermissionsAreKept) {
   EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-// Removal of unfinished files, as called when a signal ends the process.
+// Property: removeUnfinishedFiles(), called when a signal ends the process, removes unfinished files only.
 TEST(OutputFile, UnfinishedFilesAreRemovedOnRequest) {
   const Folder folder;
   writeFile(folder / "whole", "x");

@@ -17,7 +17,7 @@ TEST(ParallelFor, EachIndexIsCalledOnceForAnyThreadCount) {
 }
 
 TEST(ParallelFor, ExceptionIsRethrownAndStopsTheLoop) {
-  // Property: an exception on any thread is rethrown, and no new call begins after it.
+  // Property: an exception on any thread is rethrown, and no new call begins after the exception.
   for (int threads : {1, 2, 7}) {
     std::atomic<int> calls{0};
     const auto loop = [&] {

@@ -27,8 +27,8 @@ TEST(Georeference, PolarStereographicMatchesClosedForm) {
 }
 
 TEST(Georeference, EquirectangularHasUnitScaleOnItsStandardParallel) {
-  // Closed form: on the parallel of 30 degrees one map metre east is one metre of ground; one map metre
-  // north is so everywhere.
+  // Closed form: one map metre is one metre of ground, eastwards on the parallel of 30 degrees, northwards
+  // everywhere.
   const Georeference georeference(
       {.name = "mars",
        .ellipsoid = {3396190.0, 0.0},
@@ -67,7 +67,7 @@ TEST(Georeference, PointsOutsideTheProjectionAreNan) {
   EXPECT_TRUE(std::isnan(plate.forward({2.0, 0.0}).x_m));
 }
 
-// Without PROJ such a map has metric coordinates only.
+// Property: without PROJ a map in another projection has metric coordinates only.
 TEST(Georeference, UnsupportedSystemHasNoGeographicCoordinates) {
   const Georeference swiss(
       {.name = "LV03", .ellipsoid = kEarth, .projection = {.method = ProjectionMethod::Foreign}, .wkt = "A"});

@@ -65,8 +65,8 @@ TEST(Transform, EveryProjectionRoundTrips) {
   }
 }
 
-// Property: angles are preserved: east and north stay perpendicular and of equal length. Tolerance:
-// differences of 1e-6.
+// Property: angles are preserved: the images of east and north are perpendicular and of equal length.
+// Tolerance: difference quotients, 1e-6.
 TEST(Transform, ConformalProjectionsPreserveAngles) {
   for (ProjectionMethod method : {TransverseMercator, Mercator, PolarStereographic, LambertConformalConic}) {
     const auto transform = makeTransform(kFlat, projection(method));

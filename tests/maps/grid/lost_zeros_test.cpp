@@ -47,8 +47,8 @@ Height zeroed(const Height& height, int begin, int end) {
   };
 }
 
-// Property: a block of zeros in ground away from 0 is lost as a whole, with one cell around it, wherever it
-// lies.
+// Property: a block of zeros in ground away from 0 is lost as a whole, with one cell around the block, at any
+// position.
 TEST(LostZeros, BlockOfZerosWithinOtherElevationsIsLost) {
   for (const double level : {-2500.0, -3.0, 2.0, 150.0})
     for (const int cells : {1, 7, 128, 1024})
@@ -64,7 +64,7 @@ TEST(LostZeros, BlockOfZerosWithinOtherElevationsIsLost) {
       }
 }
 
-// A number across the edge of the lost block, whose upper bytes are 0.
+// Property: a number across the edge of the lost block, whose upper bytes are 0, is lost.
 TEST(LostZeros, PartiallyZeroedNumberIsLost) {
   EXPECT_EQ(lostCount([](int c, int r) {
               return r == 20 && c >= 20 && c <= 30 ? (c == 20 ? 1e-39 : 0.0) : 150 + rough(c, r);
@@ -73,8 +73,8 @@ TEST(LostZeros, PartiallyZeroedNumberIsLost) {
 }
 
 TEST(LostZeros, ContinuousTerrainAtZeroElevationIsKept) {
-  // A sea beside a shore, a plain beside dunes, a lake between hills, a crater in a plain, a map at its
-  // datum: nothing is lost.
+  // Property: no cell of a sea beside a shore, a plain beside dunes, a lake between hills, a crater in a
+  // plain or a level map at height 0 is lost.
   EXPECT_EQ(lostCount([](int c, int r) { return std::max(0.0, 0.1 * (c - 25) + 0.3 * rough(c, r)); }), 0U);
   EXPECT_EQ(
       lostCount([](int c, int r) { return std::max(0.0, 2.0 * std::sin(0.2 * c) * std::cos(0.15 * r)); }),

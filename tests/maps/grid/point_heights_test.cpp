@@ -41,7 +41,7 @@ TEST(PointHeights, HeightsArePercentilesOfThePointsOfACell) {
             static_cast<double>(std::ranges::count_if(own, [&](float z) { return z <= taken; }));
         const auto under =
             static_cast<double>(std::ranges::count_if(own, [&](float z) { return z < taken; }));
-        // The lowest point that is not below the percentile.
+        // The height is the lowest point at or above the percentile.
         EXPECT_GE(below, choice.percentile * static_cast<double>(own.size()) - 1e-9);
         EXPECT_LT(under, choice.percentile * static_cast<double>(own.size()));
       }

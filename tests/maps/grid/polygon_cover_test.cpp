@@ -96,8 +96,8 @@ Polygon drawnAtRandom(std::mt19937& random) {
   return polygon;
 }
 
-// Property: the cell of every point with a non-zero winding number is covered. A covered cell contains
-// boundary or lies in the polygon; no covered cell is opened. Rings may cross themselves.
+// Property: the cell of every point with a non-zero winding number is covered. A covered cell contains a part
+// of the boundary or lies in the polygon; cells set before remain set. Rings may cross themselves.
 TEST(PolygonCover, CoversCellsOfNonZeroWindingNumber) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> column(0.0, 24.0), row(0.0, 18.0);

@@ -39,8 +39,8 @@ void spill(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// A format: how a file is written, and which file contains its cells. Formats that GDAL cannot write are
-// written as label and numbers.
+// A format: function that writes a file, and the file that contains the cells. Formats that GDAL cannot write
+// are written as label and numbers.
 struct Format {
   std::string driver, name;
   std::function<void(const std::string& path)> make;
@@ -102,8 +102,8 @@ std::vector<Format> formats() {
   return all;
 }
 
-// Whether a damaged file is rejected, or gives no height that differs from those of the undamaged file. The
-// grid may be smaller by whole rows at one end.
+// Whether a damaged file is rejected, or has no height that differs from the undamaged file. The grid may be
+// smaller by whole rows at one end.
 ::testing::AssertionResult refusedOrUnknown(const std::string& path, const ReadOptions& options,
                                             const ElevationMap& whole) {
   ElevationMap map;
@@ -171,8 +171,8 @@ TEST(CompleteFile, ZeroedBlocksOfAnyFormatAreRejectedOrNoData) {
   }
 }
 
-// Each allowed driver has a row above, except USGSDEM, which GDAL cannot write in a readable form; it fills
-// missing profiles with no data (usgsdemdataset.cpp).
+// Property: each allowed driver is tested, except USGSDEM, which GDAL cannot write in a readable form and
+// whose missing profiles are no data (usgsdemdataset.cpp).
 TEST(CompleteFile, EveryAllowedFormatIsCovered) {
   std::set<std::string> cut{"USGSDEM"};
   for (const Format& format : formats()) cut.insert(format.driver);
@@ -244,7 +244,7 @@ TEST(CompleteFile, PointFileTruncatedWithinANumberIsRejected) {
   };
   EXPECT_EQ(line(text), "accepted");
   for (const std::size_t cut :
-       {1U, 2U, 4U})  // the end of the line alone, too: whether digits are missing is not known
+       {1U, 2U, 4U})  // the end of the line, too, because digits may be missing before
     EXPECT_THAT(line(text.substr(0, text.size() - cut)), HasSubstr("ends within a number"));
 }
 

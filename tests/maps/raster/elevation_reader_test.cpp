@@ -25,7 +25,7 @@ TEST(ElevationReader, RowsAreReadSouthFirstAndNodataAsNan) {
   EXPECT_THAT(map.georeference->system().name, HasSubstr("UTM zone 10N"));
 }
 
-// Closed form: the mean of two by two pixels, or of the existing ones at the northern and eastern edge.
+// Closed form: the mean of two by two pixels, or of fewer pixels at the northern and eastern edge.
 TEST(ElevationReader, OverviewCellsAreMeans) {
   const TemporaryFolder folder;
   const std::string path = write({.rows = kHill, .nodata = -1}, folder / "hill.tif");
@@ -241,7 +241,7 @@ TEST(ElevationReader, InvalidInputYieldsAOneLineErrorWithARemedy) {
   }
 }
 
-// Property: any file is read, or rejected with one line; nothing else is printed.
+// Property: any file is read, or rejected with one line and no other output.
 TEST(ElevationReader, DamagedFilesAreReadOrRejectedWithOneLine) {
   const TemporaryFolder folder;
   const std::string good = write({.rows = kHill, .nodata = -1}, folder / "good.tif");

@@ -19,7 +19,7 @@ TEST(GdalDataset, OnlyNonEmptyRegularFilesAreReadable) {
   EXPECT_THAT(line(folder.write("empty", "")), HasSubstr("is empty"));
   EXPECT_EQ(line(folder.write("full", "x")), "accepted");
   EXPECT_THAT(line("/vsimem/whatever"),
-              testing::HasSubstr("no such file"));  // none of GDAL's own file systems
+              testing::HasSubstr("no such file"));  // GDAL's virtual file systems are excluded
   EXPECT_THAT(line("/dev/zero"), testing::HasSubstr("is a device"));
 }
 
@@ -68,8 +68,8 @@ TEST(GdalDataset, MemoryRasterIsOneBandOfZeros) {
   EXPECT_THAT(values, testing::Each(0.0F));
 }
 
-// A log file named in the environment would be overwritten, and a cache of size 0 changes the order of
-// blocks in a GeoTIFF.
+// Property: environment variables have no effect; a log file named there would be overwritten, and a cache of
+// size 0 would change the order of blocks in a GeoTIFF.
 TEST(GdalDataset, EnvironmentVariablesDoNotAffectGdal) {
   registerDrivers();
   for (const char* name : {"CPL_LOG", "CPL_DEBUG", "GDAL_CONFIG_FILE", "GDAL_CACHEMAX"}) {

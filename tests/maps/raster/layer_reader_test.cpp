@@ -17,7 +17,7 @@ TEST(LayerReader, ClassesOnTheMapGridAreExact) {
   EXPECT_EQ(drawing(readTerrainClasses({.path = path}, map(folder))), "1122\n1.22\n3333\n");
 }
 
-// GDAL would drop the imaginary parts.
+// Property: complex numbers are rejected, because GDAL would omit the imaginary parts.
 TEST(LayerReader, ComplexNumbersAreRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = readElevation(write({.rows = drawn({"1111", "1111", "1111"})}, folder / "d.tif"));
@@ -29,7 +29,7 @@ TEST(LayerReader, ComplexNumbersAreRejected) {
   }
 }
 
-// Rock abundance of about 0.3 with a zeroed region, in which the abundance is unknown.
+// Property: in a zeroed region of a file with abundances of about 0.3 the rock abundance is unknown.
 TEST(LayerReader, ZeroedRegionOfRockAbundanceIsUnseen) {
   const TemporaryFolder folder;
   RasterFile dem, rocks;
@@ -157,8 +157,8 @@ TEST(LayerReader, RotatedPixelsAreFoundInEveryCellTheyOverlap) {
   }
 }
 
-// Property: pixels of the cells' size, or an integer fraction of it, stay in their cells for any position of
-// the map and any rounding.
+// Property: pixels of the size of a cell, or of an integer fraction of that size, affect only their cells,
+// for any position of the map and any rounding.
 TEST(LayerReader, RoundingDoesNotSpreadPixelsToNeighbourCells) {
   const TemporaryFolder folder;
   std::mt19937 random(11);
@@ -234,12 +234,12 @@ TEST(LayerReader, LayerWithoutCrsUsesMapCoordinates) {
             "1234\n2345\n3456\n");
 }
 
-// Property: a cell takes the maximum of its pixels, also beside pixels that are unknown or refused.
+// Property: a cell has the maximum of its pixels, also beside unknown or impassable pixels.
 TEST(LayerReader, FinerCostLayerIsReducedByMaximum) {
   const TemporaryFolder folder;
   auto rows = drawn({"11223344", "15223349", "11223344", "11223344", "77777777", "77777777"});
   rows[0][2] = -1;        // no data in a quarter of a cell
-  rows[2][4] = INFINITY;  // refused in a quarter of a cell
+  rows[2][4] = INFINITY;  // impassable in a quarter of a cell
   rows[2][0] = -1;        // both
   rows[3][1] = INFINITY;
   const std::string path = write({.rows = rows,

@@ -60,7 +60,8 @@ TEST(NumpyArray, ExtentsMustBeDecimalIntegers) {
         InputError, text);
 }
 
-// The regular expression uses stack for each character, and a header of version 2 may have 4 GB.
+// Property: long headers are rejected, because the regular expression uses stack memory for each character,
+// and a header of version 2 may have 4 GB.
 TEST(NumpyArray, HeaderAboveItsLimitIsRejected) {
   for (const char* filling : {"1,", " "}) {
     std::string shape;

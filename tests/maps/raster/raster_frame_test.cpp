@@ -105,7 +105,7 @@ TEST(RasterFrame, DistortedProjectionsAreReprojectedToTrueScale) {
   EXPECT_NEAR(map.grid().height * map.grid().resolution_m, 400, 30);
 }
 
-// Closed form: US survey feet of 1200/3937 m; the first row lies in the south when y grows downwards.
+// Closed form: US survey feet of 1200/3937 m; the first row is the southernmost if y increases with the row.
 TEST(RasterFrame, FeetAreConvertedAndSouthUpRowsDetected) {
   const TemporaryFolder folder;
   const std::string path =

@@ -75,7 +75,7 @@ TEST_F(ReferencedFiles, PlainNamesAndOtherFilesAreAccepted) {
   EXPECT_EQ(said(std::string("II*\0\x08", 5)), "");
 }
 
-// A virtual raster with another file name, which GDAL alone would open.
+// Property: a virtual raster with another file name is rejected, although GDAL would open the file.
 TEST_F(ReferencedFiles, OpeningChecksReferencesOfVirtualRasters) {
   const std::string path = folder_.write("label", virtualRaster("/etc/passwd"));
   EXPECT_REFUSED(openRaster(path), InputError,
@@ -86,7 +86,8 @@ TEST_F(ReferencedFiles, OpeningChecksReferencesOfVirtualRasters) {
                  "/vsicurl/http://127.0.0.1:9/a.tif: no such file");
 }
 
-// All notations of a text in XML, and all separations between a keyword and its value.
+// Property: references are detected in all notations of a text in XML, and with all separations between a
+// keyword and its value.
 TEST_F(ReferencedFiles, EscapedReferencesAreDetected) {
   for (const char* source : {"<![CDATA[/etc/passwd]]>", "<!-- a -->/etc/passwd", " \n/etc/passwd"}) {
     EXPECT_THAT(said(virtualRaster(source), true), HasSubstr("no file of its own folder")) << source;
@@ -131,7 +132,7 @@ TEST_F(ReferencedFiles, SymbolicLinksOutOfTheFolderAreRejected) {
   EXPECT_THAT(said("<Product_Observational><file_name>a.tif</file_name></Product_Observational>"),
               HasSubstr("leads out of the folder"));
   EXPECT_THAT(said("PDS_VERSION_ID = PDS3\n^IMAGE = (\"A.TIF\", 3)\n"), HasSubstr("leads out of the folder"));
-  // If the given file is a link, the folder of its target is the allowed one as well.
+  // If the given file is a link, the folder of the target is also allowed.
   EXPECT_EQ(checked("a.tif"), "");
   write({.rows = kHill}, folder_ / "b.tif");
   fs::create_symlink("b.tif", folder_ / "c.tif");

@@ -22,8 +22,8 @@ TEST(CraterField, SizesFollowThePowerLaw) {
 
 TEST(CraterField, FreshCraterMatchesPikeProportions) {
   const Crater crater{.centre = {}, .radius_m = 10, .age = 0};
-  // Printed in: Pike (1977): the depth is a fifth of the diameter, the rim 0.036 of it. Rounding of the rim
-  // lowers both slightly.
+  // Printed in: Pike (1977): the depth is 0.2 and the rim height 0.036 of the diameter. Tolerance: rounding
+  // of the rim.
   EXPECT_NEAR(crater.height_m(10) - crater.height_m(0), 0.2 * 20, 0.2);
   EXPECT_NEAR(crater.height_m(10), 0.036 * 20, 0.12);
   EXPECT_EQ(crater.height_m(30), 0.0);

@@ -28,7 +28,7 @@ std::vector<Ground> groundAt(SiteKind kind, std::uint64_t seed) {
   return out;
 }
 
-// Property: the ground at a place depends on kind, grid and seed alone.
+// Property: the ground at a place depends only on kind, grid and seed.
 TEST(Landscape, SameSeedReproducesTheGround) {
   for (SiteKind kind : kKinds) {
     const auto first = groundAt(kind, 9), again = groundAt(kind, 9), other = groundAt(kind, 10);

@@ -43,7 +43,7 @@ TEST(SiteGenerator, EverySiteIsCompleteWithSeveralClasses) {
     EXPECT_GE(classes.size(), 3U);
     for (const auto& [number, count] : classes) EXPECT_TRUE(number >= 1 && number <= 4) << number;
     for (float k : site.rock_abundance.values()) ASSERT_TRUE(k >= 0 && k < 0.5F);
-    // Ground for a rover: mostly gentle, steep in some places.
+    // Property: the ground is mostly gentle, and steep in some places.
     const TerrainMetrics m = terrainMetrics(site.map.elevation_m, {.radius_m = 2.0});
     std::vector<float> slopes;
     for (int r = 0; r < 400; ++r)
@@ -80,7 +80,7 @@ TEST(SiteGenerator, RockClassAreaMatchesRockAbundance) {
       const double q = 1.79 + 0.152 / k;
       abundance += k * (std::exp(-0.375 * q) - std::exp(-4.0 * q));
     }
-  // Boulders overlap, and a cell is rock if its centre is: tolerance of a fifth.
+  // Tolerance: a fifth, because boulders overlap and the centre of a cell determines its class.
   EXPECT_NEAR(share / abundance, 1.0, 0.2);
 }
 

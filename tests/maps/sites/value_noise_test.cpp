@@ -8,7 +8,7 @@ namespace talus::maps {
 namespace value_noise_test {
 
 TEST(ValueNoise, MixedMatchesSplitMix64) {
-  // Printed in: Vigna's splitmix64.c run from the states 0 and 1234567, whose increment is in `mixed`.
+  // Printed in: output of Vigna's splitmix64.c for the states 0 and 1234567; mixed() includes the increment.
   EXPECT_EQ(mixed(0), 0xE220A8397B1DCDAFULL);
   EXPECT_EQ(mixed(1234567), 6457827717110365317ULL);
   EXPECT_EQ(mixed(1234567 + 0x9E3779B97F4A7C15ULL), 3203168211198807973ULL);

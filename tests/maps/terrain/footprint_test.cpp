@@ -13,7 +13,7 @@ TEST(Footprint, ContainsCellsWithCentresWithinTheRadius) {
     std::set<std::pair<int, int>> held;
     for (const auto& o : disc.offsets) held.insert({o.column, o.row});
     ASSERT_EQ(held.size(), disc.offsets.size());
-    // Measured by others: every cell of a larger square is checked.
+    // Closed form, by brute force: every cell of a larger square is checked.
     for (int row = -9; row <= 9; ++row)
       for (int column = -9; column <= 9; ++column)
         EXPECT_EQ(held.contains({column, row}), std::hypot(column, row) <= radius + 1e-9)

@@ -51,7 +51,7 @@ TEST(Place, PositionOutsideTheMapIsRejectedWithTheMapExtent) {
   EXPECT_THAT(refusal([] { locate(GeoPoint{}, localMap(), "--goal"); }), HasSubstr("'yard.tif' has no CRS"));
 }
 
-// Property: the border that the message about the map's extent names is inside the map.
+// Property: points on the border of the map, as stated in the message about its extent, are inside the map.
 TEST(Place, MapBorderIsInsideTheMap) {
   const ElevationMap map = localMap();
   for (const Point corner : {Point{100, -50}, Point{120, -50}, Point{100, -10}, Point{120, -10}}) {

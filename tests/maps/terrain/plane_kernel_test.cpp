@@ -78,7 +78,7 @@ TEST(PlaneKernel, KernelsAreBitIdentical) {
   }
 }
 
-// Heights far below the datum, where floats are coarse.
+// Property: kernels are bit-identical for heights far below the datum, where single precision is coarse.
 #if defined(__x86_64__)
 TEST(PlaneKernel, KernelsAreBitIdenticalFarFromTheDatum) {
   if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";

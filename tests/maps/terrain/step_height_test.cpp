@@ -99,8 +99,7 @@ TEST(StepHeight, MatchesThePairwiseDefinition) {
   }
 }
 
-// Property: a vertical edge in any direction on any slope has at least its height everywhere, less the slope
-// that a pair of cells across the edge may have.
+// Property: the step at a vertical edge in any direction on any slope is at least the height of the edge.
 TEST(StepHeight, VerticalStepHasItsHeightForAnyCellSizeSlopeAndDirection) {
   for (const double cell_m : {0.1, 0.25, 0.5, 1.0})
     for (const double slope : {0.0, 0.2, -0.45})
@@ -138,19 +137,19 @@ TEST(StepHeight, SmoothSteepGroundHasNoStep) {
     const Raster<float> dune = surface(grid, [&](double x, double) { return 0.466 / k * std::sin(k * x); });
     const TerrainMetrics smooth = terrainMetrics(dune, {.radius_m = 0.7, .step_span_m = 0.5});
     const double distance_m = std::max(cell_m, 0.5);
-    // A diagonal pair is sqrt(2) times as far apart, with the direction turned by 45 degrees: the same
-    // product.
+    // For a diagonal pair the squared distance is doubled and the curvature along the pair is halved: the
+    // product is equal.
     EXPECT_LT(*std::ranges::max_element(smooth.step_m.values()), 1.05 * 0.466 * k * distance_m * distance_m);
   }
 }
 
-// Property: a scarp that resampling has spread over a wheel's diameter has its full height.
+// Property: a scarp that resampling spread over a wheel diameter has its full height.
 TEST(StepHeight, ScarpWithinTheSpanHasItsFullHeight) {
   const Grid grid{.width = 61, .height = 5, .resolution_m = 0.1, .south_west = {}};
   const Raster<float> z =
       surface(grid, [](double x, double) { return 0.4 * std::clamp((x - 3.05) / 0.3, 0.0, 1.0); });
   EXPECT_NEAR((terrainMetrics(z, {.step_span_m = 0.3}).step_m[{30, 2}]), 0.4, 1e-6);
-  // Closed form: neighbouring cells alone have a third of the height.
+  // Closed form: adjacent cells differ by a third of the height.
   EXPECT_NEAR((terrainMetrics(z, {}).step_m[{30, 2}]), 0.4 / 3, 1e-6);
 }
 

@@ -117,7 +117,8 @@ TEST(GeoJson, InvalidGeoJsonIsRejected) {
   std::string deep = R"({"type":"Point","coordinates":)";
   deep += std::string(100000, '[') + std::string(100000, ']') + "}";
   EXPECT_THAT(line(deep), HasSubstr("nests deeper than 100 levels"));
-  // The last of two equal keys would replace the first; equal names in different objects are valid.
+  // Duplicate keys of one object are rejected, because the last would replace the first; equal keys in
+  // different objects are valid.
   EXPECT_THAT(line(R"({"type":"Point","coordinates":[1,2],"coordinates":[3,4]})"),
               HasSubstr("has \"coordinates\" twice in one object"));
   EXPECT_THAT(
@@ -127,7 +128,8 @@ TEST(GeoJson, InvalidGeoJsonIsRejected) {
             "accepted");
 }
 
-// The parsed tree needs many times the bytes of its text.
+// Property: large files are rejected before parsing, because the parsed tree needs many times the memory of
+// the text.
 TEST(GeoJson, MemoryBudgetIsCheckedBeforeParsing) {
   const TemporaryFolder folder;
   std::string text = R"({"type":"Polygon","coordinates":[[])";

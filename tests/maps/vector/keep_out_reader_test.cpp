@@ -81,8 +81,8 @@ std::string collection(const std::string& geometry) {
          R"(,{"type":"Feature","properties":{},"geometry":)" + geometry + "}]}";
 }
 
-// Property: every feature beside a sound one covers cells, or is rejected with its number, including rings
-// wound twice, of which an even-odd rule would cover the boundary only.
+// Property: every feature in a file with a valid feature covers cells or is rejected with its number,
+// including rings drawn twice, of which an even-odd rule would cover the boundary only.
 TEST(KeepOutReader, EveryFeatureClosesCellsOrIsRejected) {
   const TemporaryFolder folder;
   const ElevationMap dem = map(folder);

@@ -78,7 +78,7 @@ TEST(VectorReader, EveryVectorFormatYieldsTheSamePlace) {
     const std::string path =
         write({.driver = driver, .wkt = {wkt.str()}}, folder / ("place." + kEndings.at(driver)));
     const Point at = readPlace(path, map, "--start");
-    // Closed form: the same place. Tolerance: MapInfo stores integers of a micro-degree.
+    // Closed form: the same place. Tolerance: MapInfo stores integer multiples of 1e-6 degrees.
     const double most_m = driver == "MapInfo File" ? 0.1 : 0.01;
     EXPECT_NEAR(at.x_m, 500300, most_m) << driver;
     EXPECT_NEAR(at.y_m, 4999600, most_m) << driver;
@@ -147,7 +147,7 @@ TEST(VectorReader, LayersThatCannotBeGeoreferencedAreRejected) {
               HasSubstr("contains no feature"));
 }
 
-// Property: a file truncated anywhere gives no geometry that the whole file lacks.
+// Property: a file truncated anywhere is rejected, or contains only geometries of the whole file.
 TEST(VectorReader, TruncatedFileIsRejectedOrComplete) {
   const TemporaryFolder folder;
   const ElevationMap map = hill(folder);
