@@ -1,5 +1,5 @@
-# The API reference of the public headers by Doxygen: target api_reference writes api/index.html into the build folder. A
-# warning is an error; the test finds it where Doxygen is installed.
+# API reference of the public headers by Doxygen: the target api_reference writes api/index.html into the
+# build folder. Warnings are errors; the test runs if Doxygen is installed.
 find_program(TALUS_DOXYGEN doxygen)
 add_feature_info(api_reference TALUS_DOXYGEN "API reference by Doxygen")
 if(NOT TALUS_DOXYGEN)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What a built program links, as the machine's packages have it: package, version, licence, and whether the program names
-# the library itself, loads it through another, or holds a copy of its headers.
+# Lists the libraries that a program links, from the packages of the machine: package, version, licence, and
+# whether the program links the library directly, through another library, or contains code of its headers.
 #
 #   cmake/bill_of_materials.sh PROGRAM [HEADER-ONLY PACKAGE...]
 set -euo pipefail

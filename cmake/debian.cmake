@@ -14,12 +14,12 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
-# What is installed was built by `./dev`, without the tests.
+# Installs the files built by `./dev`, without the tests.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 set(about "Talus plans safe routes for rovers: the traversability of a cell is the drawbar\npull that its soil can give, learned from the rover's own wheels, against the\npull that its slope requires.")
 
-# talus_package(NAME SECTION SUMMARY DEPENDS): one package and the texts that Debian requires of it.
+# talus_package(NAME SECTION SUMMARY DEPENDS): one package with the texts that Debian requires.
 function(talus_package name section summary)
   string(TOUPPER ${name} variable)
   set(CPACK_DEBIAN_${variable}_PACKAGE_NAME ${name} PARENT_SCOPE)
@@ -35,7 +35,7 @@ function(talus_package name section summary)
   install(FILES ${texts}/copyright ${texts}/changelog.gz DESTINATION share/doc/${name} COMPONENT ${name} EXCLUDE_FROM_ALL)
 endfunction()
 
-# The one shared library that others link: who does depends on its package, and the loader is told of it.
+# The only shared library for other programs: the package has a shlibs file and updates the loader's cache.
 file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "libtalus ${PROJECT_VERSION_MAJOR} libtalus0 (>= ${PROJECT_VERSION})\n")
 file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBTALUS0_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/shlibs ${PROJECT_BINARY_DIR}/debian/triggers)

@@ -1,6 +1,6 @@
-# Every package the project uses, found in one place, all from Debian 12.
+# All packages that the project uses, available in Debian 12.
 include(FeatureSummary)
-# GeographicLib's find module lies outside CMake's own folders in Debian.
+# In Debian, the find module of GeographicLib is outside CMake's default folders.
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)
 
 find_package(Threads REQUIRED)
@@ -9,7 +9,7 @@ find_package(octomap 1.9 REQUIRED)
 find_package(GeographicLib REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS filesystem system serialization)
 find_package(SQLite3 REQUIRED)
-# Its header alone, which checksum.cpp compiles: no dependency of what is installed.
+# Only the header of xxHash is used, by checksum.cpp: installed targets do not depend on xxHash.
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # OMPL 1.5.2 exports variables only.
 find_package(ompl 1.5 REQUIRED)
@@ -30,7 +30,8 @@ if(TALUS_OFFLINE)
   pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
   find_library(CSV_LIBRARY csv REQUIRED)
 endif()
-# Campaigns over many ranks, where Boost.MPI is installed. Open MPI loses memory of its own at the end of every process.
+# Test campaigns over many ranks, if Boost.MPI is installed. Open MPI leaks memory at the end of every
+# process.
 if(TALUS_OFFLINE AND NOT TALUS_SANITIZE)
   find_package(MPI QUIET COMPONENTS CXX)
   find_package(Boost 1.74 QUIET COMPONENTS filesystem system serialization OPTIONAL_COMPONENTS mpi)
@@ -40,7 +41,7 @@ if(TALUS_OFFLINE AND NOT TALUS_SANITIZE)
 endif()
 add_feature_info("MPI ranks" TALUS_MPI "campaigns over several ranks (libboost-mpi-dev, libopenmpi-dev)")
 
-# The Python package, for Debian's own interpreter, which has Debian's NumPy.
+# The Python package is built for Debian's interpreter, which has Debian's NumPy.
 if(TALUS_OFFLINE AND NOT TALUS_SANITIZE)
   set(PYBIND11_FINDPYTHON ON)
   if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)

@@ -10,7 +10,7 @@ foreach(component ${talus_components})
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/talus-config.cmake ${PROJECT_BINARY_DIR}/talus-config-version.cmake
         DESTINATION ${config_dir})
-# Everything that is installed, without the tests.
+# All installed files, without the tests.
 set(installed ${talus_components})
 list(TRANSFORM installed PREPEND talus_)
 add_custom_target(installed DEPENDS ${installed} talus_plugin)

@@ -1,12 +1,12 @@
-# talus_warnings(TARGET): warnings, instrumentation and hardening, on our own targets only.
+# talus_warnings(TARGET): warnings, instrumentation and hardening, for targets of the project only.
 function(talus_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
     -Woverloaded-virtual -Wdouble-promotion -Wno-missing-field-initializers
-    # GCC 12 sees overlaps that are not there in "text" + std::string (its bug 105651).
+    # GCC 12 reports false overlaps in "text" + std::string (GCC bug 105651).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
     $<$<BOOL:${TALUS_WARNINGS_AS_ERRORS}>:-Werror>
-    # Same bits from every kernel twin: no contraction into fused multiply-add, and never -ffast-math.
+    # All variants of a kernel give the same bits: no contraction into fused multiply-add, no -ffast-math.
     -ffp-contract=off -fno-math-errno -fno-trapping-math)
   if(TALUS_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${TALUS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -19,13 +19,14 @@ function(talus_warnings target)
   talus_hardening(${target})
 endfunction()
 
-# Whether targets are hardened: optimised builds without sanitizers, which check the same and more.
+# Whether targets are hardened: optimised builds without sanitizers, because sanitizers include these checks.
 if(CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|MinSizeRel)$" AND NOT TALUS_SANITIZE)
   set(TALUS_HARDENED ON)
 endif()
 
-# talus_hardening(TARGET): files from outside are parsed, so that an overflow of a buffer on the stack or in a C library call ends
-# the program, and no table of function addresses can be written once it runs (docs/security.md).
+# talus_hardening(TARGET): because the programs parse untrusted files, a buffer overflow on the stack or in a
+# C library call ends the program, and tables of function addresses are read-only at run time
+# (docs/security.md).
 function(talus_hardening target)
   if(TALUS_HARDENED)
     target_compile_options(${target} PRIVATE -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
@@ -33,8 +34,9 @@ function(talus_hardening target)
   endif()
 endfunction()
 
-# talus_unity(TARGET): where TALUS_UNITY is on, the sources of a folder are compiled together, at most twelve at a time.
-# Names in anonymous namespaces are unique in their folder. Sources with options of their own stay alone.
+# talus_unity(TARGET): with TALUS_UNITY, the sources of a folder are compiled together, at most twelve in one
+# unit. Names in anonymous namespaces are unique in their folder. Sources with separate options are compiled
+# separately.
 function(talus_unity target)
   if(NOT TALUS_UNITY)
     return()
@@ -52,9 +54,9 @@ function(talus_unity target)
 endfunction()
 
 # talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
-# One library target talus::NAME of a module, and the component NAME of the installed package. Its public headers, which are
-# its entry header and what that includes, are a verified file set installed under include/talus; all other headers are
-# inner and are not installed. Paths are relative to the calling module.
+# Defines the library target talus::NAME of a module, and the component NAME of the installed package. Public
+# headers, i.e. the entry header and all headers that it includes, are a verified file set installed under
+# include/talus; other headers are internal and not installed. Paths are relative to the calling module.
 function(talus_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS")
   add_library(talus_${name} ${arg_SOURCES})
@@ -71,13 +73,15 @@ function(talus_module name)
   set_property(GLOBAL APPEND PROPERTY TALUS_COMPONENTS ${name})
 endfunction()
 
-# talus_quick_build(TARGET): code that is read once a run is compiled for build time, not for speed.
+# talus_quick_build(TARGET): compiles code that is not critical for run time with -O1 in Release, for short
+# builds.
 function(talus_quick_build target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case. What tests of a
-# module share lies beside its CMakeLists.txt, what several modules' tests share in tests/support.
+# talus_test(NAME SOURCES ... DEPENDS ...): one GoogleTest program; each of its tests is a ctest case. Code
+# shared by the tests of one module is in the folder of the CMakeLists.txt, code shared by several modules in
+# tests/support.
 function(talus_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
   add_executable(${name} ${arg_SOURCES})

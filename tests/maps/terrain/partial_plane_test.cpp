@@ -23,7 +23,7 @@ TEST(PartialPlane, MatchesLeastSquaresOverCellsWithData) {
     const auto fit = fitPartialPlane(z, disc, cell);
     if (!fit) continue;
     ++fitted;
-    // Closed form: independent least squares by Eigen's QR over the cells with data.
+    // Closed form: independent least squares by QR decomposition (Eigen) over the cells with data.
     std::vector<Eigen::Vector3d> seen;
     for (const auto& o : disc.offsets) {
       const Cell c{cell.column + o.column, cell.row + o.row};
