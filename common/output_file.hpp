@@ -52,7 +52,7 @@ class OutputFile {
 void writeFile(const std::filesystem::path& path, std::string_view content);
 
 /// Removes the temporary files of this process that were not committed. Called before the process ends by a
-/// signal; returns without action if another thread holds the list of files.
+/// signal; returns without action if another thread has locked the list of files.
 void removeUnfinishedFiles() noexcept;
 
 }  // namespace talus

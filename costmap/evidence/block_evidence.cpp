@@ -56,7 +56,8 @@ struct Part {
   double value = 0.0;  // weakest value, see summarise()
 };
 
-// Sets `part` from `counts`, sorted by step. `sign`: 1 if lower values are weaker, -1 if higher values are weaker.
+// Sets `part` from `counts`, sorted by step. `sign`: 1 if lower values are weaker, -1 if higher values are
+// weaker.
 template <typename Value>
 void addWeakest(std::span<const ReadingCount> counts, double std, double sign, Value value, Part& part) {
   double all = 0.0, lowest = 0.0, sum = 0.0;
@@ -114,8 +115,8 @@ void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEv
   block.weak_variance = static_cast<float>(of_variance);
 }
 
-// Readings of one grade of certainty that may raise, with any shared error, sorted by step. Returns a view of `counts`,
-// or of `merged` if the readings are of several kinds.
+// Readings of one grade of certainty that may raise, with any shared error, sorted by step. Returns a view of
+// `counts`, or of `merged` if the readings are of several kinds.
 std::span<const ReadingCount> raisingOf(std::span<const ReadingCount> counts, std::size_t grade,
                                         std::vector<ReadingCount>& merged) {
   merged.clear();
@@ -180,8 +181,8 @@ Pulls weighPulls(std::span<const ReadingCount> counts, const Estimate& prior, Bl
   return out;
 }
 
-// Standard error of the mean of the readings that may raise, from their scatter and the quantisation step; infinite for
-// fewer than two readings.
+// Standard error of the mean of the readings that may raise, from their scatter and the quantisation step;
+// infinite for fewer than two readings.
 double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
   double n = 0.0, sum = 0.0, squares = 0.0;
   for (const ReadingCount& c : counts) {
@@ -194,8 +195,9 @@ double scatterOfMean(std::span<const ReadingCount> counts) noexcept {
   return std::sqrt((std::max(squares - sum * sum / n, 0.0) / (n - 1.0) + kStep * kStep) / n);
 }
 
-// Limits block.pull by the drive with the least bound, see summarise(): the mean of the drive, plus kBeyond standard
-// errors if these exceed kModel, plus the difference between the least of n and the least of two sound drives.
+// Limits block.pull by the drive with the least bound, see summarise(): the mean of the drive, plus kBeyond
+// standard errors if these exceed kModel, plus the difference between the least of n and the least of two
+// sound drives.
 void boundByDrives(std::span<const ReadingCount> counts, const Estimate& prior, BlockEvidence& block,
                    double& least) {
   constexpr double kBeyond = 2.0;

@@ -31,20 +31,21 @@ inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certa
 inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
 inline constexpr std::uint8_t kPull = 0;          ///< plus grade of certainty + 8 x grade of shared error
 inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;  ///< plus grade of certainty
-inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;       ///< sinkage that may raise
-inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;          ///< sinkage that may only lower
-inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;           ///< upper bound of the pull
-inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;       ///< lower bound of the sinkage
-inline constexpr std::uint8_t kCount = kSinkage + 4;                  ///< number of kinds
+inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;       ///< sinkage that may raise an estimate
+inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;     ///< sinkage that may only lower an estimate
+inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;      ///< upper bound of the pull
+inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;  ///< lower bound of the sinkage
+inline constexpr std::uint8_t kCount = kSinkage + 4;             ///< number of kinds
 }  // namespace reading_kind
 
-/// Standard deviation of drawbar pull over load for a grade of the shared error [-]: 0 for grade 0, 0.02 * 1.5^(grade -
-/// 1) for grades 1 to 7.
+/// Standard deviation of drawbar pull over load for a grade of the shared error [-]: 0 for grade 0, 0.02 *
+/// 1.5^(grade - 1) for grades 1 to 7.
 double sharedStd(std::size_t grade) noexcept;
 
-/// Quantises a drawbar pull over load in steps of 0.01 from -1.28: rounded to nearest if the reading may raise, else
-/// rounded down. `shared_std`: standard deviation of the error common to all readings, >= 0 [-], rounded up to a grade.
-/// A reading whose shared error exceeds the greatest grade or is unknown (NaN) may only lower.
+/// Quantises a drawbar pull over load in steps of 0.01 from -1.28: rounded to nearest if the reading may
+/// raise an estimate, else rounded down. `shared_std`: standard deviation of the error common to all
+/// readings, >= 0 [-], rounded up to a grade. A reading whose shared error exceeds the greatest grade or is
+/// unknown (NaN) may only lower an estimate.
 ReadingCount pullReading(const Estimate& pull, bool may_raise, double shared_std = 0.0) noexcept;
 /// Quantises a sinkage over radius in steps of 0.01 from 0, rounded up.
 ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept;
@@ -62,8 +63,9 @@ struct BlockEvidence {
   std::uint32_t updated_s = 0;      ///< telemetry time of the newest sample, rounded down [s]
   std::uint8_t reach = 0;           ///< position uncertainty of the place, in steps of 0.1 m
   bool sinkage_raises = false;      ///< true if a sinkage below that of the class is accepted
-  bool lowers = false;              ///< true if some pull readings may only lower
-  float pull = 0.0F;                ///< DP/W from readings that may raise [-]; NaN: no such reading
+  bool lowers = false;              ///< true if some pull readings may only lower an estimate
+  float pull = 0.0F;                ///< DP/W from readings that may raise an estimate [-]; NaN: no such
+                                    ///< reading
   float variance = 0.0F;            ///< variance of `pull` without the shared error [-]
   float shared = 0.0F;              ///< standard deviation of `pull` by the shared error [-]
   float weak_pull = 0.0F;           ///< DP/W of the weakest subset of all readings [-]; NaN: no reading
@@ -77,8 +79,8 @@ struct BlockEvidence {
 };
 static_assert(sizeof(BlockEvidence) == 44);
 
-/// Computes the fields `sinkage_raises` to `least_sinkage` of `block`. `prior`: drawbar pull over load of the class and
-/// its standard deviation between places [-].
+/// Computes the fields `sinkage_raises` to `least_sinkage` of `block`. `prior`: drawbar pull over load of the
+/// class and its standard deviation between places [-].
 ///
 /// Readings of one grade of certainty give the least value over k of m_k + sigma c(k/n) (ours): m_k is the
 /// mean of the k lowest of n readings. Noise alone lowers m_k by sigma c(k/n), where c(p) = phi(Phi^-1(p))/p

@@ -122,9 +122,9 @@ double ClassEvidence::meanOf(const WeightedSum& sum) const noexcept {
          (prior * static_cast<double>(sum.weight) / kUnit + ground_.pull_std * ground_.pull_std);
 }
 
-// Least mean over all combinations of the contributions that may raise with any of the lowering drives (B12). The set
-// of drives with the least mean contains all drives below some departure; the drives are therefore added in ascending
-// order.
+// Least mean over all combinations of the contributions that may raise with any of the lowering drives (B12).
+// The set of drives with the least mean contains all drives below some departure; the drives are therefore
+// added in ascending order.
 double ClassEvidence::leastMean(WeightedSum raising, const ByDrive& lowering) const {
   std::vector<WeightedSum> drives;
   for (const auto& [drive, sum] : lowering) drives.push_back(sum);
@@ -147,7 +147,8 @@ double ClassEvidence::deviationOf(const WeightedSum& sum) const noexcept {
   return ground_.mean_std / std::sqrt(1.0 + weighed);
 }
 
-// Least value of mean plus one standard deviation over the drives that may raise; infinite for fewer than two drives.
+// Least value of mean plus one standard deviation over the drives that may raise; infinite for fewer than two
+// drives.
 double ClassEvidence::mostByDrives() const noexcept {
   double most = std::numeric_limits<double>::infinity();
   if (pull_by_drive_.size() < 2) return most;

@@ -36,8 +36,8 @@ struct ClassState {
   friend bool operator==(const ClassState&, const ClassState&) = default;
 };
 
-/// Squares of ground one correlation length wide, in four sets by even or odd column and row: squares of one set do not
-/// touch, and count as independent places.
+/// Squares of ground one correlation length wide, in four sets by even or odd column and row: squares of one
+/// set do not touch, and count as independent places.
 class IndependentPlaces {
  public:
   using Square = std::pair<int, int>;  ///< column and row
@@ -48,7 +48,8 @@ class IndependentPlaces {
 
   /// Greatest number of squares with readings in one set.
   std::size_t driven() const noexcept;
-  /// Greatest departure that at least `places` squares of one set reach; -infinity if no set has so many squares.
+  /// Greatest departure that at least `places` squares of one set reach; -infinity if no set has so many
+  /// squares.
   double agreed(std::size_t places) const noexcept;
 
  private:
@@ -74,8 +75,8 @@ struct BlockContribution {
           ///< several drives
 };
 
-/// Evidence of a class: the sum of the contributions of all blocks. Sums are exact (fixed point): a contribution can be
-/// removed again, and the order of contributions has no effect.
+/// Evidence of a class: the sum of the contributions of all blocks. Sums are exact (fixed point): a
+/// contribution can be removed again, and the order of contributions has no effect.
 class ClassEvidence {
  public:
   explicit ClassEvidence(const GroundClass& ground) : ground_(ground) { refresh(); }
@@ -86,27 +87,29 @@ class ClassEvidence {
   /// Recomputes the posterior. Required after each change of contributions or places.
   void refresh();
 
-  /// Conjugate normal update of the class mean: prior standard deviation mean_std, places that scatter by pull_std
-  /// (B12). The departure is multiplied by 0 for one independent place, by 0.5 for two, by 1 from three on: a single
-  /// place cannot be distinguished from local variation. The mean rises, and its standard deviation decreases, only if
-  /// kPlaces places may raise, and by at most mostRise(). The error common to all contributions is one factor b of the
-  /// regression, y_i = m + c_i b, b standard normal. With v the variance of the mean without b, p the variance of the
-  /// prior and c the mean of c_i, the posterior variance is p (v + c^2) / (p + v + c^2). Contributions that may not
-  /// raise are summed for each drive. The mean is the least over all combinations of the contributions that may raise
-  /// with any of these drives (B12), so that a drive that may not raise never increases the mean or changes its
-  /// standard deviation. With several drives that may raise, the mean is at most the mean of each drive plus one
-  /// standard deviation without the shared error, because the sensors of any drive may be faulty.
+  /// Conjugate normal update of the class mean: prior standard deviation mean_std, places that scatter by
+  /// pull_std (B12). The departure is multiplied by 0 for one independent place, by 0.5 for two, by 1 from
+  /// three on: a single place cannot be distinguished from local variation. The mean rises, and its standard
+  /// deviation decreases, only if kPlaces places may raise, and by at most mostRise(). The error common to
+  /// all contributions is one factor b of the regression, y_i = m + c_i b, b standard normal. With v the
+  /// variance of the mean without b, p the variance of the prior and c the mean of c_i, the posterior
+  /// variance is p (v + c^2) / (p + v + c^2). Contributions that may not raise are summed for each drive. The
+  /// mean is the least over all combinations of the contributions that may raise with any of these drives
+  /// (B12), so that a drive that may not raise never increases the mean or changes its standard deviation.
+  /// With several drives that may raise, the mean is at most the mean of each drive plus one standard
+  /// deviation without the shared error, because the sensors of any drive may be faulty.
   const ClassPosterior& posterior() const noexcept { return posterior_; }
   /// State of the class, not rounded.
   ClassState state() const noexcept;
-  /// State of the class in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no standard deviation
-  /// above the prior's. The rounded state is constant while the class moves within a step, and depends on the class
-  /// alone. `most_rise` is rounded down to a step of the cost curves.
+  /// State of the class in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no standard
+  /// deviation above the prior's. The rounded state is constant while the class moves within a step, and
+  /// depends on the class alone. `most_rise` is rounded down to a step of the cost curves.
   ClassState stateInSteps() const noexcept;
   /// True if kPlaces places may raise and the drives agree, so that estimates of the class may rise.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)) && drivesAgree(); }
   /// True if no two drives that may raise differ in the class mean by more than 3 standard deviations of the
-  /// difference. Otherwise the sensors of one of the drives are faulty, and no estimate rises above its class.
+  /// difference. Otherwise the sensors of one of the drives are faulty, and no estimate rises above its
+  /// class.
   bool drivesAgree() const noexcept;
   /// Greatest rise of the class [-]: the departure that kPlaces places reach, >= 0; 0 if mayRaise() is false.
   double mostRise() const noexcept;

@@ -36,8 +36,8 @@ const InferredGround& EvidenceBeliefs::away(int class_index) {
   return known->second;
 }
 
-// Returns the patch of a block and class, computed on first use. Discards all patches at kMostRemembered, which limits
-// the memory for a whole map.
+// Returns the patch of a block and class, computed on first use. Discards all patches at kMostRemembered,
+// which limits the memory for a whole map.
 EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockLevel& block, int class_index) {
   BlockLevel first = block;
   first.column = block.column / kPatchSide * kPatchSide;

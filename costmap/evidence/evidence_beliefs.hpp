@@ -10,9 +10,9 @@
 
 namespace talus::costmap {
 
-/// Estimates of ground for each cell. Evidence is collected once for each patch of 8x8 blocks and class; an estimate is
-/// computed once for each block and class. An estimate depends only on the class states and on the evidence that can
-/// reach the patch. Valid until the field changes. Not thread-safe.
+/// Estimates of ground for each cell. Evidence is collected once for each patch of 8x8 blocks and class; an
+/// estimate is computed once for each block and class. An estimate depends only on the class states and on
+/// the evidence that can reach the patch. Valid until the field changes. Not thread-safe.
 class EvidenceBeliefs {
  public:
   explicit EvidenceBeliefs(const EvidenceField& field,

@@ -26,15 +26,16 @@ class EvidenceBricks {
   /// Makes an empty store for a map with these numbers of block columns and rows.
   EvidenceBricks(int block_columns, int block_rows);
 
-  /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the map.
+  /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the
+  /// map.
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
   /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
   /// inside the map.
   BlockEvidence& at(const BlockLevel& block);
   /// Returns the readings of a block, sorted by kind, value and drive; an unread block has an empty list.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
-  /// Adds reading.count readings of one kind, value and drive to a block that at() created; the count saturates at
-  /// 65535.
+  /// Adds reading.count readings of one kind, value and drive to a block that at() created; the count
+  /// saturates at 65535.
   void count(const BlockLevel& block, const ReadingCount& reading);
   /// Removes reading.count readings from a block that at() created. A block without readings is not changed.
   /// A saturated count (65535) stays.

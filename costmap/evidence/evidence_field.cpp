@@ -145,8 +145,8 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   return raises ? static_cast<float>(least) : -std::numeric_limits<float>::infinity();
 }
 
-// Adds or removes readings of a block and updates the block's contributions to its class. Returns the cells whose
-// estimate may change.
+// Adds or removes readings of a block and updates the block's contributions to its class. Returns the cells
+// whose estimate may change.
 maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];

@@ -27,13 +27,13 @@ struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
 
-/// Wheel observations by place. Each class of ground in a block has its own evidence, which a Gaussian process over the
-/// class mean extends to nearby ground of the same class; each class has a posterior.
+/// Wheel observations by place. Each class of ground in a block has its own evidence, which a Gaussian
+/// process over the class mean extends to nearby ground of the same class; each class has a posterior.
 ///
-/// Blocks (BlockGrid) have a side of a quarter of the correlation length, so that the work for a sample does not depend
-/// on the map's resolution. Evidence from a floor below an overhang belongs to that floor: the evidence does not apply
-/// to the top surface, and contributes to the first class only if no raster contains classes. The same evidence in any
-/// order gives bitwise equal results. Not thread-safe while changed.
+/// Blocks (BlockGrid) have a side of a quarter of the correlation length, so that the work for a sample does
+/// not depend on the map's resolution. Evidence from a floor below an overhang belongs to that floor: the
+/// evidence does not apply to the top surface, and contributes to the first class only if no raster contains
+/// classes. The same evidence in any order gives bitwise equal results. Not thread-safe while changed.
 ///
 /// Evidence lowers an estimate immediately: no estimate exceeds the value that any single nearby place
 /// implies, if that place is weaker than the variation of its class explains or has only unverified readings.

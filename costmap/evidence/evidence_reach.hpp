@@ -20,8 +20,8 @@ class EvidenceReach {
 
   explicit EvidenceReach(std::shared_ptr<const GroundSite> site);
 
-  /// Adds the evidence of a block whose position may be wrong by reach_m, >= 0 [m]. Returns the cells of all patches
-  /// within the correlation length plus reach_m of the block.
+  /// Adds the evidence of a block whose position may be wrong by reach_m, >= 0 [m]. Returns the cells of all
+  /// patches within the correlation length plus reach_m of the block.
   maps::CellBox add(const BlockLevel& block, double reach_m);
 
   /// Boxes of cells, one for each patch; evidence has no effect outside these boxes.

@@ -12,8 +12,8 @@
 
 namespace talus::costmap {
 
-/// Data of an EvidenceField: blocks, their readings, the evidence of classes, and the patches within reach. Internal to
-/// EvidenceField and the computation of estimates.
+/// Data of an EvidenceField: blocks, their readings, the evidence of classes, and the patches within reach.
+/// Internal to EvidenceField and the computation of estimates.
 struct EvidenceStore {
   explicit EvidenceStore(std::shared_ptr<const GroundSite> of)
       : site(std::move(of)),

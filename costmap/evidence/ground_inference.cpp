@@ -77,8 +77,8 @@ InferredGround inferredGround(const EvidenceStore& store, const LocalGround& loc
       if (!(place.pull < 0.0)) bound.pull = out.pull;  // the place bounds the sinkage only
       out = weaker(out, bound);
     }
-  // A place within the variation of its class limits the mean only: the standard deviation of the estimate is not
-  // increased.
+  // A place within the variation of its class limits the mean only: the standard deviation of the estimate is
+  // not increased.
   for (const WeakPlace& place : local.lower)
     if (const auto weak = lowered(place, variation, at)) {
       GroundBelief bound = left(*weak, prior, ground, state.pull_std);

@@ -67,8 +67,8 @@ void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvide
   nearby.lower.back().pull = below;
 }
 
-// Uses the kMostNeighbours places nearest to `middle`, always including those of the patch. The remaining places become
-// separate bounds.
+// Uses the kMostNeighbours places nearest to `middle`, always including those of the patch. The remaining
+// places become separate bounds.
 LocalGround grounded(const EvidenceStore& store, NearbyEvidence nearby, const maps::Point& middle) {
   std::vector<PlaceEvidence>& places = nearby.places;
   if (places.size() > kMostNeighbours) {
@@ -105,8 +105,8 @@ Variation variationOf(const EvidenceStore& store, int class_index) noexcept {
           .correlation_length_m = store.model().parts().policy.correlation_length_m};
 }
 
-// The process contains only places within a correlation length of the patch. Places beyond, whose position uncertainty
-// reaches the patch, are bounds only.
+// The process contains only places within a correlation length of the patch. Places beyond, whose position
+// uncertainty reaches the patch, are bounds only.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of) {
   const int reach =
       store.blocks.reach() + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));

@@ -22,7 +22,8 @@ struct PlaceEvidence {
   double shared = 0.0;    ///< standard deviation by the error common to all evidence, >= 0 [-]
 };
 
-/// Variances of an estimate whose evidence has one common error b, standard normal, in addition to independent errors.
+/// Variances of an estimate whose evidence has one common error b, standard normal, in addition to
+/// independent errors.
 struct SharedError {
   double prior = 0.0;     ///< a^2: variance before any evidence, > 0 [-]
   double variance = 0.0;  ///< e^2: variance after the evidence without the common error, 0 to a^2 [-]
@@ -42,8 +43,8 @@ struct Variation {
   double correlation_length_m = 5.0;  ///< distance from which two places are uncorrelated [m]
 };
 
-/// Compactly supported positive definite kernel of melkumyan_ramos_2009 [-]: 1 at distance 0, 0 from the correlation
-/// length on.
+/// Compactly supported positive definite kernel of melkumyan_ramos_2009 [-]: 1 at distance 0, 0 from the
+/// correlation length on.
 ///   k(d) = (2 + cos(2 pi d/l))/3 (1 - d/l) + sin(2 pi d/l)/(2 pi)
 double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 
@@ -59,11 +60,11 @@ struct LearnedPlace {
   double shared = 0.0;  ///< change of the pull per standard deviation of the common error, >= 0 [-]
 };
 
-/// Gaussian-process regression of the departure (rasmussen_williams_2006, Eqs. 2.25, 2.26): factorised once for a set
-/// of evidence, then evaluated at any number of places. Two changes ensure that weaker evidence never raises an
-/// estimate (ours). First, a departure above the class of more than two standard deviations is limited to two. Second,
-/// negative weights are set to 0, and the weights of evidence stronger than its class are multiplied by the sum of all
-/// weights, limited to 0 to 1, over the sum of the positive weights.
+/// Gaussian-process regression of the departure (rasmussen_williams_2006, Eqs. 2.25, 2.26): factorised once
+/// for a set of evidence, then evaluated at any number of places. Two changes ensure that weaker evidence
+/// never raises an estimate (ours). First, a departure above the class of more than two standard deviations
+/// is limited to two. Second, negative weights are set to 0, and the weights of evidence stronger than its
+/// class are multiplied by the sum of all weights, limited to 0 to 1, over the sum of the positive weights.
 class GaussianProcess {
  public:
   /// With empty evidence all estimates equal the prior.
@@ -96,8 +97,8 @@ struct Departure {
 /// class raster, depart further than the class varies.
 double believedAlone(const Departure& reading, double class_std) noexcept;
 
-/// Ground that is weaker than its class, or has a greater sinkage, by the evidence of one place alone. No estimate
-/// nearby exceeds the value that this place alone implies.
+/// Ground that is weaker than its class, or has a greater sinkage, by the evidence of one place alone. No
+/// estimate nearby exceeds the value that this place alone implies.
 struct WeakPlace {
   maps::Point place;
   double pull = 0.0;         ///< departure of drawbar pull over load from the prior of its class, <= 0 [-]
@@ -125,8 +126,8 @@ std::optional<GroundBelief> lowered(const WeakPlace& place, const Variation& var
 /// order of several combinations has no effect.
 GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept;
 
-/// Bayesian generalised kernel inference (doherty_2019): a weighted mean of the evidence around a place, conjugate to
-/// the prior.
+/// Bayesian generalised kernel inference (doherty_2019): a weighted mean of the evidence around a place,
+/// conjugate to the prior.
 ///   mean = sum k y w / (1 + sum k w),  variance = prior / (1 + sum k w)
 ///   w = prior variance / measurement variance
 GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,

@@ -8,8 +8,8 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kReferenceSlip = 0.5;
-// Error of a departure extrapolated to the reference slip, per unit of slip: a constant, and beyond the reference slip
-// a term in proportion to the departure (ours).
+// Error of a departure extrapolated to the reference slip, per unit of slip: a constant, and beyond the
+// reference slip a term in proportion to the departure (ours).
 constexpr double kMissPerSlip = 0.06;
 constexpr double kMissPerSlipAndDeparture = 1.2;
 constexpr double kFlatFrom = 0.25;  // slip difference from which the error no longer grows
@@ -127,8 +127,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   const SteadyWheel& like = w.reference;
   const double class_pull = pullFromTorque(like.torque_over_load_radius, like.sinkage_over_radius);
   const double depth = std::min(z * like.sinkage_over_radius / w.expected.sinkage_over_radius, 0.99);
-  // Torque at the reference slip: extrapolated from the reading if mobilised, combined with the torque of the class,
-  // whose standard deviation increases with the departure of the sinkage from the class.
+  // Torque at the reference slip: extrapolated from the reading if mobilised, combined with the torque of the
+  // class, whose standard deviation increases with the departure of the sinkage from the class.
   const GroundClass& ground = model_.parts().classes[static_cast<std::size_t>(read.class_index)];
   const double deeper = pullFromTorque(like.torque_over_load_radius, depth) - class_pull;
   Estimate torque{like.torque_over_load_radius,
@@ -145,8 +145,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   return w;
 }
 
-// Departure of the ground under a wheel from its class by the side force, <= 0; infinite if the side force gives no
-// bound.
+// Departure of the ground under a wheel from its class by the side force, <= 0; infinite if the side force
+// gives no bound.
 double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
   if (!(w.held >= kHeld) || !(w.expected.hold > 0.0)) return std::numeric_limits<double>::infinity();
   const double thrust = w.reference.torque_over_load_radius;
@@ -167,7 +167,8 @@ double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) c
   return std::hypot(by_slip * kMissPerSlip, unfelt * class_std);
 }
 
-// `own`: departure of this wheel from the other wheels by torque and sinkage; its standard deviation is half its value.
+// `own`: departure of this wheel from the other wheels by torque and sinkage; its standard deviation is half
+// its value.
 Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) const {
   const double there = all.departure + own;
   const double error = std::hypot(noise_.gradient, noise_.model_pull, std::hypot(0.5 * own, w.steepness));
@@ -176,8 +177,8 @@ Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) 
   return {mean, std::hypot(growth(-1.0, all.share) * error, miss(w, all, mean))};
 }
 
-// Upper bound for a rover that may be stationary: the lower of the balance and the estimate from torque and sinkage, if
-// known; at most the class.
+// Upper bound for a rover that may be stationary: the lower of the balance and the estimate from torque and
+// sinkage, if known; at most the class.
 Estimate WheelObserver::upperBound(const Wheel& w, const Balance& all) const {
   Estimate most = w.by_torque;
   if (known(all.departure)) {

@@ -23,8 +23,8 @@ struct TelemetryReading {
   double torque_Nm = 0.0;                                 ///< torque of the wheel
   double sinkage_m = 0.0;
   double gradient = 0.0;  ///< slope of the ground along the heading, rise over run [-]
-  /// Slope to the left of the heading, rise over run [-], and angle from the wheel's plane to its direction of travel,
-  /// left positive.
+  /// Slope to the left of the heading, rise over run [-], and angle from the wheel's plane to its direction
+  /// of travel, left positive.
   double across = std::numeric_limits<double>::quiet_NaN();
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double drawbar_pull_N = 0.0;  ///< drawbar pull, measured on a test stand
@@ -63,8 +63,8 @@ struct ReadingNoise {
   double model_pull = 0.02;
 };
 
-/// Result of one reading: an estimate of the ground under the wheel at the reference slip 0.5, a bound of the place
-/// itself, or both.
+/// Result of one reading: an estimate of the ground under the wheel at the reference slip 0.5, a bound of the
+/// place itself, or both.
 struct WheelObservation {
   double time_s = 0.0;
   maps::Point place;
@@ -73,8 +73,8 @@ struct WheelObservation {
   Estimate sinkage;          ///< sinkage over radius [-]; infinite standard deviation: not measured
   double demand = 0.0;       ///< drawbar pull over load that the slope requires [-]
   double from_torque = 0.0;  ///< drawbar pull over load from torque and sinkage [-]; NaN: not measured
-  /// Standard deviation of `pull` by errors common to all readings, such as the error of the slip, which more readings
-  /// do not reduce; >= 0 [-]. NaN: unknown, `pull` may then only lower an estimate.
+  /// Standard deviation of `pull` by errors common to all readings, such as the error of the slip, which more
+  /// readings do not reduce; >= 0 [-]. NaN: unknown, `pull` may then only lower an estimate.
   double shared_std = 0.0;
   double share = 1.0;  ///< thrust of the class at the measured slip over that at the reference slip [-]
   Estimate by_slope{std::numeric_limits<double>::quiet_NaN(),
@@ -82,9 +82,8 @@ struct WheelObservation {
   double pose_std_m = 0.0;  ///< position uncertainty, one standard deviation
   bool bound = false;       ///< true if the rover may have been stationary: `pull` is then an upper bound
   bool pull_may_raise =
-      false;  ///< true if the sensors behind `pull` are verified; otherwise `pull` may only lower an
-              ///< estimate
-  bool sinkage_may_raise = false;  ///< the same for the sinkage
+      false;  ///< true if the sensors of `pull` are verified; otherwise `pull` may only lower an estimate
+  bool sinkage_may_raise = false;  ///< true if the sensors of the sinkage are verified
   std::uint16_t drive = 0;  ///< number of the drive (driveTag()): the sensors of each drive have their own
                             ///< errors
   GroundBound here{};       ///< bounds of the place itself
@@ -93,13 +92,14 @@ struct WheelObservation {
   bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0; }
 };
 
-/// Converts readings to observations of undisturbed ground at the reference slip 0.5, by two methods that are weighted
-/// by inverse variance:
+/// Converts readings to observations of undisturbed ground at the reference slip 0.5, by two methods that are
+/// weighted by inverse variance:
 ///
-/// Slope: the wheels of a steady rover together pull DP/N = tan(slope). The curve of each wheel, for its class and for
-/// undisturbed ground or a rut, gives the gradient at which the wheel drives at its slip s. The slope minus the
-/// load-weighted mean of these gradients is the departure d of the ground under all wheels at slip s. Ground of the
-/// share f of its class's thrust H departs by (1 - f) H(s) (GroundModel), and therefore at the reference slip by
+/// Slope: the wheels of a steady rover together pull DP/N = tan(slope). The curve of each wheel, for its
+/// class and for undisturbed ground or a rut, gives the gradient at which the wheel drives at its slip s. The
+/// slope minus the load-weighted mean of these gradients is the departure d of the ground under all wheels at
+/// slip s. Ground of the share f of its class's thrust H departs by (1 - f) H(s) (GroundModel), and therefore
+/// at the reference slip by
 ///   k d,  k = H(0.5)/H(s) in [1, 3]
 /// (ours; for soils drawn around mars_crusty and phi 37 deg the departure is within 0.02 of k d if strength
 /// varies, and up to a third less than k d if the shear modulus varies). The share of d that errors of the

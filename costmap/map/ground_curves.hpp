@@ -49,8 +49,8 @@ class GroundCurves {
   /// Returns boxes that contain all cells whose curve depends on several kinds of ground.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Discards all curve indices when none is free; a higher level has coarser steps. The steps of cost layers
-  /// become coarser before those of estimates, because estimates determine which ground is drivable.
+  /// Discards all curve indices when no index is free; a higher level has coarser steps. The steps of cost
+  /// layers become coarser before those of estimates, because estimates determine which ground is drivable.
   void restart(int level) {
     level_ = level;
     step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);

@@ -60,8 +60,8 @@ class MapSurface {
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   const HazardLimits& limits() const noexcept { return limits_; }
-  /// Hazards by rocks, keep-out areas and refused places, without the clearance around them; empty if the map
-  /// has none.
+  /// Hazards by rocks, keep-out areas and refused places, without clearance; empty if the map contains none
+  /// of these hazards.
   const maps::Raster<Hazard>& declared() const noexcept { return declared_; }
   /// Returns the places declared impassable, in order.
   const std::vector<RefusedPlace>& refused() const noexcept { return refused_; }

@@ -45,8 +45,8 @@ struct IntakeOptions {
   bool settles = false;
 };
 
-/// Identifier of a drive: a checksum of the values that maps use, as 16 hexadecimal digits. File name, order of columns
-/// and other columns have no effect.
+/// Identifier of a drive: a checksum of the values that maps use, as 16 hexadecimal digits. File name, order
+/// of columns and other columns have no effect.
 std::string driveId(const terramech::Telemetry& telemetry);
 
 /// Adds telemetry to a map in parts, while the telemetry is received. The state of the sensor checks is kept
@@ -66,9 +66,9 @@ class DriveIntake {
 
   /// Adds one part. Columns and errors as addDrive().
   void add(const terramech::Telemetry& telemetry);
-  /// Evaluates all rows so far again, with the sensor checks of all rows, and replaces the evidence of the parts in the
-  /// map and the journal: the result is bitwise equal to that of addDrive() for the same rows. Takes as long as
-  /// addDrive(). Throws std::logic_error unless IntakeOptions::settles is true.
+  /// Evaluates all rows so far again, with the sensor checks of all rows, and replaces the evidence of the
+  /// parts in the map and the journal: the result is bitwise equal to that of addDrive() for the same rows.
+  /// Takes as long as addDrive(). Throws std::logic_error unless IntakeOptions::settles is true.
   void settle();
   /// Report of all parts so far.
   DriveReport report() const;
@@ -94,9 +94,10 @@ class DriveIntake {
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 
-/// Adds each drive of a journal that the map does not contain, and publishes: the same map and journal give a bitwise
-/// equal map. Drives that the map contains are verified in the journal; one finding counts the drives that the journal
-/// lacks. Throws InputError for a damaged journal; the map then contains the drives before the damage.
+/// Adds each drive of a journal that the map does not contain, and publishes: the same map and journal give a
+/// bitwise equal map. Drives that the map contains are verified in the journal; one finding counts the drives
+/// that the journal lacks. Throws InputError for a damaged journal; the map then contains the drives before
+/// the damage.
 DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal);
 
 }  // namespace talus::costmap

@@ -19,8 +19,8 @@ std::string hexadecimal(const Checksum& sum) {
   return digits.data();
 }
 
-// Calls take(row) for each row and take_rejected(row) for each rejected row, in the order of the file: the identifier
-// of a drive does not depend on its division into parts.
+// Calls take(row) for each row and take_rejected(row) for each rejected row, in the order of the file: the
+// identifier of a drive does not depend on its division into parts.
 template <typename Take, typename TakeRejected>
 void eachRow(const terramech::Telemetry& telemetry, Take&& take, TakeRejected&& take_rejected) {
   std::size_t rejected = 0;

@@ -10,8 +10,8 @@
 
 namespace talus::costmap {
 
-/// Identifier of a drive received in parts: a checksum of the used columns of each row, ordered by name, as 16
-/// hexadecimal digits. The order of a file's columns and unused columns have no effect.
+/// Identifier of a drive received in parts: a checksum of the used columns of each row, ordered by name, as
+/// 16 hexadecimal digits. The order of a file's columns and unused columns have no effect.
 class DriveId {
  public:
   void add(const terramech::Telemetry& telemetry);

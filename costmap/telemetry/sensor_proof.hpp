@@ -15,14 +15,15 @@ namespace talus::costmap {
 /// Verifies the sensors of a drive against each other: only verified readings may raise an estimate. Each
 /// test checks a property that a stuck, biased, displaced or missing sensor does not have (all limits ours):
 ///
-/// slip        increases with the slope; at least 6 rows are on level ground, and the slip there has no step, because
-///             the slip on either side of a step may be wrong
-/// slope       as measured increases with the map's slope at the rover's position, differs from the map's by at most
-///             0.03 on average, and its scale against the map's exceeds 1.15 by at most two standard errors
+/// slip        increases with the slope; at least 6 rows are on level ground, and the slip there has no step,
+///             because the slip on either side of a step may be wrong
+/// slope       as measured increases with the map's slope at the rover's position, differs from the map's by
+///             at most 0.03 on average, and its scale against the map's exceeds 1.15 by at most two standard
+///             errors
 /// torque and  taken together as pull, increase with the slope and differ from it by at most 0.08 on average
 /// sinkage
-/// pose        moves between rows no further than the speed of earlier rows explains; after a jump no sensor is
-///             verified until the position returns, because the position on either side may be wrong
+/// pose        moves between rows no further than the speed of earlier rows explains; after a jump no sensor
+///             is verified until the position returns, because the position on either side may be wrong
 class SensorProof {
  public:
   /// Measurements of one wheel, and data of its place. NaN: unknown.

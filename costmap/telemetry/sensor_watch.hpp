@@ -22,7 +22,8 @@ struct SensorLimits {
                                 ///< stuck
   double slip_excess = 0.05;    ///< mean slip above that of the soil on these slopes from which an excess
                                 ///< above the scatter is reported
-  /// Least mean difference of the pull from torque and sinkage and the required pull that counts as a bias [-].
+  /// Least mean difference of the pull from torque and sinkage and the required pull that counts as a bias
+  /// [-].
   double bias = 0.04;
   std::size_t bias_rows = 30;    ///< least number of rows for a bias or a slip excess
   double climb = 0.03;           ///< gradient from which a driven wheel cannot slip backwards [-]

@@ -44,7 +44,8 @@ double slipAt(double i) noexcept {
 
 }  // namespace
 
-// Mean pull of all wheels of a rover over slip, and their thrust over that of the class at the reference slip.
+// Mean pull of all wheels of a rover over slip, and their thrust over that of the class at the reference
+// slip.
 struct SlipFit::Curve {
   std::array<double, kSlips> pull{}, share{};
 

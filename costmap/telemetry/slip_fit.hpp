@@ -17,19 +17,20 @@ namespace talus::costmap {
 struct SlipPosterior {
   double slip_bias = 0.0;   ///< b: offset, the reading at zero slip [-]
   double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
-  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and its standard
-  /// deviation by the likelihood alone; infinite if the drive gives no information [-].
+  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and its
+  /// standard deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
-  /// By class: the same departure with its posterior standard deviation; and for a sound sensor: b normal, 0.03, -ln s
-  /// half normal, 0.05 [-].
+  /// By class: the same departure with its posterior standard deviation; and for a sound sensor: b normal,
+  /// 0.03, -ln s half normal, 0.05 [-].
   std::vector<Estimate> learned, if_sound;
-  /// By class: amount subtracted from the departure for decisions, >= 0: for ground stronger than its class one
-  /// posterior standard deviation, at most the departure [-].
+  /// By class: amount subtracted from the departure for decisions, >= 0: for ground stronger than its class
+  /// one posterior standard deviation, at most the departure [-].
   std::vector<double> caution;
 };
 
-/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For wheels on
-/// ground of a class that pull P(i) at slip i, with thrust H(i), ground that departs by d at the reference slip pulls
+/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For
+/// wheels on ground of a class that pull P(i) at slip i, with thrust H(i), ground that departs by d at the
+/// reference slip pulls
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)
@@ -60,7 +61,8 @@ class SlipFit {
   /// Adds a moment; a moment with a number that is not finite is ignored.
   void take(const Moment& moment);
 
-  /// Estimate from all moments so far. `excess`: mean excess of the measured slopes of a run over the map's [-].
+  /// Estimate from all moments so far. `excess`: mean excess of the measured slopes of a run over the map's
+  /// [-].
   std::shared_ptr<const SlipPosterior> fitted(
       const std::function<double(const std::string& run)>& excess) const;
 

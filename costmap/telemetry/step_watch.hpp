@@ -5,8 +5,8 @@
 
 namespace talus::costmap {
 
-/// Detects a step between two constants in a number with scatter: the greatest difference of two means over all
-/// positions of the step, relative to the scatter on both sides (ours).
+/// Detects a step between two constants in a number with scatter: the greatest difference of two means over
+/// all positions of the step, relative to the scatter on both sides (ours).
 class StepWatch {
  public:
   /// `least`: smallest step that is reported, > 0, in the unit of the values.

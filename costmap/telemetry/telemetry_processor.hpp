@@ -25,7 +25,8 @@ struct DriveVerdict {
 /// Returns the observation reduced to the bound of its place, without estimates.
 WheelObservation boundAlone(const WheelObservation& observation);
 
-/// Processes the moments of a drive in order: sensor checks, observation, verification. Keeps a reference to the map.
+/// Processes the moments of a drive in order: sensor checks, observation, verification. Keeps a reference to
+/// the map.
 ///
 /// Each channel of each reading is first checked for danger separately (DangerWatch). A dangerous reading
 /// bounds its place, even if the reading is rejected, and is not used to verify sensors. A suspected reading

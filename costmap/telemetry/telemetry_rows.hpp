@@ -38,11 +38,11 @@ class TelemetryRows {
   /// Gradient along the heading, as measured by the rover and from the map; NaN: unknown.
   double measuredGradient(std::size_t i) const;
   double mapGradient(std::size_t i) const { return mapGradient(reading(i), heading(i)); }
-  /// Lowest possible gradient along the heading: the lower of the measured gradient and the map's, or steepestDescent()
-  /// if both are unknown.
+  /// Lowest possible gradient along the heading: the lower of the measured gradient and the map's, or
+  /// steepestDescent() if both are unknown.
   double leastGradient(std::size_t i) const;
-  /// Lowest possible gradient of a row whose heading is unreliable: the map's steepest descent, or the measured
-  /// gradient if lower.
+  /// Lowest possible gradient of a row whose heading is unreliable: the map's steepest descent, or the
+  /// measured gradient if lower.
   double steepestDescent(std::size_t i) const;
 
   /// Returns the indices of all rows by moment: rows of different wheels at one time of one run. The order of

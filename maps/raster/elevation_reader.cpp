@@ -150,7 +150,7 @@ bool isSearchedWhole(GDALDataset& pixels) {
   return static_cast<double>(pixels.GetRasterXSize()) * pixels.GetRasterYSize() <= kSearchedWhole;
 }
 
-// Pixels searched for lost data: the whole file, or the box to read with a margin of its own size.
+// Pixels searched for lost data: the whole file, or the box to read, extended on each side by its own size.
 PixelBox searched(const Selection& chosen, const PixelBox& read) {
   const PixelBox whole = wholeOf(*chosen.pixels);
   if (isSearchedWhole(*chosen.pixels)) return whole;

@@ -12,9 +12,9 @@ class GdalErrors {
   GdalErrors& operator=(const GdalErrors&) = delete;
   ~GdalErrors();
 
-  /// GDAL's last message, first line; "unknown error" if there is none.
+  /// Returns the first line of GDAL's last message; "unknown error" if GDAL has reported no error.
   std::string last() const;
-  /// Whether an error of class CE_Failure or worse is the last error since construction.
+  /// True if the last error since construction has class CE_Failure or worse.
   bool any() const;
 };
 

@@ -107,7 +107,8 @@ double WongReece::exit_rad(double entry_rad) const {
 }
 
 double WongReece::smallAngleEntry_rad(double load_N) const {
-  // W ~ r b k (r/2)^n theta_1^(2n+1) int_0^1 (1 - (1 - (1 - m) s)^2)^n ds; the integrand is evaluated at s = 1/2.
+  // W ~ r b k (r/2)^n theta_1^(2n+1) int_0^1 (1 - (1 - (1 - m) s)^2)^n ds; the integrand is evaluated at s =
+  // 1/2.
   const double a = 1.0 - 0.5 * (1.0 - peak_fraction_);
   const double shape = std::pow(1.0 - a * a, exponent_);
   const double unit = radius_m_ * width_m_ * modulus_ * std::pow(0.5 * radius_m_, exponent_) * shape;

@@ -69,8 +69,9 @@ struct ModelFile {
 ///   {name: ..., soil: {...}|NAME, model: wong-reece|linear-formula, gravity_m_s2: 9.80665,
 ///    sensors: {load_N, slip, torque_Nm, sinkage_m, drawbar_pull_N, side_force_N},
 ///    wheel: {...}, slip_along_travel: false, effects: [{name, covariate, channel, parameters: [...], knots:
-///    [...], only: {column, value}}], noise: {...}, fitted: [...], covariance: [...], trained: [{column, range:
-///    [low, high], below: [4], above: [4], reach_below: [4], reach_above: [4]}], base: {soil, effects, kept: [4]}}
+///    [...], only: {column, value}}], noise: {...}, fitted: [...], covariance: [...], trained: [{column,
+///    range: [low, high], below: [4], above: [4], reach_below: [4], reach_above: [4]}], base: {soil, effects,
+///    kept: [4]}}
 /// or a bare soil. Throws InputError with file, line and field.
 ModelFile loadModel(const std::string& path);
 

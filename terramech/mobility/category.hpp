@@ -49,8 +49,8 @@ void validate(const CategoryThresholds& thresholds);
 
 /// Returns the category by the rule of thesis 3.5, with its strict inequalities: DP/W < dp_low dangerous, >
 /// dp_high safe, otherwise marginal; z > critical dangerous, z < threshold no change, otherwise one level
-/// down; torque likewise. The level reductions by sinkage and by torque are added (not specified in the
-/// thesis). The category is Unknown if a given number is NaN.
+/// down; the torque has the same rule with its own thresholds. The level reductions by sinkage and by torque
+/// are not specified in the thesis. The category is Unknown if a given number is NaN.
 Category categorise(const WheelCondition& condition, const CategoryThresholds& thresholds);
 
 }  // namespace talus::terramech

@@ -36,8 +36,8 @@ TEST(Errata, Equation23OffsetTerm) {
 }
 
 TEST(Errata, Equation29FollowsFromTheCorrectedFormOnly) {
-  // M1 of Eq. 2.10 as printed, from W and T of stresses with tau_offset; with the corrected Eq. 2.3 the
-  // identity 2.9 holds.
+  // M1 of Eq. 2.10 as printed, from W and T of stresses with tau_offset; with the corrected Eq. 2.3, identity
+  // 2.9 is satisfied.
   const Wheel wheel = kThesisWheel;
   const double z = sinkage_m(wheel, kTheta1), c = 4000.0, t = 0.5, sigma_m = 18000.0, k = 0.02;
   WheelSample s{.load_N = 0.0, .torque_Nm = 0.0, .sinkage_m = z, .slip = 0.5};

@@ -34,8 +34,8 @@ double modulusOf(const Soil& soil) {
   return soil.cohesive_modulus + soil.frictional_modulus;
 }
 
-/// Limits c2 so that the stress peak (c1 + c2 i) theta_1 stays inside the contact at every slip in [-1, 1]; other
-/// functions reject a soil without this property.
+/// Limits c2 so that the stress peak (c1 + c2 i) theta_1 stays inside the contact at every slip in [-1, 1];
+/// other functions reject a soil without this property.
 void keepPeakInside(Soil& soil) {
   const double room = std::max(0.0, std::min(soil.c1, 1.0 - soil.c1));
   soil.c2 = std::clamp(soil.c2, -room, room);

@@ -69,7 +69,8 @@ std::set<std::string> columnsOf(const TraceResult& result) {
   return there;
 }
 
-/// Log-likelihood of errors with the standard deviation of the floor, except for a constant common to all models.
+/// Log-likelihood of errors with the standard deviation of the floor, except for a constant common to all
+/// models.
 double logLikelihood(int rows, const ChannelErrors& rmse, const ChannelErrors& floor) {
   double sum = 0.0;
   for (std::size_t c = 0; c < kChannels; ++c)

@@ -7,11 +7,12 @@
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
-/// Likelihood for residual tracing: rows whitened separately, linear in the parameters about a fitted model, with a
-/// Gaussian prior and an error common to the rows of a run.
+/// Likelihood for residual tracing: rows whitened separately, linear in the parameters about a fitted model,
+/// with a Gaussian prior and an error common to the rows of a run.
 namespace talus::terramech {
 
-/// Prior of the parameters, as steps from the model's current values: mean and 1 / variance; precision 0: no prior.
+/// Prior of the parameters, as steps from the model's current values: mean and 1 / variance; precision 0: no
+/// prior.
 struct StepPrior {
   Eigen::VectorXd mean, precision;
 };
@@ -32,11 +33,11 @@ struct RunSums {
 
 /// Fitted steps of each table, and the likelihood of each fold under the fits to the other folds.
 struct HeldOutFit {
-  /// Sum over folds of ln p(rows of the fold | rows of the other folds, prior), without the constant common to all
-  /// models: the predictive density. A parameter that the other folds do not determine has its prior.
+  /// Sum over folds of ln p(rows of the fold | rows of the other folds, prior), without the constant common
+  /// to all models: the predictive density. A parameter that the other folds do not determine has its prior.
   Eigen::VectorXd log_likelihood;
-  /// Sum over parameters of the least squared departure from the prior among all fits with and without each fold: a
-  /// departure that a single fold determines does not count.
+  /// Sum over parameters of the least squared departure from the prior among all fits with and without each
+  /// fold: a departure that a single fold determines does not count.
   Eigen::VectorXd prior_chi2;
   Eigen::MatrixXd steps;  ///< fitted to all rows, parameters x tables
   /// log_likelihood - prior_chi2 / 2 (T34): each prior counts once, and a soil closer to its prior has a
@@ -44,12 +45,12 @@ struct HeldOutFit {
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
-/// Likelihood of residuals Y = X step + e + F u: e independent of unit variance, F the effect of a shared error on a
-/// whitened row, u ~ N(0, R), one u per unit.
+/// Likelihood of residuals Y = X step + e + F u: e independent of unit variance, F the effect of a shared
+/// error on a whitened row, u ~ N(0, R), one u per unit.
 class RunLikelihood {
  public:
-  /// `factor`: F of each row; `unit`: number of its run from 0, empty if rows share no error. Rows of a unit in
-  /// different folds count as different units.
+  /// `factor`: F of each row; `unit`: number of its run from 0, empty if rows share no error. Rows of a unit
+  /// in different folds count as different units.
   RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit, const Folds& folds);
 
   /// Sets the tables: whitened residuals, (rows * kChannels) x tables.
@@ -65,8 +66,8 @@ class RunLikelihood {
   HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
   /// Most likely covariance R of a unit's error with these columns in the model, with strength and stiffness
-  /// uncorrelated with other components: expectation maximisation of the restricted likelihood (laird_ware_1982) from
-  /// `start`.
+  /// uncorrelated with other components: expectation maximisation of the restricted likelihood
+  /// (laird_ware_1982) from `start`.
   RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
   bool hasUnits() const { return !information_.empty(); }

@@ -155,9 +155,9 @@ Eigen::VectorXd Whitening::apply(const Eigen::MatrixXd& residual) const {
 
 namespace {
 
-/// Least variance of each channel: a sixteenth of the median variance, which limits the weight of a reading near zero
-/// with a relative error. The errors of the quadrature, and of the first-order noise of slip and load, would otherwise
-/// exceed that of the sensor.
+/// Least variance of each channel: a sixteenth of the median variance, which limits the weight of a reading
+/// near zero with a relative error. The errors of the quadrature, and of the first-order noise of slip and
+/// load, would otherwise exceed that of the sensor.
 Eigen::Vector4d leastVariance(const Trial& trial, const Eigen::MatrixXd& level, const SensorNoise& noise) {
   Eigen::Vector4d least;
   for (int c = 0; c < kChannels; ++c) {

@@ -97,7 +97,8 @@ struct GroupErrors {
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
-/// Errors on held-out rows. The parameters are refitted without each fold; the choice of effects used all rows.
+/// Errors on held-out rows. The parameters are refitted without each fold; the choice of effects used all
+/// rows.
 struct HeldOut {
   std::string scheme;         ///< the kind of rows that are held out together
   ChannelErrors base_rmse{};  ///< errors of the base model, with refitted soil if the soil is fitted

@@ -17,8 +17,8 @@ namespace talus::terramech {
 /// Fits a model to rows, and scores other models on the same rows with the same noise.
 class TrialFit {
  public:
-  /// Estimates the noise for `base` and fits its free parameters, or the whole soil if `fit_soil`. `go_on` is called
-  /// before each round of the fit; false ends the fit.
+  /// Estimates the noise for `base` and fits its free parameters, or the whole soil if `fit_soil`. `go_on` is
+  /// called before each round of the fit; false ends the fit.
   TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
            const std::function<bool(double)>& go_on);
 

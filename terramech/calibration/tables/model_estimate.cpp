@@ -74,7 +74,7 @@ SoilEstimate soilOf(const ModelSoil& found) {
 
 // Channel without which a soil fits best, if any.
 struct OddColumn {
-  std::string column;         // empty: none
+  std::string column;         // empty: no column
   double misfit = kMisfit;    // misfit of the other channels
   bool contradicted = false;  // the soil from at least two other channels does not explain this channel
 };

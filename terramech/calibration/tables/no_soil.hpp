@@ -27,7 +27,7 @@ const char* columnOf(Channel channel);
 
 /// A column of the table, and the share that the soil leaves unexplained.
 struct UnexplainedColumn {
-  std::string column;  ///< empty: none
+  std::string column;  ///< empty: no column
   double left = 0.0;   ///< root mean square of the residuals over that of the readings [-]
 };
 

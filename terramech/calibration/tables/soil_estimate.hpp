@@ -24,7 +24,7 @@ struct EstimateOptions {
   std::string shear_modulus;    ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
   std::string prior;            ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
   std::string rover;            ///< library name or file with default wheel dimensions; may be empty
-  std::string model;            ///< wong-reece: refined model whose effects are applied; empty: none
+  std::string model;            ///< wong-reece: refined model whose effects are applied; empty: no model
   bool whole_equation = false;  ///< linear-offset: include M1 of Eq. 2.9
   bool recursive = false;       ///< process rows one by one and store each estimate
   double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] for a table without a width column; 0:

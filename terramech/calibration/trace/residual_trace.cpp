@@ -125,8 +125,8 @@ void dropIdle(Path& path) {
   }
 }
 
-/// Finishes the result. While effects increase the held-out error of some channel, removes the last effect found in
-/// that channel.
+/// Finishes the result. While effects increase the held-out error of some channel, removes the last effect
+/// found in that channel.
 void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
                      const std::function<bool(double)>& go_on) {
   while (true) {
@@ -142,8 +142,9 @@ void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& option
   }
 }
 
-/// Re-tests each earlier effect after a new one is accepted, because both may explain the same residual. An effect is
-/// replaced if an alternative has a clearly higher score: a superfluous effect would distort the further search.
+/// Re-tests each earlier effect after a new one is accepted, because both may explain the same residual. An
+/// effect is replaced if an alternative has a clearly higher score: a superfluous effect would distort the
+/// further search.
 void reconsider(Path& path) {
   if (path.effects.size() > path.pinned + 1) check(path);
   for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {

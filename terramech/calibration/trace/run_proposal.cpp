@@ -33,7 +33,8 @@ struct JointPrediction {
   Eigen::MatrixXd covariance;
 };
 
-/// Predictions of a model for the rows of a trial, and the joint distribution of any of the measured readings.
+/// Predictions of a model for the rows of a trial, and the joint distribution of any of the measured
+/// readings.
 class CauseOnRows {
  public:
   CauseOnRows(const RefinedModel& model, const SharedError& shared, const Trial& trial)
@@ -119,7 +120,8 @@ bool varies(const Trial& trial, const std::string& column) {
   return std::find(trial.covariates.begin(), trial.covariates.end(), column) != trial.covariates.end();
 }
 
-/// Columns that a run sets: those of the causes, and the load. The rim speed follows from travel speed and slip.
+/// Columns that a run sets: those of the causes, and the load. The rim speed follows from travel speed and
+/// slip.
 std::vector<std::string> columnsToSet(const TraceResult& result) {
   std::set<std::string> columns{"load_N"};
   const auto add = [&](const Candidate& c) {
@@ -311,7 +313,8 @@ class RunChoice {
   }
 
  private:
-  /// Logarithm of the sum over pairs of exp(-B) after a run; the logarithm keeps the order if all B are large.
+  /// Logarithm of the sum over pairs of exp(-B) after a run; the logarithm keeps the order if all B are
+  /// large.
   double confusion(const std::vector<double>& apart, int run) const {
     const std::vector<double>& own = distances_[static_cast<std::size_t>(run)];
     double least = apart[0] + own[0], sum = 0.0;

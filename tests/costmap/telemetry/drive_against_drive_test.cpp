@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Each, OneFaultyDrive,
 
 class GentleDrive : public ::testing::TestWithParam<Fault> {};
 
-// Property: a sound drive on gentle slopes lowers its class; a faulty drive that may not raise, on the same lines or on
-// others, allows no cell again.
+// Property: a sound drive on gentle slopes lowers its class; a faulty drive that may not raise, on the same
+// lines or on others, allows no cell again.
 TEST_P(GentleDrive, IsNotUndoneByADriveThatMayNotRaise) {
   const auto gentle = [] { return mapOf(testSand(), 4, 0.25); };
   const auto isAllowed = [](const TraversabilityMap& map) {

@@ -12,8 +12,9 @@
 namespace talus::costmap {
 namespace rover_fault_test {
 
-// Number of cells and headings, uphill or level, that were refused and are now allowed. (Downhill,
-// GroundModel brakes less after a drive over weaker ground, and the cell may become allowed.)
+// Number of cells and headings, uphill or level, refused in `before` and allowed in `after`. Downhill
+// headings are not counted: GroundModel brakes less after a drive over weaker ground, and a refused cell may
+// become allowed.
 int freed(const TraversabilityMap& before, const TraversabilityMap& after) {
   const auto a = before.published(), b = after.published();
   int count = 0;

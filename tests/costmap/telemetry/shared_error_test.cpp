@@ -68,8 +68,8 @@ double pullStd(const TraversabilityMap& map, maps::Cell cell) {
 // is the growth of a departure from s to slip 0.5; a reading with a larger k raises no estimate. g' is the
 // slope of the mobility curve.
 //   m^2 = (0.4 (k - 1) p)^2 + (0.06 (0.5 - s))^2, 0.5 - s at most 0.25: other differences between soils
-//   shared^2 = m^2 + of_sensor^2, stored in steps of 1.5 from 0.02 on, rounded up; of_sensor: remaining error of the drive's sensor
-//   v = m^2 + k^2 (0.01^2 + 0.02^2 + (0.03 g')^2), its root rounded up to 0.025 2^(i/2)
+//   shared^2 = m^2 + of_sensor^2, stored in steps of 1.5 from 0.02 on, rounded up; of_sensor: remaining error
+//   of the drive's sensor v = m^2 + k^2 (0.01^2 + 0.02^2 + (0.03 g')^2), its root rounded up to 0.025 2^(i/2)
 struct Shared {
   double std, weight;
 };

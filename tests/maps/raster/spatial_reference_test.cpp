@@ -159,9 +159,9 @@ TEST(SpatialReference, GeographicCoordinatesOnEarthAreWgs84) {
     GeoPoint wgs84_deg;
     double most_m;
   };
-  // Printed in: swisstopo, "Formeln und Konstanten", origin of LV03 and LV95 in CHTRS95; Kadaster, RDNAPTRANS, its origin;
-  // Ordnance Survey, "A guide to coordinate systems in Great Britain", example C.1 on its own datum, whose WGS 84 position
-  // the transformation of seven parameters gives to 5 m.
+  // Printed in: swisstopo, "Formeln und Konstanten", origin of LV03 and LV95 in CHTRS95; Kadaster,
+  // RDNAPTRANS, its origin; Ordnance Survey, "A guide to coordinate systems in Great Britain", example C.1 on
+  // its own datum, whose WGS 84 position the transformation of seven parameters gives to 5 m.
   for (const Known& known : {Known{"EPSG:21781", {600000, 200000}, {46.951082877, 7.438632495}, 2.0},
                              Known{"EPSG:2056", {2600000, 1200000}, {46.951082877, 7.438632495}, 2.0},
                              Known{"EPSG:28992", {155000, 463000}, {52.15517440, 5.38720621}, 2.0},
