@@ -6,10 +6,10 @@
 
 namespace talus {
 
-/// A file that is replaced atomically: the content goes to a temporary file in the same folder, is
-/// synchronised to the disk and then renamed to the final path. A symbolic link stays a link, and its target
-/// is replaced. A device or a FIFO receives the bytes by copying. The constructor removes temporary files of
-/// the same name that terminated processes left.
+/// A file that is replaced atomically: the content is written to a temporary file in the same folder, and the
+/// temporary file is synchronised to the disk and renamed to the final path. A symbolic link stays a link,
+/// and its target is replaced. A device or a FIFO receives the bytes by copying. The constructor removes
+/// temporary files of the same name that terminated processes left.
 class OutputFile {
  public:
   /// Throws InputError if the folder does not exist or is not writable, or if the path is a directory. The
@@ -44,7 +44,7 @@ class OutputFile {
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;
-  bool in_place_ = false;  // whether the path is a device or a FIFO
+  bool in_place_ = false;  // true if the path is a device or a FIFO
 };
 
 /// Writes `content` to a file through OutputFile. Throws InputError if the file cannot be written, for

@@ -16,7 +16,7 @@ struct ProgressMonitor {
     if (progress) progress(fraction);
   }
 
-  /// Whether a stop was requested.
+  /// True if a stop was requested.
   bool stopped() const noexcept { return stop.stop_requested(); }
 };
 

@@ -12,14 +12,14 @@ struct SlopeRow {
   double step = 1.0;  ///< step of the gradients along
   double first = 0.0,
          last = -1.0;  ///< interval of gradients without failure; infinite beyond the tabulated gradients
-  bool tips_before = false, tips_behind = false;  ///< whether tipping limits `first`, `last`
+  bool tips_before = false, tips_behind = false;  ///< true if tipping limits `first`, `last`
   int first_node = 0;                             ///< gradient of states[0], in steps
   std::vector<terramech::SlopeState> states{};    ///< states in the interval, tipping ones included
   std::vector<terramech::SlopeState> all{};       ///< states at all tabulated gradients
   std::vector<std::pair<double, double>>
       margins_rad{};  ///< stability margin by gradient along, over the interval of `states`
 
-  /// Whether a gradient lies within the interval without failure.
+  /// True if a gradient lies within the interval without failure.
   bool holds(double along) const noexcept { return along >= first && along <= last; }
 
   /// Stability margin [rad] by linear interpolation; NaN without states, or if the height of the centre of

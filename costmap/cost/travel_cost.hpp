@@ -200,9 +200,9 @@ class TravelCost {
   }
   const std::vector<TurnCosts>& turns() const noexcept { return turns_; }
 
-  /// Whether the rover tips on the cell with this heading, standing or turning in place, on any soil.
+  /// True if the rover tips on the cell with this heading, standing or turning in place, on any soil.
   bool tips(CellCode cell, Direction heading) const noexcept;
-  /// Whether the cell is steep enough that the rover may tip in some heading.
+  /// True if the cell is steep enough that the rover may tip in some heading.
   bool mayTip(CellCode cell) const noexcept;
 
   const Limits& limits() const noexcept { return limits_; }

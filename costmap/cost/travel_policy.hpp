@@ -27,7 +27,7 @@ struct TravelPolicy {
       0.01;  ///< probability that insufficient drawbar pull immobilises a rover with slip monitoring, which
              ///< usually stops and backs out (ours, not from the literature) [-]
   double unmonitored_entrapment = 1.0;  ///< the same probability for a rover without slip monitoring [-]
-  bool unmonitored = false;             ///< whether this drive has no slip monitoring
+  bool unmonitored = false;             ///< true if this drive has no slip monitoring
   double risk_weight_J = 1e8;           ///< cost of the loss of the rover [J]
   double correlation_length_m = 5.0;    ///< correlation length of the soil within one class
 

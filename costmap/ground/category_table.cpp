@@ -17,7 +17,7 @@ constexpr int kJudgedHeadings =
                               // symmetric
 constexpr int kSteps = 2898;  // greatest gradient of CellCode in steps: 2048 sqrt(2)
 
-// Whether the reason for the refusal depends on the uncertain pull of the ground.
+// True if the reason for the refusal depends on the uncertain pull of the ground.
 bool isOfSoil(Refusal refusal) {
   return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }

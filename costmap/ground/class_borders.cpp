@@ -5,7 +5,7 @@
 namespace talus::costmap {
 namespace {
 
-// For each column of a row: whether all cells within `reach` columns have the same class.
+// For each column of a row: true if all cells within `reach` columns have the same class.
 std::vector<bool> alikeAlong(const maps::Raster<std::uint8_t>& classes, int row, int reach) {
   const int width = classes.grid().width;
   std::vector<bool> alike(static_cast<std::size_t>(width), true);

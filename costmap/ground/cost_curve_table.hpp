@@ -16,11 +16,12 @@ namespace talus::costmap {
 
 /// Assigns indices (0 to 253) of cost curves to estimates of the ground. The indices 0 .. classes-1 belong to
 /// the priors of the classes. The curve of a prior is computed at the first call of prior() for its class,
-/// and refuses every heading before; the constructor computes that of the first class, the default. An
-/// estimate from telemetry is quantised towards danger (GroundKind) and gets an index at its first
+/// and refuses every heading before; the constructor computes the curve of the first class, the default. An
+/// estimate from telemetry is quantised towards danger (GroundKind) and receives an index at its first
 /// occurrence. If all indices are used:
-///   - the estimate gets the index of a class whose prior was not requested;
-///   - else the index of the strongest known estimate of the same classes that is no better in any quantity;
+///   - the estimate receives the index of a class whose prior was not requested;
+///   - otherwise the index of the strongest earlier estimate of the same classes that is no better in any
+///     quantity;
 ///   - else CellCode::kBlocked.
 /// Exhausted indices therefore never reduce a cost. Not thread-safe.
 class CostCurveTable {
@@ -32,8 +33,8 @@ class CostCurveTable {
   const GroundBelief& priorBelief(int class_index) const {
     return priors_[static_cast<std::size_t>(class_index)];
   }
-  /// Returns the index of the curve of an estimate from telemetry. No cost of the curve is below that of the
-  /// same estimate on `other_class`.
+  /// Returns the index of the curve of an estimate from telemetry. No cost of the curve is below the cost of
+  /// the same estimate on `other_class`.
   std::uint8_t learned(int class_index, int other_class, const GroundBelief& belief);
   std::uint8_t learned(int class_index, const GroundBelief& belief) {
     return learned(class_index, class_index, belief);
@@ -45,7 +46,7 @@ class CostCurveTable {
   /// CellCode::kBlocked.
   std::uint8_t dearer(std::uint8_t number, int step, double added_J_per_m);
 
-  /// Whether an estimate got a substitute curve since the last restart.
+  /// True if an estimate received a substitute curve since the last restart.
   bool overflowed() const noexcept { return overflowed_; }
   /// Returns the fraction, 0 to 1, of the indices for estimates from telemetry that are in use.
   double used() const noexcept;

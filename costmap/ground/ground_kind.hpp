@@ -36,7 +36,7 @@ struct GroundKind {
   GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
 };
 
-/// Whether ground of the estimate `belief` costs at least as much as ground of `than`, at any gradient and on
+/// True if ground of the estimate `belief` costs at least as much as ground of `than`, at any gradient and on
 /// any class: the pull is no greater, its standard deviation and the sinkage are no smaller.
 bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept;
 

@@ -30,7 +30,7 @@ class WheelSwath {
   struct Ground {
     int class_index = -1;
     GroundBelief belief;
-    bool unseen = false;  ///< whether the class is unknown and the policy excludes unknown ground
+    bool unseen = false;  ///< true if the class is unknown and the policy excludes unknown ground
     friend bool operator==(const Ground& a, const Ground& b) noexcept {
       return a.class_index == b.class_index && a.belief.pull.value == b.belief.pull.value &&
              a.belief.pull.std == b.belief.pull.std && a.belief.sinkage.value == b.belief.sinkage.value;
@@ -41,7 +41,7 @@ class WheelSwath {
   struct Judged {
     GroundBelief belief;
     int weakest_class = 0;  ///< class of the weakest ground that a wheel may touch
-    bool unseen = false;    ///< whether a wheel may touch unseen ground
+    bool unseen = false;    ///< true if a wheel may touch unseen ground
   };
 
   /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,

@@ -28,7 +28,7 @@ class JournalDatabase {
   std::int64_t lastRow() const noexcept;
 
   Statement prepare(const char* sql) const;
-  /// Executes a step of a statement; returns whether there is a row.
+  /// Executes a step of a statement; returns true if there is a row.
   bool step(const Statement& statement) const;
   void run(const std::string& sql) const;
   /// First number of a query's result, 0 without a row; closes the query.

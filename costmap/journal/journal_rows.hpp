@@ -39,7 +39,7 @@ struct DriveEntry {
 /// Converts the checksum of the rows to the stored checksum and back: XOR with a hash of number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// Whether the id has 16 hexadecimal digits, as from driveId(), or is "source NAME", as rows of Talus 0.1.0
+/// True if the id has 16 hexadecimal digits, as from driveId(), or is "source NAME", as rows of Talus 0.1.0
 /// have.
 bool isDriveId(const std::string& id);
 

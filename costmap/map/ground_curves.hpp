@@ -33,8 +33,8 @@ class GroundCurves {
 
   /// Changes by learnClasses().
   struct ClassChange {
-    bool priors = false;   ///< whether priors of classes changed
-    bool learned = false;  ///< whether a class state used for learned ground changed
+    bool priors = false;   ///< true if priors of classes changed
+    bool learned = false;  ///< true if a class state used for learned ground changed
   };
   /// Updates the estimates of the classes.
   ClassChange learnClasses(const EvidenceField& field);

@@ -53,7 +53,7 @@ class MapCosts {
   /// version.
   void noteLearned(const maps::CellBox& box);
   void noteChanged(const maps::CellBox& box) { changed_.push_back(box); }
-  /// Marks the changes of a patch; `classes`: whether the patch has terrain classes.
+  /// Marks the changes of a patch; `classes`: true if the patch has terrain classes.
   void notePatched(MapSurface::PatchEffect effect, bool classes);
 
   /// Publishes the marked changes as a new version; see TraversabilityMap::publish().

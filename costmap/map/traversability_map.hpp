@@ -61,10 +61,10 @@ class TraversabilityMap {
   std::optional<GroundBelief> ground(maps::Cell cell) const;
 
   /// Adds an observation; visible to planners after publish(). A cell with a known class accumulates evidence
-  /// before its height is known, with the same result as if the height had been known first. Evidence of
-  /// danger on a cell without a class, or beyond the map's edge by less than the pose error, refuses the
-  /// place like refuse(): a block and two standard deviations of the pose around the place, independently of
-  /// later patches. Returns false if the map has no ground at the place.
+  /// before its height is known, with the same result as in the reverse order. Evidence of danger on a cell
+  /// without a class, or beyond the map's edge by less than the pose error, refuses the place like refuse():
+  /// a block and two standard deviations of the pose around the place, independently of later patches.
+  /// Returns false if the map has no ground at the place.
   bool learn(const WheelObservation& observation);
   /// Removes learned pulls and sinkages, as returned by evidence().heardOf(), before their replacement.
   /// Bounds of the place remain. Visible to planners after publish().

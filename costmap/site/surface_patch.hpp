@@ -8,7 +8,7 @@ namespace talus::costmap {
 /// limit.
 inline constexpr double kHighest_m = 131072.0;
 
-/// The cells of a map that a patch covers; any_height: whether the map has an elevation. Throws
+/// The cells of a map that a patch covers; any_height: true if the map has an elevation. Throws
 /// std::invalid_argument with place and remedy for a patch of another resolution, not aligned with the cells,
 /// beyond the edge, with layers on different grids, without content, or with an invalid value.
 maps::CellBox placeOf(const SurfacePatch& patch, const GroundSite& site, bool any_height);

@@ -24,7 +24,7 @@ constexpr Hazard& operator|=(Hazard& a, Hazard b) noexcept {
   return a = a | b;
 }
 
-/// Whether the set contains the hazard.
+/// True if the set contains the hazard.
 constexpr bool has(Hazard set, Hazard one) noexcept {
   return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(one)) != 0;
 }
@@ -49,7 +49,7 @@ struct CellBelief {
   friend bool operator==(const CellBelief&, const CellBelief&) = default;
 };
 
-/// Whether the estimate belongs to a floor beneath the top surface: evidence exists, and the shape is
+/// True if the estimate belongs to a floor beneath the top surface: evidence exists, and the shape is
 /// unknown. The leaf of a floor represents one voxel and is never merged.
 inline bool ofFloor(const CellBelief& belief) noexcept {
   return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);

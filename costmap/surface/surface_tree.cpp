@@ -68,7 +68,7 @@ class Cubes {
     return found != floors_.end() && found->first - from < std::uint64_t{1} << (3 * cube.level);
   }
 
-  // Whether a cube contains a cell of the surface. If the height range of the block extends below and above
+  // True if a cube contains a cell of the surface. If the height range of the block extends below and above
   // the cube, the children of the cube are checked.
   bool holdsSurface(const Cube& cube) const {
     const auto range = pyramid_.range(cube.level, cube.x, cube.y);

@@ -57,7 +57,7 @@ RowWheel wheelOf(const terramech::Rover& rover) {
   return {rover.wheel.radius_m, rover.wheel.width_m, terramech::wheelLoad_N(rover)};
 }
 
-// Whether a row of the journal refers to a wheel of this rover; false if the row has no wheel size.
+// True if a row of the journal refers to a wheel of this rover; false if the row has no wheel size.
 bool isOf(const terramech::Rover& rover, const RowWheel& wheel) {
   const RowWheel own = wheelOf(rover);
   const bool known = std::isfinite(wheel.radius_m + wheel.width_m + wheel.weight_N);

@@ -41,7 +41,7 @@ struct DriveReport {
 /// Options for adding telemetry, and defaults for columns that a file may lack.
 struct IntakeOptions {
   double pose_std_m = 0.5;  ///< standard deviation of positions if the file has no column pose_std_m
-  /// Whether a DriveIntake stores its rows, about 400 bytes each, for settle().
+  /// True if a DriveIntake stores its rows, about 400 bytes each, for settle().
   bool settles = false;
 };
 

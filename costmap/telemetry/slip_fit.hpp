@@ -34,17 +34,17 @@ struct SlipPosterior {
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)
-/// with p the standard deviation of the class between places, t the share of it in this ground, m the error
-/// of the model, n that of the slip, o that of the slope. Bias, scale and strength have different effects on
-/// slip over slope: b adds a constant, s is proportional to slip, and d has the greatest effect where the
-/// slope requires most of the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half
-/// normal, 0.45; t uniform over five values. The scale is limited to 1, because a scale above 1 and weaker
-/// soil with a greater shear modulus have the same effect on slip; the ground of such a drive counts as weak.
-/// The departure is its posterior mean. Bias and scale are the means at these departures, so that slips
-/// corrected by both are consistent with the ground. The standard deviation c of the departure is that of the
-/// likelihood alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class contains its
-/// prior already. A square of side 2/3 of the correlation length counts as one reading, independent of the
-/// number of passes (all numbers ours).
+/// with p the standard deviation of the class between places, t the share of p in this ground, and m, n and o
+/// the errors of model, slip and slope. Bias, scale and strength have different effects on slip over slope: b
+/// adds a constant, s is proportional to slip, and d has the greatest effect where the slope requires most of
+/// the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half normal, 0.45; t uniform
+/// over five values. The scale is limited to 1, because a scale above 1 and weaker soil with a greater shear
+/// modulus have the same effect on slip; the ground of such a drive counts as weak. The departure is its
+/// posterior mean. Bias and scale are the means at these departures, so that slips corrected by both are
+/// consistent with the ground. The standard deviation c of the departure is computed from the likelihood
+/// alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class contains its prior
+/// already. A square of side 2/3 of the correlation length counts as one reading, independent of the number
+/// of passes (all numbers ours).
 class SlipFit {
  public:
   explicit SlipFit(const GroundModel& model) : model_(model) {}

@@ -14,7 +14,7 @@ struct CoordinateSystem {
   std::string name{};  ///< "WGS 84 / UTM zone 10N"
   Ellipsoid ellipsoid{};
   Projection projection{};
-  bool planetocentric = false;  ///< whether latitudes are angles at the centre, not of the surface normal
+  bool planetocentric = false;  ///< true if latitudes are angles at the centre, not of the surface normal
   std::string wkt{};            ///< WKT of the file, copied into layers derived from it; may be empty
 };
 
@@ -33,7 +33,7 @@ class Georeference {
   /// out of range
   Georeference(CoordinateSystem system, std::shared_ptr<const Transform> transform);
 
-  /// Whether a transform exists. False for ProjectionMethod::Foreign without a given transform; all
+  /// True if a transform exists. False for ProjectionMethod::Foreign without a given transform; all
   /// conversions then return NaN.
   bool reachesPlaces() const noexcept { return transform_ != nullptr; }
 

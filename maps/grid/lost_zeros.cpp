@@ -7,7 +7,7 @@
 namespace talus::maps {
 namespace {
 
-// Whether a value counts as 0, including positive numbers below 1e-37: a number at the edge of a lost byte
+// True if a value counts as 0, including positive numbers below 1e-37: a number at the edge of a lost byte
 // range keeps only its low bytes.
 bool isZero(float value) {
   constexpr float kTiny = 1e-37F;

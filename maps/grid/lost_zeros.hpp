@@ -21,14 +21,13 @@ struct LostCells {
   std::size_t count = 0;        ///< number of cells with the value 0 (below 1e-37) in the lost regions
 };
 
-/// Finds connected regions of zeros that are lost data: a lost disk block leaves zero bytes in a file of
+/// Finds connected regions of zeros that are lost data: a lost disk block becomes zero bytes in a file of
 /// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0
 /// to the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
 /// exceeds three times the largest of these three steps. A region is lost if more than half of its border
 /// steps are abrupt.
 ///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.
-///   - A border step to level cells (a wall on a plain), or to cells that are unknown beyond the first, is
-///     not abrupt.
+///   - A border step to level cells (a wall on a plain), or to a single known cell, is not abrupt.
 ///   - Border steps to unknown cells are omitted. A region without other border steps (a level map) is not
 ///     lost.
 /// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
@@ -36,7 +35,7 @@ struct LostCells {
 /// and only its last row may end earlier.
 class LostZeros {
  public:
-  /// `zero_is_ordinary`: whether a lost region must also have the shape of a lost byte range.
+  /// `zero_is_ordinary`: true if a lost region must also have the shape of a lost byte range.
   explicit LostZeros(int width, bool zero_is_ordinary = false);
 
   /// Adds the next row of `width` values, NaN for no data. Rows may be added from south to north or from
@@ -53,7 +52,7 @@ class LostZeros {
     std::uint32_t parent = 0;
     std::size_t steps = 0, abrupt = 0;  // counted border steps, and the abrupt ones among them
     int first_row = 0, last_row = 0, west = 0, east = 0;
-    bool follows = true;  // whether the cells are consecutive in the rows of a rectangle
+    bool follows = true;  // true if the cells are consecutive in the rows of a rectangle
   };
   struct Run {
     CellRun cells;

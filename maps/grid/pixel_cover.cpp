@@ -11,7 +11,7 @@ constexpr double kTouch = 1e-3;  // smaller overlaps are ignored [cells]
 
 using Corners = std::array<Point, 4>;
 
-// Whether a side of the pixel separates the pixel from the cell; coordinates in cells.
+// True if a side of the pixel separates the pixel from the cell; coordinates in cells.
 bool apart(const Corners& pixel, double turn, Cell cell) {
   for (std::size_t i = 0; i < pixel.size(); ++i) {
     const Point a = pixel[i], b = pixel[(i + 1) % pixel.size()];

@@ -64,7 +64,7 @@ struct Inside {
   bool ground() const { return windings != 0 && !hole; }
 };
 
-// Whether the rings enclose ground at height y. `edges`: all edges, or those that reach y.
+// True if the rings enclose ground at height y. `edges`: all edges, or those that reach y.
 template <class Edges>
 bool hasGroundAt(double y, double thinnest, const Edges& edges) {
   struct Crossing {
@@ -85,7 +85,7 @@ bool hasGroundAt(double y, double thinnest, const Edges& edges) {
   return false;
 }
 
-// Whether the rings enclose ground. Tests one height between each two neighbouring heights of positions.
+// True if the rings enclose ground. Tests one height between each two neighbouring heights of positions.
 bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
   std::vector<double> heights;
   heights.reserve(edges.size());
@@ -132,7 +132,7 @@ class RowCover {
     }
   }
 
-  /// Sets the covered cells of the row, clears its edges, and returns whether any cell is covered. A cell
+  /// Sets the covered cells of the row, clears its edges, and returns true if any cell is covered. A cell
   /// that no outer edge touches lies entirely inside or outside the outer ring; its centre is therefore
   /// tested.
   bool close(std::uint8_t* cells) {

@@ -18,12 +18,12 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-/// Whether the polygon, i.e. the outer ring minus the holes, has an area. Slivers thinner than 1e-9 of the
+/// True if the polygon, i.e. the outer ring minus the holes, has an area. Slivers thinner than 1e-9 of the
 /// ring's extent are ignored, because rounding causes such slivers if a hole coincides with the ring.
 bool enclosesGround(const Polygon& polygon);
 
 /// Sets to 1 each cell that contains a point of the polygon or of its boundary. A point on the border of two
-/// cells belongs to the eastern or northern cell. Other cells are unchanged. @return whether any cell of the
+/// cells belongs to the eastern or northern cell. Other cells are unchanged. @return true if any cell of the
 /// grid was set
 bool cover(const Polygon& polygon, Raster<std::uint8_t>& mask);
 

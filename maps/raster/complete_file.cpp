@@ -211,7 +211,7 @@ bool lost(GDALRasterBand& band) {
 
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
 
-// Whether a word is a number for GDAL, which accepts a decimal comma.
+// True if a word is a number for GDAL, which accepts a decimal comma.
 bool isNumber(std::string_view word) {
   if (word.size() > kLongest) return false;
   std::string text(word);

@@ -65,7 +65,7 @@ bool isOneOf(const std::string& word, std::initializer_list<const char*> words) 
   return std::any_of(words.begin(), words.end(), [&](const char* other) { return word == other; });
 }
 
-// Whether a metadata item names a file that GDAL opens: overviews, pixel geolocation arrays, or a DEM.
+// True if a metadata item names a file that GDAL opens: overviews, pixel geolocation arrays, or a DEM.
 bool namesFile(const CPLXMLNode& item) {
   const char* key = CPLGetXMLValue(&item, "key", "");
   return isOneOf(lower(key), {"overview_file", "x_dataset", "y_dataset", "rpc_dem", "dempath"});

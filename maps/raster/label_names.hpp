@@ -7,8 +7,8 @@ namespace talus::maps {
 
 /// References of a raster file to other files, as found in its text.
 struct LabelNames {
-  bool virtual_raster = false;  ///< whether the text is a VRT
-  bool code = false;  ///< whether a VRT contains a pixel function or a path of GDAL's virtual file systems
+  bool virtual_raster = false;  ///< true if the text is a VRT
+  bool code = false;  ///< true if a VRT contains a pixel function or a path of GDAL's virtual file systems
   std::vector<std::string> names;  ///< file names as GDAL reads them: escapes and quotes resolved
 };
 

@@ -7,7 +7,7 @@
 
 namespace talus::maps {
 
-/// Whether the path ends in .npy or .npz.
+/// True if the path ends in .npy or .npz.
 bool isNumpyFile(const std::string& path);
 
 /// Opens a NumPy elevation grid as an in-memory raster, north up. Reads the array of a .npy file, or of a

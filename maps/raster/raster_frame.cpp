@@ -40,7 +40,7 @@ struct Pixels {
   }
   bool areUpright() const { return c[2] == 0 && c[4] == 0 && c[1] > 0; }
   double side() const { return std::abs(c[1]); }
-  // Whether pixels are upright, and their sides differ by at most 0.05 cells in total across the raster.
+  // True if pixels are upright, and their sides differ by at most 0.05 cells in total across the raster.
   bool areSquare() const {
     return areUpright() && std::abs(side() - std::abs(c[5])) * std::max(width, height) <= 0.05 * side();
   }

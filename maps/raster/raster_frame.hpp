@@ -15,7 +15,7 @@ struct FramedRaster {
   Dataset raster{};
   int band = 1;
   Grid grid{};           ///< grid of the whole raster
-  bool north_up = true;  ///< whether the first row of the raster is the northernmost
+  bool north_up = true;  ///< true if the first row of the raster is the northernmost
   std::optional<Georeference> georeference{};
 };
 

@@ -34,7 +34,7 @@ bool endsWith(const std::string& text, std::string_view end) {
                     "put the files into one folder and name them without a path"});
 }
 
-// Whether the extension is one of the auxiliary files that GDAL's drivers open beside a raster, world files
+// True if the extension is one of the auxiliary files that GDAL's drivers open beside a raster, world files
 // (.tfw, .wld) included.
 bool isAuxiliary(const std::string& name) {
   const std::string ending = lower(fs::path(name).extension().string());

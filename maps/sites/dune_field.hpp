@@ -18,7 +18,7 @@ struct DuneOptions {
 /// Sand cover at a point.
 struct Sand {
   double height_m = 0.0;   ///< above the underlying ground; 0 between dunes
-  bool slip_face = false;  ///< whether the point lies on a lee slope at the angle of repose
+  bool slip_face = false;  ///< true if the point lies on a lee slope at the angle of repose
 };
 
 /// Transverse dunes with a gentle stoss slope, a crest, and a slip face at the angle of repose. Crests

@@ -24,7 +24,7 @@ struct TerrainMetrics {
       step_m;  ///< greatest step under the rover, reduced by the slope on both sides (step_height.hpp);
                ///< relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts
   int footprint_cells = 0;                  ///< number of cells of a complete footprint
-  bool fell_back = false;                   ///< whether 3x3 cells replace a smaller footprint
+  bool fell_back = false;                   ///< true if 3x3 cells replace a smaller footprint
   double gradient_std_per_roughness = 0.0;  ///< standard error of a gradient for roughness 1 m [1/m]
 
   /// Inclination of the plane [rad], 0 to pi/2.

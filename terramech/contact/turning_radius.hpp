@@ -8,7 +8,7 @@ namespace talus::terramech {
 inline constexpr double kSmallestTurn_m = 1e-3;
 inline constexpr double kLargestTurn_m = 1000.0;
 
-/// Returns whether a turning radius [m] is valid: 0 (turn in place) or in [kSmallestTurn_m, kLargestTurn_m].
+/// Returns true if a turning radius [m] is valid: 0 (turn in place) or in [kSmallestTurn_m, kLargestTurn_m].
 constexpr bool isTurningRadius(double radius_m) noexcept {
   return radius_m == 0.0 || (radius_m >= kSmallestTurn_m && radius_m <= kLargestTurn_m);
 }

@@ -97,7 +97,7 @@ void solveSome(std::span<const WheelCase> cases, std::span<WheelForces> forces, 
     if (!straight[k] && !sideways[k]) forces[k] = general(cases[k], leftover);
 }
 
-/// Returns whether the kernel resolves slip and slip angle. Near slip 0 at slip angle 0 the shear
+/// Returns true if the kernel resolves slip and slip angle. Near slip 0 at slip angle 0 the shear
 /// displacement is a small difference, which lane_math.hpp does not resolve; at a slip angle the displacement
 /// across dominates.
 bool takesMotion(const WheelCase& c) {

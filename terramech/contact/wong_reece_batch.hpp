@@ -15,7 +15,7 @@ WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& 
 /// Solves one case with equilibrium() of wong_reece.hpp; throws as that function.
 WheelForces equilibrium(const WheelCase& wheel_case);
 
-/// Returns whether the batch kernel accepts a case: every field must be in the range of the kernel, and at
+/// Returns true if the batch kernel accepts a case: every field must be in the range of the kernel, and at
 /// slip angle 0 the slip must be in [0.01, 1].
 bool isFastCase(const WheelCase& wheel_case);
 

@@ -68,7 +68,7 @@ struct Effect {
   std::string only_column{};  ///< text column that restricts the effect to one group
   std::string only_value{};   ///< text of that group in `only_column`; empty: all rows
 
-  /// Returns whether the effect is a curve. The curve "empirical" is added to one scaled channel. The
+  /// Returns true if the effect is a curve. The curve "empirical" is added to one scaled channel. The
   /// exponential of the curve "empirical_stiffness" multiplies the sinkage modulus k, that of any other curve
   /// cohesion c and tan phi.
   bool empirical() const { return name.starts_with("empirical"); }
@@ -77,7 +77,7 @@ struct Effect {
   double sense(double slip_angle_rad) const;
 };
 
-/// Returns whether any effect has the covariate pass_index, the number of passes over a track.
+/// Returns true if any effect has the covariate pass_index, the number of passes over a track.
 bool knowsPasses(std::span<const Effect> effects);
 
 namespace detail {

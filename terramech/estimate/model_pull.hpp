@@ -7,7 +7,7 @@
 /// with sensor errors.
 namespace talus::terramech {
 
-/// Returns whether an effect changes a sensor reading and leaves the contact unchanged.
+/// Returns true if an effect changes a sensor reading and leaves the contact unchanged.
 bool isSensorFault(const Effect& effect);
 
 /// Returns the model without sensor errors: no offset or drift of a reading, no noise of the channels. The

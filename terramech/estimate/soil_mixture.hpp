@@ -39,7 +39,7 @@ class Marginal {
   /// Returns the parameter value at coordinate y.
   double at(double y) const;
   double slope(double y) const;  ///< d at(y) / dy
-  /// Returns whether y is in [0, 1]; otherwise y is standard normal.
+  /// Returns true if y is in [0, 1]; otherwise y is standard normal.
   bool bounded() const { return shape_ != Shape::Normal; }
 
  private:

@@ -97,7 +97,7 @@ struct KnownColumn {
 
   std::string name, unit, stem;
 
-  /// Returns whether a column with another unit of this kind has the quantity of this column.
+  /// Returns true if a column with another unit of this kind has the quantity of this column.
   bool takes(std::string_view other, std::optional<Kind> kind) const {
     const auto own = unit.empty() ? Kind::Share : kindOf(unit);
     return (kind && kind == own) || conversion(other, unit) ||
@@ -105,7 +105,7 @@ struct KnownColumn {
   }
 };
 
-// Whether a suffix may be an index or a word, as in slip_t and speed_min.
+// True if a suffix may be an index or a word, as in slip_t and speed_min.
 bool mayBeNoUnit(std::string_view suffix) {
   return suffix.size() < 2 || suffix == "min";
 }

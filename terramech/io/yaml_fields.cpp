@@ -105,7 +105,7 @@ std::string wordOf(const YAML::Node& node, const std::string& where, const std::
   return word;
 }
 
-/// Returns whether a document marker separates content; a line of content never begins with a marker.
+/// Returns true if a document marker separates content; a line of content never begins with a marker.
 bool holdsMoreDocuments(const std::string& yaml) {
   std::istringstream lines(yaml);
   bool content = false, ended = false;

@@ -60,7 +60,7 @@ class YamlFields {
   YamlFields fields(const std::string& name) const;
   /// Returns the mappings of the list under a name; empty if absent.
   std::vector<YamlFields> list(const std::string& name) const;
-  /// Returns whether the value under a name is a mapping.
+  /// Returns true if the value under a name is a mapping.
   bool isMapping(const std::string& name) const;
   /// Returns all names in the order of the file.
   std::vector<std::string> names() const;

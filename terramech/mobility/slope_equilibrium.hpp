@@ -73,7 +73,7 @@ struct SlopeState {
   double side_reserve =
       0.0;  ///< increase of the demand across until failure at the same demand along [-]; < 0: failed
 
-  /// Returns whether there is an equilibrium without failure.
+  /// Returns true if there is an equilibrium without failure.
   bool holds() const { return failure == SlopeFailure::None; }
 };
 
@@ -114,7 +114,7 @@ class SlopeEquilibrium {
   /// Returns one wheel under its even load on level ground; slip in [-1, 1], slip angle within 60 deg.
   WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept;
 
-  /// Returns whether the rover is symmetric about its longitudinal axis.
+  /// Returns true if the rover is symmetric about its longitudinal axis.
   bool symmetric() const noexcept;
 
   /// Returns the equilibrium without load transfer: centre of mass on the ground, in the middle of the

@@ -52,7 +52,7 @@ struct Drive {
 };
 enum Column { kTime, kX, kY, kHeading, kSlope, kSlip, kLoad, kTorque, kSinkage, kPass };
 
-/// Converts a drive to telemetry. `felt`: whether torque and sinkage are columns of the file.
+/// Converts a drive to telemetry. `felt`: true if torque and sinkage are columns of the file.
 inline terramech::Telemetry tableOf(const Drive& drive, bool felt = true) {
   terramech::Telemetry out;
   out.source = "rover.csv";

@@ -173,7 +173,7 @@ std::vector<double> measure(const World& world, const Design& design, const Cond
           c.width};
 }
 
-/// Whether an effect can be identified with the design of a campaign.
+/// True if an effect can be identified with the design of a campaign.
 bool shows(const Hidden& h, const Design& design) {
   const auto on = [&](const char* column) {
     return std::find(h.covariates.begin(), h.covariates.end(), column) != h.covariates.end();

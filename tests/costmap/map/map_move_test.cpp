@@ -63,7 +63,7 @@ std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
   return bits;
 }
 
-// Property: after moves, drives, a refusal and new data the map is bit-identical to one built from the same
+// Property: after moves, drives, a refusal and new data the map is bit-identical to a map built from the same
 // layers and the remaining evidence.
 TEST(MapMove, MovedMapEqualsARebuiltMap) {
   std::mt19937 random(3);

@@ -27,9 +27,9 @@ struct Case {
   int rounds = 12, most_readings = 12;
   bool levels = false;        // ground beneath a deck, and no class raster
   double pull_spread = 0.15;  // standard deviation of the readings' pull
-  bool costs = false;         // whether a cost layer is added
-  bool runs_out = false;      // whether the cost curves run out
-  bool forgets = false;       // whether some evidence is removed again
+  bool costs = false;         // true if a cost layer is added
+  bool runs_out = false;      // true if the cost curves run out
+  bool forgets = false;       // true if some evidence is removed again
   TravelPolicy policy{};
 };
 
@@ -147,7 +147,7 @@ void Sequence::patch() {
   map_->patch(seen);
 }
 
-// Whether a cell is published as stronger, or with less sinkage, than its estimate. Tolerance: a millionth of
+// True if a cell is published as stronger, or with less sinkage, than its estimate. Tolerance: a millionth of
 // a rounding step.
 bool Sequence::isBetterThanBelieved(Cell cell) const {
   constexpr double kRounded = 1e-6, kTail = 6.0;

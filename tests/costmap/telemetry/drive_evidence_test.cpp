@@ -145,8 +145,8 @@ TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
   std::filesystem::remove_all(folder);
 }
 
-// Four wheels uphill at one slip, each with the torque of its own load. `told`: whether the load column has
-// the actual loads or equal shares.
+// Four wheels uphill at one slip, each with the torque of its own load. `told`: true if the load column has
+// the actual loads, false if it has equal shares.
 terramech::Telemetry climb(bool told) {
   const terramech::Rover rover = testRover();
   const double gradient = 0.15;

@@ -83,7 +83,7 @@ std::shared_ptr<const GroundModel> modelOf(const terramech::SoilPrior& prior) {
 
 struct LowSlip {
   double scale = 1.0, shift = 0.0;  // scale and offset of the slip reading
-  bool felt = true;                 // whether torque and sinkage are columns of the file
+  bool felt = true;                 // true if torque and sinkage are columns of the file
   unsigned seed = 1;
 };
 

@@ -51,7 +51,7 @@ bool isGround(const Polygon& polygon, Point p) {
   return windings(polygon.outer, p) != 0 && holes % 2 == 0;
 }
 
-// Whether a part of the edge lies in the closed cell (Liang and Barsky).
+// True if a part of the edge lies in the closed cell (Liang and Barsky).
 bool meets(Point a, Point b, Cell cell) {
   const Point middle = kGrid.centre(cell);
   const double half = 0.5 * kGrid.resolution_m;

@@ -102,7 +102,7 @@ std::vector<Format> formats() {
   return all;
 }
 
-// Whether a damaged file is rejected, or has no height that differs from the undamaged file. The grid may be
+// True if a damaged file is rejected, or has no height that differs from the undamaged file. The grid may be
 // smaller by whole rows at one end.
 ::testing::AssertionResult refusedOrUnknown(const std::string& path, const ReadOptions& options,
                                             const ElevationMap& whole) {

@@ -174,7 +174,7 @@ TEST(SlopeEquilibrium, BodyYawsUphillUnlessAllWheelsSteer) {
   EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
 }
 
-/// Whether an equilibrium without load transfer exists, by brute force: some slip and slip angle within the
+/// True if an equilibrium without load transfer exists, by brute force: some slip and slip angle within the
 /// limits give the required force along and at least the required force across, with equal wheels under equal
 /// loads.
 bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
