@@ -102,8 +102,8 @@ class ClassEvidence {
   /// State of the class, not rounded.
   ClassState state() const noexcept;
   /// State of the class in steps of 0.005 (sinkage: 0.02), each number rounded towards danger and no standard
-  /// deviation above the prior's. The rounded state is constant while the class moves within a step, and
-  /// depends on the class alone. `most_rise` is rounded down to a step of the cost curves.
+  /// deviation above the prior's. The rounded state is constant while the exact state varies within a step,
+  /// and depends on the class alone. `most_rise` is rounded down to a step of the cost curves.
   ClassState stateInSteps() const noexcept;
   /// True if kPlaces places may raise and the drives agree, so that estimates of the class may rise.
   bool mayRaise() const noexcept { return std::isfinite(places_.agreed(kPlaces)) && drivesAgree(); }

@@ -213,8 +213,8 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
                         kNotKnown, "weighted sum of energy, time and risk", toText(state.refusal)});
 }
 
-// Sets category and probability: those of the requested heading (`asked`), else those of the map, for the
-// worst heading.
+// Sets category and probability for the requested heading if `asked`, otherwise for the worst heading, from
+// the map.
 void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, bool asked,
            Explanation& out) {
   const Hazard hazards = map.surface().hazards(cell);

@@ -108,8 +108,8 @@ double entryOf(double radius_m, double sinkage_m) {
   return sinkage_m >= radius_m ? kDeepest : 2.0 * std::asin(std::sqrt(0.5 * sinkage_m / radius_m));
 }
 
-/// Forces at an imposed entry angle. The pressure is scaled so that it still carries the load; every force is
-/// linear in the scale.
+/// Forces at an imposed entry angle. The pressure is scaled to carry the load; every force is linear in the
+/// scale.
 RimForces imposed(const WheelContact& c, double entry) {
   const RimForces full = forcesAt(c, entry, 1.0), none = forcesAt(c, entry, 0.0);
   const double scale = std::max(0.0, c.load_N - none.load_N) / std::max(full.load_N - none.load_N, 1e-300);

@@ -41,7 +41,7 @@ struct WheelContact {
   double hard_depth_m = std::numeric_limits<double>::infinity();
   double hard_modulus_Pa_m = 0.0;  ///< k_h of the lower layer
   // Digging: z = z0 + hypot(dug, ploughed_m) + extra_sinkage_m <= 1.95 r, dug = (sinkage_gain - 1) z0 +
-  // dug_m, with z0 the static sinkage. The stress at the larger depth is scaled so that it carries the load.
+  // dug_m, with z0 the static sinkage. The stress at the larger depth is scaled to carry the load.
   double sinkage_gain = 1.0;
   double dug_m = 0.0;            ///< along the wheel plane, by lugs
   double ploughed_m = 0.0;       ///< across the wheel plane

@@ -9,8 +9,8 @@
 namespace talus::terramech {
 namespace {
 
-/// Returns why a row-major matrix is not a covariance; empty if it is one. A negative variance would count as
-/// an exact value.
+/// Returns why a row-major matrix is not a covariance; empty if the matrix is a covariance. A negative
+/// variance would count as an exact value.
 std::string faultOfCovariance(const std::vector<double>& values, std::size_t size) {
   const auto n = static_cast<Eigen::Index>(size);
   const Eigen::MatrixXd given = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);

@@ -61,7 +61,8 @@ class MobilityCurve {
   MobilityCurve(const RefinedModel& model, const Rover& rover, const MobilityOptions& options = {});
 
   /// Returns the state on a slope along the heading, uphill > 0, in (-pi/2, pi/2). Beyond the feasible slopes
-  /// slip, sinkage, torque, speed and energy are those of the nearest one, and `feasible` is false.
+  /// slip, sinkage, torque, speed and energy are those of the nearest feasible slope, and `feasible` is
+  /// false.
   MobilityState at(double slope_rad) const noexcept;
 
   /// Steepest slopes [rad] on which a constant speed is possible, uphill (> 0 on firm soil) and downhill,

@@ -28,7 +28,7 @@ struct Traits<Four> {
 
 #define TALUS_LANES [[gnu::always_inline]] inline
 
-/// Returns a in lanes where the condition holds, otherwise b.
+/// Returns a in lanes where the condition is true, otherwise b.
 template <class Mask, class T>
 TALUS_LANES T pick(Mask condition, T a, T b) {
   return condition ? a : b;

@@ -14,9 +14,9 @@ struct Contender {
   bool positive = false;  ///< the first step must be >= 0
 };
 
-/// Number of contenders, in order of their gain under the null model's run error, whose run error is profiled
-/// in a drawn table. The contender of greatest gain is practically always among the first twelve, and the
-/// cost remains that of matrix products.
+/// Number of contenders whose run error is profiled in a drawn table: the contenders of greatest gain under
+/// the null model's run error. The contender of greatest gain is practically always among the first twelve,
+/// and the cost remains that of matrix products.
 inline constexpr int kProfiled = 12;
 
 /// Gain of every contender on the table, and greatest gains on tables drawn from the null model.

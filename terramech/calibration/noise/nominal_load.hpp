@@ -25,12 +25,12 @@ struct NominalLoad {
   double load_N(int row, double measured_N) const;
 };
 
-/// Nominal loads of a trial. `residual` is measured - model at the measured inputs, `slopes` the slopes
-/// there. The error share is the coefficient of -by_load d in the residual, both centred within the nominal
-/// loads, with d = ln(reading / nominal load): 1 if the true load was nominal, 0 if the true load was as read
-/// (least squares, channels weighted by their scatter; ours). A share within two standard errors of 1 is set
-/// to 1. Returns nullopt if loads follow neither runs nor levels, for a drive, if the share has a standard
-/// error above 0.25, or if the share does not exceed 0 by two standard errors.
+/// Nominal loads of a trial. `residual` is measured - model at the measured inputs, `slopes` the model's
+/// derivatives at these inputs. The error share is the coefficient of -by_load d in the residual, both
+/// centred within the nominal loads, with d = ln(reading / nominal load): 1 if the true load was nominal, 0
+/// if the true load was as read (least squares, channels weighted by their scatter; ours). A share within two
+/// standard errors of 1 is set to 1. Returns nullopt if loads follow neither runs nor levels, for a drive, if
+/// the share has a standard error above 0.25, or if the share does not exceed 0 by two standard errors.
 std::optional<NominalLoad> nominalLoad(const Trial& trial, const Eigen::MatrixXd& residual,
                                        const InputSlopes& slopes);
 

@@ -120,8 +120,8 @@ std::vector<SharedFactor> Whitening::shared() const {
   return all;
 }
 
-// (T20) (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T it is
-// I - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
+// (T20) (I + B B^T)^(-1/2) of each run, B = F R^(1/2) stacked over its rows: with B^T B = Q S Q^T equal to I
+// - B Q diag((1 - (1 + s)^(-1/2)) / s) Q^T B^T.
 void Whitening::settleRuns(Eigen::VectorXd& rows) const {
   const std::vector<int>& unit = common.unit;
   if (unit.empty() || common.run.isZero()) return;

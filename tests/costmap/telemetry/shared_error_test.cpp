@@ -48,8 +48,8 @@ float risk(const TraversabilityMap& map, maps::Cell cell) {
   return map.model().state(0, *map.ground(cell), kGradient).risk_per_m;
 }
 
-// Property: slip read too small never makes weak ground safer than before the drive: on the drive, beside
-// it, or elsewhere.
+// Property: slip read too small never makes weak ground safer than before the drive: on the track, beside the
+// track, or elsewhere.
 TEST(SharedError, UnderreadSlipOfAllWheelsLowersNoRisk) {
   const TraversabilityMap before = sand();
   for (const terramech::Soil& truth : {weakerBy(400.0, 0.1), weakerBy(700.0, 0.2)})

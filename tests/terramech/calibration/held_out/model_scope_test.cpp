@@ -87,8 +87,8 @@ TEST(ModelScope, HeldOutErrorPerChannelNeverExceedsThatOfTheBase) {
 
 TEST(ModelScope, HeldOutErrorWithinSensorNoiseRefutesNothing) {
   TraceResult result = resultOf();
-  // Closed form: for one row a squared error up to 1 + 1.645 sqrt(2) = 3.3 floors squared is chance: 1.5
-  // floors are chance, 2 are not.
+  // Closed form: for one row, noise explains a squared error up to 1 + 1.645 sqrt(2) = 3.3 squared floors,
+  // hence an error of 1.5 floors but not of 2.
   result.ends = {greatestSlip(0.1, {0.001, 0.001, 0.001, kNan}, {0.015, 0.02, 0.001, kNan})};
   result.ends[0].rows = 1;
   const ModelScope scope = scopeOf(result);
