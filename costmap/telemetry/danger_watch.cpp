@@ -33,8 +33,8 @@ double DangerWatch::dangerousBelow(double gradient) const noexcept {
   return std::tan(std::atan(gradient) - model_.parts().policy.slope_margin_rad) - kBelow;
 }
 
-// Returns the greatest DP/W that is dangerous in every heading: that of the steepest descent the rover may
-// drive.
+// Returns the greatest DP/W that is dangerous in every heading: the DP/W of the steepest descent that the
+// rover may drive.
 double DangerWatch::neverDriven() const noexcept {
   return dangerousBelow(-std::tan(model_.rover().max_pitch_rad));
 }

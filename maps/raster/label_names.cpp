@@ -103,8 +103,8 @@ std::size_t skipBlanks(const std::string& text, std::size_t at) {
   return at;
 }
 
-// Appends the quoted and bare words of the value at `at`: a single word or those of a list. An unterminated
-// quote or list extends to the end of the text.
+// Appends the quoted and bare words of the value at `at`: a single word or the words of a list. An
+// unterminated quote or list extends to the end of the text.
 void valueWords(const std::string& text, std::size_t at, std::vector<std::string>& out) {
   const bool list = at < text.size() && (text[at] == '(' || text[at] == '{');
   if (list) ++at;

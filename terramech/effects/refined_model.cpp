@@ -32,8 +32,8 @@ class Bound {
     return effect.only_column.empty() || state.label(effect.only_column) == effect.only_value;
   }
 
-  /// Returns the covariate of an effect. For sinkage_m this is the sinkage of the model, not the measured
-  /// one.
+  /// Returns the covariate of an effect. For sinkage_m the covariate is the sinkage of the model, not the
+  /// measured sinkage.
   static double covariateOf(const Effect& effect, const WheelState& state, double sinkage_m) {
     return effect.covariate == "sinkage_m" ? sinkage_m : state.covariate(effect.covariate);
   }

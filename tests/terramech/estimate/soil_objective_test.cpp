@@ -32,9 +32,9 @@ TEST(SoilObjective, ResidualsVanishForTheTrueSoil) {
 }
 
 TEST(SoilObjective, CostIsTheMarginalLikelihoodOverSinkageAndSlipErrors) {
-  // Property: with errors of 2 % the linearised likelihood equals the exact one for each soil and reading,
-  // up to the neglected second order: 0.04 at the median, more in the tails. The factor z converts d/dz to
-  // d/d ln z.
+  // Property: with errors of 2 % the linearised likelihood equals the exact likelihood for each soil and
+  // reading, up to the neglected second order: 0.04 at the median, more in the tails. The factor z converts
+  // d/dz to d/d ln z.
   ThesisRuns runs(8);
   double sum = 0.0, squares = 0.0;
   constexpr int kSoils = 40, kSamples = 10, kAll = kSoils * kSamples;
