@@ -13,8 +13,8 @@ namespace {
 namespace terramech = talus::terramech;
 
 // Simulated wheel readings at a slip, from the Wong-Reece equilibrium; on a rover the sensors supply them.
-terramech::WheelSample felt(const terramech::Soil& soil, const terramech::Wheel& wheel,
-                            terramech::WheelOperation operation) {
+terramech::WheelSample measured(const terramech::Soil& soil, const terramech::Wheel& wheel,
+                                terramech::WheelOperation operation) {
   const terramech::WheelForces forces = terramech::equilibrium(soil, wheel, operation);
   return {.load_N = operation.load_N,
           .torque_Nm = forces.torque_Nm,
@@ -37,7 +37,7 @@ int main() {
   terramech::LinearOffsetFit fit;
   for (int k = 0; k < 40; ++k) {
     const terramech::WheelOperation operation{.load_N = 60.0 + 3.0 * k, .slip = 0.2 + 0.015 * k};
-    fit.add(terramech::linearOffset(wheel, felt(soil, wheel, operation), soil.shear_modulus_m));
+    fit.add(terramech::linearOffset(wheel, measured(soil, wheel, operation), soil.shear_modulus_m));
     if (k % 10 != 9) continue;
     const terramech::ShearStrength strength = fit.estimate();
     std::printf("%2d samples: cohesion %5.0f Pa, friction angle %4.1f deg\n", k + 1, strength.cohesion_Pa,

@@ -264,9 +264,10 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
   model.soil = soilOf(e.posterior->mean);
   const ModelRows rows = modelRows(readTelemetry(options.table, {}), model);
   SolvedContacts solved;
-  const Eigen::MatrixXd told = predictRows(rows.model, rows.trial, solved);
+  const Eigen::MatrixXd predicted = predictRows(rows.model, rows.trial, solved);
   for (const Channel c : kAllChannels)
-    if (rows.trial.has(c)) plots.push_back(agreementPlot(c, rows.trial.measured, {{"estimated soil", told}}));
+    if (rows.trial.has(c))
+      plots.push_back(agreementPlot(c, rows.trial.measured, {{"estimated soil", predicted}}));
   return plots;
 }
 

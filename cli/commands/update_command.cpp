@@ -98,14 +98,15 @@ Difference between(const Snapshot& before, const Snapshot& after) {
 
 [[noreturn]] void refuseReplay(const UpdateOptions& options) {
   throw InputError(
-      {options.journal, "holds nothing to replay", "name the journal that the drives went into"});
+      {options.journal, "contains nothing to replay", "name the journal that the drives went into"});
 }
 
 // Reports a journal without any usable row for this map: the journal probably belongs to another map.
-void tellForeign(const UpdateOptions& options, const costmap::DriveReport& report, const Context& context) {
-  const std::string reason = fmt::format("none of its {} rows tells of this map", report.rejected);
+void warnForeignJournal(const UpdateOptions& options, const costmap::DriveReport& report,
+                        const Context& context) {
+  const std::string reason = fmt::format("none of its {} rows lies on this map", report.rejected);
   if (options.replay) throw InputError({options.journal, reason, "name the journal of this map"});
-  context.warn(options.journal + ": " + reason + "; it may be another map's");
+  context.warn(options.journal + ": " + reason + "; the journal may belong to another map");
 }
 
 // A journal that does not exist yet, or is empty, is checked as an output.
@@ -153,7 +154,7 @@ void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
     context.warn(
         fmt::format("{}: the first {} rows of this drive are in the map already; the later rows are added",
                     options.telemetry, drive.repeated));
-  else if (drive.used == 0 && drive.heard == 0)
+  else if (drive.used == 0 && drive.bounding == 0)
     throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
                       "first reason: " + drive.first_reason});
   report.used += drive.used;
@@ -190,7 +191,7 @@ std::string learnedText(const costmap::DriveReport& report) {
   return text;
 }
 
-void tell(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
+void printReport(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
   if (context.json)
     printJson({{"rows_used", report.used},
                {"rows_rejected", report.rejected},
@@ -230,7 +231,7 @@ int run(const UpdateOptions& options, Context& context) {
   // drive.
   costmap::DriveReport report;
   if (journal) report = costmap::replay(map, *journal);
-  if (report.used == 0 && report.rejected > 0) tellForeign(options, report, context);
+  if (report.used == 0 && report.rejected > 0) warnForeignJournal(options, report, context);
   if (telemetry) {
     if (report.used + report.rejected > 0)
       context.warn(fmt::format("{}: {} rows that the map lacks were put in from it", options.journal,
@@ -245,7 +246,7 @@ int run(const UpdateOptions& options, Context& context) {
   if (!stream) output.fail(std::strerror(errno));
   if (transaction) transaction->commit();
   output.commit();
-  tell(report, between(before, snapshotOf(map)), context);
+  printReport(report, between(before, snapshotOf(map)), context);
   return Exit::kDone;
 }
 

@@ -160,7 +160,7 @@ int run(const ViewOptions& options, Context& context) {
   const bool of_route = looksLikeRoute(options.file.path);
   maps::requireReadableFile(options.file.path);
   if (!of_route && !options.others.empty())
-    throw InputError({options.file.path, "is no route, and is to be compared with routes",
+    throw InputError({options.file.path, "is not a route file; only routes can be compared",
                       "pass routes, and the map as --map"});
   const Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;

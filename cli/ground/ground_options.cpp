@@ -288,7 +288,7 @@ void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::
                              values.size(),
                              !policy.allow_unknown ? "count as unknown and are excluded"
                              : layer.unseen_J_per_m > 0.0F
-                                 ? fmt::format("cost {:.6g} J/m more, as the dearest", layer.unseen_J_per_m)
+                                 ? fmt::format("cost {:.6g} J/m more, as the highest", layer.unseen_J_per_m)
                                  : "cost nothing more"));
   }
 }

@@ -148,7 +148,7 @@ costmap::CostLayer costLayer(const std::string& given, const maps::ElevationMap&
   const auto [name, path] = layerNamed(given);
   if (path.ends_with(".so")) return planner::layerFrom(path, name, map.grid());
   maps::AddedJoules added = maps::readAddedJoules({path, {}}, map);
-  return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.dearest_J_per_m};
+  return {.name = name, .added_J_per_m = std::move(added.J_per_m), .unseen_J_per_m = added.highest_J_per_m};
 }
 
 // Cells without rock data become unknown ground (NaN); if unknown ground is permitted, such cells

@@ -25,8 +25,8 @@ std::string resolved(const std::string& path, const std::filesystem::path& folde
 }
 
 void take(std::string& option, const YamlFields& fields, const std::string& name) {
-  const std::string said = fields.word(name, "");
-  if (option.empty()) option = said;
+  const std::string given = fields.word(name, "");
+  if (option.empty()) option = given;
 }
 
 // A number checked with the validator of the corresponding option.
@@ -80,12 +80,12 @@ void readThresholds(const YamlFields& fields, costmap::TravelPolicy& policy) {
   fields.only(namesOf(thresholdKeys()));
   const costmap::TravelPolicy defaults;
   const auto number = [&](double costmap::TravelPolicy::*field, const char* name) {
-    const double said = fields.number(name, policy.*field);
-    if (policy.*field == defaults.*field) policy.*field = said;
+    const double given = fields.number(name, policy.*field);
+    if (policy.*field == defaults.*field) policy.*field = given;
   };
   const auto flag = [&](bool costmap::TravelPolicy::*field, const char* name) {
-    const bool said = fields.flag(name, policy.*field);
-    if (policy.*field == defaults.*field) policy.*field = said;
+    const bool given = fields.flag(name, policy.*field);
+    if (policy.*field == defaults.*field) policy.*field = given;
   };
   number(&costmap::TravelPolicy::slope_margin_rad, "slope_margin_rad");
   number(&costmap::TravelPolicy::sinkage_threshold, "sinkage_threshold");

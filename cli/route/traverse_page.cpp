@@ -33,7 +33,7 @@ Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldRes
 RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::SoilKnowledge belief,
                                   const ProgressMonitor& watch) {
   const planner::TrueWorld world = site.trueWorld(0);
-  costmap::TraversabilityMap map = site.believed(belief, world);
+  costmap::TraversabilityMap map = site.estimatedMap(belief, world);
   RecordedTraverse out{{}, {{}, {}, world.patches(), map.grid()}};
   const std::vector<std::uint8_t> before = planner::categoriesOf(map);
   std::vector<std::uint8_t> known = before;
@@ -62,7 +62,7 @@ RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::
 void saveTraversePage(const std::filesystem::path& path, const planner::SimulationSite& site,
                       planner::SoilKnowledge belief, const RecordedTraverse& drive,
                       const planner::RouteOrigin& origin) {
-  Scene scene = sceneBefore(site.believed(belief, site.trueWorld(0)), drive.result, belief);
+  Scene scene = sceneBefore(site.estimatedMap(belief, site.trueWorld(0)), drive.result, belief);
   scene.story = drive.story;
   addProvenance(scene, origin);
   savePage(path, scene);

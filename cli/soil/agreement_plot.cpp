@@ -11,12 +11,12 @@ Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
       .title = name(channel), .x = {.label = "measured [-]"}, .y = {.label = "predicted [-]"}, .series = {}};
   const auto c = static_cast<Eigen::Index>(channel);
   double low = INFINITY, high = -INFINITY;
-  for (const auto& [who, told] : predictions) {
+  for (const auto& [who, predicted] : predictions) {
     Series series{.name = who, .x = {}, .y = {}, .mark = Series::Mark::Points};
     for (Eigen::Index row = 0; row < measured.rows(); ++row) {
-      if (!std::isfinite(measured(row, c)) || !std::isfinite(told(row, c))) continue;
+      if (!std::isfinite(measured(row, c)) || !std::isfinite(predicted(row, c))) continue;
       series.x.push_back(measured(row, c));
-      series.y.push_back(told(row, c));
+      series.y.push_back(predicted(row, c));
       low = std::min(low, measured(row, c));
       high = std::max(high, measured(row, c));
     }

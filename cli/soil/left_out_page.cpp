@@ -79,8 +79,8 @@ Plot overColumn(const std::vector<LeftOutErrors>& all, const std::string& column
       words |= !std::isfinite(value);
       const double x = std::isfinite(value) ? value : ++count;
       for (Series* series : {&base, &refined, &measured}) series->x.push_back(x);
-      base.y.push_back(part.base_told(row, c));
-      refined.y.push_back(part.told(row, c));
+      base.y.push_back(part.base_predicted(row, c));
+      refined.y.push_back(part.predicted(row, c));
       measured.y.push_back(part.trial.measured(row, c));
     }
   }

@@ -94,8 +94,9 @@ terramech::TableFile tableFile(const std::string& path, const TableOptions& opti
   requireOnce(table.columns, options.columns.empty() ? options.columns_file : "--column");
   if (options.radius_m > 0.0) table.constants.emplace_back("wheel_radius_m", options.radius_m);
   if (options.width_m > 0.0) table.constants.emplace_back("wheel_width_m", options.width_m);
-  table.note = [&context, path, said = std::make_shared<std::set<std::string>>()](const std::string& text) {
-    if (said->insert(text).second) context.warn(path + ": " + text);
+  table.note = [&context, path,
+                printed = std::make_shared<std::set<std::string>>()](const std::string& text) {
+    if (printed->insert(text).second) context.warn(path + ": " + text);
   };
   return table;
 }

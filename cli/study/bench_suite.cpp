@@ -112,11 +112,11 @@ std::vector<BenchmarkCase> generatedCases(const SuiteOptions& options, const Con
 std::vector<BenchmarkCase> slipCases(const SuiteOptions& options, const Context& context) {
   std::vector<BenchmarkCase> cases;
   for (int k = 1; k <= options.pairs; ++k)
-    for (const bool heed : {false, true}) {
+    for (const bool risk_aware : {false, true}) {
       const auto world = std::make_shared<const planner::SlipWorld>(planner::slipWorld(
-          {.seed = context.seed * 1000 + static_cast<std::uint64_t>(k), .risk_aware = heed}));
+          {.seed = context.seed * 1000 + static_cast<std::uint64_t>(k), .risk_aware = risk_aware}));
       const maps::Grid& grid = world->map->grid();
-      const std::string group = heed ? "slip tail" : "slip mean";
+      const std::string group = risk_aware ? "slip tail" : "slip mean";
       cases.push_back({.name = group + " " + std::to_string(k),
                        .map = world->map,
                        .start = grid.centre({8, 8}),

@@ -17,7 +17,7 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
                        reweighted(map.cost().turns()[i], weights.energy, weights.time_W)});
   }
   CostGrid::Content content = map.content();
-  content.cost = std::make_shared<const TravelCost>(map.cost().limits(), grounds, map.cost().doubt());
+  content.cost = std::make_shared<const TravelCost>(map.cost().limits(), grounds, map.cost().uncertainty());
   return std::make_shared<const CostGrid>(std::move(content));
 }
 

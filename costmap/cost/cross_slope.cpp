@@ -255,7 +255,8 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// Failure of the nearer adjacent equilibrium, else of the other, else Pull (row 0) or SideForce.
+// Reason why the nearer of the two adjacent table nodes has no equilibrium. If it has one, the reason of the
+// other node; if both have one, Pull (row 0) or SideForce.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;

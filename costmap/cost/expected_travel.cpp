@@ -90,18 +90,18 @@ double ExpectedTravel::expected(const Table& table, const Estimate& demand, doub
     return value(table, std::max(demand.value - d, least)) + value(table, std::max(demand.value + d, least));
   };
   const double middle = value(table, std::max(demand.value, least));
-  std::array<double, 3> dearest;
-  for (std::size_t i = 0; i < dearest.size(); ++i)
-    dearest[i] = std::max(2.0 * middle, pair(kDeviation[i] * demand.std));
+  std::array<double, 3> highest;
+  for (std::size_t i = 0; i < highest.size(); ++i)
+    highest[i] = std::max(2.0 * middle, pair(kDeviation[i] * demand.std));
   const double widest = kDeviation.back() * demand.std;
   const auto from = std::lower_bound(table.bends.begin(), table.bends.end(), demand.value - widest);
   for (auto bend = from; bend != table.bends.end() && *bend < demand.value + widest; ++bend) {
     const double d = std::abs(*bend - demand.value), sum = pair(d);
-    for (std::size_t i = 0; i < dearest.size(); ++i)
-      if (d <= kDeviation[i] * demand.std) dearest[i] = std::max(dearest[i], sum);
+    for (std::size_t i = 0; i < highest.size(); ++i)
+      if (d <= kDeviation[i] * demand.std) highest[i] = std::max(highest[i], sum);
   }
   double total = kMeanWeight * middle;
-  for (std::size_t i = 0; i < dearest.size(); ++i) total += kPairWeight[i] * dearest[i];
+  for (std::size_t i = 0; i < highest.size(); ++i) total += kPairWeight[i] * highest[i];
   return total;
 }
 

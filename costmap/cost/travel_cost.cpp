@@ -54,9 +54,10 @@ TravelCost::TravelCost(const Limits& limits, std::vector<TravelCurve> curves)
                                 " drive curves, must be <= 254");
 }
 
-TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty doubt)
+TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds,
+                       SoilUncertainty uncertainty)
     : TravelCost(limits, curvesOf(grounds)) {
-  doubt_ = std::move(doubt);
+  uncertainty_ = std::move(uncertainty);
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     states_[i] = grounds[i].states;
     crossings_[i] = grounds[i].crossing;

@@ -180,7 +180,7 @@ class TravelCost {
 
   /// Throws std::invalid_argument for more than 254 curves.
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
-  TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty doubt = {});
+  TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty uncertainty = {});
 
   /// Returns the cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused
   /// motion.
@@ -207,7 +207,7 @@ class TravelCost {
 
   const Limits& limits() const noexcept { return limits_; }
   /// Correlation of the soil uncertainty, for the risk of a whole route.
-  const SoilUncertainty& doubt() const noexcept { return doubt_; }
+  const SoilUncertainty& uncertainty() const noexcept { return uncertainty_; }
   const std::vector<TravelCurve>& curves() const noexcept { return curves_; }
   /// States of each curve; null for a curve made without states.
   const std::vector<std::shared_ptr<const TravelTable>>& states() const noexcept { return states_; }
@@ -222,7 +222,7 @@ class TravelCost {
   std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   std::vector<TurnCosts> turns_;
   double steady_gradient_;  // gradient up to which no heading tips
-  SoilUncertainty doubt_;
+  SoilUncertainty uncertainty_;
 };
 
 }  // namespace talus::costmap

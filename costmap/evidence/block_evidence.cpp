@@ -105,10 +105,10 @@ double variance(double weight) noexcept {
   return kModel * kModel + 1.0 / weight;
 }
 
-// Keeps `pull` as the weakest pull if its estimate as the only reading, believedAlone(), is below `least`.
+// Keeps `pull` as the weakest pull if its estimate as the only reading, estimateAlone(), is below `least`.
 void keepWeakest(double pull, double of_variance, const Estimate& prior, BlockEvidence& block,
                  double& least) {
-  const double left = believedAlone({.departure = pull - prior.value, .variance = of_variance}, prior.std);
+  const double left = estimateAlone({.departure = pull - prior.value, .variance = of_variance}, prior.std);
   if (left >= least) return;
   least = left;
   block.weak_pull = static_cast<float>(pull);

@@ -70,22 +70,22 @@ void ClassEvidence::add(std::uint16_t drive, const WeightedSum& sum, ByDrive& dr
   if (all.weight == 0) drives.erase(drive);
 }
 
-void ClassEvidence::sum(const BlockContribution& lesson, std::int64_t sign) {
+void ClassEvidence::sum(const BlockContribution& contribution, std::int64_t sign) {
   const auto sum = [&](double departure) {
-    return WeightedSum{sign * fixed(lesson.weight), sign * fixed(lesson.weight * departure)};
+    return WeightedSum{sign * fixed(contribution.weight), sign * fixed(contribution.weight * departure)};
   };
-  if (lesson.raises) {
-    pull_.add(sum(lesson.pull));
-    add(lesson.drive, sum(lesson.pull), pull_by_drive_);
-    shared_ += sign * fixed(lesson.weight * lesson.shared);
+  if (contribution.raises) {
+    pull_.add(sum(contribution.pull));
+    add(contribution.drive, sum(contribution.pull), pull_by_drive_);
+    shared_ += sign * fixed(contribution.weight * contribution.shared);
   } else {
-    add(lesson.drive, sum(lesson.pull), lower_pull_);
+    add(contribution.drive, sum(contribution.pull), lower_pull_);
   }
-  if (!lesson.sinkage) return;
-  if (lesson.sinkage_raises)
-    sinkage_.add(sum(-*lesson.sinkage));
+  if (!contribution.sinkage) return;
+  if (contribution.sinkage_raises)
+    sinkage_.add(sum(-*contribution.sinkage));
   else
-    add(lesson.drive, sum(-*lesson.sinkage), lower_sinkage_);
+    add(contribution.drive, sum(-*contribution.sinkage), lower_sinkage_);
 }
 
 double ClassEvidence::mostRise() const noexcept {

@@ -81,8 +81,8 @@ class ClassEvidence {
  public:
   explicit ClassEvidence(const GroundClass& ground) : ground_(ground) { refresh(); }
 
-  void add(const BlockContribution& lesson) { sum(lesson, 1); }
-  void remove(const BlockContribution& lesson) { sum(lesson, -1); }
+  void add(const BlockContribution& contribution) { sum(contribution, 1); }
+  void remove(const BlockContribution& contribution) { sum(contribution, -1); }
   IndependentPlaces& places() noexcept { return places_; }
   /// Recomputes the posterior. Required after each change of contributions or places.
   void refresh();
@@ -117,7 +117,7 @@ class ClassEvidence {
   static constexpr std::size_t kPlaces = 3;
 
  private:
-  void sum(const BlockContribution& lesson, std::int64_t sign);
+  void sum(const BlockContribution& contribution, std::int64_t sign);
 
   // Sums over contributions, in units of 2^-20: the weights, and weight times departure towards strength.
   struct WeightedSum {

@@ -70,51 +70,51 @@ BlockEvidence& EvidenceBricks::at(const BlockLevel& block) {
 std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const {
   std::vector<ReadingCount> out;
   if (!contains(block.column, block.row)) return out;
-  const auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  const auto& readings = bricks_[brickOf(block.column, block.row)].readings;
   const std::uint32_t key = keyOf(block);
-  const auto first = std::lower_bound(heard.begin(), heard.end(), key,
+  const auto first = std::lower_bound(readings.begin(), readings.end(), key,
                                       [](const BlockReadings& h, std::uint32_t k) { return h.block < k; });
-  for (auto at = first; at != heard.end() && at->block == key; ++at) out.push_back(at->reading);
+  for (auto at = first; at != readings.end() && at->block == key; ++at) out.push_back(at->reading);
   return out;
 }
 
-std::uint64_t EvidenceBricks::orderOf(const BlockReadings& heard) noexcept {
-  return static_cast<std::uint64_t>(heard.block) << 32 |
-         static_cast<std::uint64_t>(heard.reading.kind) << 24 |
-         static_cast<std::uint64_t>(heard.reading.step) << 16 | heard.reading.drive;
+std::uint64_t EvidenceBricks::orderOf(const BlockReadings& readings) noexcept {
+  return static_cast<std::uint64_t>(readings.block) << 32 |
+         static_cast<std::uint64_t>(readings.reading.kind) << 24 |
+         static_cast<std::uint64_t>(readings.reading.step) << 16 | readings.reading.drive;
 }
 
 // Position of a count in the sorted list, or the position at which to insert the count.
 std::vector<EvidenceBricks::BlockReadings>::iterator EvidenceBricks::placeOf(
-    std::vector<BlockReadings>& heard, const BlockReadings& one) {
-  return std::lower_bound(heard.begin(), heard.end(), orderOf(one),
+    std::vector<BlockReadings>& readings, const BlockReadings& one) {
+  return std::lower_bound(readings.begin(), readings.end(), orderOf(one),
                           [](const BlockReadings& h, std::uint64_t key) { return orderOf(h) < key; });
 }
 
 void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& reading) {
-  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  auto& readings = bricks_[brickOf(block.column, block.row)].readings;
   const BlockReadings taken{keyOf(block), reading};
-  const auto found = placeOf(heard, taken);
-  if (found == heard.end() || orderOf(*found) != orderOf(taken)) return;
+  const auto found = placeOf(readings, taken);
+  if (found == readings.end() || orderOf(*found) != orderOf(taken)) return;
   std::uint16_t& count = found->reading.count;
   if (count == std::numeric_limits<std::uint16_t>::max()) return;
   count = static_cast<std::uint16_t>(count - std::min(count, reading.count));
-  if (count == 0) heard.erase(found);
+  if (count == 0) readings.erase(found);
 }
 
 void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
-  auto& heard = bricks_[brickOf(block.column, block.row)].heard;
+  auto& readings = bricks_[brickOf(block.column, block.row)].readings;
   const BlockReadings added{keyOf(block), reading};
-  const auto found = placeOf(heard, added);
-  if (found != heard.end() && orderOf(*found) == orderOf(added)) {
+  const auto found = placeOf(readings, added);
+  if (found != readings.end() && orderOf(*found) == orderOf(added)) {
     const unsigned sum = found->reading.count + static_cast<unsigned>(reading.count);
     found->reading.count =
         static_cast<std::uint16_t>(std::min<unsigned>(sum, std::numeric_limits<std::uint16_t>::max()));
     return;
   }
-  const auto at = found - heard.begin();
-  makeRoom(heard);
-  heard.insert(heard.begin() + at, added);
+  const auto at = found - readings.begin();
+  makeRoom(readings);
+  readings.insert(readings.begin() + at, added);
 }
 
 void EvidenceBricks::visitLevels(int column, int row, const Visit& visit) const {

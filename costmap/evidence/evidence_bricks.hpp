@@ -61,15 +61,15 @@ class EvidenceBricks {
   };
   struct Brick {
     std::vector<BlockEvidence> blocks;
-    std::vector<BlockReadings> heard;
+    std::vector<BlockReadings> readings;
   };
 
   bool contains(int column, int row) const noexcept {
     return column >= 0 && row >= 0 && column < columns_ && row < rows_;
   }
   std::size_t brickOf(int column, int row) const noexcept;
-  static std::uint64_t orderOf(const BlockReadings& heard) noexcept;
-  static std::vector<BlockReadings>::iterator placeOf(std::vector<BlockReadings>& heard,
+  static std::uint64_t orderOf(const BlockReadings& readings) noexcept;
+  static std::vector<BlockReadings>::iterator placeOf(std::vector<BlockReadings>& readings,
                                                       const BlockReadings& one);
 
   int columns_, rows_;

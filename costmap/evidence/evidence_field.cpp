@@ -41,7 +41,7 @@ EvidenceField::EvidenceField(EvidenceField&&) noexcept = default;
 EvidenceField& EvidenceField::operator=(EvidenceField&&) noexcept = default;
 
 const ClassPosterior& EvidenceField::posterior(int class_index) const {
-  return store_->lessons[static_cast<std::size_t>(class_index)].posterior();
+  return store_->contributions[static_cast<std::size_t>(class_index)].posterior();
 }
 
 int EvidenceField::blockCells() const noexcept {
@@ -62,8 +62,9 @@ BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
 }
 
 // Contribution of a block to its class. The weight is at most the side of the block over the integral scale
-// (2/3 of the correlation length), and at most 1. The departure is limited to kOrdinary standard deviations:
-// a greater departure is assumed to be other ground, missing in the class raster.
+// (2/3 of the correlation length), and at most 1. The departure from the class mean is limited to
+// kOrdinary standard deviations: a block that departs more is assumed to be on another soil, which the class
+// raster does not show.
 BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_index) const {
   const GroundClass& ground = store_->groundClass(class_index);
   const GroundBelief prior = site_->model->prior(class_index);
@@ -73,28 +74,30 @@ BlockContribution EvidenceField::lessonOf(const BlockEvidence& block, int class_
   if (block.lowers) pull = std::min(pull, static_cast<double>(block.weak_pull) - prior.pull.value);
   const double variance = ground.pull_std * ground.pull_std;
   const double most = kOrdinary * std::sqrt(variance + ground.mean_std * ground.mean_std + measured);
-  BlockContribution lesson{.weight = std::min(1.0, 1.5 * store_->blocks.side_m() /
-                                                       site_->model->parts().policy.correlation_length_m) *
-                                     variance / (variance + measured),
-                           .pull = std::clamp(pull, -most, most),
-                           .sinkage = std::nullopt,
-                           .raises = raises,
-                           .shared = raises ? static_cast<double>(block.shared) : 0.0};
-  if (std::isnan(block.sinkage)) return lesson;
+  BlockContribution contribution{
+      .weight =
+          std::min(1.0, 1.5 * store_->blocks.side_m() / site_->model->parts().policy.correlation_length_m) *
+          variance / (variance + measured),
+      .pull = std::clamp(pull, -most, most),
+      .sinkage = std::nullopt,
+      .raises = raises,
+      .shared = raises ? static_cast<double>(block.shared) : 0.0};
+  if (std::isnan(block.sinkage)) return contribution;
   const double most_sinkage = kOrdinary * ground.sinkage_std;
   const double sinkage = static_cast<double>(block.sinkage) - prior.sinkage.value;
-  lesson.sinkage = std::clamp(sinkage, block.sinkage_raises ? -most_sinkage : 0.0, most_sinkage);
-  lesson.sinkage_raises = block.sinkage_raises;
-  return lesson;
+  contribution.sinkage = std::clamp(sinkage, block.sinkage_raises ? -most_sinkage : 0.0, most_sinkage);
+  contribution.sinkage_raises = block.sinkage_raises;
+  return contribution;
 }
 
 // Returns one contribution of all readings, with the lowest weak pull of any drive, if some readings may
 // raise an estimate. Otherwise returns one contribution for each drive, so that no drive reduces the effect
 // of another.
-std::vector<BlockContribution> EvidenceField::lessonsOf(const BlockLevel& where, const BlockEvidence& block,
-                                                        int class_index) const {
-  std::vector<BlockContribution> lessons;
-  if (!teachesClass(block.level) || std::isnan(block.weak_pull)) return lessons;
+std::vector<BlockContribution> EvidenceField::contributionsOf(const BlockLevel& where,
+                                                              const BlockEvidence& block,
+                                                              int class_index) const {
+  std::vector<BlockContribution> contributions;
+  if (!contributesToClass(block.level) || std::isnan(block.weak_pull)) return contributions;
   const std::vector<ReadingCount> counts = store_->bricks.counts(where);
   const std::vector<std::uint16_t> drives = drivesOf(counts);
   const bool raises = !std::isnan(block.pull);
@@ -106,13 +109,13 @@ std::vector<BlockContribution> EvidenceField::lessonsOf(const BlockLevel& where,
       if (std::isnan(own.weak_pull)) continue;
       all.weak_pull = std::min(all.weak_pull, own.weak_pull);
       if (raises) continue;
-      lessons.push_back(lessonOf(own, class_index));
-      lessons.back().drive = drive;
+      contributions.push_back(lessonOf(own, class_index));
+      contributions.back().drive = drive;
     }
-  if (!lessons.empty()) return lessons;
-  lessons.push_back(lessonOf(all, class_index));
-  lessons.back().drive = raises ? driveOf(counts) : drives.front();
-  return lessons;
+  if (!contributions.empty()) return contributions;
+  contributions.push_back(lessonOf(all, class_index));
+  contributions.back().drive = raises ? driveOf(counts) : drives.front();
+  return contributions;
 }
 
 Estimate EvidenceField::priorOf(int class_index) const {
@@ -130,7 +133,7 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   double least = std::numeric_limits<double>::infinity();
   const int number = store_->groundClass(class_index).number;
   const auto take = [&](const BlockLevel& at, const BlockEvidence& e) {
-    if (at.terrain_class != number || !teachesClass(at.level) || std::isnan(e.weak_pull)) return;
+    if (at.terrain_class != number || !contributesToClass(at.level) || std::isnan(e.weak_pull)) return;
     driven = true;
     const double pull = static_cast<double>(e.pull) - prior, variance = static_cast<double>(e.variance);
     const bool is_known = variance <= kPlaceStd * kPlaceStd;
@@ -147,25 +150,26 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
 
 // Adds or removes readings of a block and updates the block's contributions to its class. Returns the cells
 // whose estimate may change.
-maps::CellBox EvidenceField::hear(const BlockLevel& where, const SavedBlock& heard, Count how) {
+maps::CellBox EvidenceField::count(const BlockLevel& where, const SavedBlock& readings, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
-  ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
+  ClassEvidence& contributions = store_->contributions[static_cast<std::size_t>(class_index)];
   if (const BlockEvidence* known = store_->bricks.find(where))
-    for (const BlockContribution& before : lessonsOf(where, *known, class_index)) lessons.remove(before);
-  for (const ReadingCount& reading : heard.heard)
+    for (const BlockContribution& before : contributionsOf(where, *known, class_index))
+      contributions.remove(before);
+  for (const ReadingCount& reading : readings.counts)
     how == Count::Add ? store_->bricks.count(where, reading) : store_->bricks.uncount(where, reading);
   BlockEvidence& block = store_->bricks.at(where);
-  block.updated_s = std::max(block.updated_s, heard.updated_s);
-  block.reach = std::max(block.reach, heard.reach);
+  block.updated_s = std::max(block.updated_s, readings.updated_s);
+  block.reach = std::max(block.reach, readings.reach);
   summarise(store_->bricks.counts(where), priorOf(class_index), block);
   const maps::CellBox reached = store_->reach.add(where, block.reach_m());
-  const std::vector<BlockContribution> taught = lessonsOf(where, block, class_index);
+  const std::vector<BlockContribution> taught = contributionsOf(where, block, class_index);
   if (taught.empty() && how == Count::Add) return reached;
-  for (const BlockContribution& lesson : taught) lessons.add(lesson);
+  for (const BlockContribution& contribution : taught) contributions.add(contribution);
   const IndependentPlaces::Square square{where.column / store_->blocks.reach(),
                                          where.row / store_->blocks.reach()};
-  lessons.places().set(square, squareStrength(square, class_index));
-  lessons.refresh();
+  contributions.places().set(square, squareStrength(square, class_index));
+  contributions.refresh();
   return reached;
 }
 
@@ -188,20 +192,20 @@ bool EvidenceField::standsOnOneClass(const WheelObservation& observation, int cl
 }
 
 std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observation) {
-  const auto heard = heardOf(observation);
-  return heard ? std::optional(hear(heard->block, *heard)) : std::nullopt;
+  const auto readings = readingsOf(observation);
+  return readings ? std::optional(count(readings->block, *readings)) : std::nullopt;
 }
 
-std::optional<maps::CellBox> EvidenceField::forget(const SavedBlock& heard) {
-  if (!store_->bricks.find(heard.block)) return std::nullopt;
-  SavedBlock estimates = heard;
-  std::erase_if(estimates.heard, [](const ReadingCount& c) {
+std::optional<maps::CellBox> EvidenceField::forget(const SavedBlock& readings) {
+  if (!store_->bricks.find(readings.block)) return std::nullopt;
+  SavedBlock estimates = readings;
+  std::erase_if(estimates.counts, [](const ReadingCount& c) {
     return c.kind == reading_kind::kMostPullHere || c.kind == reading_kind::kLeastSinkageHere;
   });
-  return hear(estimates.block, estimates, Count::TakeOff);
+  return count(estimates.block, estimates, Count::TakeOff);
 }
 
-std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observation) const {
+std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& observation) const {
   const maps::Grid& grid = site_->grid();
   const auto cell = grid.cellAt(observation.place);
   if (!cell) return std::nullopt;
@@ -210,11 +214,11 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
   if (class_index < 0 || !(observation.estimates() || observation.here.any())) return std::nullopt;
   const bool sure = floor || observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
-  SavedBlock heard{.block = floor ? levelOf(*cell, *floor) : store_->topOf(*cell, class_index),
-                   .updated_s = secondsOf(observation.time_s),
-                   .reach = static_cast<std::uint8_t>(
-                       std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
-                   .heard = boundReadings(observation.here)};
+  SavedBlock readings{.block = floor ? levelOf(*cell, *floor) : store_->topOf(*cell, class_index),
+                      .updated_s = secondsOf(observation.time_s),
+                      .reach = static_cast<std::uint8_t>(std::clamp(
+                          std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
+                      .counts = boundReadings(observation.here)};
   // The measured ground may lie one position error away, and correlates with the ground here by `alike`. The
   // variance of the class that this correlation does not explain is added.
   Estimate pull = observation.pull;
@@ -223,16 +227,17 @@ std::optional<SavedBlock> EvidenceField::heardOf(const WheelObservation& observa
   if (raises)
     pull.std =
         std::hypot(pull.std, store_->groundClass(class_index).pull_std * std::sqrt(1.0 - alike * alike));
-  if (observation.estimates()) heard.heard.push_back(pullReading(pull, raises, observation.shared_std));
+  if (observation.estimates()) readings.counts.push_back(pullReading(pull, raises, observation.shared_std));
   if (std::isfinite(observation.sinkage.std))
-    heard.heard.push_back(sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
-  for (ReadingCount& count : heard.heard) count.drive = observation.drive;
-  return heard;
+    readings.counts.push_back(
+        sinkageReading(observation.sinkage.value, sure && observation.sinkage_may_raise));
+  for (ReadingCount& count : readings.counts) count.drive = observation.drive;
+  return readings;
 }
 
 void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) const {
   store_->bricks.visitAll([&](const BlockLevel& at, const BlockEvidence& e) {
-    visit({.block = at, .updated_s = e.updated_s, .reach = e.reach, .heard = store_->bricks.counts(at)});
+    visit({.block = at, .updated_s = e.updated_s, .reach = e.reach, .counts = store_->bricks.counts(at)});
   });
 }
 
@@ -240,7 +245,7 @@ std::optional<maps::CellBox> EvidenceField::restore(const SavedBlock& saved) {
   if (saved.block.column < 0 || saved.block.row < 0 || saved.block.column >= store_->blocks.columns() ||
       saved.block.row >= store_->blocks.rows() || site_->model->classIndex(saved.block.terrain_class) < 0)
     return std::nullopt;
-  return hear(saved.block, saved);
+  return count(saved.block, saved);
 }
 
 const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
@@ -282,13 +287,13 @@ GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) con
 
 std::vector<ClassState> EvidenceField::states(Classes classes) const {
   std::vector<ClassState> all;
-  for (int i = 0; i < static_cast<int>(store_->lessons.size()); ++i) all.push_back(stateOf(i, classes));
+  for (int i = 0; i < static_cast<int>(store_->contributions.size()); ++i) all.push_back(stateOf(i, classes));
   return all;
 }
 
 ClassState EvidenceField::stateOf(int class_index, Classes classes) const {
-  const ClassEvidence& lessons = store_->lessons[static_cast<std::size_t>(class_index)];
-  return classes == Classes::InSteps ? lessons.stateInSteps() : lessons.state();
+  const ClassEvidence& contributions = store_->contributions[static_cast<std::size_t>(class_index)];
+  return classes == Classes::InSteps ? contributions.stateInSteps() : contributions.state();
 }
 
 GroundBelief EvidenceField::classBelief(int class_index, Classes classes) const {

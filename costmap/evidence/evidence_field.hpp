@@ -19,7 +19,7 @@ struct SavedBlock {
   BlockLevel block;
   std::uint32_t updated_s = 0;
   std::uint8_t reach = 0;  ///< position uncertainty of the place, in steps of 0.1 m
-  std::vector<ReadingCount> heard;
+  std::vector<ReadingCount> counts;
 };
 
 struct BlockContribution;
@@ -54,10 +54,10 @@ class EvidenceField {
   std::optional<maps::CellBox> add(const WheelObservation& observation);
   /// Returns the block and the quantised readings that add() would store for an observation; nullopt if add()
   /// returns nullopt.
-  std::optional<SavedBlock> heardOf(const WheelObservation& observation) const;
+  std::optional<SavedBlock> readingsOf(const WheelObservation& observation) const;
   /// Removes stored readings of pull and sinkage; the bounds of the place remain. Returns the cells whose
   /// estimate may change; nullopt if the block has no evidence.
-  std::optional<maps::CellBox> forget(const SavedBlock& heard);
+  std::optional<maps::CellBox> forget(const SavedBlock& readings);
 
   /// Class states from which estimates are computed. AsKnown: exact. InSteps: rounded towards danger
   /// (ClassEvidence::stateInSteps()), as used for publishing.
@@ -104,16 +104,16 @@ class EvidenceField {
   const EvidenceStore& store() const noexcept { return *store_; }
 
  private:
-  bool teachesClass(std::uint16_t level) const noexcept {
+  bool contributesToClass(std::uint16_t level) const noexcept {
     return level == BlockEvidence::kTop || site_->classes.empty();
   }
   BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
-  maps::CellBox hear(const BlockLevel& where, const SavedBlock& heard, Count how = Count::Add);
+  maps::CellBox count(const BlockLevel& where, const SavedBlock& readings, Count how = Count::Add);
   BlockContribution lessonOf(const BlockEvidence& block, int class_index) const;
-  std::vector<BlockContribution> lessonsOf(const BlockLevel& where, const BlockEvidence& block,
-                                           int class_index) const;
+  std::vector<BlockContribution> contributionsOf(const BlockLevel& where, const BlockEvidence& block,
+                                                 int class_index) const;
   Estimate priorOf(int class_index) const;
   std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
   ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;

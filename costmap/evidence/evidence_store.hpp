@@ -20,13 +20,13 @@ struct EvidenceStore {
         blocks(site),
         bricks(blocks.columns(), blocks.rows()),
         reach(site),
-        lessons(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
+        contributions(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
 
   std::shared_ptr<const GroundSite> site;
   BlockGrid blocks;
   EvidenceBricks bricks;
   EvidenceReach reach;
-  std::vector<ClassEvidence> lessons;  ///< one for each class
+  std::vector<ClassEvidence> contributions;  ///< one for each class
 
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {

@@ -22,8 +22,9 @@ struct NearbyEvidence {
   std::vector<PlaceBound> bounds{};
 };
 
-// Adds the evidence of one block. Pulls that may raise an estimate are added to the process. Places that are
-// weaker than the class explains, or whose readings may only lower an estimate, become separate bounds.
+// Adds the evidence of one block. Pulls that may raise an estimate are added to the Gaussian process. Places
+// with less pull than the spread of their class allows, or whose readings may only lower an estimate, become
+// separate bounds.
 // Evidence of another class is used only if its position uncertainty includes this ground.
 void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvidence& e,
            NearbyEvidence& nearby) {

@@ -89,9 +89,9 @@ GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Vari
 }
 
 double withSharedError(const SharedError& error) noexcept {
-  const double told = std::fmax(error.prior - error.variance, 0.0), c2 = error.shared * error.shared;
-  return told > 0.0 && c2 > 0.0 ? (error.variance * told + error.prior * c2) / (told + c2)
-                                : std::fmin(error.variance, error.prior);
+  const double explained = std::fmax(error.prior - error.variance, 0.0), c2 = error.shared * error.shared;
+  return explained > 0.0 && c2 > 0.0 ? (error.variance * explained + error.prior * c2) / (explained + c2)
+                                     : std::fmin(error.variance, error.prior);
 }
 
 LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
@@ -127,7 +127,7 @@ LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
 
 namespace {
 
-// Squared amplitude a^2 of believedAlone(), in units of the class's variance.
+// Squared amplitude a^2 of estimateAlone(), in units of the class's variance.
 double amplitude2(const Departure& reading, double class_std) noexcept {
   const double ordinary = reading.departure / kOrdinary;
   return std::fmax((ordinary * ordinary - reading.variance) / (class_std * class_std), 1.0);
@@ -135,7 +135,7 @@ double amplitude2(const Departure& reading, double class_std) noexcept {
 
 }  // namespace
 
-double believedAlone(const Departure& reading, double class_std) noexcept {
+double estimateAlone(const Departure& reading, double class_std) noexcept {
   const double a2 = amplitude2(reading, class_std);
   return reading.departure * a2 / (a2 + reading.variance / (class_std * class_std));
 }

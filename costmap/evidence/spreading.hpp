@@ -95,7 +95,7 @@ struct Departure {
 /// y, v and a in units of the class's standard deviation. The amplitude a >= 1 is the least amplitude for
 /// which the reading lies within two standard deviations (ours): small areas of other ground, missing in the
 /// class raster, depart further than the class varies.
-double believedAlone(const Departure& reading, double class_std) noexcept;
+double estimateAlone(const Departure& reading, double class_std) noexcept;
 
 /// Ground that is weaker than its class, or has a greater sinkage, by the evidence of one place alone. No
 /// estimate nearby exceeds the value that this place alone implies.
@@ -111,7 +111,7 @@ struct WeakPlace {
 };
 
 /// Returns the departure from the prior that a weak place implies at `place`, at the distance d: a process of
-/// amplitude 1 + (a - 1) k(d), with a as in believedAlone(); nullopt if the weak place has no effect at
+/// amplitude 1 + (a - 1) k(d), with a as in estimateAlone(); nullopt if the weak place has no effect at
 /// `place`.
 std::optional<GroundBelief> weakness(const WeakPlace& weak, const Variation& variation,
                                      const maps::Point& place);

@@ -28,7 +28,7 @@ constexpr double kStandIn = 2.0;
 constexpr double kStanding = 0.9;  // slip from which a rover may be stationary (ours)
 constexpr double kHeld =
     0.05;  // least side force over load that cannot result from a turn or a drift of the pose (ours)
-constexpr double kRutDoubt = 1.0;  // relative error of the pull gained in a rut (ours)
+constexpr double kRutRelativeStd = 1.0;  // relative error of the pull gained in a rut (ours)
 
 bool known(double value) noexcept {
   return std::isfinite(value);
@@ -36,14 +36,14 @@ bool known(double value) noexcept {
 
 // True if a departure is extrapolated to the reference slip. `share`: mobilised thrust relative to that at
 // the reference slip.
-bool tells(double share) noexcept {
+bool isMobilised(double share) noexcept {
   return kMostGrowth * share >= 1.0;
 }
 
 // Returns the factor from a departure to the departure at the reference slip. Beyond the reference slip
 // (share > 1) the factor of a negative departure is 1.
 double growth(double departure, double share) noexcept {
-  return tells(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
+  return isMobilised(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
 }
 
 // Returns the value reduced by the part that its error explains: v v^2/(v^2 + e^2).
@@ -162,8 +162,8 @@ double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) c
   const double by_slip = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom);
   const double class_std = model_.prior(w.read.class_index).pull.std;
   if (!(all.share < 1.0)) return by_slip * (kMissPerSlip + kMissPerSlipAndDeparture * std::abs(carried));
-  const double unfelt =
-      tells(all.share) ? kMissPerGrowth * (1.0 / all.share - 1.0) : 1.0 - std::clamp(all.share, 0.0, 1.0);
+  const double unfelt = isMobilised(all.share) ? kMissPerGrowth * (1.0 / all.share - 1.0)
+                                               : 1.0 - std::clamp(all.share, 0.0, 1.0);
   return std::hypot(by_slip * kMissPerSlip, unfelt * class_std);
 }
 
@@ -225,14 +225,14 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
     const double less = std::min(own, std::max(-balance.departure, 0.0));
     seen.value = std::min(seen.value, by_balance ? std::max(bySlope(w, balance, less).value, 0.0) : 0.0);
   }
-  const double rut = kRutDoubt * w.rut_gain;
+  const double rut = kRutRelativeStd * w.rut_gain;
   if (by_balance) {
     const Estimate slope = bySlope(w, balance, 0.0);
     out.by_slope = {prior.pull.value + slope.value, std::hypot(slope.std, rut)};
   }
   out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};
-  out.shared_std = tells(alone.share) ? std::hypot(miss(w, alone, seen.value), by_class)
-                                      : std::numeric_limits<double>::quiet_NaN();
+  out.shared_std = isMobilised(alone.share) ? std::hypot(miss(w, alone, seen.value), by_class)
+                                            : std::numeric_limits<double>::quiet_NaN();
   out.share = alone.share;
   out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
   const double z = reading.sinkage_m / model_.rover().wheel.radius_m;

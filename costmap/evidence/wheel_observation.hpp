@@ -137,8 +137,8 @@ class WheelObserver {
   std::optional<WheelObservation> observe(int class_index, const TelemetryReading& reading) const;
 
   /// Observations of the wheels of one rover at one moment, in the order of `together`. `departures`:
-  /// departure of each class at the reference slip that other data provide [-]; the readings determine the
-  /// remaining departure. Empty: all 0.
+  /// for each class the departure of its pull from the class mean at the reference slip, as estimated from
+  /// other data [-]; the readings determine the rest of the departure. Empty: all 0.
   std::vector<std::optional<WheelObservation>> observe(const std::vector<ClassReading>& together,
                                                        std::span<const double> departures = {}) const;
 

@@ -26,8 +26,8 @@ CategoryTable::Entry entryOf(const RankedCategory& ranked) {
   // Rounded to the nearest step for dangerous ground, else down: the probability of better ground is never
   // overstated.
   const double steps = 16.0 * ranked.probability;
-  const double told = ranked.category == Category::Dangerous ? std::round(steps) : std::floor(steps);
-  return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(told)};
+  const double rounded = ranked.category == Category::Dangerous ? std::round(steps) : std::floor(steps);
+  return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(rounded)};
 }
 
 // Increases `climb` until the model's category is at least `least`, and returns that category.

@@ -194,19 +194,19 @@ const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const Grou
 
 // Computes the fraction of the pull variance of each class that is common to all of its ground: the excess
 // over the variance between places.
-SoilUncertainty CostCurveTable::doubt() const {
+SoilUncertainty CostCurveTable::uncertainty() const {
   const GroundModel::Parts& parts = model_->parts();
-  SoilUncertainty doubt{.correlation_length_m = parts.policy.correlation_length_m,
-                        .entrapment = parts.policy.held()};
+  SoilUncertainty uncertainty{.correlation_length_m = parts.policy.correlation_length_m,
+                              .entrapment = parts.policy.held()};
   for (std::size_t i = 0; i < classes(); ++i) {
     const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
-    doubt.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
+    uncertainty.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
   }
-  return doubt;
+  return uncertainty;
 }
 
 std::shared_ptr<const TravelCost> CostCurveTable::cost() const {
-  if (!cost_) cost_ = std::make_shared<TravelCost>(model_->limits(), grounds_, doubt());
+  if (!cost_) cost_ = std::make_shared<TravelCost>(model_->limits(), grounds_, uncertainty());
   return cost_;
 }
 

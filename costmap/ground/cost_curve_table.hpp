@@ -77,7 +77,7 @@ class CostCurveTable {
   const Worked& worked(int class_index, const GroundBelief& prior);
   std::uint8_t standIn(const GroundKind& kind) const;
   GroundCost dearer(const GroundCost& ground, double added_J_per_m) const;
-  SoilUncertainty doubt() const;
+  SoilUncertainty uncertainty() const;
   void price(std::size_t class_index);
   std::optional<std::uint8_t> freeNumber();
   std::size_t classes() const noexcept { return model_->parts().classes.size(); }

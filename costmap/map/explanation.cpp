@@ -100,7 +100,7 @@ void addLayers(const TraversabilityMap& map, maps::Cell cell, Explanation& out) 
                           kNotKnown, "layer '" + layer.name + "'",
                           std::isinf(added)    ? "excluded for any soil"
                           : !std::isnan(added) ? "part of energy and cost, rounded up by at most a fifth"
-                          : open               ? "no data: costs as the dearest cell of the layer"
+                          : open               ? "no data: costs as the highest cell of the layer"
                                                : "no data: excluded as unknown"});
   }
 }

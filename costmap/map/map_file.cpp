@@ -204,9 +204,9 @@ std::string evidenceOf(const TraversabilityMap& map) {
                              .level = saved.block.level,
                              .terrain_class = saved.block.terrain_class,
                              .reach = saved.reach,
-                             .readings = static_cast<std::uint32_t>(saved.heard.size())};
+                             .readings = static_cast<std::uint32_t>(saved.counts.size())};
     put(&header, sizeof header);
-    put(saved.heard.data(), saved.heard.size() * sizeof(ReadingCount));
+    put(saved.counts.data(), saved.counts.size() * sizeof(ReadingCount));
   });
   return bytes;
 }
@@ -222,13 +222,13 @@ bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
     SavedBlock saved{.block = {header.column, header.row, header.level, header.terrain_class},
                      .updated_s = header.updated_s,
                      .reach = header.reach,
-                     .heard = std::vector<ReadingCount>(header.readings)};
-    std::memcpy(saved.heard.data(), bytes.data(), header.readings * sizeof(ReadingCount));
+                     .counts = std::vector<ReadingCount>(header.readings)};
+    std::memcpy(saved.counts.data(), bytes.data(), header.readings * sizeof(ReadingCount));
     bytes.remove_prefix(header.readings * sizeof(ReadingCount));
-    const bool kinds = std::all_of(saved.heard.begin(), saved.heard.end(), [](const ReadingCount& r) {
+    const bool kinds = std::all_of(saved.counts.begin(), saved.counts.end(), [](const ReadingCount& r) {
       return r.kind < reading_kind::kCount && r.count > 0;
     });
-    if (!kinds || saved.heard.empty() || !map.restore(saved)) return false;
+    if (!kinds || saved.counts.empty() || !map.restore(saved)) return false;
   }
   return true;
 }

@@ -60,9 +60,9 @@ bool TraversabilityMap::learn(const WheelObservation& observation) {
   return range.has_value() || (observation.here.any() && refuseUnobserved(observation));
 }
 
-void TraversabilityMap::forget(const SavedBlock& heard) {
+void TraversabilityMap::forget(const SavedBlock& readings) {
   const MapChange change(*changing_, "forget");
-  if (const auto range = field_.forget(heard)) costs_->noteLearned(*range);
+  if (const auto range = field_.forget(readings)) costs_->noteLearned(*range);
 }
 
 bool TraversabilityMap::restore(const SavedBlock& saved) {

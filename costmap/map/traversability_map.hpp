@@ -66,9 +66,9 @@ class TraversabilityMap {
   /// a block and two standard deviations of the pose around the place, independently of later patches.
   /// Returns false if the map has no ground at the place.
   bool learn(const WheelObservation& observation);
-  /// Removes learned pulls and sinkages, as returned by evidence().heardOf(), before their replacement.
+  /// Removes learned pulls and sinkages, as returned by evidence().readingsOf(), before their replacement.
   /// Bounds of the place remain. Visible to planners after publish().
-  void forget(const SavedBlock& heard);
+  void forget(const SavedBlock& readings);
   /// Restores the evidence of a block from a file; visible to planners after publish(). Returns false if the
   /// map has no such block or class.
   bool restore(const SavedBlock& saved);

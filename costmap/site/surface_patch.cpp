@@ -107,7 +107,7 @@ std::optional<std::string> impossibleShare(const maps::Raster<float>& rock_abund
   return impossible("rock_abundance", rock_abundance, {0.0, 1.0});
 }
 
-bool saysNothing(const SurfacePatch& patch) {
+bool isEmpty(const SurfacePatch& patch) {
   for (const maps::Raster<float>* layer : {&patch.elevation_m, &patch.rock_abundance})
     for (const float value : layer->values())
       if (!std::isnan(value)) return false;
@@ -134,7 +134,7 @@ maps::CellBox placeOf(const SurfacePatch& patch, const GroundSite& site, bool an
     refuse(text(grid) + " reaches off the map of " + text(map) + "; cut it to the map");
   if (!patch.classes.empty() && site.classes.empty())
     refuse("classes, but the map has none; build it with a class raster");
-  if (saysNothing(patch)) refuse("all of " + text(grid) + " is NaN or without a class; nothing was observed");
+  if (isEmpty(patch)) refuse("all of " + text(grid) + " is NaN or without a class; nothing was observed");
   requireHeights(patch.elevation_m, site.keys, any_height);
   if (const auto what = impossibleShare(patch.rock_abundance)) refuse(*what);
   return box;

@@ -10,7 +10,7 @@
 namespace talus::costmap {
 
 /// Terrain shape and hazards at each cell of a box, measured in bands of rows to limit memory. The results
-/// equal those of measuring the whole map to the bit. Immutable.
+/// are bit-identical to those of measuring the whole map at once. Immutable.
 class SurfaceShape {
  public:
   /// Throws std::invalid_argument as maps::terrainMetrics().

@@ -9,7 +9,7 @@ struct UnseenSlope {
   double dz_dx = 0.0, dz_dy = 0.0;
 };
 
-/// Greatest distance of the heights that determine the slope of a cell [cells].
+/// Greatest distance from a cell to the heights that determine its slope [cells].
 inline constexpr int kUnseenReach = 32;
 
 /// Returns the slope of a cell without a known shape: along the row and along the column, the mean slope

@@ -31,15 +31,15 @@ class DangerWatch {
 
   /// Returns the bound from one reading. `least_gradient`: lowest possible slope along the heading, rise over
   /// run [-].
-  GroundBound hear(int class_index, const TelemetryReading& reading, double least_gradient) const;
+  GroundBound bound(int class_index, const TelemetryReading& reading, double least_gradient) const;
 
   /// Returns the bound from a suspected reading: its drawbar pull, if at least two standard deviations below
   /// the class.
-  GroundBound hear(int class_index, const WheelObservation& suspected) const;
+  GroundBound bound(int class_index, const WheelObservation& suspected) const;
 
  private:
   double dangerousBelow(double gradient) const noexcept;
-  double neverDriven() const noexcept;
+  double dangerousInEveryHeading() const noexcept;
 
   const GroundModel& model_;
 };

@@ -72,10 +72,10 @@ std::string unobservedFinding(std::size_t places) {
 
 std::string lackingFinding(std::size_t drives) {
   return "the journal lacks " + std::to_string(drives) + (drives == 1 ? " drive" : " drives") +
-         " that the map holds: it cannot rebuild this map";
+         " that the map contains, and cannot rebuild this map";
 }
 
-void tellDrive(const SlipPosterior& drive, const GroundModel& model, DriveReport& report) {
+void reportDrive(const SlipPosterior& drive, const GroundModel& model, DriveReport& report) {
   report.slip_offset = drive.slip_bias;
   report.slip_scale = drive.slip_scale;
   for (std::size_t c = 0; c < drive.departure.size(); ++c) {
@@ -127,7 +127,7 @@ struct DriveIntake::State {
              TelemetryProcessor::Result&& result, const Take& take);
   void put(const terramech::Telemetry& telemetry, const DriveVerdict& verdict,
            const DriveBeginning& known = {});
-  void hearRejected(const terramech::Telemetry& telemetry, std::size_t from);
+  void boundRejected(const terramech::Telemetry& telemetry, std::size_t from);
 };
 
 DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& observation) {
@@ -135,7 +135,7 @@ DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& ob
 }
 
 void DriveIntake::State::keep(const WheelObservation& observation) {
-  if (auto heard = map.evidence().heardOf(observation)) counted.push_back(std::move(*heard));
+  if (auto heard = map.evidence().readingsOf(observation)) counted.push_back(std::move(*heard));
   if (observation.here.any()) bounded.insert(placeOf(observation));
 }
 
@@ -184,7 +184,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
   report.repeated = known.rows;
   if (options.settles) append(all, telemetry);
   const std::size_t read = rows.size();
-  hearRejected(telemetry, known.rejected);
+  boundRejected(telemetry, known.rejected);
   if (options.settles)
     of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
   report.unobserved += map.surface().refused().size() - refused;
@@ -219,7 +219,7 @@ void DriveIntake::State::settle() {
 }
 
 // Adds the bounds from rows that the file's reader rejected.
-void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std::size_t from) {
+void DriveIntake::State::boundRejected(const terramech::Telemetry& telemetry, std::size_t from) {
   terramech::Telemetry left{.source = telemetry.source, .numbers = telemetry.rejected_numbers};
   if (telemetry.rejected.empty() || !left.find("x_m") || !left.find("y_m") || !left.find("load_N") ||
       !left.find("slip"))
@@ -229,7 +229,7 @@ void DriveIntake::State::hearRejected(const terramech::Telemetry& telemetry, std
     auto heard = processor->rejected(readings, i);
     if (heard) heard->drive = tag.value_or(0);
     if (!heard || !map.learn(*heard)) continue;
-    ++report.heard;
+    ++report.bounding;
     rows.push_back({.source = telemetry.source,
                     .line = static_cast<std::int64_t>(telemetry.rejected[i].line),
                     .accepted = true,
@@ -266,8 +266,8 @@ DriveReport DriveIntake::report() const {
     report.findings.push_back("no row may raise an estimate: " + why);
   report.others = state_->processor->others();
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
-  if (report.heard > 0)
-    report.findings.push_back(std::to_string(report.heard) +
+  if (report.bounding > 0)
+    report.findings.push_back(std::to_string(report.bounding) +
                               " rejected rows: they indicate danger, which counts where they were read");
   if (report.unobserved > 0) report.findings.push_back(unobservedFinding(report.unobserved));
   return report;
@@ -291,7 +291,7 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   intake.state_->put(telemetry, verdict, known);
   map.publishAll();
   DriveReport report = intake.report();
-  if (verdict.drive && report.raising > 0) tellDrive(*verdict.drive, map.model(), report);
+  if (verdict.drive && report.raising > 0) reportDrive(*verdict.drive, map.model(), report);
   return report;
 }
 

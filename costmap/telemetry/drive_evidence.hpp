@@ -25,7 +25,7 @@ struct DriveReport {
   std::size_t raising = 0;   ///< used rows that may raise an estimate, with verified sensors
   std::size_t rejected = 0;  ///< rows rejected by the sensor checks, or without a place on the map
   std::size_t repeated = 0;  ///< rows of this drive that the map contains already; not counted again
-  std::size_t heard = 0;     ///< rows that the file's reader rejected and that indicate danger
+  std::size_t bounding = 0;  ///< rows that the file's reader rejected and that indicate danger
   std::size_t unobserved =
       0;                     ///< refused places without a terrain class in the map, at which wheels indicated
                              ///< danger

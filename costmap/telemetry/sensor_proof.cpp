@@ -10,7 +10,7 @@ constexpr double kApart_m = 0.5;             // least distance between rows that
 constexpr double kGradientVariation = 0.03;  // least standard deviation of the gradients
 constexpr double kLevel = 0.08;              // gradient of ground that counts as level
 constexpr std::size_t kLevelRows = 6;        // least number of rows on level ground
-constexpr double kFelt = 0.6;                // share of the thrust that counts as mobilised
+constexpr double kMobilised = 0.6;           // share of the thrust that counts as mobilised
 constexpr double kSlipPerGradient = 0.1;     // least slope of slip over gradient, that of the firmest soil
 constexpr double kPerGradient = 0.5;         // least slope of measured gradient and torque pull
 constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's slopes against the map's
@@ -74,7 +74,7 @@ void SensorProof::take(const Row& row) {
   slopes_.add(row.map_gradient, row.measured_gradient);
   wheel.slip.add(row.measured_gradient, r.slip);
   wheel.torque.add(row.measured_gradient, row.torque_pull);
-  wheel.felt_rows += row.share >= kFelt ? 1 : 0;
+  wheel.mobilised_rows += row.share >= kMobilised ? 1 : 0;
   takeLevel(wheel, row);
 }
 
@@ -115,56 +115,57 @@ bool SensorProof::slopeScaled(const Run& run) const noexcept {
   return scaled(run.slope.whole()) || scaled(slopes_);
 }
 
-SensorProof::Lack SensorProof::lack(const std::string& run, const std::string& wheel) const {
+SensorProof::FailedTest SensorProof::failedTest(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
-  if (!w) return Lack::SlopeRows;
-  if (isOff(r->off)) return Lack::Pose;
+  if (!w) return FailedTest::SlopeRows;
+  if (isOff(r->off)) return FailedTest::Pose;
   const Response& slope = r->slope.whole();
-  if (slope.size() < Response::kEnough) return Lack::SlopeRows;
-  if (slope.causeVariance() < kGradientVariation * kGradientVariation) return Lack::Slopes;
-  if (!follows(r->slope, kPerGradient)) return Lack::Slope;
-  if (std::abs(slope.meanDifference()) > kSlopeBias) return Lack::SlopeBias;
-  if (slopeScaled(*r)) return Lack::SlopeScale;
-  if (!follows(w->slip, kSlipPerGradient)) return Lack::Slip;
-  if (w->level_rows < kLevelRows) return Lack::LevelRows;
+  if (slope.size() < Response::kEnough) return FailedTest::SlopeRows;
+  if (slope.causeVariance() < kGradientVariation * kGradientVariation) return FailedTest::Slopes;
+  if (!follows(r->slope, kPerGradient)) return FailedTest::Slope;
+  if (std::abs(slope.meanDifference()) > kSlopeBias) return FailedTest::SlopeBias;
+  if (slopeScaled(*r)) return FailedTest::SlopeScale;
+  if (!follows(w->slip, kSlipPerGradient)) return FailedTest::Slip;
+  if (w->level_rows < kLevelRows) return FailedTest::LevelRows;
   const auto steps = level_steps_.find(wheel);
-  return steps != level_steps_.end() && steps->second.step() != 0.0 ? Lack::SlipStep : Lack::Nothing;
+  return steps != level_steps_.end() && steps->second.step() != 0.0 ? FailedTest::SlipStep
+                                                                    : FailedTest::Nothing;
 }
 
-SensorProof::Lack SensorProof::lack() const {
+SensorProof::FailedTest SensorProof::failedTest() const {
   for (const auto& [run, of] : runs_)
     for (const auto& [wheel, own] : of.wheels)
-      if (const Lack what = lack(run, wheel); what != Lack::Nothing) return what;
-  return Lack::Nothing;
+      if (const FailedTest what = failedTest(run, wheel); what != FailedTest::Nothing) return what;
+  return FailedTest::Nothing;
 }
 
-const char* SensorProof::text(Lack lack) noexcept {
-  switch (lack) {
-    case Lack::Nothing:
+const char* SensorProof::text(FailedTest failedTest) noexcept {
+  switch (failedTest) {
+    case FailedTest::Nothing:
       return "";
-    case Lack::Pose:
+    case FailedTest::Pose:
       return "the pose moves further between two rows than the rover can have driven, and does not return; "
              "leave out the "
              "rows behind that, or read rows closer together";
-    case Lack::SlopeRows:
+    case FailedTest::SlopeRows:
       return "fewer than 12 rows half a metre apart have slope_rad and heading_rad; drive further, or add "
              "what lacks";
-    case Lack::Slopes:
+    case FailedTest::Slopes:
       return "slopes vary by less than 0.03 (standard deviation of the gradient); drive over steeper ground";
-    case Lack::Slope:
+    case FailedTest::Slope:
       return "measured slopes do not follow those of the map; check pose, heading_rad and slope_rad";
-    case Lack::SlopeBias:
+    case FailedTest::SlopeBias:
       return "measured slopes differ from those of the map by more than 0.03; level the sensor";
-    case Lack::SlopeScale:
+    case FailedTest::SlopeScale:
       return "measured slopes are more than 1.15 times those of the map; check the scale of slope_rad, or "
              "give a "
              "finer elevation map";
-    case Lack::Slip:
+    case FailedTest::Slip:
       return "slip does not follow the slope; check the slip of each wheel";
-    case Lack::LevelRows:
+    case FailedTest::LevelRows:
       return "fewer than 6 rows half a metre apart on level ground; include level ground";
-    case Lack::SlipStep:
+    case FailedTest::SlipStep:
       return "slip on level ground steps on the way; give the rows before and behind the step as two files";
   }
   return "";
@@ -176,17 +177,17 @@ bool SensorProof::torqueSound(const std::string& run, const std::string& wheel) 
   return follows(torque, kPerGradient) && std::abs(torque.whole().meanDifference()) <= kTorqueBias;
 }
 
-bool SensorProof::doubted(const std::string& run, const std::string& wheel) const {
+bool SensorProof::isSuspect(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
   if (!w || isOff(r->off)) return true;
   return contradicts(r->slope, kPerGradient) || contradicts(w->slip, kSlipPerGradient);
 }
 
-bool SensorProof::felt(const std::string& run, const std::string& wheel) const {
+bool SensorProof::mobilised(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
-  return w && w->felt_rows >= kLevelRows;
+  return w && w->mobilised_rows >= kLevelRows;
 }
 
 }  // namespace talus::costmap

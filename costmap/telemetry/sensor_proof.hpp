@@ -46,10 +46,10 @@ class SensorProof {
 
   /// True if the rows so far verify the sensors from which the pull of a wheel is computed.
   bool pullSound(const std::string& run, const std::string& wheel) const {
-    return lack(run, wheel) == Lack::Nothing;
+    return failedTest(run, wheel) == FailedTest::Nothing;
   }
   /// The first test that fails.
-  enum class Lack : std::uint8_t {
+  enum class FailedTest : std::uint8_t {
     Nothing,
     Pose,
     SlopeRows,
@@ -61,19 +61,19 @@ class SensorProof {
     LevelRows,
     SlipStep
   };
-  Lack lack(const std::string& run, const std::string& wheel) const;
+  FailedTest failedTest(const std::string& run, const std::string& wheel) const;
   /// The first test that fails for any wheel.
-  Lack lack() const;
+  FailedTest failedTest() const;
   /// Text of a failed test, with its remedy.
-  static const char* text(Lack lack) noexcept;
+  static const char* text(FailedTest failedTest) noexcept;
   /// True if torque and sinkage are verified too.
   bool torqueSound(const std::string& run, const std::string& wheel) const;
   /// True if the last rows contradict the verification by earlier rows.
-  bool doubted(const std::string& run, const std::string& wheel) const;
+  bool isSuspect(const std::string& run, const std::string& wheel) const;
   /// True if the position is displaced by a jump in the rows so far.
   bool displaced(const std::string& run) const;
   /// True if enough rows of the wheel are at slips that mobilise most of the thrust of the class.
-  bool felt(const std::string& run, const std::string& wheel) const;
+  bool mobilised(const std::string& run, const std::string& wheel) const;
   /// Mean of the measured gradient minus the map's gradient in a run [-]; 0 without rows.
   double gradientExcess(const std::string& run) const;
   /// Number of wheels with rows in a run.
@@ -83,7 +83,7 @@ class SensorProof {
   struct Wheel {
     std::optional<TelemetryReading> last, last_counted;
     ResponseSeries slip, torque;
-    std::size_t level_rows = 0, felt_rows = 0;
+    std::size_t level_rows = 0, mobilised_rows = 0;
   };
   struct Run {
     ResponseSeries slope;

@@ -9,7 +9,7 @@ namespace talus::costmap {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeastTold =
+constexpr double kLargestStdShare =
     2.0;  // limit, in units of the class's mean_std: a drive with a greater standard deviation raises no
           // estimate (ours)
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
@@ -118,25 +118,25 @@ std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows
   const TelemetryReading reading = rows.reading(row);
   const auto index = classAt(map_, reading);
   if (!index) return ofUnobserved(reading, rows.steepestDescent(row));
-  const GroundBound here = danger_.hear(*index, reading, rows.steepestDescent(row));
+  const GroundBound here = danger_.bound(*index, reading, rows.steepestDescent(row));
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
 // Returns the bound of ground without a class, evaluated as ground of the first class.
 std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const TelemetryReading& reading,
                                                                  double least_gradient) const {
-  const GroundBound here = danger_.hear(0, reading, least_gradient);
+  const GroundBound here = danger_.bound(0, reading, least_gradient);
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
 // Returns the bound from one reading; for a suspected reading, the estimated pull is used, too.
 GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
-  GroundBound here = danger_.hear(read.class_index, read.reading, least_gradient);
+  GroundBound here = danger_.bound(read.class_index, read.reading, least_gradient);
   if (!suspected) return here;
   auto seen = observer_.observe({read}).front();
   if (!seen) return here;
   weakerBySlope(*seen);
-  here.lower(danger_.hear(read.class_index, *seen).most_pull);
+  here.lower(danger_.bound(read.class_index, *seen).most_pull);
   return here;
 }
 
@@ -182,7 +182,7 @@ void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
                          .place = sound.read.front().reading.place,
                          .gradient = rows.measuredGradient(sound.row.front())};
   for (const std::size_t row : sound.row)
-    if (proof_.doubted(moment.run, rows.wheel(row))) return;
+    if (proof_.isSuspect(moment.run, rows.wheel(row))) return;
   for (const ClassReading& read : sound.read) {
     if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing) return;
     moment.rutted += read.reading.pass > 1 ? 1 : 0;
@@ -242,16 +242,17 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
     return false;
   if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
   return std::all_of(sound.row.begin(), sound.row.end(), [&](std::size_t row) {
-    return verdict.proof->pullSound(run, rows.wheel(row)) && !proof_.doubted(run, rows.wheel(row));
+    return verdict.proof->pullSound(run, rows.wheel(row)) && !proof_.isSuspect(run, rows.wheel(row));
   });
 }
 
 std::string TelemetryProcessor::whyNoneRaises() const {
   if (watch_.clockWentBack() || watch_.biased() || others_ == read_) return {};
-  const SensorProof::Lack lack = proof_.lack();
-  return lack != SensorProof::Lack::Nothing ? SensorProof::text(lack)
-                                            : "no moment has sound rows of all wheels of the rover, or of "
-                                              "the only one of the file; give them all, and time_s";
+  const SensorProof::FailedTest failedTest = proof_.failedTest();
+  return failedTest != SensorProof::FailedTest::Nothing
+             ? SensorProof::text(failedTest)
+             : "no moment has sound rows of all wheels of the rover, or of "
+               "the only one of the file; give them all, and time_s";
 }
 
 // Replaces the observations by those from the corrected slips, relative to the mean strength of the drive,
@@ -271,10 +272,11 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
   const auto fitted = observer_.observe(read, departures);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Estimate& of_drive = drive.departure[static_cast<std::size_t>(read[i].class_index)];
-    const double doubt =
-        kLeastTold * map_.model().parts().classes[static_cast<std::size_t>(read[i].class_index)].mean_std;
+    const double largest_std =
+        kLargestStdShare *
+        map_.model().parts().classes[static_cast<std::size_t>(read[i].class_index)].mean_std;
     if (!seen[i] || !fitted[i] || read[i].reading.slip >= kDangerSlip || seen[i]->bound ||
-        !(of_drive.std <= doubt) || std::isfinite(read[i].reading.drawbar_pull_N))
+        !(of_drive.std <= largest_std) || std::isfinite(read[i].reading.drawbar_pull_N))
       continue;
     WheelObservation& one = *seen[i];
     const bool torque_sound = torqueSound(rows, sound.row[i], verdict);
@@ -283,7 +285,8 @@ void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, co
     one.pull.value -= drive.caution[static_cast<std::size_t>(read[i].class_index)];
     one.shared_std = fitted[i]->shared_std;
     // A reading at low slip raises an estimate only if the drive has mobilised most of the thrust.
-    if (std::isnan(one.shared_std) && verdict.proof->felt(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
+    if (std::isnan(one.shared_std) &&
+        verdict.proof->mobilised(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
       one.shared_std = kLittleSlip * map_.model().prior(read[i].class_index).pull.std;
     one.shared_std = std::hypot(one.shared_std, of_drive.std);
     one.pull_may_raise = std::isfinite(one.shared_std);

@@ -106,7 +106,7 @@ std::uint8_t Nav2Layer::judged(talus::maps::Cell cell) {
   if (judgement.kind == Kind::Refused) return known.cost = LETHAL_OBSTACLE;
   if (judgement.kind == Kind::Restricted) return known.cost = MAX_NON_OBSTACLE;
   if (judgement.kind == Kind::Unknown) return known.cost = refuse_unknown_ ? LETHAL_OBSTACLE : NO_INFORMATION;
-  const double dearer = static_cast<double>(judgement.dearest_J_per_m / judge_->level_J_per_m() - 1.0F);
+  const double dearer = static_cast<double>(judgement.highest_J_per_m / judge_->level_J_per_m() - 1.0F);
   const double share = std::clamp(dearer / (full_cost_ratio_ - 1.0), 0.0, 1.0);
   return known.cost = static_cast<std::uint8_t>(std::lround(share * (MAX_NON_OBSTACLE - 1)));
 }

@@ -62,7 +62,7 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
 Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
   if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
-    throw InputError({path, "holds complex numbers", "choose a band of real numbers"});
+    throw InputError({path, "contains complex numbers", "choose a band of real numbers"});
   requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
   Dataset copy(driverNamed("MEM").Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
   if (!copy) throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
@@ -258,7 +258,7 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
     if (!(v >= 0 && v <= kMost))
       throw InputError({source.path, "value " + number(static_cast<double>(v)) + " J/m is not 0 to 1e6",
                         "nothing may make ground cheaper; write inf where the ground is refused"});
-    added.dearest_J_per_m = std::max(added.dearest_J_per_m, v);
+    added.highest_J_per_m = std::max(added.highest_J_per_m, v);
     return v;
   };
   changePixels(*band, source.path, marked);

@@ -42,7 +42,7 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
 /// and a part of the cell has no data.
 struct AddedJoules {
   Raster<float> J_per_m;
-  float dearest_J_per_m = 0.0F;  ///< maximum finite value of the whole file
+  float highest_J_per_m = 0.0F;  ///< maximum finite value of the whole file
 };
 
 /// Reads additional costs. @throws InputError, also if the file and the map do not overlap or a finite value

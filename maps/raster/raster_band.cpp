@@ -83,7 +83,7 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
                               int overview) {
   GDALRasterBand& source = *raster.GetRasterBand(band);
   if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
-    throw InputError({where, "holds complex numbers", "choose a band of real numbers with --band"});
+    throw InputError({where, "contains complex numbers", "choose a band of real numbers with --band"});
   const int width = shared(box.width, overview), height = shared(box.height, overview);
   std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   GDALRasterIOExtraArg how;

@@ -6,9 +6,9 @@ namespace talus::maps {
 
 /// Pairs of cells that form a step, and the cells to which the pairs are assigned.
 struct StepReach {
-  /// Pairs of cells up to span_cells apart (>= 1). A pair is assigned to the cells whose centres lie within
-  /// the radius [cells] of either cell of the pair, because an edge lies half way between cells, and the
-  /// rover may stand anywhere in its cell.
+  /// Pairs of cells up to span_cells apart (>= 1). A pair is assigned to every cell whose centre is at
+  /// most radius_cells from the centre of one cell of the pair. One is sufficient, because the terrain step
+  /// is half way between the two cells, and the rover may stand anywhere in its own cell.
   static StepReach of(double radius_cells, int span_cells);
 
   /// Returns the greatest column or row offset of the cells that the step of a cell depends on.

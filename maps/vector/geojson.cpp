@@ -57,7 +57,7 @@ const json* memberOf(const json& object, const char* name) {
 }
 
 // "crs" is a member of the document, as in routes, or of the properties of a feature.
-bool saysLocal(const json& document) {
+bool isLocal(const json& document) {
   const auto is_local = [](const json* object) {
     const json* crs = object == nullptr ? nullptr : memberOf(*object, "crs");
     return crs != nullptr && *crs == "local";
@@ -99,7 +99,7 @@ void checkBody(const OGRSpatialReference& system, const std::string& of_map, con
 }
 
 void checkCrs(const json& document, const std::optional<Georeference>& of_map, const std::string& path) {
-  if (saysLocal(document)) return;
+  if (isLocal(document)) return;
   const auto crs = crsName(document);
   if (!crs) return;
   const std::string named = "its crs is '" + crs->substr(0, 80) + "'";
@@ -150,7 +150,7 @@ json readGeoJson(const std::string& path) {
 }
 
 bool namesProjectedCrs(const json& document) {
-  const auto crs = saysLocal(document) ? std::nullopt : crsName(document);
+  const auto crs = isLocal(document) ? std::nullopt : crsName(document);
   return crs && systemNamed(*crs).IsProjected() != 0;
 }
 
@@ -161,7 +161,7 @@ std::vector<std::reference_wrapper<const json>> geometries(const json& document)
 }
 
 PositionReader::PositionReader(const json& document, const ElevationMap& map, std::string path)
-    : georeference_(saysLocal(document) ? nullptr : map.places()), path_(std::move(path)) {
+    : georeference_(isLocal(document) ? nullptr : map.places()), path_(std::move(path)) {
   checkCrs(document, map.georeference, path_);
 }
 

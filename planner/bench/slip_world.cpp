@@ -138,8 +138,8 @@ double tailMean(const std::vector<Part>& parts, double tail) {
 }
 
 // Magnitude of slip used for planning.
-double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t seen, double gradient,
-                    const SlipWorldOptions& options) {
+double estimatedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t seen, double gradient,
+                     const SlipWorldOptions& options) {
   const double way = gradient >= 0.0 ? 1.0 : -1.0;  // when braking, the tail is at negative slip
   const SlipTerrain& own = world.terrains[seen];
   if (!options.risk_aware) return std::max(0.0, way * own.slip(gradient));
@@ -153,13 +153,13 @@ double believedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t s
   return std::max(0.0, tailMean(parts, options.tail));
 }
 
-costmap::GroundCost believed(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
-                             const SlipWorldOptions& options) {
+costmap::GroundCost estimatedCost(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
+                                  const SlipWorldOptions& options) {
   costmap::GroundCost made;
   auto states = std::make_shared<TravelTable>();
   for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
     const double gradient = TravelCurve::gradient(bin);
-    const double slip = believedSlip(world, ground, seen, gradient, options);
+    const double slip = estimatedSlip(world, ground, seen, gradient, options);
     const bool stands = slip >= 1.0;
     const double seconds = std::hypot(1.0, gradient) / (kSpeed_mps * (1.0 - slip));
     made.curve.cost_J_per_m[static_cast<std::size_t>(bin)] =
@@ -173,11 +173,11 @@ costmap::GroundCost believed(const SlipWorld& world, const Ground& ground, std::
   return made;
 }
 
-std::shared_ptr<const costmap::CostGrid> believedMap(const SlipWorld& world, const Ground& ground,
-                                                     const maps::Raster<float>& heights,
-                                                     const SlipWorldOptions& options) {
+std::shared_ptr<const costmap::CostGrid> estimatedMap(const SlipWorld& world, const Ground& ground,
+                                                      const maps::Raster<float>& heights,
+                                                      const SlipWorldOptions& options) {
   std::vector<costmap::GroundCost> curves;
-  for (std::uint8_t k = 0; k < kTerrains; ++k) curves.push_back(believed(world, ground, k, options));
+  for (std::uint8_t k = 0; k < kTerrains; ++k) curves.push_back(estimatedCost(world, ground, k, options));
   const maps::Grid& grid = heights.grid();
   maps::Raster<CellCode> cells(grid);
   for (int row = 0; row < grid.height; ++row)
@@ -218,7 +218,7 @@ SlipWorld slipWorld(const SlipWorldOptions& options) {
   for (std::size_t i = 0; i < grid.size(); ++i)
     world.error.values()[i] =
         static_cast<float>(world.terrains[world.truth.values()[i]].noise * gauss(random));
-  world.map = believedMap(world, ground, heights, options);
+  world.map = estimatedMap(world, ground, heights, options);
   return world;
 }
 

@@ -229,10 +229,10 @@ void DirectionalCostBounds::forEachPart(const Direction& climb, Each each) const
 DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const Direction& climb) const {
   Gauge gauge, most;
   most.fill(kInfinity);
-  double dearest = 0.0;
+  double highest = 0.0;
   for (std::size_t k = 0; k < kHeadings; ++k) {
     gauge[k] = static_cast<double>(cost_.costPerMetre(cell, headings()[k]));
-    if (std::isfinite(gauge[k])) dearest = std::max(dearest, gauge[k]);
+    if (std::isfinite(gauge[k])) highest = std::max(highest, gauge[k]);
   }
   if (std::ranges::none_of(gauge, [](double limit) { return std::isinf(limit); })) return gauge;
   forEachPart(
@@ -240,7 +240,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const
         const auto k = static_cast<std::size_t>(sector), next = (k + 1) % kHeadings;
         const bool low = std::isinf(gauge[k]), high = std::isinf(gauge[next]);
         const auto keepBelow = [&](const Direction& d, double cost_J) {
-          dearest = std::max(dearest, cost_J);
+          highest = std::max(highest, cost_J);
           // d is a positive combination of the two headings of its sector.
           const double of_next = cross(headings()[k], d) / std::sin(kSector),
                        of_k = cross(d, headings()[k + 1]) / std::sin(kSector);
@@ -256,7 +256,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const
         keepBelow(to, to_J);
       });
   for (std::size_t k = 0; k < kHeadings; ++k)
-    if (std::isinf(gauge[k])) gauge[k] = std::min(kRefused * dearest, most[k]);
+    if (std::isinf(gauge[k])) gauge[k] = std::min(kRefused * highest, most[k]);
   return gauge;
 }
 

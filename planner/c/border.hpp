@@ -23,7 +23,7 @@ inline planner::Sessions& sessions() {
   return all;
 }
 
-inline void say(talus_error* error, const std::string& what) noexcept {
+inline void setError(talus_error* error, const std::string& what) noexcept {
   if (error == nullptr) return;
   const std::size_t length = std::min(what.size(), sizeof error->text - 1);
   for (std::size_t i = 0; i < length; ++i)
@@ -39,22 +39,22 @@ struct Busy : std::runtime_error {
 template <typename Work>
 talus_code guarded(talus_error* error, const Work& work) noexcept {
   try {
-    say(error, "");
+    setError(error, "");
     return work();
   } catch (const Busy& busy) {
-    say(error, busy.what());
+    setError(error, busy.what());
     return TALUS_BUSY;
   } catch (const std::invalid_argument& wrong) {
-    say(error, wrong.what());
+    setError(error, wrong.what());
     return TALUS_BAD_INPUT;
   } catch (const InputError& wrong) {
-    say(error, wrong.what());
+    setError(error, wrong.what());
     return TALUS_BAD_INPUT;
   } catch (const std::exception& failure) {
-    say(error, failure.what());
+    setError(error, failure.what());
     return TALUS_FAILURE;
   } catch (...) {
-    say(error, "an error that is not known");
+    setError(error, "an error that is not known");
     return TALUS_FAILURE;
   }
 }

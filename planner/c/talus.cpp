@@ -334,7 +334,7 @@ talus_code talus_plan(talus_session session, const talus_request* request, talus
       summary->max_slope_rad = route.summary.max_slope_rad;
       if (!route.vertices.empty()) summary->immobilisation_risk = route.vertices.back().immobilisation_risk;
     }
-    say(error, route.reason);
+    setError(error, route.reason);
     return codeOf(route.status);
   });
 }

@@ -81,7 +81,7 @@ class Annotator {
       const RouteVertex vertex = looked(at((shares[i] + shares[i - 1]) / 2), at(shares[i - 1]), heading);
       const bool first = emitted < 0.0;
       if (first) leaveOutNear(vertex);
-      if (first && tellsOf(motion)) {
+      if (first && represents(motion)) {
         moveTo(vertices.back(), vertex);
         emitted = 0.0;
       } else if (first || ((shares[i - 1] - emitted) * length_m >= kTogether * grid_.resolution_m &&
@@ -183,8 +183,8 @@ class Annotator {
       vertex.category = state_.category;
       vertex.hazard_per_m = std::isfinite(state_.risk_per_m) ? static_cast<double>(state_.risk_per_m) : 0.0;
       vertex.soil_class = state_.class_index;
-      const auto& shared = input_.map.cost().doubt().shared;
-      vertex.shared_doubt = state_.class_index < shared.size() ? shared[state_.class_index] : 0.0;
+      const auto& shared = input_.map.cost().uncertainty().shared;
+      vertex.shared_variance_share = state_.class_index < shared.size() ? shared[state_.class_index] : 0.0;
     }
     count(vertex);
     return vertex;
@@ -204,7 +204,7 @@ class Annotator {
 
   // Returns true if the last vertex, a chord too short to determine a heading, may represent the following
   // motion.
-  bool tellsOf(const Segment& motion) const {
+  bool represents(const Segment& motion) const {
     return how_.heading && turns_ > 0 && turns_ == vertices.size() && isLeast(vertices.back(), motion.from) &&
            vertices.back().reverse == how_.reverse &&
            std::isfinite(cost_({{vertices.back().x_m, vertices.back().y_m}, motion.to}));
@@ -305,9 +305,9 @@ namespace {
 
 // Replaces the additive risk of the vertices by the simulated risk if the cost has a correlation length of
 // the soil.
-void tellRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
+void setRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& watch) {
   constexpr int kWorlds = 400;  // standard error of the risk about 10 %
-  if (!(map.cost().doubt().correlation_length_m > 0.0)) return;
+  if (!(map.cost().uncertainty().correlation_length_m > 0.0)) return;
   RouteRiskOptions options = riskOptions(map);
   options.worlds = kWorlds;
   std::vector<double> risk = riskAlong(route, options, watch);
@@ -353,7 +353,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
   route.summary.proof_s = plan.proof_s;
   route.vertices = std::move(annotator.vertices);
-  tellRisk(route, input.map, input.watch);
+  setRisk(route, input.map, input.watch);
   return route;
 }
 

@@ -40,11 +40,11 @@ CellJudgement CellJudge::of(costmap::CellCode cell) {
   const HeadingSet& allowed = headings_->allowed.of(cell);
   if (allowed.empty()) return {.kind = Kind::Refused};
   if (!allowed.all()) return {.kind = Kind::Restricted};
-  float dearest = 0.0F;
-  for (const HeadingCost& cost : headings_->costs) dearest = std::max(dearest, cost(cell));
+  float highest = 0.0F;
+  for (const HeadingCost& cost : headings_->costs) highest = std::max(highest, cost(cell));
   // A single refused heading, within the rounding by which allowed arcs are widened.
-  if (!std::isfinite(dearest)) return {.kind = Kind::Restricted};
-  return {.kind = Kind::Open, .dearest_J_per_m = dearest};
+  if (!std::isfinite(highest)) return {.kind = Kind::Restricted};
+  return {.kind = Kind::Open, .highest_J_per_m = highest};
 }
 
 }  // namespace talus::planner

@@ -19,7 +19,7 @@ struct CellJudgement {
   };
   Kind kind = Kind::Unknown;
   /// Highest cost per metre of 64 headings [J/m]; infinite unless Open.
-  float dearest_J_per_m = std::numeric_limits<float>::infinity();
+  float highest_J_per_m = std::numeric_limits<float>::infinity();
 };
 
 /// Summarises cells under the drive cost of a map. The allowed headings are exact (allowedHeadings()) and

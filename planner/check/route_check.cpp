@@ -215,15 +215,15 @@ class Checker {
   void enter(Cell cell, Point where) {
     const auto code = map_.at(cell);
     if (std::isfinite(map_.cost().costPerMetre(code, heading_))) {
-      if (quantile_ < 1.0) doubt(cell, code, where);
+      if (quantile_ < 1.0) checkRisk(cell, code, where);
       return;
     }
     const auto refusal = map_.cost().detail(code, heading_).refusal;
-    const bool said = refusal != costmap::Refusal::None;
-    report(cell, where, said ? costmap::toText(refusal) : "this heading is not allowed on this cell");
+    const bool refused = refusal != costmap::Refusal::None;
+    report(cell, where, refused ? costmap::toText(refusal) : "this heading is not allowed on this cell");
   }
 
-  void doubt(Cell cell, costmap::CellCode code, Point where) {
+  void checkRisk(Cell cell, costmap::CellCode code, Point where) {
     const double weak = static_cast<double>(map_.cost().detail(code, heading_).weak);
     if (weak > quantile_) report(cell, where, "the soil may give less drawbar pull than required", weak);
   }

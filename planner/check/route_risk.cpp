@@ -56,7 +56,7 @@ std::vector<Stretch> stretches(const Route& route, const RouteRiskOptions& optio
                     .metres = metres,
                     .weak = weak,
                     .beta = reliabilityIndex(weak),
-                    .shared = a.shared_doubt,
+                    .shared = a.shared_variance_share,
                     .soil = soil,
                     .correlation = follows ? std::exp(-std::max(here_m - middle_m, options.cell_m) /
                                                       options.correlation_length_m)
@@ -169,10 +169,10 @@ Drawn drawn(const std::vector<Stretch>& route, const RouteRiskOptions& options,
     double sum_m = 0.0;
     for (std::size_t k = 0; k < route.size(); ++k)
       weak_m[k] = sum_m += k == at || u[k] < -route[k].beta ? route[k].metres : 0.0;
-    const double worth = share.back() / sum_m;
+    const double scale = share.back() / sum_m;
     double held = 0.0;
     for (std::size_t k = 0; k < route.size(); ++k) {
-      if (k == 0 || weak_m[k] > weak_m[k - 1]) held = heldAfter(weak_m[k], options) * worth;
+      if (k == 0 || weak_m[k] > weak_m[k - 1]) held = heldAfter(weak_m[k], options) * scale;
       out.risk[k] += held / n;
     }
     squares += held * held / n;
@@ -230,10 +230,10 @@ bool drawTail(const std::vector<Stretch>& way, const Route& route, const RouteRi
 
 RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
   RouteRiskOptions options{.cell_m = map.grid().resolution_m};
-  const costmap::SoilUncertainty& doubt = map.cost().doubt();
-  if (!(doubt.correlation_length_m > 0.0)) return options;
-  options.correlation_length_m = doubt.correlation_length_m;
-  options.entrapment = doubt.entrapment;
+  const costmap::SoilUncertainty& uncertainty = map.cost().uncertainty();
+  if (!(uncertainty.correlation_length_m > 0.0)) return options;
+  options.correlation_length_m = uncertainty.correlation_length_m;
+  options.entrapment = uncertainty.entrapment;
   return options;
 }
 

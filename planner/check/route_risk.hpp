@@ -38,7 +38,7 @@ struct RouteRisk {
 ///
 /// A stretch between two vertices is too weak if beta + u < 0. The reliability index beta follows from the
 /// stretch's hazard per metre. u is Gaussian with variance 1: the sum of a component shared by all ground of
-/// the class (RouteVertex::shared_doubt) and a process along the route with correlation exp(-d /
+/// the class (RouteVertex::shared_variance_share) and a process along the route with correlation exp(-d /
 /// correlation_length) within a class, independent across changes of the class. A world in which the soil is
 /// too weak over a length T immobilises the rover with probability 1 - (1 - entrapment)^(T /
 /// correlation_length). Worlds are drawn under the condition that one stretch fails, each stretch in

@@ -27,14 +27,14 @@ double unitFor(const CostRange& range, double resolution_m) {
   if (!(range.most_J_per_m > 0.0)) return 1.0;
   const double least = std::max(range.least_J_per_m, range.most_J_per_m * 1e-6);
   const double cheapest_J = 0.5 * resolution_m * least;
-  const double fitting = EdgeUnits::kDearest / (std::numbers::sqrt2 * range.most_J_per_m / least);
+  const double fitting = EdgeUnits::kHighest / (std::numbers::sqrt2 * range.most_J_per_m / least);
   return cheapest_J / std::clamp(fitting, 32.0, 2048.0);
 }
 
 std::uint16_t inUnits(float cost_J_per_m, double units_per_J_per_m) {
   if (!std::isfinite(cost_J_per_m)) return EdgeUnits::kBlocked;
   const double units = std::round(static_cast<double>(cost_J_per_m) * units_per_J_per_m);
-  return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(EdgeUnits::kDearest)));
+  return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(EdgeUnits::kHighest)));
 }
 
 // Returns the largest number of gradient steps within the limit. A diagonal's gradient stays below the limit

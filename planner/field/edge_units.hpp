@@ -14,13 +14,13 @@ namespace talus::planner {
 
 /// Costs of half steps, from a cell's centre to its edge or corner, for all eight headings, as integer
 /// multiples of an energy unit, so that sums do not depend on their order. An edge is the sum of two half
-/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kDearest
-/// are stored as kDearest. Interpolation weights are rounded to 1/128, so a half step differs from the exact
+/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kHighest
+/// are stored as kHighest. Interpolation weights are rounded to 1/128, so a half step differs from the exact
 /// cost by at most one unit plus 1/256 of the difference of neighbouring nodes.
 class EdgeUnits {
  public:
   static constexpr std::uint16_t kBlocked = 0xffff;
-  static constexpr std::uint16_t kDearest = 0x7ffe;
+  static constexpr std::uint16_t kHighest = 0x7ffe;
 
   using Halves = std::array<std::uint16_t, 8>;  ///< indexed by GridHeading
 

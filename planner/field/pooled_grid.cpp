@@ -32,9 +32,9 @@ class Levels {
         const auto factor = static_cast<float>(std::pow(kSurchargeStep, static_cast<double>(level)));
         for (float& value : curve.cost_J_per_m) value *= factor;
         if (curve.crossing && level > 0) {
-          auto dearer = std::make_shared<std::vector<float>>(*curve.crossing);
-          for (float& value : *dearer) value *= factor;
-          curve.crossing = std::move(dearer);
+          auto raised = std::make_shared<std::vector<float>>(*curve.crossing);
+          for (float& value : *raised) value *= factor;
+          curve.crossing = std::move(raised);
         }
         all.push_back(curve);
       }

@@ -153,7 +153,7 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   }
   const Reach to_goal(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop);
   if (!to_goal.complete()) return cancelledPlan(stop);
-  const CellRouteLimits limits{.worth = [&to_goal](maps::Cell cell) { return to_goal.holds(cell); }};
+  const CellRouteLimits limits{.may_enter = [&to_goal](maps::Cell cell) { return to_goal.holds(cell); }};
   CellRoute found = cellRoute(cost, headings, places, stage.tolerance_m, limits, stop);
   Plan plan = failedPlan(found.points.empty() ? RouteStatus::NoneFound : RouteStatus::Found, {});
   plan.points = std::move(found.points);

@@ -57,7 +57,7 @@ class RiskBoundedSearch {
     least_risk_ = std::min(least_risk_, risk);
     if (risk > max_risk_) return false;
     const bool surely = surelyKeeps(route);
-    std::optional<Plan>& best = surely ? best_ : doubtful_;
+    std::optional<Plan>& best = surely ? best_ : uncertain_;
     if (!best || plan.cost_J < best->cost_J) best = plan;
     return surely;
   }
@@ -85,8 +85,8 @@ class RiskBoundedSearch {
   // After a stop too few prices were tried for the result that no route meets the limit.
   Plan result(double lower_bound_J) const {
     const bool stopped = problem_.watch.stopped();
-    if (best_ || doubtful_) {
-      Plan plan = best_ ? *best_ : *doubtful_;
+    if (best_ || uncertain_) {
+      Plan plan = best_ ? *best_ : *uncertain_;
       plan.lower_bound_J = std::min(lower_bound_J, plan.cost_J);
       plan.proof_s = proof_s_;
       plan.interrupted |= stopped;
@@ -111,7 +111,7 @@ class RiskBoundedSearch {
   // Requires a margin of two standard errors, so that the cheapest of many routes is not selected for a low
   // random estimate.
   bool surelyKeeps(const Route& route) const {
-    if (!(problem_.map->cost().doubt().correlation_length_m > 0.0)) return true;  // no simulation
+    if (!(problem_.map->cost().uncertainty().correlation_length_m > 0.0)) return true;  // no simulation
     const RouteRisk drawn = routeRisk(route, riskOptions(*problem_.map), problem_.watch);
     return drawn.immobilisation + 2.0 * drawn.standard_error <= max_risk_;
   }
@@ -129,7 +129,7 @@ class RiskBoundedSearch {
   bool any_ = false;
   double least_risk_ = 1.0, proof_s_ = 0.0;
   std::optional<Plan> best_;
-  std::optional<Plan> doubtful_;  // within the limit by the first estimate only
+  std::optional<Plan> uncertain_;  // within the limit by the first estimate only
 };
 
 bool dominates(const RouteDemand& a, const RouteDemand& b) {
@@ -157,7 +157,7 @@ RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan) {
 
 RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed) {
   RouteRiskOptions options = riskOptions(map);
-  if (!(map.cost().doubt().correlation_length_m > 0.0))
+  if (!(map.cost().uncertainty().correlation_length_m > 0.0))
     options.correlation_length_m = limit.correlation_length_m;
   options.seed = seed;
   return options;

@@ -30,7 +30,7 @@ std::string asked(const std::string& file, const maps::Grid& grid) {
     throw InputError(
         {file,
          "answered for " + std::to_string(cells.size()) + " cells, must be " + std::to_string(grid.size()),
-         "tell its author, or do without it"});
+         "report this to its author, or remove the plugin"});
   std::string bytes(1 + cells.size() * sizeof(float), kCells);
   std::memcpy(bytes.data() + 1, cells.data(), cells.size() * sizeof(float));
   return bytes;

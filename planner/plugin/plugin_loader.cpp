@@ -54,8 +54,8 @@ void requireLoadable(const std::string& path, const std::function<void()>& load,
         {path, reason.str(), "fix what its constructors and destructors wait for, or do without it"});
   }
   if (answer.bytes == std::string{kMemory})
-    throw InputError(
-        {path, "needs more memory to be loaded than a plugin may have", "tell its author, or do without it"});
+    throw InputError({path, "needs more memory to be loaded than a plugin may have",
+                      "report this to its author, or remove the plugin"});
   if (answer.bytes == std::string{kCameThrough}) return;
   const std::string how = answer.signal != 0 ? std::string(::strsignal(answer.signal))
                                              : "exit code " + std::to_string(answer.exit_code);

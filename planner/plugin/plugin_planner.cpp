@@ -60,7 +60,7 @@ std::string bytesOf(const Route& route) {
 }
 
 // Runs plugin work in the child process; exceptions become text results.
-std::string said(const std::function<std::string()>& work) {
+std::string messageOf(const std::function<std::string()>& work) {
   silenceStreams();
   try {
     return work();
@@ -78,12 +78,12 @@ std::string said(const std::function<std::string()>& work) {
 }  // namespace
 
 void failPlugin(const std::string& file, const std::string& what) {
-  throw InputError({file, what, "tell its author, or do without it"});
+  throw InputError({file, what, "report this to its author, or remove the plugin"});
 }
 
 std::string answerOf(const std::string& file, const std::function<std::string()>& work,
                      const ChildLimits& limits, const ProgressMonitor& watch) {
-  ChildAnswer answer = inChild([&] { return said(work); }, limits, watch);
+  ChildAnswer answer = inChild([&] { return messageOf(work); }, limits, watch);
   switch (answer.end) {
     case ChildAnswer::End::Stopped:
       return {};

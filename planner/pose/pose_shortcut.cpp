@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::size_t, 8> kSpans{2, 3, 4, 6, 8, 12, 16, 24};
 // Joint spacing per round, relative to joint_m: first coarse, then fine.
 constexpr std::array kSpacings{1.0, 0.35, 0.35};
-constexpr double kWorthwhile = 2e-3;  // relative gain below which no further fine round is tried
+constexpr double kLeastGain = 2e-3;  // relative gain below which no further fine round is tried
 // A forward curve of at most this multiple of the straight distance is accepted.
 constexpr double kStraight = 1.1;
 
@@ -164,9 +164,9 @@ PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOpti
     const auto stretches = divided(best, spacing * options.joint_m);
     PosePath shorter = Shortening(best.start, stretches, cost, options).result(best);
     const double shorter_price = cost(shorter);
-    const bool worthwhile = shorter_price < price * (1.0 - kWorthwhile);
+    const bool improved = shorter_price < price * (1.0 - kLeastGain);
     if (shorter_price < price) best = std::move(shorter), price = shorter_price;
-    if ((!worthwhile && spacing < 1.0) || options.stop()) break;
+    if ((!improved && spacing < 1.0) || options.stop()) break;
   }
   return best;
 }

@@ -18,7 +18,7 @@ void inBackground(const std::function<void(const ProgressMonitor&)>& work, const
   const ProgressMonitor watch{.progress = [&done](double share) { done = share; }, .stop = stop.get_token()};
   auto running = std::async(std::launch::async, [&] { work(watch); });
   std::optional<py::error_already_set> raised;
-  double told = -1.0;
+  double reported = -1.0;
   for (;;) {
     std::future_status status{};
     {
@@ -29,7 +29,7 @@ void inBackground(const std::function<void(const ProgressMonitor&)>& work, const
     if (raised) continue;
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      if (const double now = done; !progress.is_none() && now > told) progress(told = now);
+      if (const double now = done; !progress.is_none() && now > reported) progress(reported = now);
     } catch (const py::error_already_set& error) {
       raised.emplace(error);
       stop.request_stop();

@@ -211,7 +211,7 @@ class Search {
     const InCell middle = 0.5 * (a + b);
     for (int side = 0; side < 4; ++side) {
       const Cell next = beyond(node.cell, side);
-      if (!map_.grid().contains(next) || (limits_.worth && !limits_.worth(next))) continue;
+      if (!map_.grid().contains(next) || (limits_.may_enter && !limits_.may_enter(next))) continue;
       const auto heading = crossing(own, headings_.of(map_.at(next)), side);
       if (!heading) continue;
       SideRange range = cone.reached(a, b, side, node.side < 0 ? extent_.ends : extent_.margins.slack);
@@ -234,9 +234,9 @@ class Search {
     return range.to <= kCorner || range.from >= 1.0 - kCorner;
   }
 
-  // Handles a side of which only the end corner is reached. A drive passes the corner if it arrives on the
-  // first or last heading of the cone and all cells around the corner permit the heading. The drive then
-  // enters each cell into which such a heading leads.
+  // Handles a cell side of which only the end corner is reached. A drive passes the corner if it arrives on the
+  // first or last heading of the cone and all cells around the corner permit the heading. The search
+  // continues in each cell into which such a heading leads.
   void overCorner(int k, double spent, const HeadingCone& cone, int side, bool at_end) {
     const Node node = nodes_[static_cast<std::size_t>(k)];
     const bool meridian = side == Side::West || side == Side::East;

@@ -17,7 +17,7 @@ struct CellRouteLimits {
   std::size_t ways = 4'000'000;
   /// Cells that a path may enter; all cells if empty. Excluding cells from which the goal is out of reach
   /// saves work.
-  std::function<bool(maps::Cell)> worth{};
+  std::function<bool(maps::Cell)> may_enter{};
 };
 
 /// Result of cellRoute().

@@ -67,9 +67,9 @@ class LabelQueue {
 
 // Bucket width: at most the cheapest motion between two points, but at least a thousandth of the reach.
 LabelQueue queueFor(const CostRange& range, int points) {
-  const auto dearest = static_cast<float>(range.most_J_per_m * 1.5);  // across a cell
+  const auto highest = static_cast<float>(range.most_J_per_m * 1.5);  // across a cell
   const auto cheapest = static_cast<float>(range.least_J_per_m * 0.7 / points);
-  return {std::max(cheapest, dearest / 1000.0F), dearest};
+  return {std::max(cheapest, highest / 1000.0F), highest};
 }
 
 class EdgePointSearch {

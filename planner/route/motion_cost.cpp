@@ -100,13 +100,13 @@ class Walk {
 double alongEdge(const maps::Grid& grid, const Walk& walk, InCells from, InCells delta,
                  double length) noexcept {
   const bool vertical = std::abs(delta.x) <= kTouch;
-  double dearer = -1.0;
+  double highest = -1.0;
   for (const double side : {-0.5, 0.5}) {
     InCells shifted = from;
     (vertical ? shifted.x : shifted.y) += side;
-    if (insideWithBorder(grid, shifted)) dearer = std::max(dearer, walk(shifted, delta, length));
+    if (insideWithBorder(grid, shifted)) highest = std::max(highest, walk(shifted, delta, length));
   }
-  return dearer;
+  return highest;
 }
 
 }  // namespace

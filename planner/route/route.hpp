@@ -88,17 +88,17 @@ struct RouteVertex {
   double torque_Nm = kNotKnown;             ///< torque of one wheel
   double drawbar_pull_margin = kNotKnown;   ///< available DP/W minus required DP/W, tan(slope) [-]
   terramech::Category category = terramech::Category::Unknown;
-  double energy_J = 0.0;             ///< from the start to this vertex
-  double time_s = 0.0;               ///< from the start to this vertex
-  double immobilisation_risk = 0.0;  ///< probability of immobilisation between the start and this vertex, 0
-                                     ///< to 1
-  double hazard_per_m = 0.0;         ///< hazard rate of immobilisation after this vertex, for independent
-                                     ///< metres
-  int soil_class = 0;                ///< class of the ground in the model
-  double shared_doubt = 0.0;         ///< share of the pull variance common to all ground of the class
-  bool reverse = false;              ///< reverse motion: heading_rad is opposite to the motion
-  double curvature_1_m = 0.0;        ///< curvature of the motion after this vertex, left > 0
-  double turn_rad = 0.0;             ///< turn in place before the next motion, left > 0
+  double energy_J = 0.0;               ///< from the start to this vertex
+  double time_s = 0.0;                 ///< from the start to this vertex
+  double immobilisation_risk = 0.0;    ///< probability of immobilisation between the start and this vertex, 0
+                                       ///< to 1
+  double hazard_per_m = 0.0;           ///< hazard rate of immobilisation after this vertex, for independent
+                                       ///< metres
+  int soil_class = 0;                  ///< class of the ground in the model
+  double shared_variance_share = 0.0;  ///< share of the pull variance common to all ground of the class
+  bool reverse = false;                ///< reverse motion: heading_rad is opposite to the motion
+  double curvature_1_m = 0.0;          ///< curvature of the motion after this vertex, left > 0
+  double turn_rad = 0.0;               ///< turn in place before the next motion, left > 0
 };
 
 /// Number of manoeuvres, and curvature, of a drive.

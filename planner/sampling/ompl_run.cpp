@@ -81,12 +81,12 @@ double shareDone(const Problem& leg, const SamplingSettings& settings, const Met
 ob::PlannerTerminationCondition doneWhen(const Problem& leg, const SamplingSettings& settings,
                                          const std::shared_ptr<const MeteredCost>& cost) {
   const auto begin = Clock::now();
-  const auto told_s = std::make_shared<double>(-1.0);
+  const auto reported_s = std::make_shared<double>(-1.0);
   return ob::PlannerTerminationCondition([=, &leg] {
     cost->iterated();
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
-    if (elapsed_s > *told_s + 0.1) {
-      *told_s = elapsed_s;
+    if (elapsed_s > *reported_s + 0.1) {
+      *reported_s = elapsed_s;
       leg.watch.report(shareDone(leg, settings, *cost, elapsed_s));
     }
     return spent(leg, settings, *cost) || leg.watch.stopped() || elapsed_s > leg.time_limit_s;

@@ -337,8 +337,8 @@ TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* l
                        peak,
                        log_load,
                        across};
-  // Initial entry angle, small-angle load without shear at the midpoint of s: W ~ r b k (r theta_1^2 (1 -
-  // a^2) / 2)^n theta_1.
+  // Initial entry angle: solution of the load equation for small angles, without shear and with s at the
+  // midpoint of its range, W ~ r b k (r theta_1^2 (1 - a^2) / 2)^n theta_1.
   const T a = 0.5 + 0.5 * peak;
   const T shape = logarithm(0.5 * (1.0 - a * a) + 1e-9);
   const Found<T> found = solve<Sideways>(c, (log_load - log_modulus - n * shape) / (2.0 * n + 1.0));

@@ -188,7 +188,7 @@ namespace {
 // First-order propagation of the errors of sinkage and slip causes an error of up to 2 % in friction angle
 // and shear modulus for any number of samples. Above kTrusted samples the likelihood is therefore not
 // sharpened further (ours; docs/measurements/terramech.md).
-SoilQuadratic noSurerThanTheModel(SoilQuadratic q, std::size_t samples) {
+SoilQuadratic limitSharpness(SoilQuadratic q, std::size_t samples) {
   constexpr double kTrusted = 4000.0;
   const double share = std::min(1.0, kTrusted / static_cast<double>(samples));
   q.cost *= share;
@@ -217,7 +217,7 @@ SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::spa
   for (Candidate& c : candidates) {
     if (c.alive) {
       const SoilVector at = middle(c.objective, c.likelihood);
-      c.likelihood = noSurerThanTheModel(
+      c.likelihood = limitSharpness(
           curved(c.objective.expandWhole(at, samples, {}), curvatureCorrection(c.objective, at, samples)),
           samples.size());
     }

@@ -116,7 +116,7 @@ SoilVector priorVariance(const std::vector<ClassFit>& classes) {
 }
 
 // Lists the parameters whose standard deviation the samples reduced by less than 10 %.
-void sayUnseen(const SoilVector& before, SoilPosterior& p) {
+void listUndetermined(const SoilVector& before, SoilPosterior& p) {
   constexpr double kSeen = 0.9;
   const std::pair<ContactColumn, const char*> names[] = {
       {kCohesion, "cohesion_Pa: the posterior is almost as wide as the prior; vary the load"},
@@ -179,7 +179,7 @@ SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<co
     probabilities[static_cast<std::size_t>(posterior.draws[k].soil_class)] += weights[k];
   }
   summarise(posterior);
-  sayUnseen(priorVariance(classes), posterior);
+  listUndetermined(priorVariance(classes), posterior);
   return posterior;
 }
 

@@ -115,19 +115,18 @@ bool mayBeNoUnit(std::string_view suffix) {
 std::string faultOf(const std::string& name, const KnownColumn& column) {
   const std::string text = plain(name);
   const std::string small = lower(text), stem = lower(column.stem);
-  if (small == lower(column.name)) return "is not spelled as it is read";
+  if (small == lower(column.name)) return "resembles a known column";
   // `time` without unit may be a date, and a single letter may be an axis.
   const bool of_time = kindOf(column.unit) == Kind::Time;
   if (small == stem) return of_time || stem.size() < 2 ? "" : "names no unit";
   if (!small.starts_with(stem + '_'))  // one typing error per 8 letters: drawbar_pul_N
-    return 8 * editDistance(small, lower(column.name)) <= small.size() + 1 ? "is not spelled as it is read"
-                                                                           : "";
+    return 8 * editDistance(small, lower(column.name)) <= small.size() + 1 ? "resembles a known column" : "";
   const std::string_view suffix = std::string_view(text).substr(stem.size() + 1);
   const auto kind = kindOf(suffix);
-  if (column.takes(suffix, kind)) return "is in another unit than it is read in";
+  if (column.takes(suffix, kind)) return "has another unit than the known column";
   // A single letter in front of a suffix may be an axis of any quantity.
   if (!kind || mayBeNoUnit(suffix) || stem.size() < 2) return {};
-  return "has a unit of another kind than it is read in";
+  return "has a unit of another kind than the known column";
 }
 
 std::string remedyFor(const std::string& name, const KnownColumn& column) {

@@ -64,7 +64,8 @@ std::string angleFault(const Telemetry& table, std::size_t row) {
   if (force == nullptr || !std::isfinite((*force)[row]) || (*force)[row] == 0.0) return {};
   if (angle != nullptr && std::isfinite((*angle)[row])) return {};
   return fmt::format(
-      "side_force_N = {:g} without slip_angle_rad, which tells how the wheel stood; fill it in, 0 for a "
+      "side_force_N = {:g} without slip_angle_rad, which is needed to interpret the force; fill it in, 0 for "
+      "a "
       "straight "
       "wheel",
       (*force)[row]);

@@ -99,7 +99,7 @@ bool isText(std::string_view text) {
 /// Returns a text value of the file. Throws InputError if it is empty or not UTF-8.
 std::string wordOf(const YAML::Node& node, const std::string& where, const std::string& name) {
   const std::string& word = node.Scalar();
-  if (!isText(word)) fail(where, name + " holds bytes that are no UTF-8 text", "save it as UTF-8");
+  if (!isText(word)) fail(where, name + " contains bytes that are not UTF-8", "save it as UTF-8");
   if (word.find_first_not_of(" \t\r\n") == std::string::npos)
     fail(where, name + " is empty", "leave it out or give a value");
   return word;
@@ -116,9 +116,9 @@ bool holdsMoreDocuments(const std::string& yaml) {
     };
     const bool begins = isMarker("---"), ends = isMarker("...");
     const std::size_t first = line.find_first_not_of(" \t\r", begins || ends ? 3 : 0);
-    const bool says = first != std::string::npos && line[first] != '#' && line[first] != '%';
-    if (content && (begins || (ended && says))) return true;
-    content |= says;
+    const bool has_text = first != std::string::npos && line[first] != '#' && line[first] != '%';
+    if (content && (begins || (ended && has_text))) return true;
+    content |= has_text;
     ended |= content && ends;
   }
   return false;

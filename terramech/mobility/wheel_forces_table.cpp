@@ -117,8 +117,8 @@ WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover
   validate(rover);
   if (model.base == BaseModel::LinearFormula)
     throw std::invalid_argument(
-        "model 'linear-formula' takes drawbar pull from a measured torque: it cannot say what a "
-        "slope takes, trace the data with model: wong-reece");
+        "model 'linear-formula' computes drawbar pull from a measured torque and predicts none on a slope; "
+        "trace the data with model: wong-reece");
   RefinedModel ground = withoutSensors(model);
   ground.slip_along_travel = false;
   std::vector<WheelState> states;

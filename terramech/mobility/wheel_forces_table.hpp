@@ -34,7 +34,7 @@ struct WheelMotion {
 /// Forces of one wheel of a rover on one ground, tabulated over slip, slip angle and load, so that a slope
 /// equilibrium needs no contact solution. Interpolation: cubic in slip and slip angle, degree 4 in the
 /// logarithm of the load. Side force is odd in the slip angle, the other channels even. Error below 0.015 in
-/// each channel, median 0.001 (WheelForcesTable.IsTheWheel). Immutable; thread-safe.
+/// each channel, median 0.001 (WheelForcesTable.MatchesTheWheel). Immutable; thread-safe.
 class WheelForcesTable {
  public:
   static constexpr int kSlips = 41, kAngles = 16, kLoads = 5;

@@ -37,10 +37,10 @@ bool ShearModulusGrid::add(const WheelSample& sample) {
     const StressPair own = options_.pair(wheel_, sample, rung.modulus_m);
     rung.method.add(own);
     if (byTorque(options_.criterion)) continue;
-    const StressPair told =
+    const StressPair stresses =
         options_.pair == linearOffsetPair ? own : linearOffsetPair(wheel_, sample, rung.modulus_m);
     const bool joint = options_.criterion == ModulusCriterion::Joint;
-    rung.telling.add(told, joint ? 1.0 / squared(told.shear_Pa) : 1.0);
+    rung.line.add(stresses, joint ? 1.0 / squared(stresses.shear_Pa) : 1.0);
   }
   return true;
 }
@@ -62,9 +62,9 @@ double ShearModulusGrid::squaredError(const GridValue& rung) const {
   const auto mean = [&](double sum) { return std::max(0.0, sum) / static_cast<double>(count_); };
   switch (options_.criterion) {
     case ModulusCriterion::Joint:
-      return squared(rung.telling.relativeResidual());
+      return squared(rung.line.relativeResidual());
     case ModulusCriterion::ErrorMinimisation:
-      return squared(rung.telling.relativeResidual()) / (1.0 + squared(rung.telling.estimate().tan_friction));
+      return squared(rung.line.relativeResidual()) / (1.0 + squared(rung.line.estimate().tan_friction));
     // the sample at the highest slip is the reference and has no residual
     case ModulusCriterion::EffectiveTorque:
       return mean(torque_squares_ / squared(fastest_torque_) - 2.0 * rung.torque_share / fastest_torque_ +

@@ -59,7 +59,7 @@ class ShearModulusGrid {
     double modulus_m = 0.0;  // K
     MohrCoulombLine method;  // line of the linear method, c + x tan(phi) = y
     // Line of the criterion, linear-offset: weighted for Joint, plain for ErrorMinimisation.
-    MohrCoulombLine telling;
+    MohrCoulombLine line;
     double torque_share = 0.0;   // sum of (T/W) A
     double share_squares = 0.0;  // sum of A^2
     double share_fastest = 0.0;  // A at the highest slip so far

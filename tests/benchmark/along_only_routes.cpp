@@ -43,7 +43,7 @@ Route planned(const TraversabilityMap& map, maps::Point start, maps::Point goal)
   return field->plan(request);
 }
 
-// Shares of a route's length that a map refuses: by side force, by pull, in total.
+// Shares of a route's length on which a map refuses the heading: for lack of side force, of pull, of either.
 struct Refused {
   double side = 0.0, pull = 0.0, any = 0.0;
 };

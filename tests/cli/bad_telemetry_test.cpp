@@ -52,7 +52,7 @@ TEST(BadInput, KnownColumnInAnotherUnitIsRejectedByEveryCommand) {
     std::filesystem::remove(folder / "out");
     const Ran ran = of("g.csv");
     EXPECT_EQ(ran.code, 2) << call[0];
-    EXPECT_THAT(ran.err, testing::HasSubstr("g.csv:1: column load_kg is in another unit than it is read in"))
+    EXPECT_THAT(ran.err, testing::HasSubstr("g.csv:1: column load_kg has another unit than the known column"))
         << call[0];
     EXPECT_EQ(ran.out, "");
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));

@@ -42,7 +42,7 @@ class Table {
   }
   // The largest excess of the stated probability over the observed share, over bins of at least `least`
   // cells.
-  double worstBoast(double least) const {
+  double worstOverstatement(double least) const {
     double worst = 0.0;
     for (const Bin& bin : bins_)
       if (bin.count >= least) worst = std::max(worst, (bin.said - bin.were) / bin.count);
@@ -74,8 +74,8 @@ TEST(Reliability, CategoryProbabilitiesAreNotOptimistic) {
   std::array<Table, 3> tables;
   for (std::size_t i = 0; i < 60; ++i) {
     const TrueWorld world = site.trueWorld(i);
-    const auto known = site.believed(SoilKnowledge::PerfectKnowledge, world);
-    auto learned = site.believed(SoilKnowledge::OnLine, world);
+    const auto known = site.estimatedMap(SoilKnowledge::PerfectKnowledge, world);
+    auto learned = site.estimatedMap(SoilKnowledge::OnLine, world);
     const TraverseSimulation drive = simulateTraverse(learned, world, site.options(SoilKnowledge::OnLine, i));
     for (int row = 0; row < 60; ++row)
       for (int column = 0; column < 60; ++column) {
@@ -94,8 +94,8 @@ TEST(Reliability, CategoryProbabilitiesAreNotOptimistic) {
   // and occurs by design: estimates are rounded conservatively, and soil is judged for the least favourable
   // position of the wheels. Cells of one world are correlated, so that 60 worlds estimate a share to about
   // 0.05.
-  EXPECT_LT(tables[0].worstBoast(500.0), 0.05);
-  EXPECT_LT(tables[1].worstBoast(500.0), 0.05);
+  EXPECT_LT(tables[0].worstOverstatement(500.0), 0.05);
+  EXPECT_LT(tables[1].worstOverstatement(500.0), 0.05);
 }
 
 }  // namespace reliability_test

@@ -22,8 +22,8 @@ struct GoalOptions {
   std::string measured;  ///< CSV with torque, sinkage and drawbar pull measured; empty: that line is left out
 };
 
-/// Measures every estimation goal over thesis Table 2.1, in the thesis' pattern of ten samples. The same
-/// numbers for the same seed, the times apart.
+/// Measures the error and the run time of each estimation goal over thesis Table 2.1, with ten samples per
+/// soil as in the thesis. For the same seed the errors are the same.
 std::vector<GoalLine> measureGoals(const GoalOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::reproduce

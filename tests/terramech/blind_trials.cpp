@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
   for (int seed = first; seed < first + count; ++seed) {
     blind::WorldPlan plan{.seed = static_cast<std::uint64_t>(seed)};
     plan.product = mode == "product";
-    plan.untold = mode == "tied" || mode == "few" || mode == "patch" ? mode : "";
+    plan.unresolvable = mode == "tied" || mode == "few" || mode == "patch" ? mode : "";
     plan.effects = mode == "none" || mode.starts_with("scatter") || mode == "site" || mode == "patch" ? 0
                    : mode == "double"                                                                 ? 2
                                                                                                       : 1;

@@ -240,8 +240,9 @@ World makeWorld(const WorldPlan& plan) {
   Design design = plan.campaign ? campaignDesign(random)
                   : plan.wide   ? wideDesign(random)
                                 : plainDesign(random);
-  if (plan.untold == "few") design.rows_a_run = 1, design.count = 8;
-  if (plan.untold == "patch") w.hidden = {{"patch", "empirical", {"time_s"}, {kPull, kSink, kTorque}, 0.8}};
+  if (plan.unresolvable == "few") design.rows_a_run = 1, design.count = 8;
+  if (plan.unresolvable == "patch")
+    w.hidden = {{"patch", "empirical", {"time_s"}, {kPull, kSink, kTorque}, 0.8}};
   if (plan.sites) w.hidden = {{"another_soil", "empirical", {"site"}, {kPull, kSink, kTorque}, 0.8}};
   for (Hidden& h : w.hidden)
     while (!shows(h, design)) h = draw(plan.library ? libraryKinds() : otherKinds(), random);
@@ -267,7 +268,7 @@ World makeWorld(const WorldPlan& plan) {
         run = c;
         if (plan.scatter > 0.0) run.strength = std::max(0.3, 1.0 + plan.scatter * random.normal());
         const bool other =
-            plan.sites ? w.run.back() % 3 == 2 : plan.untold == "patch" && 3 * row >= 2 * design.count;
+            plan.sites ? w.run.back() % 3 == 2 : plan.unresolvable == "patch" && 3 * row >= 2 * design.count;
         if (other) run.strength = 0.8, run.stiffness = 0.6;
       }
       c = within(run, c);
@@ -295,7 +296,7 @@ World makeWorld(const WorldPlan& plan) {
     for (auto* rows : {&w.rows, &w.held})
       for (auto& row : *rows) row.erase(row.begin() + at);
   }
-  if (plan.untold == "tied") addTied(w, random);
+  if (plan.unresolvable == "tied") addTied(w, random);
   std::vector<std::string> held_columns = w.columns;
   addIdleColumns(design, held_columns, w.held, random);
   addIdleColumns(design, w.columns, w.rows, random);

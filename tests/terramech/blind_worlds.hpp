@@ -75,7 +75,7 @@ struct WorldPlan {
   double scatter = 0.0;  ///< relative standard deviation of tan phi and c between runs
   /// Cases that cannot be resolved: "tied", the column of each effect is correlated with another; "few",
   /// eight rows; "patch", the last third of the runs is on another soil, not recorded.
-  std::string untold{};
+  std::string unresolvable{};
   bool product = false;  ///< the only effect is a product of two columns
   bool sites =
       false;  ///< runs at three sites, the soil of the third weaker by a fifth and softer by two fifths

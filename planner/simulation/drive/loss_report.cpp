@@ -14,7 +14,7 @@ std::string rounded(double value) {
 }
 
 // Map properties of the wheel position with the weakest estimated ground.
-std::string believedThere(const LossScene& scene) {
+std::string estimateThere(const LossScene& scene) {
   std::optional<costmap::GroundBelief> weakest;
   std::uint8_t category = 0;
   for (const costmap::TelemetryReading& wheel : scene.seen.wheels) {
@@ -49,7 +49,7 @@ std::string causeOfLoss(const LossScene& scene) {
                                ? scene.step.slides ? "slid without an alarm" : "spun without an alarm"
                                : "held when it reversed after '" + scene.why_it_stopped + "'";
   return stop + "; " + std::to_string(undeclared) + " of " + std::to_string(scene.step.wheels.size()) +
-         " wheels on undeclared ground; " + believedThere(scene) + "; " + readings(scene);
+         " wheels on undeclared ground; " + estimateThere(scene) + "; " + readings(scene);
 }
 
 }  // namespace talus::planner

@@ -13,7 +13,7 @@ struct LossScene {
   const TrueWorld& world;
   const TrueWorld::Step& step;    ///< last step attempted
   const WheelMeasurements& seen;  ///< latest readings of the wheels
-  maps::Point believed;           ///< estimated position of the rover
+  maps::Point estimated;          ///< estimated position of the rover
   std::string why_it_stopped;     ///< reason of the alarm; empty without an alarm
 };
 

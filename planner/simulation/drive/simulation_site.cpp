@@ -28,16 +28,16 @@ maps::Raster<Hazard> declaredHazards(const costmap::TraversabilityMap& map) {
 
 // Makes every soil of the world a class of its own with negligible uncertainty. A cell belongs to a patch if
 // a wheel of a rover anywhere on the cell may touch the patch.
-void tellTruth(const TrueWorld& world, double footprint_m, costmap::MapLayers& layers,
-               costmap::GroundModel::Parts& parts) {
-  constexpr double kNoDoubt = 0.01;
+void setTrueSoils(const TrueWorld& world, double footprint_m, costmap::MapLayers& layers,
+                  costmap::GroundModel::Parts& parts) {
+  constexpr double kExactStd = 0.01;
   parts.classes.clear();
   for (const terramech::Soil& soil : world.soils())
     parts.classes.push_back({.number = static_cast<int>(parts.classes.size()),
                              .soil = soil,
                              .effects = world.effects(),
-                             .pull_std = kNoDoubt,
-                             .mean_std = kNoDoubt});
+                             .pull_std = kExactStd,
+                             .mean_std = kExactStd});
   const maps::Grid& grid = layers.elevation.grid();
   const double reach_m = footprint_m + grid.resolution_m * std::sqrt(0.5);
   layers.classes = maps::Raster<std::uint8_t>(grid);
@@ -63,7 +63,7 @@ TrueWorld SimulationSite::trueWorld(std::size_t i) const {
           map_.model().rover(), classIndices(map_)};
 }
 
-costmap::TraversabilityMap SimulationSite::believed(SoilKnowledge belief, const TrueWorld& world) const {
+costmap::TraversabilityMap SimulationSite::estimatedMap(SoilKnowledge belief, const TrueWorld& world) const {
   costmap::GroundModel::Parts parts = map_.model().parts();
   costmap::MapLayers layers{map_.elevation(), map_.surface().classes(), {}, {}, declaredHazards(map_)};
   layers.costs = map_.surface().costLayers();
@@ -74,7 +74,7 @@ costmap::TraversabilityMap SimulationSite::believed(SoilKnowledge belief, const 
     }
   parts.prices_crossing = belief != SoilKnowledge::AlongOnly;
   if (belief == SoilKnowledge::PerfectKnowledge)
-    tellTruth(world, map_.surface().footprintRadius_m(), layers, parts);
+    setTrueSoils(world, map_.surface().footprintRadius_m(), layers, parts);
   return {std::move(layers),
           std::make_shared<costmap::GroundModel>(std::move(parts)),
           {.footprint_radius_m = map_.surface().footprintRadius_m(), .threads = 1}};
@@ -95,7 +95,7 @@ SimulationOptions SimulationSite::options(SoilKnowledge belief, std::size_t i) c
 
 WorldResult SimulationSite::world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch) const {
   const TrueWorld truth = trueWorld(i);
-  costmap::TraversabilityMap map = believed(belief, truth);
+  costmap::TraversabilityMap map = estimatedMap(belief, truth);
   const std::vector<std::uint8_t> before = categoriesOf(map);
   SimulationOptions how = options(belief, i);
   how.watch = {.progress = {}, .stop = watch.stop};

@@ -71,7 +71,7 @@ class SimulationSite {
   /// Returns the true soils of the world of index i.
   TrueWorld trueWorld(std::size_t i) const;
   /// The planner's map before the drive.
-  costmap::TraversabilityMap believed(SoilKnowledge belief, const TrueWorld& world) const;
+  costmap::TraversabilityMap estimatedMap(SoilKnowledge belief, const TrueWorld& world) const;
   /// Returns the options of the traverse simulation in the world of index i.
   SimulationOptions options(SoilKnowledge belief, std::size_t i) const;
 

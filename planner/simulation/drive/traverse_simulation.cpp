@@ -63,12 +63,12 @@ class Drive {
     if (!cause.empty())
       result_.cause = std::move(cause);
     else if (outcome == Outcome::Immobilised || outcome == Outcome::Slid)
-      result_.cause = causeOfLoss({map_, world_, last_step_, seen_, believed(), why_it_stopped_});
-    tell(std::string(name(outcome)));
+      result_.cause = causeOfLoss({map_, world_, last_step_, seen_, estimatedPlace(), why_it_stopped_});
+    recordEvent(std::string(name(outcome)));
     return std::move(result_);
   }
 
-  void tell(std::string text, std::vector<maps::Point> route = {}) {
+  void recordEvent(std::string text, std::vector<maps::Point> route = {}) {
     result_.events.push_back({result_.time_s, std::move(text), std::move(route)});
   }
 
@@ -77,7 +77,7 @@ class Drive {
   bool plan() {
     const MotionCost cost(map_.published());
     for (;;) {
-      while (options_.senses && !cost.allowed(believed()))
+      while (options_.senses && !cost.allowed(estimatedPlace()))
         if (!leaveOneStep(0.0)) return false;
       if (const RouteStatus status = planFromHere();
           status != RouteStatus::NoRoute && status != RouteStatus::NoneFound)
@@ -85,14 +85,14 @@ class Drive {
       const double from_m = result_.length_m;
       while (result_.length_m - from_m < options_.keep_out_radius_m)
         if (!options_.senses || !leaveOneStep(0.0)) return false;
-      tell("reversed");
+      recordEvent("reversed");
     }
   }
 
   RouteStatus planFromHere() {
     Problem problem;
     problem.map = map_.published();
-    problem.start = believed();
+    problem.start = estimatedPlace();
     problem.goal = options_.goal;
     problem.goal_tolerance_m = options_.goal_tolerance_m;
     problem.prove = false;
@@ -102,22 +102,22 @@ class Drive {
     route_ = std::move(plan.points);
     next_ = 1;
     planned_J_ = plan.cost_J;
-    tell("planned", route_);
+    recordEvent("planned", route_);
     return plan.status;
   }
 
   // Estimated position of the rover.
-  maps::Point believed() const { return sensors_.believed(here_); }
+  maps::Point estimatedPlace() const { return sensors_.estimatedPlace(here_); }
 
   FollowEnd follow() {
     while (next_ < route_.size()) {
-      const double left = distance_m(believed(), route_[next_]);
+      const double left = distance_m(estimatedPlace(), route_[next_]);
       if (left < 1e-9) {
         ++next_;
         continue;
       }
       if (options_.watch.stopped()) return FollowEnd::Replan;
-      const Direction heading = directionTo(believed(), route_[next_]);
+      const Direction heading = directionTo(estimatedPlace(), route_[next_]);
       if (tipped(heading)) return FollowEnd::Tipped;
       const auto end = lookAndStep(heading, std::min(left, options_.step_m));
       if (end) return *end;
@@ -136,10 +136,10 @@ class Drive {
                                  .across = gradient({-heading.y, heading.x}),
                                  .dug_m = dug_m_});
     if (step.stuck && !options_.senses) return FollowEnd::Stuck;
-    const WheelAlarm::AlarmCheck heard =
-        options_.senses ? alarm_.hear(seen_, expectations(step, heading)) : WheelAlarm::AlarmCheck{};
-    const bool learned = learn(heard.reason.has_value());
-    if (heard.reason) return retreat(step, heard);
+    const WheelAlarm::AlarmCheck check =
+        options_.senses ? alarm_.check(seen_, expectations(step, heading)) : WheelAlarm::AlarmCheck{};
+    const bool learned = learn(check.reason.has_value());
+    if (check.reason) return retreat(step, check);
     if (step.slides) return FollowEnd::Stuck;
     if (step.stuck) return dig(step);
     if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
@@ -165,7 +165,7 @@ class Drive {
 
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
     if (!options_.on_step) return;
-    const costmap::TravelState state = MapExpectation(map_, ground()).at(believed(), heading);
+    const costmap::TravelState state = MapExpectation(map_, ground()).at(estimatedPlace(), heading);
     const double slope = gradient(heading);
     options_.on_step(
         {.time_s = result_.time_s,
@@ -200,7 +200,7 @@ class Drive {
     const MapExpectation map(map_, ground());
     std::vector<WheelExpectation> of_wheels;
     for (const TrueWorld::SimulatedWheel& wheel : step.wheels)
-      of_wheels.push_back(map.ofWheel(sensors_.believed(wheel.place), believed(), heading));
+      of_wheels.push_back(map.ofWheel(sensors_.estimatedPlace(wheel.place), estimatedPlace(), heading));
     return of_wheels;
   }
 
@@ -230,7 +230,7 @@ class Drive {
   }
 
   void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
-    const bool there = length_m >= distance_m(believed(), route_[next_]) - 1e-9;
+    const bool there = length_m >= distance_m(estimatedPlace(), route_[next_]) - 1e-9;
     dug_m_ = 0.0;
     downhill_ = false;
     spend(step, length_m, gradient(heading));
@@ -281,7 +281,7 @@ class Drive {
     if (!downhill_ && backOneStep(dug_m)) return true;
     if (!downhill_ && !(held_ && last_step_.slides)) return false;
     held_ = !downOneStep();
-    if (!downhill_ && !held_) tell("turned downhill");
+    if (!downhill_ && !held_) recordEvent("turned downhill");
     downhill_ = !held_;
     return downhill_;
   }
@@ -291,7 +291,8 @@ class Drive {
     const auto& model = map_.model();
     const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
-      const auto cell = map_.grid().cellAt({believed().x_m + x * reach_m, believed().y_m + y * reach_m});
+      const auto cell =
+          map_.grid().cellAt({estimatedPlace().x_m + x * reach_m, estimatedPlace().y_m + y * reach_m});
       const auto ground = cell ? map_.ground(*cell) : std::nullopt;
       if (!ground) continue;
       const int index = map_.surface().classIndex(*cell);
@@ -304,9 +305,9 @@ class Drive {
 
   // Drives back in its own ruts by at least the keep-out radius, until the rover stands on sound ground,
   // where it may turn. The ground that raised the alarm is refused afterwards.
-  FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& heard) {
-    tell(*heard.reason);
-    why_it_stopped_ = *heard.reason;
+  FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& check) {
+    recordEvent(*check.reason);
+    why_it_stopped_ = *check.reason;
     const double radius_m = map_.model().rover().wheel.radius_m;
     const double spun_m = stopped.stuck ? options_.stall_detection_m * stopped.slip : 0.0;
     result_.energy_J += std::max(stopped.torque_Nm, 0.0) * spun_m / radius_m;
@@ -319,20 +320,21 @@ class Drive {
     }
     ruts_.turnBack();
     if (held_) return FollowEnd::Stuck;
-    tell("reversed");
-    if (!heard.sank.empty()) refuseGround(stopped, heard);
+    recordEvent("reversed");
+    if (!check.sank.empty()) refuseGround(stopped, check);
     return FollowEnd::Replan;
   }
 
   // Refuses the ground under wheels that sank and the two foremost wheels, but not under the rover itself.
-  void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& heard) {
+  void refuseGround(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& check) {
     ++result_.alarms;
     const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
     for (std::size_t w = 0; w < stopped.wheels.size(); ++w) {
-      if (w >= 2 && !heard.sank[w]) continue;
+      if (w >= 2 && !check.sank[w]) continue;
       const maps::Point& wheel = stopped.wheels[w].place;
       const double room_m = distance_m(wheel, here_) - outline_m;
-      if (room_m > 0.0) map_.refuse(sensors_.believed(wheel), std::min(options_.keep_out_radius_m, room_m));
+      if (room_m > 0.0)
+        map_.refuse(sensors_.estimatedPlace(wheel), std::min(options_.keep_out_radius_m, room_m));
     }
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);
@@ -354,7 +356,7 @@ class Drive {
 
   bool routeTurnedDear() {
     const MotionCost cost(map_.published());
-    double left_J = cost({believed(), route_[std::min(next_, route_.size() - 1)]});
+    double left_J = cost({estimatedPlace(), route_[std::min(next_, route_.size() - 1)]});
     for (std::size_t i = next_; i + 1 < route_.size(); ++i) left_J += cost({route_[i], route_[i + 1]});
     const bool dear = !(left_J <= kDearer * planned_J_);
     planned_J_ = std::min(planned_J_, left_J);

@@ -29,9 +29,9 @@ double WheelAlarm::excessSinkage(std::size_t wheel, const costmap::TelemetryRead
   return excess - datum;
 }
 
-WheelAlarm::AlarmCheck WheelAlarm::hear(const WheelMeasurements& look,
-                                        const std::vector<WheelExpectation>& expected) {
-  AlarmCheck heard;
+WheelAlarm::AlarmCheck WheelAlarm::check(const WheelMeasurements& look,
+                                         const std::vector<WheelExpectation>& expected) {
+  AlarmCheck check;
   excess_.resize(std::max(excess_.size(), look.wheels.size()));
   std::size_t slipping = 0, reading_slip = 0;
   double expected_angle_rad = 0.0;
@@ -42,15 +42,15 @@ WheelAlarm::AlarmCheck WheelAlarm::hear(const WheelMeasurements& look,
     // slip is negative, and a rover that stops there must climb back.
     slipping += reading.slip > std::max(expected[w].slip, 0.0) + limits_.slip ? 1U : 0U;
     expected_angle_rad = std::fmax(expected_angle_rad, expected[w].slip_angle_rad);
-    heard.sank.push_back(excessSinkage(w, reading, expected[w]) > limits_.sinkage);
+    check.sank.push_back(excessSinkage(w, reading, expected[w]) > limits_.sinkage);
   }
   if (slipping > 0 && 2 * slipping >= reading_slip)
-    heard.reason = "slips";
+    check.reason = "slips";
   else if (std::abs(look.slip_angle_rad) > expected_angle_rad + limits_.slip_angle_rad)
-    heard.reason = "slides";
-  else if (std::find(heard.sank.begin(), heard.sank.end(), true) != heard.sank.end())
-    heard.reason = "sinks";
-  return heard;
+    check.reason = "slides";
+  else if (std::find(check.sank.begin(), check.sank.end(), true) != check.sank.end())
+    check.reason = "sinks";
+  return check;
 }
 
 }  // namespace talus::planner

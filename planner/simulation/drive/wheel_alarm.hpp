@@ -40,7 +40,7 @@ class WheelAlarm {
     std::vector<bool> sank;             ///< for each wheel: true if its sinkage exceeds the limit
   };
   /// Compares readings with expectations; `expected` has one entry per wheel of `look`.
-  AlarmCheck hear(const WheelMeasurements& look, const std::vector<WheelExpectation>& expected);
+  AlarmCheck check(const WheelMeasurements& look, const std::vector<WheelExpectation>& expected);
 
  private:
   double excessSinkage(std::size_t wheel, const costmap::TelemetryReading& reading,

@@ -68,7 +68,7 @@ SimulatedSensors::SimulatedSensors(const SensorOptions& options, const terramech
       static_cast<std::size_t>(random_() % static_cast<std::uint64_t>(std::max(rover.wheel_count, 1)));
 }
 
-maps::Point SimulatedSensors::believed(const maps::Point& place) const noexcept {
+maps::Point SimulatedSensors::estimatedPlace(const maps::Point& place) const noexcept {
   return {place.x_m + drift_.x_m, place.y_m + drift_.y_m};
 }
 
@@ -93,7 +93,7 @@ WheelMeasurements SimulatedSensors::look(const TrueWorld::Step& step, const Mome
     const double torque = wheel.forces.torque * (1.0 + noise * kTorqueNoise * normal_(random_));
     const double sinkage = wheel.forces.sinkage * (1.0 + noise * kSinkageNoise * normal_(random_));
     look.wheels.push_back({.time_s = moment.time_s,
-                           .place = believed(wheel.place),
+                           .place = estimatedPlace(wheel.place),
                            .load_N = wheel.load_N,
                            .slip = std::clamp(own_slip, -1.0, 1.0),
                            .torque_Nm = drops() ? kNone : torque * wheel.load_N * radius_m,

@@ -66,7 +66,7 @@ class SimulatedSensors {
   SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover);
 
   /// Estimated position of the rover at a true place.
-  maps::Point believed(const maps::Point& place) const noexcept;
+  maps::Point estimatedPlace(const maps::Point& place) const noexcept;
   /// Adds a driven distance.
   void moved(double distance_m);
 

@@ -123,10 +123,10 @@ std::vector<std::string> noiseColumns(const Trial& trial) {
 
 std::vector<std::string> allButSlip(const Trial& trial) {
   const std::vector<std::string> names = noiseColumns(trial);
-  const bool tells_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
+  const bool determines_slip = std::find(names.begin(), names.end(), "rim_speed_mps") != names.end();
   std::vector<std::string> others;
   for (const std::string& name : names)
-    if (name != "slip" && !(name == "speed_mps" && tells_slip)) others.push_back(name);
+    if (name != "slip" && !(name == "speed_mps" && determines_slip)) others.push_back(name);
   return others;
 }
 

@@ -50,7 +50,8 @@ struct Promise {
 /// Root mean square of the scaled residual in each channel [-]; NaN: not measured.
 using ChannelErrors = std::array<double, kChannels>;
 
-/// Log-likelihood difference by which an explanation is excluded relative to another: -ln(significance).
+/// Log-likelihood deficit above which an explanation is excluded in favour of a better one:
+/// -ln(significance).
 inline double closeGain(const TraceOptions& options) {
   return -std::log(options.significance);
 }

@@ -67,13 +67,13 @@ std::optional<double> knownModulus(const EstimateOptions& options, const std::ve
   return std::nullopt;
 }
 
-void sayModulusUnseen(const ModulusEstimate& k, SoilEstimate& estimate) {
+void warnModulusUndetermined(const ModulusEstimate& k, SoilEstimate& estimate) {
   if (!k.at_bound) return;
   estimate.unseen.emplace_back(
       "shear_modulus_m: no minimum between 2 and 100 mm; vary the slip, or pass --shear-modulus");
 }
 
-ShearStrength believed(const ShearStrength& fit, const std::vector<StrengthPrior>& priors) {
+ShearStrength withPriors(const ShearStrength& fit, const std::vector<StrengthPrior>& priors) {
   return priors.empty() ? fit : withPrior(fit, priors);
 }
 
@@ -114,12 +114,12 @@ void fitTogether(const EstimateOptions& options, const WheelRows& rows, const st
   const auto modulus = known ? ModulusEstimate{.shear_modulus_m = *known}
                              : findModulus(criterionOf(options.shear_modulus), rows, watch);
   if (watch.stopped()) return;
-  sayModulusUnseen(modulus, estimate);
+  warnModulusUndetermined(modulus, estimate);
   LineFit line(options);
   for (std::size_t k = 0; k < rows.samples.size(); ++k)
     line.add(rows.wheels[k], rows.samples[k], modulus.shear_modulus_m);
   estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
-  estimate.take(believed(line.estimate(), strengthPriors(priors)));
+  estimate.take(withPriors(line.estimate(), strengthPriors(priors)));
   estimate.shear_modulus_m = modulus.shear_modulus_m;
 }
 
@@ -145,7 +145,9 @@ class Recursion {
     line_.add(wheel, sample, *known_);
     return true;
   }
-  ShearStrength strength() const { return believed(known_ ? line_.estimate() : ladder_.strength(), priors_); }
+  ShearStrength strength() const {
+    return withPriors(known_ ? line_.estimate() : ladder_.strength(), priors_);
+  }
   ModulusEstimate modulus() const {
     return known_ ? ModulusEstimate{.shear_modulus_m = *known_} : ladder_.modulus();
   }
@@ -186,7 +188,7 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
   }
   watch.report(1.0);
   const ModulusEstimate modulus = recursion.modulus();
-  sayModulusUnseen(modulus, estimate);
+  warnModulusUndetermined(modulus, estimate);
   estimate.take(recursion.strength());
   estimate.shear_modulus_m = modulus.shear_modulus_m;
   estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);

@@ -75,18 +75,18 @@ SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
     const Wheel& wheel = rows.wheels[static_cast<std::size_t>(row)];
     const Reading read{
         .load_N = s.load_N, .radius_m = wheel.radius_m, .sinkage_m = s.sinkage_m, .torque_Nm = s.torque_Nm};
-    const Reading foretold = predict(model, {.wheel = wheel, .load_N = s.load_N, .slip = s.slip});
+    const Reading predicted_reading = predict(model, {.wheel = wheel, .load_N = s.load_N, .slip = s.slip});
     for (const Channel channel : {Channel::Sinkage, Channel::Torque}) {
       answer.measured(row, static_cast<int>(channel)) = read.scaled(channel);
-      answer.predicted(row, static_cast<int>(channel)) = foretold.scaled(channel);
+      answer.predicted(row, static_cast<int>(channel)) = predicted_reading.scaled(channel);
     }
   }
   return answer;
 }
 
 // Adds warnings about assumptions of the posterior that the rows contradict.
-void sayWhatIsDoubtful(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
-                       std::vector<std::string>& warnings) {
+void warnUncertain(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
+                   std::vector<std::string>& warnings) {
   if (posterior.misfit > kMisfit) {
     warnings.push_back(
         fmt::format("no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior "
@@ -128,7 +128,7 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
     throw std::domain_error(
         fmt::format("{}: {}; check unit, sign and sensor of torque_Nm and sinkage_m, or widen --prior",
                     options.table.path, why));
-  sayWhatIsDoubtful(rows, *estimate.posterior, groups, estimate.warnings);
+  warnUncertain(rows, *estimate.posterior, groups, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;
 }

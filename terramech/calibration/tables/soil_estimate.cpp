@@ -36,9 +36,9 @@ void SoilEstimate::take(const ShearStrength& fit) {
 std::string SoilEstimate::implausible() const {
   constexpr double kSteepest = 1.7320508075688772;  // tan 60 deg
   const double c = cohesion_Pa + 2.0 * std::sqrt(covariance(0, 0));
-  const double doubt = 2.0 * std::sqrt(covariance(1, 1));
+  const double two_std = 2.0 * std::sqrt(covariance(1, 1));
   const bool no_cohesion = c < 0.0;
-  const bool no_friction = tan_friction + doubt < 0.0 || tan_friction - doubt > kSteepest;
+  const bool no_friction = tan_friction + two_std < 0.0 || tan_friction - two_std > kSteepest;
   if (!no_cohesion && !no_friction) return {};
   return fmt::format(
       "{} outside the range of any soil: the rows violate the assumptions of the method (one soil, no "

@@ -183,9 +183,9 @@ ChannelErrors regressionErrors(const Trial& seen, const Trial& unseen) {
       if (std::isfinite(seen.measured(row, c))) there.push_back(row);
     std::vector<double> left;
     if (!there.empty()) {
-      const Eigen::VectorXd told = at * ridge(x(there, Eigen::all), seen.measured(there, c));
+      const Eigen::VectorXd predicted = at * ridge(x(there, Eigen::all), seen.measured(there, c));
       for (int row = 0; row < unseen.rows(); ++row)
-        if (std::isfinite(unseen.measured(row, c))) left.push_back(unseen.measured(row, c) - told[row]);
+        if (std::isfinite(unseen.measured(row, c))) left.push_back(unseen.measured(row, c) - predicted[row]);
     }
     errors[static_cast<std::size_t>(c)] = rms(left);
   }
@@ -226,10 +226,10 @@ LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const L
                              ")");
   SolvedContacts solved;
   errors.trial = unseen;
-  errors.base_told = predictRows(result.base, unseen, solved);
-  errors.told = predictInScope(result, unseen);
-  errors.base = rmseOf(errors.base_told, unseen);
-  errors.refined = rmseOf(errors.told, unseen);
+  errors.base_predicted = predictRows(result.base, unseen, solved);
+  errors.predicted = predictInScope(result, unseen);
+  errors.base = rmseOf(errors.base_predicted, unseen);
+  errors.refined = rmseOf(errors.predicted, unseen);
   errors.floor = result.noise_floor;
   Trial same = seen;  // restricted to the searched columns below
   same.covariates = result.trial.covariates;

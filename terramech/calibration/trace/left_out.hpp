@@ -31,7 +31,7 @@ struct LeftOutErrors {
   ChannelErrors regression{};  ///< plain regression for comparison: columns and squares, ridge by generalised
                                ///< cross-validation (golub_1979)
   Trial trial;                 ///< the rows left out
-  Eigen::MatrixXd base_told, told;  ///< predictions of base and refined model: rows x kChannels [-]
+  Eigen::MatrixXd base_predicted, predicted;  ///< predictions of base and refined model: rows x kChannels [-]
 };
 
 LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const LeftOut& left,

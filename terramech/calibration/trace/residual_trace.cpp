@@ -281,8 +281,8 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   for (const double w : trial.load_N) load_N += w / trial.rows();
   if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
   const auto& columns = trial.covariates;
-  const bool told = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
-  if (!told || knowsPasses(model.effects)) return model;
+  const bool has_passes = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
+  if (!has_passes || knowsPasses(model.effects)) return model;
   model.effects.push_back({.name = "multipass_reload",
                            .covariate = "pass_index",
                            .channel = Channel::Sinkage,

@@ -9,7 +9,7 @@
 namespace talus::terramech {
 namespace {
 
-constexpr double kTold = 0.9;  // greatest posterior over prior std of a determined parameter
+constexpr double kUndeterminedShare = 0.9;  // greatest posterior over prior std of a determined parameter
 
 int indexOf(const std::string& name) {
   const auto& all = soilParameters();
@@ -131,7 +131,7 @@ ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSo
   for (std::size_t k = 0; k < plan.free.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const double prior = plan.soil_prior.at(plan.free[k].index).std;
-    if (std::sqrt(std::max(0.0, covariance(at, at))) > kTold * prior)
+    if (std::sqrt(std::max(0.0, covariance(at, at))) > kUndeterminedShare * prior)
       found.unseen.push_back(
           std::string(soilParameters()[static_cast<std::size_t>(plan.free[k].index)].name) +
           ": the posterior is almost as wide as the prior");

@@ -38,7 +38,7 @@ class Site {
     return json::parse(ran.out);
   }
 
-  // Value of a named cause of a cell, from `talus explain`.
+  // Value of a named entry of `causes` that `talus explain` prints for a cell.
   double cause(const std::string& map, const std::string& place, const std::string& name) const {
     const json why = run({"explain", map, "--at", place, "--json"});
     for (const json& cause : why["causes"])
@@ -141,7 +141,7 @@ TEST(UpdateCommand, JournalOfAnotherAreaIsRejected) {
   const Ran ran =
       runTalus({"update", "far.ot", "--replay", "--journal", "e.db", "-o", "c.ot"}, site.folder.path());
   EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, testing::HasSubstr("e.db: none of its 80 rows tells of this map"));
+  EXPECT_THAT(ran.err, testing::HasSubstr("e.db: none of its 80 rows lies on this map"));
 }
 
 TEST(UpdateCommand, JournalWithMissingOrModifiedRowsIsRejected) {

@@ -97,7 +97,7 @@ TEST(ViewCommand, RoutesAreCompared) {
 
   const Ran map = runTalus({"view", "dem.asc", "direct.geojson", "--resolution", "1"}, folder.path());
   EXPECT_EQ(map.code, 2);
-  EXPECT_THAT(map.err, HasSubstr("dem.asc: is no route, and is to be compared with routes"));
+  EXPECT_THAT(map.err, HasSubstr("dem.asc: is not a route file; only routes can be compared"));
   folder.write("far.asc", asciiGrid(2, 2, hills));
   const Ran far = runTalus(
       {"view", "direct.geojson", "direct.geojson", "--map", "far.asc", "--resolution", "1"}, folder.path());

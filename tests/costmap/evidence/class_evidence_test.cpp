@@ -27,14 +27,14 @@ TEST(IndependentPlaces, AdjacentSquaresAreNotCountedAsIndependent) {
 }
 
 ClassEvidence taught(const std::vector<double>& pulls, bool raises) {
-  ClassEvidence lessons(sand());
+  ClassEvidence contributions(sand());
   int column = 0;
   for (const double pull : pulls) {
-    lessons.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = raises});
-    lessons.places().set({2 * column++, 0}, raises ? static_cast<float>(pull) : -INFINITY);
+    contributions.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = raises});
+    contributions.places().set({2 * column++, 0}, raises ? static_cast<float>(pull) : -INFINITY);
   }
-  lessons.refresh();
-  return lessons;
+  contributions.refresh();
+  return contributions;
 }
 
 TEST(ClassEvidence, OnePlaceTeachesNothingTwoHalfThreeAll) {
@@ -61,63 +61,64 @@ TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
       3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in the contributions of the places
   for (const double times : {0.0, 0.9, 1.1, 2.0})
     for (const double sign : {-1.0, 1.0}) {
-      ClassEvidence lessons(sand());
+      ClassEvidence contributions(sand());
       for (std::uint16_t drive = 1; drive <= 2; ++drive)
         for (int place = 0; place < 25; ++place) {
           const double pull = drive == 1 ? 0.0 : sign * times * apart;
-          lessons.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = true, .drive = drive});
-          lessons.places().set({2 * place, 2 * drive}, static_cast<float>(pull));
+          contributions.add(
+              {.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = true, .drive = drive});
+          contributions.places().set({2 * place, 2 * drive}, static_cast<float>(pull));
         }
-      lessons.refresh();
-      EXPECT_EQ(lessons.mayRaise(), times < 1.0) << sign * times;
-      EXPECT_EQ(lessons.state().may_raise, times < 1.0) << sign * times;
+      contributions.refresh();
+      EXPECT_EQ(contributions.mayRaise(), times < 1.0) << sign * times;
+      EXPECT_EQ(contributions.state().may_raise, times < 1.0) << sign * times;
     }
 }
 
 // Property: evidence from unverified sensors never raises the class mean above the mean from verified
 // evidence.
-TEST(ClassEvidence, WhatMayNotRaiseNeverLifts) {
+TEST(ClassEvidence, UnverifiedReadingsNeverRaise) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-0.2, 0.2);
   for (int world = 0; world < 200; ++world) {
-    ClassEvidence lessons = taught({any(random), any(random), any(random), any(random)}, true);
-    const double alone = lessons.posterior().pull.value;
+    ClassEvidence contributions = taught({any(random), any(random), any(random), any(random)}, true);
+    const double alone = contributions.posterior().pull.value;
     for (int i = 0; i < 10; ++i) {
-      lessons.add({.weight = 1.0, .pull = any(random), .sinkage = std::nullopt, .raises = false});
-      lessons.refresh();
-      EXPECT_LE(lessons.posterior().pull.value, alone);
+      contributions.add({.weight = 1.0, .pull = any(random), .sinkage = std::nullopt, .raises = false});
+      contributions.refresh();
+      EXPECT_LE(contributions.posterior().pull.value, alone);
     }
   }
 }
 
 // Property: a drive with unverified sensors never raises the mean, changes the standard deviation or reduces
 // the sinkage, with and without verified evidence, and with a second unverified drive.
-TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
+TEST(ClassEvidence, UnverifiedDrivesNeverRaise) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> any(-0.2, 0.2), deep(0.0, 0.2);
   for (int world = 0; world < 500; ++world) {
-    ClassEvidence lessons(sand());
+    ClassEvidence contributions(sand());
     for (int column = 0; column < 8; ++column)
-      lessons.places().set({2 * column, 0}, world % 2 == 0 ? 0.1F : -INFINITY);
+      contributions.places().set({2 * column, 0}, world % 2 == 0 ? 0.1F : -INFINITY);
     for (int i = 0; world % 2 == 0 && i < 6; ++i)
-      lessons.add({.weight = 1.0,
-                   .pull = any(random),
-                   .sinkage = any(random),
-                   .raises = true,
-                   .sinkage_raises = true,
-                   .drive = 1});
-    lessons.refresh();
+      contributions.add({.weight = 1.0,
+                         .pull = any(random),
+                         .sinkage = any(random),
+                         .raises = true,
+                         .sinkage_raises = true,
+                         .drive = 1});
+    contributions.refresh();
     for (std::uint16_t drive = 2; drive < 8; ++drive) {
-      const ClassState before = lessons.state();
+      const ClassState before = contributions.state();
       const double of_drive = any(random), deeper = deep(random);
       for (int i = 0; i < 1 + world % 7; ++i)
-        lessons.add({.weight = 0.5,
-                     .pull = std::min(of_drive + 0.1 * any(random), 0.0),
-                     .sinkage = deeper,
-                     .raises = false,
-                     .drive = drive});
-      lessons.refresh();
-      const ClassState after = lessons.state();
+        contributions.add({.weight = 0.5,
+                           .pull = std::min(of_drive + 0.1 * any(random), 0.0),
+                           .sinkage = deeper,
+                           .raises = false,
+                           .drive = drive});
+      contributions.refresh();
+      const ClassState after = contributions.state();
       EXPECT_LE(after.pull, before.pull + 1e-12);
       EXPECT_EQ(after.pull_std, before.pull_std);
       EXPECT_EQ(after.own_std, before.own_std);
@@ -131,14 +132,14 @@ TEST(ClassEvidence, DrivesThatMayNotRaiseLiftNothingBehindAnyOther) {
 
 // Closed form: the mean is the minimum over sets of drives of q^2 sum(h y)/(q^2 sum(h) + p^2). For -0.10, 0
 // and -0.08 at one place each, the minimum is that of the set {-0.10, -0.08}.
-TEST(ClassEvidence, IsWhatTheWeakestDrivesMakeOfIt) {
-  ClassEvidence lessons(sand());
-  for (int column = 0; column < 8; ++column) lessons.places().set({2 * column, 0}, -INFINITY);
+TEST(ClassEvidence, MeanIsTheMinimumOverSetsOfDrives) {
+  ClassEvidence contributions(sand());
+  for (int column = 0; column < 8; ++column) contributions.places().set({2 * column, 0}, -INFINITY);
   const double of_drive[] = {-0.10, 0.0, -0.08};
   for (std::uint16_t drive = 1; drive <= 3; ++drive)
-    lessons.add({.weight = 1.0, .pull = of_drive[drive - 1], .sinkage = std::nullopt, .drive = drive});
-  lessons.refresh();
-  EXPECT_NEAR(lessons.posterior().pull.value, -0.18 / 3.0, 1e-5);
+    contributions.add({.weight = 1.0, .pull = of_drive[drive - 1], .sinkage = std::nullopt, .drive = drive});
+  contributions.refresh();
+  EXPECT_NEAR(contributions.posterior().pull.value, -0.18 / 3.0, 1e-5);
 }
 
 // Closed form: with two drives the mean is at most the value of the weaker drive, q^2 W y/(q^2 W + p^2), with
@@ -154,7 +155,7 @@ TEST(ClassEvidence, NoDriveLiftsWhatAnotherShows) {
   };
   ClassEvidence one(sand()), other(sand());
   for (int column = 0; column < 8; ++column)
-    for (ClassEvidence* lessons : {&one, &other}) lessons->places().set({2 * column, 0}, 0.1F);
+    for (ClassEvidence* contributions : {&one, &other}) contributions->places().set({2 * column, 0}, 0.1F);
   for (int i = 0; i < 40; ++i) {
     one.add(lessonOf(1));
     other.add(lessonOf(2));
@@ -182,8 +183,8 @@ TEST(ClassEvidence, StepsErrTowardsDanger) {
   EXPECT_EQ(ClassEvidence(sand()).stateInSteps().pull_std, 0.05);
   for (int i = 0; i < 200; ++i) {
     const double y = -0.2 + 0.0021 * i;
-    const ClassEvidence lessons = taught({y, y + 0.013, y - 0.007, y}, i % 3 > 0);
-    const ClassState exact = lessons.state(), steps = lessons.stateInSteps();
+    const ClassEvidence contributions = taught({y, y + 0.013, y - 0.007, y}, i % 3 > 0);
+    const ClassState exact = contributions.state(), steps = contributions.stateInSteps();
     EXPECT_LE(steps.pull, exact.pull + 1e-8);
     EXPECT_GT(steps.pull, exact.pull - steps.pull_step);
     EXPECT_GE(steps.pull_std, exact.pull_std - 1e-8);
@@ -201,16 +202,16 @@ TEST(ClassEvidence, StepsErrTowardsDanger) {
 
 // Property: removing a contribution restores the previous state to the bit.
 TEST(ClassEvidence, ForgetsToTheBit) {
-  ClassEvidence lessons = taught({-0.1, -0.05, -0.07}, true);
-  const ClassPosterior before = lessons.posterior();
-  const BlockContribution lesson{.weight = 0.37, .pull = -0.123, .sinkage = 0.2, .raises = true};
-  lessons.add(lesson);
-  lessons.refresh();
-  EXPECT_NE(lessons.posterior().pull.value, before.pull.value);
-  lessons.remove(lesson);
-  lessons.refresh();
-  EXPECT_EQ(lessons.posterior().pull.value, before.pull.value);
-  EXPECT_EQ(lessons.posterior().pull.std, before.pull.std);
+  ClassEvidence contributions = taught({-0.1, -0.05, -0.07}, true);
+  const ClassPosterior before = contributions.posterior();
+  const BlockContribution contribution{.weight = 0.37, .pull = -0.123, .sinkage = 0.2, .raises = true};
+  contributions.add(contribution);
+  contributions.refresh();
+  EXPECT_NE(contributions.posterior().pull.value, before.pull.value);
+  contributions.remove(contribution);
+  contributions.refresh();
+  EXPECT_EQ(contributions.posterior().pull.value, before.pull.value);
+  EXPECT_EQ(contributions.posterior().pull.std, before.pull.std);
 }
 
 }  // namespace class_evidence_test

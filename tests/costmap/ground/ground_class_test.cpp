@@ -20,8 +20,8 @@ TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
   EXPECT_NEAR(groundClass(1, prior, testRover()).mean_std, pull(stronger) - pull(weaker), 1e-12);
 }
 
-// Property: the error message states the given standard deviation, not the impossible parameter of the
-// central difference.
+// Property: the error message states the given standard deviation, not the soil parameter outside its
+// range at which the central difference is evaluated.
 TEST(GroundClass, StdOutsideTheSoilRangeIsReported) {
   const terramech::SoilPrior prior{.mean = testSand(), .deviation = {.cohesion_Pa = 1e12}};
   EXPECT_THAT(

@@ -119,7 +119,7 @@ void Sequence::drive() {
   maps::Point at = anywhere();
   for (int k = whole(1, how_.most_readings); k > 0; --k) {
     const WheelObservation seen = reading(at);
-    if (const auto heard = map_->evidence().heardOf(seen); heard && how_.forgets && whole(0, 1) == 0)
+    if (const auto heard = map_->evidence().readingsOf(seen); heard && how_.forgets && whole(0, 1) == 0)
       counted_.push_back(*heard);
     map_->learn(seen);
     at = {at.x_m + uniform(-0.5, 1.5), at.y_m + uniform(-0.5, 1.0)};

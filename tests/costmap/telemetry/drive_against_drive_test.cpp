@@ -93,7 +93,7 @@ class GentleDrive : public ::testing::TestWithParam<Fault> {};
 
 // Property: a sound drive on gentle slopes lowers its class; a faulty drive that may not raise, on the same
 // lines or on others, allows no cell again.
-TEST_P(GentleDrive, IsNotUndoneByADriveThatMayNotRaise) {
+TEST_P(GentleDrive, UnverifiedDriveAllowsNoCellAgain) {
   const auto gentle = [] { return mapOf(testSand(), 4, 0.25); };
   const auto isAllowed = [](const TraversabilityMap& map) {
     std::vector<bool> cells;

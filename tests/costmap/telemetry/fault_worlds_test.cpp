@@ -119,7 +119,7 @@ const char* const kFaults[] = {"none",        "offset",    "scale",        "step
                                "pose_offset", "time_step", "slope_offset", "slope_scale",
                                "all_stuck",   "divided",   "uphill",       "one_wheel"};
 
-// Applies a sensor fault to the moments of a drive.
+// Applies a sensor fault to the telemetry of a drive.
 void spoil(const std::string& fault, std::vector<Read>& drive, World& world, const Pull& of_class) {
   const std::vector<Read> sound = drive;
   const double amount = world.uniform(-0.2, 0.2), scale = world.uniform(0.4, 1.3),
@@ -208,7 +208,7 @@ int freedBy(const TraversabilityMap& map, const World& world, const std::vector<
 // Property: one to three faulty drives of one kind, alone, after a sound drive, or after a sound drive on
 // gentle ground, make no cell allowed whose ground is too weak. Tolerance: three in a thousand cells; more in
 // one world of a hundred. Sound drives have the same property.
-TEST(FaultWorlds, AFaultFreesNothingThatDoesNotHold) {
+TEST(FaultWorlds, FaultsAllowNoWeakGround) {
   const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 200);
   const auto class_model = groundOf(testSand(), kWheels);
   const Pull of_class(*class_model);

@@ -38,7 +38,7 @@ TEST(SensorProof, SoundSensorsAreProven) {
   const SensorProof proof = proofOf();
   EXPECT_TRUE(proof.pullSound("a", "w"));
   EXPECT_TRUE(proof.torqueSound("a", "w"));
-  EXPECT_FALSE(proof.doubted("a", "w"));
+  EXPECT_FALSE(proof.isSuspect("a", "w"));
   EXPECT_FALSE(proof.displaced("a"));
   EXPECT_EQ(proof.wheels("a"), 1U);
   EXPECT_NEAR(proof.gradientExcess("a"), 0.0, 0.005);
@@ -46,30 +46,32 @@ TEST(SensorProof, SoundSensorsAreProven) {
   EXPECT_FALSE(proof.pullSound("a", "v"));
 }
 
-// Property: lack() names the first failed test, in the order of the tests.
-TEST(SensorProof, SaysWhatIsLacking) {
-  using Lack = SensorProof::Lack;
+// Property: failedTest() names the first failed test, in the order of the tests.
+TEST(SensorProof, ReportsTheFirstFailedTest) {
+  using FailedTest = SensorProof::FailedTest;
   const double kSilent = std::nan("");
-  const auto lackOf = [](const std::function<void(Row&, int)>& change) { return proofOf(change).lack(); };
-  EXPECT_EQ(proofOf().lack(), Lack::Nothing);
-  EXPECT_EQ(lackOf([](Row& r, int i) { r.reading.place.x_m += i < 60 ? 0.0 : 12.0; }), Lack::Pose);
-  EXPECT_EQ(lackOf([&](Row& r, int) { r.measured_gradient = kSilent; }), Lack::SlopeRows);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.map_gradient = r.measured_gradient *= 0.1; }), Lack::Slopes);
-  EXPECT_EQ(lackOf([](Row& r, int i) { r.measured_gradient = 0.2 * std::cos(0.4 * i); }), Lack::Slope);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient += 0.06; }), Lack::SlopeBias);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.8; }), Lack::SlopeScale);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.4; }), Lack::SlopeScale);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.reading.slip = 0.05; }), Lack::Slip);
-  EXPECT_EQ(lackOf([&](Row& r, int) { r.class_slip = kSilent; }), Lack::LevelRows);
+  const auto lackOf = [](const std::function<void(Row&, int)>& change) {
+    return proofOf(change).failedTest();
+  };
+  EXPECT_EQ(proofOf().failedTest(), FailedTest::Nothing);
+  EXPECT_EQ(lackOf([](Row& r, int i) { r.reading.place.x_m += i < 60 ? 0.0 : 12.0; }), FailedTest::Pose);
+  EXPECT_EQ(lackOf([&](Row& r, int) { r.measured_gradient = kSilent; }), FailedTest::SlopeRows);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.map_gradient = r.measured_gradient *= 0.1; }), FailedTest::Slopes);
+  EXPECT_EQ(lackOf([](Row& r, int i) { r.measured_gradient = 0.2 * std::cos(0.4 * i); }), FailedTest::Slope);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient += 0.06; }), FailedTest::SlopeBias);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.8; }), FailedTest::SlopeScale);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.4; }), FailedTest::SlopeScale);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.reading.slip = 0.05; }), FailedTest::Slip);
+  EXPECT_EQ(lackOf([&](Row& r, int) { r.class_slip = kSilent; }), FailedTest::LevelRows);
   const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
-  EXPECT_EQ(proofOf({}, 400).lack(), Lack::Nothing);
-  EXPECT_EQ(proofOf(step, 400).lack(), Lack::SlipStep);
+  EXPECT_EQ(proofOf({}, 400).failedTest(), FailedTest::Nothing);
+  EXPECT_EQ(proofOf(step, 400).failedTest(), FailedTest::SlipStep);
   // A step between two runs is detected, because all runs have the same sensor.
   const auto in_runs = [&](Row& r, int i) {
     r.run = i < 200 ? "a" : "b";
     step(r, i);
   };
-  EXPECT_EQ(proofOf(in_runs, 400).lack(), Lack::SlipStep);
+  EXPECT_EQ(proofOf(in_runs, 400).failedTest(), FailedTest::SlipStep);
 }
 
 // Property: of 500 sound drives with a slope noise of 0.02, over waves of gradient 0.06 to 0.3, at most 5
@@ -99,10 +101,10 @@ TEST(SensorProof, SlopesOfSoundDrivesAreNotHeldForTooSteep) {
                       .class_slip = 0.1 + 0.6 * gradient,
                       .torque_pull = gradient});
       }
-      return proof.lack();
+      return proof.failedTest();
     };
-    held += lackAt(1.0) == SensorProof::Lack::SlopeScale ? 1 : 0;
-    missed += height > 0.1 && lackAt(1.4) == SensorProof::Lack::Nothing ? 1 : 0;
+    held += lackAt(1.0) == SensorProof::FailedTest::SlopeScale ? 1 : 0;
+    missed += height > 0.1 && lackAt(1.4) == SensorProof::FailedTest::Nothing ? 1 : 0;
   }
   std::cout << held << " held, " << missed << " missed\n";
   EXPECT_LE(held, 5);
@@ -123,7 +125,7 @@ TEST(SensorProof, NothingIsProvenByWhatIsStuckSilentOrOff) {
 
 TEST(SensorProof, DoubtsWhatSticksOnTheWay) {
   EXPECT_TRUE(
-      proofOf([](Row& r, int i) { r.reading.slip = i > 80 ? 0.1 : r.reading.slip; }).doubted("a", "w"));
+      proofOf([](Row& r, int i) { r.reading.slip = i > 80 ? 0.1 : r.reading.slip; }).isSuspect("a", "w"));
 }
 
 TEST(SensorProof, AJumpCountsUntilThePoseIsBack) {

@@ -255,7 +255,7 @@ TEST(LayerReader, FinerCostLayerIsReducedByMaximum) {
   EXPECT_EQ(at(0, 1), INFINITY);
   EXPECT_EQ(at(2, 1), INFINITY);
   EXPECT_EQ(at(2, 0), 7.0F);
-  EXPECT_EQ(added.dearest_J_per_m, 9.0F);
+  EXPECT_EQ(added.highest_J_per_m, 9.0F);
 }
 
 TEST(LayerReader, CostLayerOnTheMapGridIsExact) {

@@ -20,8 +20,8 @@ TEST(CellJudge, MostExpensiveHeadingOnAPlaneIsUphill) {
   const double g = 0.125;  // a node of the table
   const CellJudgement hill = judged({.dz_dx = g, .curve = 0});
   EXPECT_EQ(hill.kind, Kind::Open);
-  EXPECT_NEAR(hill.dearest_J_per_m, 10.0 + 100.0 * g + 400.0 * g * g, 1e-4);  // Closed form
-  EXPECT_NEAR(judged({.curve = 2}).dearest_J_per_m, 30.0, 1e-4);              // Closed form: level
+  EXPECT_NEAR(hill.highest_J_per_m, 10.0 + 100.0 * g + 400.0 * g * g, 1e-4);  // Closed form
+  EXPECT_NEAR(judged({.curve = 2}).highest_J_per_m, 30.0, 1e-4);              // Closed form: level
   EXPECT_NEAR(CellJudge(testing::driveCost()).level_J_per_m(), 10.0, 1e-4);   // Closed form: curve 0
 }
 
@@ -32,7 +32,7 @@ TEST(CellJudge, KindFollowsFromRefusedHeadings) {
   EXPECT_EQ(judged({.dz_dx = 0.33, .curve = 0}, {.max_along = 0.28, .max_across = 0.17}).kind, Kind::Refused);
   EXPECT_EQ(judged({.dz_dx = 0.3, .curve = 0}, {.max_along = 0.28, .max_across = 0.36}).kind,
             Kind::Restricted);
-  EXPECT_TRUE(std::isinf(judged({.dz_dx = 0.3, .curve = 0}, {.max_along = 0.28}).dearest_J_per_m));
+  EXPECT_TRUE(std::isinf(judged({.dz_dx = 0.3, .curve = 0}, {.max_along = 0.28}).highest_J_per_m));
   EXPECT_THROW(CellJudge(nullptr), std::invalid_argument);
 }
 
@@ -48,19 +48,19 @@ TEST(CellJudge, MatchesBruteForceOverHeadings) {
     const CellJudgement judgement = judge.of(cell);
     ++kinds[static_cast<int>(judgement.kind)];
     int allowed = 0;
-    float dearest = 0.0F;
+    float highest = 0.0F;
     for (int drawn = 0; drawn < 720; ++drawn) {
       const double heading = drawn * 0.5 * kDegree;
       const float each = cost->costPerMetre(cell, {std::cos(heading), std::sin(heading)});
       allowed += std::isfinite(each) ? 1 : 0;
-      dearest = std::fmax(dearest, each);
+      highest = std::fmax(highest, each);
     }
     EXPECT_EQ(judgement.kind == Kind::Open, allowed == 720);
     EXPECT_TRUE(allowed == 0 || judgement.kind != Kind::Refused);
     // The most expensive of 64 headings is off by at most half their spacing: 1 - cos(pi / 64) = 0.12 % of
     // the gradients.
     if (judgement.kind != Kind::Open) continue;
-    EXPECT_NEAR(judgement.dearest_J_per_m / dearest, 1.0F, 0.005F);
+    EXPECT_NEAR(judgement.highest_J_per_m / highest, 1.0F, 0.005F);
   }
   EXPECT_GT(kinds[1], 20);
   EXPECT_GT(kinds[2], 20);

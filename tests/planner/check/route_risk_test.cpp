@@ -76,8 +76,8 @@ double heldShare(const Route& route, const RouteRiskOptions& options, int worlds
       const RouteVertex& at = route.vertices[i];
       const bool follows = i > 0 && route.vertices[i - 1].soil_class == at.soil_class;
       if (i > 0) place = follows ? rho * place + std::sqrt(1.0 - rho * rho) * gauss(random) : gauss(random);
-      const double u =
-          std::sqrt(at.shared_doubt) * common[at.soil_class] + std::sqrt(1.0 - at.shared_doubt) * place;
+      const double u = std::sqrt(at.shared_variance_share) * common[at.soil_class] +
+                       std::sqrt(1.0 - at.shared_variance_share) * place;
       if (u < -beta[i]) free *= std::pow(1.0 - options.entrapment, metres / options.correlation_length_m);
     }
     sum += 1.0 - free;
@@ -101,7 +101,7 @@ TEST(RouteRisk, RiskEqualsTheShareOfImmobilisedWorlds) {
     Route route = straight(failing, 1.0, options.correlation_length_m);
     for (std::size_t i = 0; i < route.vertices.size(); ++i) {
       route.vertices[i].soil_class = static_cast<int>(i / 8 % 2);
-      route.vertices[i].shared_doubt = trial % 3 * 0.4;
+      route.vertices[i].shared_variance_share = trial % 3 * 0.4;
     }
     const double held = heldShare(route, options, 200000);
     const double said = routeRisk(route, options).immobilisation;
@@ -119,7 +119,7 @@ TEST(RouteRisk, RiskEqualsTheShareOfImmobilisedWorlds) {
 // Closed form: with fully shared class uncertainty the ground fails everywhere or nowhere.
 TEST(RouteRisk, FullySharedClassUncertaintyIsFullyCorrelated) {
   Route route = straight(std::vector<double>(40, 0.01), 5.0, 5.0);
-  for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = 1.0;
+  for (RouteVertex& vertex : route.vertices) vertex.shared_variance_share = 1.0;
   EXPECT_NEAR(routeRisk(route).immobilisation, 0.01, 1e-9);
   // With an entrapment probability of 0.01: the ground fails in one world of a hundred, there at 40 places.
   for (RouteVertex& vertex : route.vertices)
@@ -140,7 +140,7 @@ TEST(RouteRisk, BoundIsAtLeastTheRisk) {
     std::vector<double> failing(trial % 4 == 0 ? 1 : 50, 0.0);
     for (double& f : failing) f = options.entrapment * std::pow(10.0, drawn(-5.0, -0.5));
     Route route = straight(failing, drawn(0.2, 8.0), options.correlation_length_m);
-    for (RouteVertex& vertex : route.vertices) vertex.shared_doubt = trial % 3 * 0.4;
+    for (RouteVertex& vertex : route.vertices) vertex.shared_variance_share = trial % 3 * 0.4;
     const std::vector<double> along = riskAlong(route, options), bound = riskBoundAlong(route, options);
     // Tolerance: four standard deviations of the number of sampled worlds that fail up to the vertex.
     for (std::size_t i = 1; i < along.size(); ++i) {
@@ -183,7 +183,7 @@ TEST(RouteRisk, RiskIsIndependentOfClassesNotOnTheRoute) {
     Route route = straight(std::vector<double>(40, 0.01), 2.0, 5.0);
     for (std::size_t i = 0; i < route.vertices.size(); ++i) {
       route.vertices[i].soil_class = i / 8 % 2 == 0 ? first : second;
-      route.vertices[i].shared_doubt = 0.4;
+      route.vertices[i].shared_variance_share = 0.4;
     }
     return route;
   };

@@ -170,8 +170,8 @@ TEST(CellRoute, PruningUnreachableCellsKeepsTheResult) {
     HeadingSets headings(map->cost());
     const Reach to(*map, headings, Reach::Sense::To, places.to);
     const CellRoute whole = cellRoute(cost, headings, places, 0.0);
-    const CellRoute part =
-        cellRoute(cost, headings, places, 0.0, {.worth = [&](maps::Cell cell) { return to.holds(cell); }});
+    const CellRoute part = cellRoute(cost, headings, places, 0.0,
+                                     {.may_enter = [&](maps::Cell cell) { return to.holds(cell); }});
     EXPECT_EQ(whole.points, part.points) << seed;
     EXPECT_LE(part.ways, whole.ways) << seed;
     all += whole.ways;

@@ -96,8 +96,7 @@ TEST(ColumnUnits, KnownColumnWithoutUnitIsRejected) {
 
 TEST(ColumnUnits, KnownColumnWithOtherCaseOrPunctuationIsRejected) {
   for (const char* name : {"Load_N", "load_n", "LOAD_N", "load [N]", "Load (N)", "load-N"})
-    EXPECT_THAT(errorOf({name}), HasSubstr("is not spelled as it is read; write column load_N, in N"))
-        << name;
+    EXPECT_THAT(errorOf({name}), HasSubstr("resembles a known column; write column load_N, in N")) << name;
   EXPECT_THAT(errorOf({"Slip"}), HasSubstr("write column slip, a number"));
   EXPECT_THAT(errorOf({"slip (%)"}), HasSubstr("write column slip, a number"));
   EXPECT_THAT(errorOf({"Slip angle [\xC2\xB0]"}), HasSubstr("write column slip_angle_rad"));
@@ -172,7 +171,7 @@ TEST(ColumnUnits, UserColumnsAreAccepted) {
 TEST(ColumnUnits, TelemetryReaderRejectsWrongUnits) {
   const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.1,12\n"};
   EXPECT_REFUSED(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError,
-                 "column sinkage_mm is in another unit than it is read in; write column sinkage_m, in m");
+                 "column sinkage_mm has another unit than the known column; write column sinkage_m, in m");
 }
 
 TEST(ColumnUnits, MeasuredDataFilesAreAccepted) {

@@ -120,7 +120,8 @@ std::string faultOf(const std::string& yaml) {
   return "no error";
 }
 
-// Property: an invalid covariance, which would count as standard deviation 0, is rejected with its line.
+// Property: an invalid covariance, which would be read as standard deviation 0, is rejected; the error states
+// the line number of the covariance.
 TEST(ModelFile, InvalidCovarianceIsRejected) {
   const auto fault = [](const std::string& covariance) {
     return faultOf("soil: sand\nfitted: [{effect: -1, index: 0}, {effect: -1, index: 1}]\ncovariance: [" +

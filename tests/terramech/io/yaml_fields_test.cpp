@@ -116,7 +116,7 @@ TEST(YamlFields, TextMustBeNonEmptyValidUtf8) {
   for (const char* none : {"\xFF", "\x80", "\xC3", "\xC0\xAF", "\xE0\x9F\xBF", "\xED\xA0\x80",
                            "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80"})
     EXPECT_THAT([&] { of(std::string("a: x") + none + "x").word("a"); },
-                ThrowsMessage<InputError>(HasSubstr("a holds bytes that are no UTF-8 text")));
+                ThrowsMessage<InputError>(HasSubstr("a contains bytes that are not UTF-8")));
 }
 
 // Property: one document with its markers is read; a file with several documents is rejected.

@@ -33,7 +33,7 @@ Soil soil(int kind) {
   return s;
 }
 
-TEST(WheelForcesTable, IsTheWheel) {
+TEST(WheelForcesTable, MatchesTheWheel) {
   std::mt19937_64 engine{4};
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(engine);

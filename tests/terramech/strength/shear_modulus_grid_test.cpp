@@ -38,7 +38,7 @@ TEST(ShearModulusGrid, JointFitMatchesTheBatchFitWithinGridSpacing) {
 }
 
 TEST(ShearModulusGrid, ErrorMinimisationMatchesTheBatchFitWithinGridSpacing) {
-  // Property: both criteria have their minimum where the points lie on a line.
+  // Property: both criteria have their minimum at the K for which the points lie on a line.
   const auto samples = linearSamples(kWheel, {.cohesion_Pa = 500.0});
   const auto ladder = ladderOver(samples, {.criterion = ModulusCriterion::ErrorMinimisation});
   EXPECT_NEAR(ladder.modulus().shear_modulus_m / modulusByErrorMinimisation(kWheel, samples).shear_modulus_m,

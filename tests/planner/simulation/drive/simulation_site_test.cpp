@@ -58,7 +58,7 @@ TEST(SimulationSite, PerfectKnowledgeUsesTheTrueSoilOfEveryPatch) {
   truth.patches = {{{112.5, 215.5}, 2.0, testDust()}, {{125.5, 215.5}, 2.0, firm}};
   const SimulationSite site(map, across(truth));
   const TrueWorld world = site.trueWorld(0);
-  const auto believed = site.believed(SoilKnowledge::PerfectKnowledge, world);
+  const auto believed = site.estimatedMap(SoilKnowledge::PerfectKnowledge, world);
   const auto pull = [&](maps::Point p) { return believed.ground(*believed.grid().cellAt(p))->pull.value; };
   const auto model = costmap::testGround();
   // Closed form: the pull of the soil of each patch
@@ -73,9 +73,9 @@ TEST(SimulationSite, GeometricBeliefAssumesFirmGround) {
   const auto map = costmap::mapOf(std::vector<std::string>(30, std::string(40, '2')));
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
-  const auto believed = site.believed(SoilKnowledge::Geometry, world);
+  const auto believed = site.estimatedMap(SoilKnowledge::Geometry, world);
   EXPECT_GT(believed.ground({5, 5})->pull.value,
-            site.believed(SoilKnowledge::Prior, world).ground({5, 5})->pull.value + 0.2);
+            site.estimatedMap(SoilKnowledge::Prior, world).ground({5, 5})->pull.value + 0.2);
 }
 
 // Property: on a plane too steep across, planning on longitudinal slopes alone follows a contour, and the
@@ -99,7 +99,7 @@ TEST(SimulationSite, KeepOutAreasApplyUnderEveryBelief) {
   const SimulationSite site(map, across({}));
   const TrueWorld world = site.trueWorld(0);
   for (const SoilKnowledge belief : kBeliefs)
-    EXPECT_TRUE(has(site.believed(belief, world).surface().hazards({20, 19}), costmap::Hazard::KeepOut))
+    EXPECT_TRUE(has(site.estimatedMap(belief, world).surface().hazards({20, 19}), costmap::Hazard::KeepOut))
         << name(belief);
 }
 

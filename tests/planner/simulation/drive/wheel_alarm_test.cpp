@@ -18,31 +18,31 @@ const std::vector<WheelExpectation> kExpected(6, {.slip = 0.1, .sinkage_over_rad
 
 TEST(WheelAlarm, ExpectedReadingsRaiseNoAlarm) {
   WheelAlarm alarm({}, kRadius_m);
-  for (int k = 0; k < 200; ++k) EXPECT_FALSE(alarm.hear(quiet(), kExpected).reason);
+  for (int k = 0; k < 200; ++k) EXPECT_FALSE(alarm.check(quiet(), kExpected).reason);
 }
 
 TEST(WheelAlarm, SingleSlipSensorNeitherTriggersNorSuppressesTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
   WheelMeasurements one = quiet();
   one.wheels[2].slip = 0.9;
-  EXPECT_FALSE(alarm.hear(one, kExpected).reason);
+  EXPECT_FALSE(alarm.check(one, kExpected).reason);
   WheelMeasurements all = quiet();
   for (auto& wheel : all.wheels) wheel.slip = 0.9;
   all.wheels[4].slip = 0.1;
   all.wheels[5].slip = std::nan("");
-  EXPECT_EQ(alarm.hear(all, kExpected).reason, "slips");
+  EXPECT_EQ(alarm.check(all, kExpected).reason, "slips");
 }
 
 TEST(WheelAlarm, SlipAngleAboveExpectationTriggersTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
   WheelMeasurements look = quiet();
   look.slip_angle_rad = -0.2;
-  EXPECT_EQ(alarm.hear(look, kExpected).reason, "slides");
+  EXPECT_EQ(alarm.check(look, kExpected).reason, "slides");
   std::vector<WheelExpectation> slope = kExpected;
   for (auto& wheel : slope) wheel.slip_angle_rad = 0.1;
-  EXPECT_FALSE(alarm.hear(look, slope).reason);
+  EXPECT_FALSE(alarm.check(look, slope).reason);
   slope.assign(6, {.slip = 0.1, .sinkage_over_radius = 0.1, .slip_angle_rad = std::nan("")});
-  EXPECT_EQ(alarm.hear(look, slope).reason, "slides");  // unknown angle: compared with level ground
+  EXPECT_EQ(alarm.check(look, slope).reason, "slides");  // unknown angle: compared with level ground
 }
 
 // Property: less braking than expected downhill is no alarm; a sensor stuck at its level-ground value would
@@ -50,22 +50,22 @@ TEST(WheelAlarm, SlipAngleAboveExpectationTriggersTheAlarm) {
 TEST(WheelAlarm, LowSlipDownhillIsNoAlarm) {
   const std::vector<WheelExpectation> downhill(6, {.slip = -0.2, .sinkage_over_radius = 0.1});
   WheelAlarm alarm({}, kRadius_m);
-  EXPECT_FALSE(alarm.hear(quiet(), downhill).reason);
+  EXPECT_FALSE(alarm.check(quiet(), downhill).reason);
   WheelMeasurements slipping = quiet();
   for (auto& wheel : slipping.wheels) wheel.slip = 0.21;
-  EXPECT_EQ(alarm.hear(slipping, downhill).reason, "slips");
-  EXPECT_FALSE(alarm.hear(slipping, kExpected).reason);
+  EXPECT_EQ(alarm.check(slipping, downhill).reason, "slips");
+  EXPECT_FALSE(alarm.check(slipping, kExpected).reason);
 }
 
 TEST(WheelAlarm, SinkageOfOneWheelTriggersTheAlarm) {
   WheelAlarm alarm({}, kRadius_m);
   WheelMeasurements look = quiet();
   look.wheels[1].sinkage_m = 0.02;
-  const WheelAlarm::AlarmCheck heard = alarm.hear(look, kExpected);
-  EXPECT_EQ(heard.reason, "sinks");
-  EXPECT_EQ(heard.sank, (std::vector<bool>{false, true, false, false, false, false}));
+  const WheelAlarm::AlarmCheck check = alarm.check(look, kExpected);
+  EXPECT_EQ(check.reason, "sinks");
+  EXPECT_EQ(check.sank, (std::vector<bool>{false, true, false, false, false, false}));
   look.wheels[1].pass = 2;  // a rut of another wheel gives no evidence on fresh ground
-  EXPECT_FALSE(alarm.hear(look, kExpected).reason);
+  EXPECT_FALSE(alarm.check(look, kExpected).reason);
 }
 
 TEST(WheelAlarm, ConstantSinkageOffsetIsRemovedAndAJumpTriggersTheAlarm) {
@@ -73,9 +73,9 @@ TEST(WheelAlarm, ConstantSinkageOffsetIsRemovedAndAJumpTriggersTheAlarm) {
     WheelAlarm alarm({}, kRadius_m);
     WheelMeasurements look = quiet();
     look.wheels[0].sinkage_m += datum_m;
-    for (int k = 0; k < 50; ++k) EXPECT_FALSE(alarm.hear(look, kExpected).reason) << datum_m;
+    for (int k = 0; k < 50; ++k) EXPECT_FALSE(alarm.check(look, kExpected).reason) << datum_m;
     look.wheels[0].sinkage_m += 0.009;
-    EXPECT_EQ(alarm.hear(look, kExpected).reason, "sinks") << datum_m;
+    EXPECT_EQ(alarm.check(look, kExpected).reason, "sinks") << datum_m;
   }
 }
 

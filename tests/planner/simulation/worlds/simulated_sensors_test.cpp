@@ -69,7 +69,7 @@ TEST(SimulatedSensors, PoseErrorGrowsWithDistance) {
   options.pose_drift = 0.02;
   SimulatedSensors sensors(options, testRover());
   for (int k = 0; k < 100; ++k) sensors.moved(0.5);
-  const maps::Point there = sensors.believed({7.0, 8.0});
+  const maps::Point there = sensors.estimatedPlace({7.0, 8.0});
   EXPECT_NEAR(std::hypot(there.x_m - 7.0, there.y_m - 8.0), 1.0, 1e-9);  // Closed form: 2 % of 50 m
 }
 

@@ -97,9 +97,9 @@ TEST(LeftOut, ErrorsAreThoseOfPredictingTheLeftOutRows) {
   EXPECT_EQ(errors.base[1], errors.refined[1]);
   EXPECT_LT(errors.refined[1], 2.0 * errors.floor[1]);
   // Property: the errors are those of the returned predictions.
-  for (const auto& [told, rmse] :
-       {std::pair{errors.base_told, errors.base}, std::pair{errors.told, errors.refined}})
-    EXPECT_NEAR((errors.trial.measured - told).col(1).norm() / std::sqrt(12.0), rmse[1], 1e-12);
+  for (const auto& [predicted, rmse] :
+       {std::pair{errors.base_predicted, errors.base}, std::pair{errors.predicted, errors.refined}})
+    EXPECT_NEAR((errors.trial.measured - predicted).col(1).norm() / std::sqrt(12.0), rmse[1], 1e-12);
   // Property: a regression on columns without a wheel model is not better.
   EXPECT_GT(errors.regression[1], 0.5 * errors.refined[1]);
 }
