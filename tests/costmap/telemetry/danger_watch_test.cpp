@@ -26,7 +26,7 @@ TEST(DangerWatch, OrdinaryReadingsYieldNoBound) {
   const auto model = testGround();
   for (const double slip : {-1.0, -0.2, 0.3, 0.69, kNone, -kInfinite})
     for (const double z : {0.0, 0.49, kNone})
-      EXPECT_FALSE(DangerWatch(*model).hear(0, level(slip, z), 0.0).any());
+      EXPECT_FALSE(DangerWatch(*model).bound(0, level(slip, z), 0.0).any());
 }
 
 // Closed form: ground whose pull is below tan(slope - margin) is dangerous on that slope.
@@ -36,21 +36,21 @@ TEST(DangerWatch, EachChannelBoundsIndependently) {
   const double margin = model->parts().policy.slope_margin_rad;
   const double level_limit = std::tan(-margin);
   const double never = std::tan(-model->rover().max_pitch_rad - margin);
-  EXPECT_LT(watch.hear(0, level(0.85, kNone), 0.0).most_pull, level_limit);
-  EXPECT_LT(watch.hear(0, level(0.1, kNone, 99.0), 0.0).most_pull, level_limit);
-  EXPECT_LT(watch.hear(0, level(0.1, kNone, kInfinite), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.85, kNone), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, 99.0), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, kInfinite), 0.0).most_pull, level_limit);
   for (const TelemetryReading& held :
        {level(0.93, kNone), level(kInfinite, kNone), level(1.2, 0.0), level(0.1, 0.8), level(kNone, 0.8),
         level(0.1, 2.3), level(0.1, kInfinite)})
-    EXPECT_LT(watch.hear(0, held, 0.3).most_pull, never) << held.slip << ' ' << held.sinkage_m;
+    EXPECT_LT(watch.bound(0, held, 0.3).most_pull, never) << held.slip << ' ' << held.sinkage_m;
   TelemetryReading spinning = level(kNone, kNone);
   spinning.speed_slip = 0.95;
-  EXPECT_LT(watch.hear(0, spinning, 0.3).most_pull, never);
-  const GroundBound deep = watch.hear(0, level(0.1, 0.6), 0.0);
+  EXPECT_LT(watch.bound(0, spinning, 0.3).most_pull, never);
+  const GroundBound deep = watch.bound(0, level(0.1, 0.6), 0.0);
   EXPECT_TRUE(std::isnan(deep.most_pull));
   EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
   // The torque is at the limit of the motor, in the braking direction.
-  EXPECT_LT(watch.hear(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
 }
 
 // Closed form: at(slip) is the pull of the class at the slip. The deficit is at(slip) minus the gradient
@@ -63,7 +63,7 @@ TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
       TelemetryReading reading = level(slip, kNone);
       reading.pass = pass;
       const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
-      EXPECT_NEAR(watch.hear(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05, 1e-12);
+      EXPECT_NEAR(watch.bound(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05, 1e-12);
     }
   EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).gradient,
             model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);
@@ -76,7 +76,7 @@ TEST(DangerWatch, SuspectedPullFarBelowTheClassBounds) {
   const double far = 2.0 * std::hypot(0.05, class_std);
   const auto bound = [&](double pull) {
     WheelObservation suspected{.place = {}, .pull = {pull, 0.05}, .sinkage = {}};
-    return DangerWatch(*model).hear(0, suspected).most_pull;
+    return DangerWatch(*model).bound(0, suspected).most_pull;
   };
   EXPECT_TRUE(std::isnan(bound(prior + 1.0)));
   EXPECT_TRUE(std::isnan(bound(prior - far + 1e-6)));
@@ -94,10 +94,10 @@ TEST(DangerWatch, BoundsAreMonotoneInSlipSinkageAndSlope) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (int i = 0; i < 2000; ++i) {
     const double slip = 1.2 * share(random), z = 1.2 * share(random), gradient = share(random) - 0.5;
-    const double before = most(watch.hear(i % 2, level(slip, z), gradient));
-    EXPECT_LE(most(watch.hear(i % 2, level(slip + 0.1 * share(random), z), gradient)), before + 1e-9);
-    EXPECT_LE(most(watch.hear(i % 2, level(slip, z + 0.1 * share(random)), gradient)), before + 1e-9);
-    EXPECT_LE(most(watch.hear(i % 2, level(slip, z), gradient - 0.1 * share(random))), before + 1e-9);
+    const double before = most(watch.bound(i % 2, level(slip, z), gradient));
+    EXPECT_LE(most(watch.bound(i % 2, level(slip + 0.1 * share(random), z), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.bound(i % 2, level(slip, z + 0.1 * share(random)), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.bound(i % 2, level(slip, z), gradient - 0.1 * share(random))), before + 1e-9);
   }
 }
 

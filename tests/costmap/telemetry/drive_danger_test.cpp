@@ -308,7 +308,7 @@ TEST(Danger, RejectedRowsBoundThePlaceAndAreReplayed) {
     {
       EvidenceJournal journal(path);
       const DriveReport report = addDrive(map, telemetry, &journal);
-      EXPECT_EQ(report.heard, 1U) << slip;
+      EXPECT_EQ(report.bounding, 1U) << slip;
       EXPECT_EQ(report.used, 60U) << slip;
       EXPECT_TRUE(refused(map, {125.5, 220.5})) << slip;
       replay(again, journal);

@@ -14,7 +14,7 @@ namespace run_proposal_test {
 
 /// Trace of a world in which dust reduces the pull, with a second column correlated with dust.
 TraceResult tied() {
-  return traced(blind::makeWorld({.seed = 8, .effects = 1, .library = false, .untold = "tied"}));
+  return traced(blind::makeWorld({.seed = 8, .effects = 1, .library = false, .unresolvable = "tied"}));
 }
 
 /// Simulates the proposed runs with the model of a cause, with sensor errors.
