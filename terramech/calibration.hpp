@@ -1,7 +1,8 @@
 #pragma once
 
-/// Entry header of talus::calibration. From a table of telemetry: soil parameters, drawbar pull and category
-/// of each row, or the effects missing in a model.
+/// Umbrella header of talus::calibration. From a table of wheel telemetry its functions estimate the soil
+/// parameters, the drawbar pull and traversability category of each row, and the physical effects that a
+/// wheel model lacks.
 
 #include <talus/terramech/calibration/tables/assessment.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>

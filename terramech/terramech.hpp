@@ -1,7 +1,7 @@
 #pragma once
 
-/// Main header of talus::terramech: wheel forces, cost of slopes, traversability categories, and estimation
-/// of soil and drawbar pull from wheel readings.
+/// Umbrella header of talus::terramech: wheel forces on soil, slip and energy of a rover on slopes,
+/// traversability categories, and estimation of soil parameters and drawbar pull from wheel readings.
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/rover.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Main header of talus::terramech_io: soils, rovers and models from YAML, telemetry from CSV.
+/// Umbrella header of talus::terramech_io: reads soils, rovers and wheel models from YAML files and wheel
+/// telemetry from CSV files.
 
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>

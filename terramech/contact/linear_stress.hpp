@@ -5,37 +5,40 @@
 
 namespace talus::terramech {
 
-/// Moments of the triangular stress over the contact, with the peak at theta_m = h = theta_1/2 (thesis Eqs.
-/// B.2, 2.1), each [-].
+/// Integrals of a triangular stress over the contact arc of a wheel, weighted with the cosine and sine of the
+/// rim angle theta. The stress peak is at half the entry angle, theta_m = h = theta_1/2 (thesis Eqs. B.2,
+/// 2.1). Every integral is dimensionless.
 ///
-/// A stress of peak 1 that rises on [0, h] and falls on [h, theta_1] has
+/// A stress with peak value 1 that rises linearly on [0, h] and falls linearly on [h, theta_1] has the
+/// integrals
 ///     integral of cos = P/h,  P = 2 cos h - cos 2h - 1 = 4 cos h sin^2(h/2)
 ///     integral of sin = Q/h,  Q = 2 sin h - sin 2h     = 4 sin h sin^2(h/2)
-/// The offset term 1 - theta/h on [0, h] has
+/// The shear offset at the bottom of the wheel, 1 - theta/h on [0, h], has the integrals
 ///     integral of cos = (1 - cos h)/h,  integral of sin = 1 - sin(h)/h
-/// (Eq. 2.3 corrected: the thesis prints another term). The product forms do not cancel at small h.
+/// Thesis Eq. 2.3 prints another term for this offset; the integrals here are the corrected ones. The product
+/// forms of P and Q do not cancel at small h.
 struct LinearStressMoments {
   explicit LinearStressMoments(double entry_angle_rad);
 
-  double half_angle_rad;  ///< h
+  double half_angle_rad;  ///< h = theta_1/2 [rad]
   double peak_cos;        ///< P/h
   double peak_sin;        ///< Q/h
   double offset_cos;      ///< (1 - cos h)/h
   double offset_sin;      ///< 1 - sin(h)/h
 };
 
-/// Share of the shear strength mobilised at theta_m = theta_1/2 and at the bottom theta = 0 (thesis Eq. 2.7)
-/// [-]; each in [0, 1) for a driven wheel.
+/// Fraction of the shear strength that is mobilised at two angles of the rim (thesis Eq. 2.7) [-]. Each
+/// fraction is in [0, 1) for a driven wheel.
 struct Mobilisation {
-  double peak;    ///< A
-  double bottom;  ///< B
+  double peak;    ///< A, at the stress peak theta_m = theta_1/2
+  double bottom;  ///< B, at the bottom of the wheel, theta = 0
 };
 
-/// Returns A and B of thesis Eq. 2.7 for a sample and the shear modulus K [m]. Throws std::invalid_argument
-/// unless K > 0 and 0 <= sinkage_m < 2 r.
+/// Returns the mobilised fractions A and B of thesis Eq. 2.7 for one telemetry sample and a shear deformation
+/// modulus K = shear_modulus_m. Throws std::invalid_argument unless K > 0 and 0 <= sinkage_m < 2 r.
 Mobilisation mobilisation(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m);
 
-/// Returns the shear displacement j [m] at theta_m = theta_1/2 (thesis Eq. C.6).
+/// Returns the shear displacement j [m] of the soil at the stress peak theta_m = theta_1/2 (thesis Eq. C.6).
 double peakShearDisplacement_m(const Wheel& wheel, const WheelSample& sample);
 
 }  // namespace talus::terramech

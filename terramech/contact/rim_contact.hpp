@@ -9,35 +9,38 @@
 #include <talus/terramech/contact/wheel.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 
-/// Integration of stresses along a rigid rim for any contact law, and the entry angle at which the rim
-/// carries a given load. wong_reece.hpp has the law of the literature, wheel_contact.hpp the law with
-/// additional effects. Angles are measured from the downward vertical through the axle, positive in the
-/// direction of travel.
+/// Integration of the soil stresses along a rigid wheel rim for any stress law, and search for the entry
+/// angle at which the rim carries a given load. The stress law of Wong and Reece is in wong_reece.hpp, the
+/// law with additional effects in wheel_contact.hpp. A rim angle theta is measured from the downward vertical
+/// through the axle and is positive in the direction of travel.
 namespace talus::terramech {
 
-/// Stress law of a soil under a wheel at a given slip, as rimForces() requires it.
+/// Requirements of rimForces() on the stress law of a soil under a wheel at a given slip.
 template <class Law>
 concept ContactLaw = requires(const Law& law, double x) {
-  /// Normal stress [Pa] in front of the stress peak, at a depth [m] below the undisturbed surface.
+  /// Normal stress sigma [Pa] in front of the stress peak, at a depth [m] below the undisturbed surface.
   { law.pressure_Pa(x) } -> std::convertible_to<double>;
-  /// Shear stress [Pa] at normal stress [Pa] and shear displacement [m]; same sign as the displacement.
+  /// Shear stress tau [Pa] at a normal stress [Pa] and a shear displacement [m]; tau has the sign of the
+  /// displacement.
   { law.shear_Pa(x, x) } -> std::convertible_to<double>;
-  /// Angle theta_m [rad] of the normal stress peak at entry angle theta_1 [rad].
+  /// Rim angle theta_m [rad] of the peak of the normal stress, at entry angle theta_1 [rad].
   { law.peak_rad(x) } -> std::convertible_to<double>;
-  /// Exit angle theta_2 [rad] at entry angle theta_1 [rad]; negative behind the axle.
+  /// Exit angle theta_2 [rad] at entry angle theta_1 [rad]; theta_2 is negative behind the axle.
   { law.exit_rad(x) } -> std::convertible_to<double>;
 };
 
-/// Forces of the soil on a rim in contact from theta_1 to theta_2.
+/// Forces of the soil on a rim that is in contact from theta_1 to theta_2.
 struct RimForces {
-  double load_N = 0.0;          ///< upward
+  double load_N = 0.0;          ///< vertical force, positive upward
   double torque_Nm = 0.0;       ///< drive torque about the axle; negative when braking
-  double drawbar_pull_N = 0.0;  ///< forward
-  double side_force_N = 0.0;  ///< across the wheel plane, negative for slip_angle_rad > 0; 0 at slip angle 0
+  double drawbar_pull_N = 0.0;  ///< force along the wheel plane, positive forward
+  /// force across the wheel plane: negative for slip_angle_rad > 0, 0 at slip angle 0
+  double side_force_N = 0.0;
 };
 
-/// Gauss-Legendre rule in t with s = t^Power, where s is the fraction of the arc from an end of contact to
-/// the stress peak. The power makes sigma ~ s^n smooth at the end of contact.
+/// Gauss-Legendre rule in t with s = t^Power, where s is the fraction of the arc from one end of the contact
+/// (s = 0) to the stress peak (s = 1). The substitution makes the stress sigma ~ s^n a smooth function at the
+/// end of contact.
 template <std::size_t N, int Power>
 struct RimQuadrature {
   static constexpr auto kPoints = gaussLegendre<N>();
@@ -46,13 +49,14 @@ struct RimQuadrature {
   static double inverse(double s) { return Power == 3 ? std::cbrt(s) : std::sqrt(s); }
   static_assert(Power == 2 || Power == 3);
 };
-using FineRimRule = RimQuadrature<24, 3>;  ///< relative error <= 1e-9 for any n in use
-/// Relative error 1e-6 for driven wheels; for fits, which need millions of contact solutions.
+using FineRimRule = RimQuadrature<24, 3>;  ///< relative error <= 1e-9 for any sinkage exponent n in use
+/// Rule for parameter fits, which need millions of contact solutions: relative error 1e-6 for driven wheels.
 using QuickRimRule = RimQuadrature<8, 2>;
 using BrakedRimRule = RimQuadrature<20, 2>;  ///< relative error 1e-6 for slip >= -0.9
 
 namespace detail {
 
+/// Returns the component along the wheel plane of a shear stress.
 inline double along(double tangent) {
   return tangent;
 }
@@ -60,22 +64,24 @@ inline double along(const Tangent& tangent) {
   return tangent.along;
 }
 
-/// Break points in s, in [0, 1], of the integral: both ends and the sign change of the shear displacement.
+/// Break points of the integral over one half of the contact, as fractions s in [0, 1]: both ends, and the
+/// point at which the shear displacement changes sign, if there is one.
 struct Breaks {
   std::array<double, 3> s{0.0, 1.0, 1.0};
   int count = 2;
 };
 
-/// End angles of the two halves of the contact. The integral is split at the sign change of the displacement
-/// along the wheel plane, because there the resultant displacement turns quickly at a small slip angle.
+/// Angles that bound the two halves of the contact: front half from theta_1 to theta_m, rear half from
+/// theta_m to theta_2. The integral is split where the displacement along the wheel plane changes sign,
+/// because at a small slip angle the direction of the resultant displacement turns quickly there.
 struct Halves {
   double entry_rad, peak_rad, exit_rad;
 };
 
 Breaks breaksAt(double sign_change_rad, const Halves& halves);
 
-/// Adds the forces at a point of the front half and at the mirror point of the rear half; both have the same
-/// sigma (C.3).
+/// Integrand of rimForces(). Each evaluation adds the forces at a point of the front half and at the point of
+/// the rear half with the same fraction s; both points have the same normal stress sigma (thesis Eq. C.3).
 template <class Law, class Displacement>
 class RimIntegrand {
  public:
@@ -90,7 +96,7 @@ class RimIntegrand {
   double peak_rad() const { return peak_; }
   double exit_rad() const { return exit_; }
 
-  /// Adds both points at fraction s of the arc from the ends of contact (s = 0) to the peak (s = 1).
+  /// Adds the forces at both points of fraction s, times the interval ds, to `sum`.
   void add(double s, double ds, RimForces& sum) const {
     const double front = entry_ - (entry_ - peak_) * s;
     const double rear = exit_ + (peak_ - exit_) * s;
@@ -119,14 +125,16 @@ class RimIntegrand {
 
 }  // namespace detail
 
-/// Returns the forces on the rim at a given entry angle theta_1 (thesis Eqs. C.8 to C.10, rear half mirrored
-/// as in C.3):
+/// Returns the forces on the rim of a wheel of radius r and width b at the entry angle theta_1 of
+/// `displacement` (thesis Eqs. C.8 to C.10; the normal stress of the rear half mirrors that of the front
+/// half, Eq. C.3):
 ///   W  = r b     int_theta_2^theta_1 (sigma cos theta + tau sin theta) d theta
 ///   T  = r_s r b int tau d theta
 ///   DP = r b     int (tau cos theta - sigma sin theta) d theta
 ///   F  = -r b    int tau_y d theta
-/// r_s is the radius of the displacement: r, or a larger shear radius for a wheel with lugs. Each half is
-/// integrated from the end of contact to the peak and split at the sign change of the shear displacement.
+/// r_s is the radius of the shear displacement: r, or a larger radius for a wheel with lugs. tau_y is the
+/// component of the shear stress across the wheel plane. Each half of the contact is integrated from its end
+/// to the stress peak and is split where the shear displacement changes sign.
 template <class Rule = FineRimRule, class Law, class Displacement>
 RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& displacement) {
   const detail::RimIntegrand integrand{law, displacement, wheel.radius_m};
@@ -147,40 +155,42 @@ RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& disp
           sum.side_force_N * area};
 }
 
-/// Entry angle and forces of a rim that carries a given load.
+/// Entry angle theta_1 at which the rim carries a given load W, with the forces on the rim.
 struct RimEquilibrium {
   double entry_angle_rad = 0.0;
   RimForces forces;
   double growth = 0.0;  ///< d log W / d log theta_1 at the last step of the search [-]
 };
 
-/// Load and slip to solve for, and settings of the search.
+/// Load and slip of the wheel, and settings of the search for the entry angle.
 struct RimLoad {
-  double load_N = 0.0;       ///< > 0
-  double slip = 0.0;         ///< [-1, 1], defined in shear_displacement.hpp
-  double first_guess = 0.1;  ///< initial entry angle [rad]
-  double growth = 3.0;       ///< initial d log W / d log theta_1 [-]
-  double tolerance = 1e-13;  ///< tolerance of log W at which the search ends [-]
+  double load_N = 0.0;       ///< wanted load W > 0
+  double slip = 0.0;         ///< slip in [-1, 1], defined in shear_displacement.hpp
+  double first_guess = 0.1;  ///< first trial entry angle [rad]
+  double growth = 3.0;       ///< first estimate of d log W / d log theta_1 [-]
+  double tolerance = 1e-13;  ///< error of log W at which the search ends [-]
 };
 
 namespace detail {
 
-/// Root search for the entry angle. The load is almost a power of the entry angle, so the secant method runs
-/// on logarithms, inside a bracket that rejects overlong steps. Typical cost: 4 to 6 evaluations.
+/// Root search for the entry angle theta_1. The load W is almost a power of theta_1, so the secant method
+/// runs on the logarithms of both, inside a bracket that rejects overlong steps. The search typically takes 4
+/// to 6 evaluations of the load.
 class EntrySearch {
  public:
-  enum class Status { Searching, Found, Sunk };  ///< Sunk: the load exceeds the force at entry angle pi/2
+  /// Sunk: the wanted load exceeds the load carried at entry angle pi/2
+  enum class Status { Searching, Found, Sunk };
 
   explicit EntrySearch(const RimLoad& wanted);
 
-  /// Next trial entry angle [rad], in (0, pi/2].
+  /// Returns the next trial entry angle [rad], in (0, pi/2].
   double entry_rad() const { return entry_; }
 
-  /// Receives the load [N] computed at entry_rad(). While the status is Searching, entry_rad() is the next
-  /// trial angle.
+  /// Receives the load [N] that the caller computed at entry_rad() and returns the status. While the status
+  /// is Searching, entry_rad() is the next trial angle.
   Status take(double load_N);
 
-  /// d log W / d log theta_1 between the last two trials; the initial value before two trials.
+  /// Returns d log W / d log theta_1 between the last two trials [-]; before two trials, the first estimate.
   double growth() const { return growth_; }
 
  private:
@@ -197,8 +207,9 @@ class EntrySearch {
 
 }  // namespace detail
 
-/// Returns the smallest entry angle in (0, pi/2] at which the rim carries the load; empty if the load is not
-/// carried at pi/2. `displacement_at(entry_rad)` returns the shear displacement for an entry angle.
+/// Returns the smallest entry angle in (0, pi/2] at which the rim carries the load of `wanted`, with the
+/// forces. Returns nullopt if the rim carries less than this load at pi/2. `displacement_at(entry_rad)`
+/// returns the shear displacement of the rim for an entry angle [rad].
 template <class Rule, class Law, class DisplacementAt>
 std::optional<RimEquilibrium> findEquilibrium(const Law& law, const Wheel& wheel, const RimLoad& wanted,
                                               const DisplacementAt& displacement_at) {
@@ -213,8 +224,8 @@ std::optional<RimEquilibrium> findEquilibrium(const Law& law, const Wheel& wheel
   }
 }
 
-/// Returns the equilibrium of a wheel at slip angle 0. Throws std::domain_error if the load is not carried at
-/// entry angle pi/2.
+/// Returns the entry angle and forces of a wheel at slip angle 0 that carries the load of `wanted`. Throws
+/// std::domain_error if the rim carries less than this load at entry angle pi/2.
 template <ContactLaw Law>
 RimEquilibrium rimEquilibrium(const Law& law, const Wheel& wheel, const RimLoad& wanted) {
   const auto found = findEquilibrium<FineRimRule>(law, wheel, wanted, [&](double entry) {
