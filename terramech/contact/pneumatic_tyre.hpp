@@ -12,7 +12,7 @@ namespace talus::terramech {
 struct Tyre {
   Wheel wheel;                ///< radius and width of the undeflected tyre; grousers are ignored
   double inflation_Pa = 0.0;  ///< inflation pressure p_i >= 0
-  /// carcass pressure p_c >= 0: carcass stiffness as an equivalent pressure; p_i + p_c > 0
+  /// Carcass pressure p_c >= 0: carcass stiffness as an equivalent pressure; p_i + p_c > 0.
   double carcass_Pa = 0.0;
   double hysteresis = 0.0;       ///< flexing resistance divided by load [-], >= 0
   double friction = 0.7;         ///< friction coefficient mu of the tread on rigid ground [-], >= 0
@@ -33,7 +33,7 @@ struct TyreForces {
   double deflection_m = 0.0;          ///< radial deflection of the tyre; 0 in mode Rigid
   double flat_length_m = 0.0;         ///< length of the flat part of the contact; 0 in mode Rigid
   double torque_Nm = 0.0;             ///< drive torque about the axle
-  /// net forward force. Flexing of the tyre adds to torque_Nm but leaves this force unchanged.
+  /// Net forward force. Flexing of the tyre adds to torque_Nm but leaves this force unchanged.
   double drawbar_pull_N = 0.0;
 };
 

@@ -34,7 +34,7 @@ struct RimForces {
   double load_N = 0.0;          ///< vertical force, positive upward
   double torque_Nm = 0.0;       ///< drive torque about the axle; negative when braking
   double drawbar_pull_N = 0.0;  ///< force along the wheel plane, positive forward
-  /// force across the wheel plane: negative for slip_angle_rad > 0, 0 at slip angle 0
+  /// Force across the wheel plane: negative for slip_angle_rad > 0, 0 at slip angle 0.
   double side_force_N = 0.0;
 };
 

@@ -19,9 +19,9 @@ struct Rover {
   double wheelbase_m = 0.0;       ///< distance from first to last axle, in [1e-3, 100]
   double track_m = 0.0;           ///< distance between left and right wheel centres, in [1e-3, 100]
   double clearance_m = 0.0;       ///< height of the belly above ground, in [1e-3, max(wheelbase, track)]
-  /// height above ground, >= 0; 0: unknown, without load transfer and tip-over
+  /// Height above ground, >= 0; 0: unknown, without load transfer and tip-over.
   double centre_of_mass_height_m = 0.0;
-  /// forward offset of the centre of mass from mid wheelbase, +-0.499 wheelbase
+  /// Forward offset of the centre of mass from mid wheelbase, +-0.499 wheelbase.
   double centre_of_mass_ahead_m = 0.0;
   double centre_of_mass_left_m = 0.0;  ///< offset to the left from the middle of the track, +-0.499 track
   double max_pitch_rad = 0.35;         ///< limit of the rover's tilt along the heading, (0, pi/2)

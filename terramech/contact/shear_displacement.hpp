@@ -31,7 +31,7 @@ double resultantSlip(double slip, double slip_angle_rad);
 /// Shear stress or shear displacement of the soil under a wheel with a slip angle, as components.
 struct Tangent {
   double along = 0.0;  ///< along the wheel plane
-  /// across the wheel plane, positive in the direction in which the wheel moves sideways
+  /// Across the wheel plane, positive in the direction in which the wheel moves sideways.
   double across = 0.0;
 };
 

@@ -15,7 +15,7 @@ struct Soil {
   double cohesive_modulus = 0.0;
   double frictional_modulus = 0.0;  ///< k_phi [N/m^(n+2)]
   double shear_modulus_m = 0.02;    ///< shear deformation modulus K, in [1e-9, 1000]
-  /// theta_m / theta_1 (stress-peak angle over entry angle) at slip 0 [-], finite (wong_reece_1967a)
+  /// Ratio theta_m / theta_1 (stress-peak angle over entry angle) at slip 0 [-], finite (wong_reece_1967a).
   double c1 = 0.43;
   double c2 = 0.32;               ///< increase of theta_m / theta_1 per unit slip [-], finite
   double density_kg_m3 = 1600.0;  ///< bulk density of the soil, in [0.1, 1e6]

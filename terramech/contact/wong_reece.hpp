@@ -23,7 +23,7 @@ struct WheelOperation {
   /// The slip above is that along the wheel plane, i.e. with v cos beta in place of v. At beta = 0 the result
   /// is bit-identical to that of the model without a slip angle.
   double slip_angle_rad = 0.0;
-  /// gravity > 0; gives the weight of the soil pushed aside, used only if beta is not 0
+  /// Gravity > 0; gives the weight of the soil pushed aside, used only if beta is not 0.
   double gravity_m_s2 = 9.80665;
 };
 
@@ -99,7 +99,7 @@ struct RimStress {
   double angle_rad = 0.0;  ///< rim angle theta from the downward vertical, positive forward
   double normal_Pa = 0.0;  ///< normal stress sigma
   double shear_Pa = 0.0;   ///< shear stress tau
-  /// shear displacement j along the wheel plane; minus infinity for a locked wheel
+  /// Shear displacement j along the wheel plane; minus infinity for a locked wheel.
   double displacement_m = 0.0;
 };
 

@@ -2,55 +2,60 @@
 
 #include <optional>
 
-/// Traversability categories of the ground under a wheel (thesis 3.5).
+/// Traversability categories of the ground under a wheel, from the wheel's state at a reference slip (thesis
+/// 3.5).
 namespace talus::terramech {
 
-/// Traversability category, best first. Unknown: the data are insufficient for a category.
+/// Traversability category of the ground, from best to worst. Unknown: the data do not suffice for a
+/// category.
 enum class Category { Safe, Marginal, Dangerous, Unknown };
 
 /// Returns "safe", "marginal", "dangerous" or "unknown".
 const char* name(Category category);
 
-/// State of a wheel at the reference slip.
+/// State of a wheel at the reference slip, with load W, radius r, drawbar pull DP, torque T and sinkage z.
 struct WheelCondition {
-  double drawbar_pull_over_load = 0.0;  ///< DP/W [-]
-  double sinkage_over_radius = 0.0;     ///< z/r [-]
-  std::optional<double> torque_over_load_radius =
-      {};                           ///< T/(rW) [-]; empty: the torque criterion is not applied
-  std::optional<double> slip = {};  ///< driven slip, [-1, 1]; empty: the steering limit is not applied
+  double drawbar_pull_over_load = 0.0;  ///< drawbar pull over load, DP/W [-]
+  double sinkage_over_radius = 0.0;     ///< sinkage over radius, z/r [-]
+  /// Torque ratio T/(rW) [-]; empty: the torque criterion is not applied.
+  std::optional<double> torque_over_load_radius = {};
+  std::optional<double> slip = {};  ///< driven slip, [-1, 1]; empty: the steering criterion is not applied
 };
 
-/// Limits between the categories. A criterion without limits is not applied.
+/// Limits between the traversability categories. A criterion without limits is not applied. One level down
+/// means: safe becomes marginal, and marginal becomes dangerous.
 struct CategoryThresholds {
-  double dp_low = 0.0;                     ///< lower DP/W is dangerous
-  double dp_high = 0.0;                    ///< higher DP/W is safe; between dp_low and dp_high marginal
-  double z_threshold = 0.5;                ///< at or above this z/r the category drops one level
-  double z_critical = 0.75;                ///< higher z/r is dangerous
-  std::optional<double> t_threshold = {};  ///< at or above this T/(rW) the category drops one level
-  std::optional<double> t_critical = {};   ///< higher T/(rW) is dangerous
-  /// Higher slip is dangerous, because the wheel cannot be steered (ours).
+  double dp_low = 0.0;       ///< DP/W below this limit is dangerous
+  double dp_high = 0.0;      ///< DP/W above this limit is safe; DP/W in [dp_low, dp_high] is marginal
+  double z_threshold = 0.5;  ///< z/r at or above this limit moves the category one level down
+  double z_critical = 0.75;  ///< z/r above this limit is dangerous
+  /// T/(rW) at or above this limit moves the category one level down.
+  std::optional<double> t_threshold = {};
+  std::optional<double> t_critical = {};  ///< T/(rW) above this limit is dangerous
+  /// Slip above this limit is dangerous, because the wheel cannot be steered (ours).
   std::optional<double> steering_slip = {};
 };
 
-/// Slopes that determine the drawbar-pull thresholds.
+/// Slope of a mission, from which thresholds() derives the drawbar-pull limits.
 struct MissionSlope {
-  double slope_rad = 0.0;   ///< steepest slope that the mission must climb, [0, pi/2)
-  double margin_rad = 0.0;  ///< uncertainty of the slope, plus or minus, >= 0
+  double slope_rad = 0.0;   ///< steepest slope that the rover must climb, [0, pi/2)
+  double margin_rad = 0.0;  ///< uncertainty (+-) of that slope, >= 0
 };
 
-/// Returns dp_low = tan(slope - margin), dp_high = tan(slope + margin) (thesis 3.5: 15 deg +- 5 deg gives tan
-/// 10 deg, tan 20 deg), with defaults for the other limits. Throws std::invalid_argument unless slope >= 0,
-/// margin >= 0 and slope + margin < pi/2.
+/// Returns the limits dp_low = tan(slope - margin) and dp_high = tan(slope + margin), with defaults for the
+/// other limits. In thesis 3.5 a slope of 15 deg +- 5 deg gives tan 10 deg and tan 20 deg. Throws
+/// std::invalid_argument unless slope >= 0, margin >= 0 and slope + margin < pi/2.
 CategoryThresholds thresholds(const MissionSlope& mission);
 
-/// Throws std::invalid_argument with the limit that is not finite or exceeds its upper limit, or if
-/// steering_slip is outside [0, 1].
+/// Throws std::invalid_argument that names the limit if a limit is not finite, if a lower limit exceeds its
+/// upper limit, or if steering_slip is outside [0, 1].
 void validate(const CategoryThresholds& thresholds);
 
-/// Returns the category by the rule of thesis 3.5, with its strict inequalities: DP/W < dp_low dangerous, >
-/// dp_high safe, otherwise marginal; z > critical dangerous, z < threshold no change, otherwise one level
-/// down; the torque has the same rule with its own thresholds. The level reductions by sinkage and by torque
-/// are not specified in the thesis. The category is Unknown if a given number is NaN.
+/// Returns the traversability category of a wheel by the rule of thesis 3.5, with its strict inequalities.
+/// DP/W < dp_low is dangerous, DP/W > dp_high is safe, and other DP/W is marginal. Then z/r > z_critical is
+/// dangerous, z/r < z_threshold causes no change, and other z/r moves the category one level down. T/(rW) has
+/// the rule of z/r with its own limits. The thesis does not specify how the level reductions by sinkage and
+/// by torque combine; here they add. The category is Unknown if a given number is NaN.
 Category categorise(const WheelCondition& condition, const CategoryThresholds& thresholds);
 
 }  // namespace talus::terramech

@@ -4,43 +4,50 @@
 
 #include <talus/terramech/contact/rover.hpp>
 
-/// Rover on an inclined plane: wheel positions, wheel loads and distance from tip-over.
+/// Rover on an inclined plane: positions of the wheels, loads on the wheels, and angle to tip-over.
 namespace talus::terramech {
 
-/// Components in two directions: x forward, y to the left.
+/// Vector in the plane of the ground, in the axes of the body.
 struct Planar {
-  double x = 0.0;
-  double y = 0.0;
+  double x = 0.0;  ///< forward component
+  double y = 0.0;  ///< component to the left
 };
 
-/// Loads of the wheels of a rover on a plane. Wheels are in pairs on axles evenly spaced over the wheelbase.
-/// The loads have the least sum of squares, as with a load-equalising suspension; for two axles this is the
-/// usual load transfer in pitch and roll. Immutable; thread-safe.
+/// Loads on the wheels of a rover on an inclined plane. The wheels are in left-right pairs on axles that are
+/// evenly spaced over the wheelbase. Of all loads in equilibrium, those with the least sum of squares are
+/// used, as a load-equalising suspension gives; for two axles this is the usual load transfer in pitch and
+/// roll. Immutable; thread-safe.
 class RoverStance {
  public:
+  /// Largest number of wheels of a rover.
   static constexpr int kMostWheels = 12;
+  /// Fraction of the normal force on each wheel; entries beyond wheels() are 0.
   using Loads = std::array<double, kMostWheels>;
 
-  /// Throws std::invalid_argument if a field is outside its range, or wheels.count is not even or not in [4,
-  /// 12].
+  /// Throws std::invalid_argument if a field of the rover is outside its range, or if the number of wheels is
+  /// odd or not in [4, 12].
   explicit RoverStance(const Rover& rover);
 
   int wheels() const { return wheels_; }
 
-  /// Returns the position of wheel k from the middle of the wheels [m]; order: front left, front right, next
-  /// axle.
+  /// Returns the position of a wheel from the mean position of all wheels [m]. Wheels are numbered from 0:
+  /// front left, front right, left of the next axle, and so on.
   Planar position_m(int wheel) const { return position_m_[static_cast<std::size_t>(wheel)]; }
 
-  /// Returns the position of the centre of mass, projected on the ground plane [m].
+  /// Returns the projection of the centre of mass on the ground plane, from the mean position of all wheels
+  /// [m].
   Planar centre_m() const { return centre_m_; }
 
-  /// Returns the fraction of the normal force on each wheel, with sum 1. `demand` is the tangential over the
-  /// normal component of the weight per direction: tan(slope), uphill positive. Load shifts downhill by
-  /// height times demand. A wheel that would need a negative load has load 0.
+  /// Returns the fraction of the normal force on each wheel; the fractions have sum 1. `demand` is the
+  /// downhill component of the weight over its normal component, for each body axis: tan(slope), with x > 0
+  /// if uphill is forward and y > 0 if uphill is to the left. The load moves downhill by the height of the
+  /// centre of mass times `demand`. A wheel that would need a negative load has load 0.
   Loads shares(const Planar& demand) const;
 
-  /// Returns the angle [rad] by which the plane may tilt further before the centre of mass passes the nearest
-  /// edge (static stability); negative: tipped over. NaN if the height is 0, which means unknown.
+  /// Returns the angle [rad] by which the plane may tilt further until the vertical through the centre of
+  /// mass passes the nearest edge of the rectangle of the outermost wheels (static stability). A negative
+  /// angle means that the rover tips over. Returns NaN if the height of the centre of mass is 0, i.e.
+  /// unknown. `demand` has the meaning it has in shares().
   double stabilityMargin_rad(const Planar& demand) const;
 
  private:

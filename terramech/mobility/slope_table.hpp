@@ -8,24 +8,31 @@ namespace talus::terramech {
 
 /// Options of a SlopeTable.
 struct SlopeTableOptions {
-  SlopeOptions slope;
-  double step = 0.03;          ///< node spacing, rise over run, [1e-3, 0.5]
-  double max_gradient = 0.75;  ///< in both directions, [step, 2]; steeper gradients fail
+  SlopeOptions slope;  ///< limits of slip and slip angle
+  double step = 0.03;  ///< spacing of the tabulated gradients (rise over run), [1e-3, 0.5]
+  /// Largest tabulated gradient, along and across, [step, 2]; steeper planes fail.
+  double max_gradient = 0.75;
 };
 
-/// Equilibria of one ground and rover, tabulated over the gradients along and across, for cost functions. A
-/// state between nodes is an equilibrium only if all four surrounding nodes are. The table therefore rejects
-/// feasible gradients within less than one step of the limit, and accepts an infeasible gradient only between
-/// four feasible nodes. Numbers are interpolated; the failure is that of the first failing corner; `grip` is
-/// not tabulated. Immutable; thread-safe.
+/// Table of the steady motion of one rover on one kind of ground, for cost functions. The table is a grid
+/// over the two gradients (rise over run) of an inclined plane: along and across the direction of travel.
+/// Each node of the grid contains the state that SlopeEquilibrium computes there. Between nodes, the rover
+/// has a steady motion only if it has one at all nodes with a non-zero interpolation weight. The table
+/// therefore rejects feasible gradients that are less than one step from the limit of feasibility; it accepts
+/// an infeasible gradient only between four feasible nodes. Numbers are interpolated linearly in each
+/// direction. If several of the four nodes fail, the failure is that of the first in the order of increasing
+/// across, then increasing along gradient. SlopeState::grip is not tabulated. Immutable; thread-safe.
 class SlopeTable {
  public:
-  /// Throws std::invalid_argument if an option is outside its range.
+  /// Computes all nodes. Throws std::invalid_argument if an option is outside its range.
   explicit SlopeTable(const SlopeEquilibrium& equilibrium, const SlopeTableOptions& options = {});
 
+  /// Returns the state at a gradient. Beyond max_gradient the failure is CannotPull uphill, otherwise Slides.
   SlopeState at(const Gradient& gradient) const noexcept;
 
+  /// Returns the spacing of the nodes in gradient [-].
   double step() const { return options_.step; }
+  /// Returns the number of nodes.
   std::size_t nodes() const { return states_.size(); }
 
  private:
@@ -35,7 +42,7 @@ class SlopeTable {
   SlopeState between(double along, double across) const noexcept;
 
   SlopeTableOptions options_;
-  bool mirrored_;  // symmetric rover: only gradients rising to the left are stored
+  bool mirrored_;  // the rover is symmetric: only gradients rising to the left are stored
   int reach_, columns_;
   std::vector<SlopeState> states_;
 };

@@ -7,9 +7,9 @@
 
 namespace talus::terramech {
 
-/// State of a wheel of a rover in steady motion at the rover's maximum speed v: rim speed v and travel speed
-/// v (1 - s) for slip s >= 0; for s < 0 (braking) rim speed v (1 + s) and travel speed v. Pass and slope are
-/// unknown.
+/// Returns the state of a wheel of a rover in steady motion. For a slip s >= 0 the rim speed is the rover's
+/// maximum speed v and the travel speed is v (1 - s). For s < 0 (braking) the rim speed is v (1 + s) and the
+/// travel speed is v. Pass number and slope of the state are unknown.
 inline WheelState steadyWheel(const Rover& rover, double load_N, double slip, double slip_angle_rad = 0.0) {
   WheelState state;
   state.wheel = rover.wheel;
