@@ -10,43 +10,47 @@
 
 namespace talus::terramech {
 
-/// Operating state of one wheel, the input of a model. NaN means unknown; an effect that needs an unknown
-/// value does not act.
+/// Operating state of one wheel: the input of a wheel model. NaN marks an unknown value; an effect that needs
+/// an unknown value is not applied.
 struct WheelState {
-  /// Marks an unknown value.
+  /// Value of an unknown quantity.
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   Wheel wheel;
-  double load_N = 0.0;              ///< > 0
-  double slip = 0.0;                ///< [-1, 1], as measured
-  double slip_angle_rad = 0.0;      ///< from the wheel plane to the travel direction
+  double load_N = 0.0;              ///< vertical load, > 0
+  double slip = 0.0;                ///< measured slip, [-1, 1]
+  double slip_angle_rad = 0.0;      ///< slip angle from the wheel plane to the travel direction
   double speed_mps = kUnknown;      ///< travel speed of the wheel centre
-  double rim_speed_mps = kUnknown;  ///< r omega
+  double rim_speed_mps = kUnknown;  ///< rim speed r omega
+  /// Time of the reading.
   double time_s = kUnknown;
-  double pass_index = kUnknown;   ///< number of passes over this track, including this pass
-  double slope_rad = kUnknown;    ///< along the heading, positive uphill
-  double gravity_m_s2 = 9.80665;  ///< gravity where the rover drives, > 0
+  double pass_index = kUnknown;   ///< number of wheel passes over this track, including this pass
+  double slope_rad = kUnknown;    ///< slope along the heading, positive uphill
+  double gravity_m_s2 = 9.80665;  ///< gravity at the driving site, > 0
 
-  /// Readings used by the linear formula only.
+  /// Readings that only the base model linear-formula uses.
   double measured_torque_Nm = kUnknown;
   double measured_sinkage_m = kUnknown;
 
-  std::vector<std::pair<std::string, double>> extra;       ///< further numeric columns
-  std::vector<std::pair<std::string, std::string>> group;  ///< text columns: wheel, session, source, ...
+  /// Further numeric columns of the telemetry row: name and value.
+  std::vector<std::pair<std::string, double>> extra;
+  /// Text columns of the row (wheel, session, source, ...): name and text.
+  std::vector<std::pair<std::string, std::string>> group;
 
-  /// Returns the value of a numeric column by its name in telemetry files, one of stateColumns() or of
-  /// `extra`; NaN if unknown. "constant" and the name of a grouping column have the value 1, "a*b" is the
-  /// product of columns a and b.
+  /// Returns the value of a numeric column by its name in telemetry files. The column is one of
+  /// stateColumns() or of `extra`; the value is NaN if unknown. "constant" and the name of a text column have
+  /// the value 1. "a*b" is the product of the columns a and b.
   double covariate(std::string_view name) const;
 
-  /// Sets a numeric column of stateColumns() or of `extra`. A count is rounded; other names are ignored.
+  /// Sets the value of a numeric column of stateColumns() or of `extra`. pass_index is rounded to an integer.
+  /// Other names are ignored.
   void setCovariate(std::string_view name, double value);
 
-  /// Returns the text of a grouping column; empty if there is no such column.
+  /// Returns the text of a text column; empty if the state has no such column.
   std::string_view label(std::string_view column) const;
 };
 
-/// Returns the names of the columns that are fields of WheelState.
+/// Returns the names of the telemetry columns that are fields of WheelState.
 const std::vector<std::string>& stateColumns();
 
 }  // namespace talus::terramech

@@ -7,15 +7,15 @@
 
 namespace talus::terramech {
 
-/// Cache of forecasts on one soil at many loads. Each forecast is interpolated linearly between two cached
-/// loads 1 % apart. The number of solutions depends on the number of distinct loads: at most 140 per wheel
-/// size for loads within a factor of two.
+/// Cache of drawbar-pull forecasts on one soil at many loads. A forecast is interpolated linearly between two
+/// cached loads 1 % apart. The number of solved forecasts depends on the range of loads: at most 140 per
+/// wheel size for loads within a factor of two.
 class PullForecasts {
  public:
   PullForecasts(SoilPosterior soil, double reference_slip)
       : soil_(std::move(soil)), reference_slip_(reference_slip) {}
 
-  /// Returns the forecast for a wheel at load_N > 0.
+  /// Returns the forecast for a wheel under the load load_N > 0.
   PullForecast at(const Wheel& wheel, double load_N);
 
  private:

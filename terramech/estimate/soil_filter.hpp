@@ -8,11 +8,13 @@
 
 namespace talus::terramech {
 
-/// Recursive posterior of the soil: one sample at a time, in constant memory (ours).
+/// Recursive estimate of the soil: the posterior is updated by one sample at a time, in constant memory
+/// (ours).
 ///
-/// The latest samples are stored. Each update finds the mode of every class from its previous value. A sample
-/// that leaves the window is replaced by its quadratic about the current mode. Up to `window` samples the
-/// result is that of fitSoil(). An update takes about 0.1 ms per class. Not thread-safe; copyable.
+/// The filter stores the latest `window` samples. Each update searches the mode (most likely soil) of every
+/// soil class from its previous value. When a sample leaves the window, its log-likelihood is replaced by a
+/// quadratic about the current mode. Up to `window` samples the result is that of fitSoil(). An update takes
+/// about 0.1 ms per class. Not thread-safe; copyable.
 class SoilFilter {
  public:
   /// Options of the filter.
@@ -21,25 +23,25 @@ class SoilFilter {
     std::size_t window = 12;  ///< number of stored samples, >= 1
   };
 
-  /// Throws as fitSoil() for options outside their range, std::invalid_argument for an empty prior, window =
-  /// 0 or an invalid wheel.
+  /// Throws the exceptions of fitSoil() for fit options outside their range, and std::invalid_argument for an
+  /// empty prior, window = 0 or an invalid wheel.
   SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options);
   SoilFilter(const SoilFilter& other);
   SoilFilter(SoilFilter&&) noexcept;
   SoilFilter& operator=(SoilFilter other) noexcept;
   ~SoilFilter();
 
-  /// Adds one sample. Throws std::invalid_argument for a sample not of a driven wheel and leaves the filter
-  /// unchanged.
+  /// Adds one sample. Throws std::invalid_argument for a sample that is not of a driven wheel, and then
+  /// leaves the filter unchanged.
   void add(const WheelSample& sample);
-  void add(const WheelReading& reading);  ///< sample of another wheel
+  void add(const WheelReading& reading);  ///< adds a sample of another wheel
 
-  /// Returns the current posterior by importance sampling over the window and the removed samples. Slower
-  /// than add(). Throws std::domain_error before the first sample.
+  /// Returns the current posterior, by importance sampling over the stored samples and the quadratics of
+  /// removed samples. Takes longer than add(). Throws std::domain_error before the first sample.
   SoilPosterior posterior() const;
 
-  /// Return the most likely soil of the most likely class, and the class probabilities, without further
-  /// computation.
+  /// Return the most likely soil of the most probable soil class, and the probabilities of the classes,
+  /// without further computation.
   ContactSoil mode() const;
   std::vector<double> classProbabilities() const;
 

@@ -4,7 +4,7 @@
 
 namespace talus::terramech {
 
-/// Standard deviation of each soil parameter, in the parameter's unit; 0: exactly known.
+/// Standard deviation of each field of Soil, in the unit of the field; 0: exactly known.
 struct SoilDeviation {
   double cohesion_Pa = 0.0;
   double friction_angle_rad = 0.0;
@@ -20,7 +20,7 @@ struct SoilDeviation {
   double side_bulldozing = 0.0;
 };
 
-/// Prior of a soil: independent Gaussians.
+/// Prior of a soil: independent Gaussians of all parameters.
 struct SoilPrior {
   Soil mean;
   SoilDeviation deviation;

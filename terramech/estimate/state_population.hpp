@@ -4,18 +4,22 @@
 #include <talus/terramech/numerics/estimate.hpp>
 
 /// Distribution of the true loads and slips of a drive, estimated from the readings (ours: empirical Bayes).
-/// A reading far from all others probably has a large error. Without the distribution, the scatter of the
-/// errors would count as scatter of the true values and bias the estimate, independent of the number of rows.
+/// A reading far from all others probably has a large error. Without this distribution, the scatter of the
+/// reading errors would count as scatter of the true values and would bias the estimate of the soil, for any
+/// number of rows.
 namespace talus::terramech {
 
-/// Gaussian distribution of the true ln W and of the true slip, updated by one reading at a time in constant
-/// memory. With three readings or fewer, readings are returned unchanged.
+/// Gaussian distribution of the true ln W (W = load) and of the true slip over the samples of a drive. The
+/// distribution is updated by one sample at a time in constant memory. With three samples or fewer, readings
+/// are returned unchanged.
 class StatePopulation {
  public:
+  /// Adds one sample with the errors of its readings.
   void add(const WheelSample& sample, const ReadingErrors& errors);
 
-  /// Returns the load [N] or slip [-] combined with the population: x* = mean + s (x - mean), s = V/(V +
-  /// std^2), standard deviation sqrt(s) std, with x = ln W or x = slip. The slip is clamped to [0, 1].
+  /// Return the load [N] or slip [-] of a sample, combined with the distribution. For a reading x (ln W or
+  /// slip) with standard deviation std, and a distribution with variance V, the result is mean + s (x - mean)
+  /// with s = V/(V + std^2) and the standard deviation sqrt(s) std. The slip is clamped to [0, 1].
   Estimate load(const WheelSample& sample, const ReadingErrors& errors) const;
   Estimate slip(const WheelSample& sample, const ReadingErrors& errors) const;
 

@@ -9,19 +9,19 @@
 #include <utility>
 #include <vector>
 
-/// Measured wheel data, as columns. File reader: telemetry_reader.hpp.
+/// Measured data of wheels, stored by column. The reader of CSV files is telemetry_reader.hpp.
 namespace talus::terramech {
 
-/// Maps a column of a file to a known column of another name.
+/// Maps a column of a file to a known column, whose name in Talus differs.
 struct MappedColumn {
-  std::string known;  ///< name in Talus: "load_N"
-  std::string name;   ///< name in the file: "Fz"
-  std::string
-      /// Unit in the file: "kN", "percent"; empty: the suffix of the name, otherwise the unit of `known`.
-      unit{};
+  std::string known;  ///< name in Talus, for example "load_N"
+  std::string name;   ///< name in the file, for example "Fz"
+  /// Unit in the file, for example "kN" or "percent"; empty: the suffix of `name`, otherwise the unit of
+  /// `known`.
+  std::string unit{};
 };
 
-/// CSV file with options for its columns; converts implicitly from a path.
+/// CSV file with options for its columns. Converts implicitly from a path.
 struct TableFile {
   TableFile() = default;
   template <typename Name>
@@ -29,55 +29,58 @@ struct TableFile {
       : path(std::filesystem::path(file).string()) {}  // NOLINT(google-explicit-constructor)
 
   std::string path;
-  std::vector<MappedColumn> columns{};  ///< columns with another name or unit in the file
-  std::vector<std::pair<std::string, double>>
-      constants{};                  ///< columns missing in the file, with the same value in each row
-  std::vector<std::string> also{};  ///< additional columns known to the caller
-  /// Callback with one sentence for each change to a column. With a callback, a known column in another unit
-  /// (`sinkage_mm`) is converted; without a callback, such a column is an error.
+  std::vector<MappedColumn> columns{};  ///< columns that have another name or unit in the file
+  /// Columns that are missing in the file, each with one value for all rows.
+  std::vector<std::pair<std::string, double>> constants{};
+  std::vector<std::string> also{};  ///< names of additional columns that count as known
+  /// Callback that receives one sentence for each change to a column. With a callback, a known column in
+  /// another unit (`sinkage_mm`) is converted; without a callback, such a column is an error.
   std::function<void(const std::string&)> note{};
 };
 
-/// Rejected row, with the reason.
+/// Row of a file that was rejected, with the reason.
 struct RejectedRow {
-  std::size_t line = 0;  ///< line in the file; the header is line 1
-  std::string reason;    ///< "load_N = -3, must be > 0"
+  std::size_t line = 0;  ///< line number in the file; the header is line 1
+  std::string reason;    ///< reason, for example "load_N = -3, must be > 0"
 };
 
-/// Rows of wheel telemetry that passed the checks, stored by column. Numbers are SI; missing ones are NaN.
-/// Unknown columns are kept: numeric ones as candidate causes of residuals, text ones as groupings.
+/// Rows of wheel telemetry that passed the checks, stored by column. Numbers are in SI units; a missing
+/// number is NaN. Unknown columns are kept: numeric columns as candidate causes of residuals, text columns as
+/// groupings.
 struct Telemetry {
-  /// Numeric column.
+  /// Numeric column with one value per row.
   struct Numbers {
     std::string name;
     std::vector<double> values;
   };
-  /// Text column.
+  /// Text column with one value per row.
   struct Words {
     std::string name;
     std::vector<std::string> values;
   };
 
-  std::string source;                 ///< file name, for messages
-  std::vector<Numbers> numbers;       ///< in the order of the file
-  std::vector<Words> words;           ///< in the order of the file; `run` and `wheel` are always text
-  std::vector<std::size_t> lines;     ///< line of each row in the file
-  std::vector<RejectedRow> rejected;  ///< in the order of the file
-  std::size_t repeated = 0;  ///< rows left out as repetitions of earlier rows (TelemetryOptions::once)
-  /// Known columns in rejected rows, as read: infinite values are kept, values beyond double are the largest
-  /// double, other text is NaN.
+  std::string source;            ///< file name, for messages
+  std::vector<Numbers> numbers;  ///< numeric columns in the order of the file
+  std::vector<Words> words;      ///< text columns in the order of the file; `run` and `wheel` are always text
+  std::vector<std::size_t> lines;     ///< line number of each row in the file
+  std::vector<RejectedRow> rejected;  ///< rejected rows in the order of the file
+  /// Number of rows left out as repetitions of earlier rows (TelemetryOptions::once).
+  std::size_t repeated = 0;
+  /// Known numeric columns of the rejected rows. Infinite values are kept, values beyond the range of double
+  /// are the largest double, and other text is NaN.
   std::vector<Numbers> rejected_numbers;
 
   /// Returns the number of usable rows.
   std::size_t size() const noexcept { return lines.size(); }
 
-  /// Returns the numeric column of this name, or null.
+  /// Returns the numeric column of this name, or null if there is no such column.
   const std::vector<double>* find(std::string_view name) const noexcept;
 
-  /// Returns the text column of this name, or null.
+  /// Returns the text column of this name, or null if there is no such column.
   const std::vector<std::string>* findWords(std::string_view name) const noexcept;
 
-  /// Returns the numeric column of this name. Throws InputError with file and column if there is none.
+  /// Returns the numeric column of this name. Throws InputError with file and column if there is no such
+  /// column.
   const std::vector<double>& at(std::string_view name) const;
 };
 

@@ -8,35 +8,37 @@
 
 namespace talus::terramech {
 
-/// Box; infinite sides are unbounded.
+/// Box in the coordinates of the soil parameters. Infinite bounds are allowed.
 struct SoilBox {
   SoilVector low;
   SoilVector high;
 };
 
-/// Gaussian truncated to a box, with the sampler of Geweke, Hajivassiliou and Keane (geweke_1991). Each
-/// coordinate is drawn inside its bounds given the coordinates before, so that no draw is rejected and the
-/// density of a draw is known. The coordinate with the largest conditional variance is drawn first (pivoted
-/// Cholesky factor), because the box truncates it most.
+/// Gaussian distribution truncated to a box, with the sampler of Geweke, Hajivassiliou and Keane
+/// (geweke_1991). Each coordinate is drawn inside its bounds given the coordinates drawn before it, so that
+/// no draw is rejected and the density of a draw is known. The coordinate with the largest conditional
+/// variance is drawn first (pivoted Cholesky factor), because the box truncates this coordinate most.
 class TruncatedGaussian {
  public:
-  /// Requires a positive definite `covariance` and a `box` with low < high.
+  /// Mean and covariance are those of the Gaussian before truncation. Requires a positive definite
+  /// `covariance` and a `box` with low < high.
   TruncatedGaussian(const SoilVector& mean, const SoilMatrix& covariance, const SoilBox& box);
 
-  /// Draw and the logarithm of its sampling density.
+  /// Drawn point, and the logarithm of the density with which the point was drawn.
   struct Draw {
     SoilVector at;
     double log_density;
   };
 
-  /// Returns the draw for a point of the unit cube.
+  /// Returns the draw that corresponds to a point `even` of the unit cube, for example a point of
+  /// evenPoints().
   Draw draw(const SoilVector& even) const;
 
  private:
   SoilVector mean_;
   SoilBox box_;
   std::array<int, kSoilParameters> order_;
-  // Rows: coordinates, columns: order of drawing; covariance = root root'.
+  // The rows of the root are coordinates, its columns follow the order of drawing; covariance = root root'.
   SoilMatrix root_ = SoilMatrix::Zero();
 };
 

@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// Sample with its wheel, for tables with several wheel sizes.
+/// Telemetry sample with its wheel, for tables with several wheel sizes.
 struct WheelReading {
   Wheel wheel;
   WheelSample sample;
