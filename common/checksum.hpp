@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// Incremental 64-bit checksum of a byte sequence: XXH3 of xxHash with seed 0. Detects accidental damage, not
-/// deliberate change.
+/// Incremental 64-bit checksum of a byte sequence: XXH3 of xxHash with seed 0. The checksum detects
+/// accidental damage, not deliberate change.
 class Checksum {
  public:
   Checksum();
@@ -15,8 +15,9 @@ class Checksum {
   Checksum(Checksum&&) noexcept;
   Checksum& operator=(Checksum&&) noexcept;
 
+  /// Appends `size` bytes at `data` to the sequence.
   void add(const void* data, std::size_t size) noexcept;
-  /// Checksum of all bytes added so far. More bytes may be added afterwards.
+  /// Returns the checksum of all bytes added so far. More bytes may be added afterwards.
   std::uint64_t value() const noexcept;
 
  private:

@@ -5,15 +5,15 @@
 
 namespace talus {
 
-/// Error for a file or value of the user that cannot be used. what() returns one line: "where: reason;
-/// remedy".
+/// Error thrown if a file or value that the user supplies cannot be used. what() returns one line: "where:
+/// reason; remedy".
 class InputError : public std::runtime_error {
  public:
-  /// The three components of the message.
+  /// The three parts of the message.
   struct Parts {
-    std::string where;   ///< file with line, band or cell: "site.tif, band 2" or "drive.csv:17"
-    std::string reason;  ///< the fault: "no CRS"
-    std::string remedy;  ///< what the user should do: "pass --resolution METRES"; may be empty
+    std::string where;   ///< location of the fault: "site.tif, band 2" or "drive.csv:17" (line)
+    std::string reason;  ///< the fault, for example "no CRS"
+    std::string remedy;  ///< action for the user, for example "pass --resolution METRES"; may be empty
   };
 
   explicit InputError(Parts parts);

@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// Calls each(k) for k = 0 .. count - 1 on `threads` threads, the calling thread included. Calls for
-/// different k must be independent. The first exception stops the loop and is rethrown in the calling thread
+/// Calls each(k) for k = 0 ... count - 1 on `threads` threads, one of which is the calling thread. Calls for
+/// different k must be independent. The first exception stops the loop; it is rethrown in the calling thread
 /// after the calls in progress have finished.
 template <typename Each>
 void parallelFor(std::size_t count, int threads, Each each) {

@@ -6,21 +6,21 @@
 
 namespace talus {
 
-/// A range of raster rows [first, past).
+/// Range [first, past) of raster rows.
 struct Rows {
   int first = 0;
-  int past = 0;  ///< one beyond the last row
+  int past = 0;  ///< one beyond the last row of the range
 };
 
-/// Size of the loop of forEachStrip().
+/// Number of rows and threads of a loop by forEachStrip().
 struct RowWork {
-  int rows = 0;
-  int threads = 1;  ///< >= 1
+  int rows = 0;     ///< number of raster rows, >= 0
+  int threads = 1;  ///< number of threads, >= 1
 };
 
-/// Calls work(strip) once for each strip of 64 rows, on `threads` threads including the calling thread, which
-/// alone reports progress. After a stop request, strips not yet started are skipped. The first exception of
-/// `work` is rethrown in the calling thread.
+/// Calls work(strip) once for each strip of 64 raster rows, on `what.threads` threads including the calling
+/// thread. Only the calling thread reports progress to `watch`. After a stop request, strips not yet started
+/// are skipped. The first exception of `work` is rethrown in the calling thread.
 void forEachStrip(const RowWork& what, const ProgressMonitor& watch, const std::function<void(Rows)>& work);
 
 }  // namespace talus

@@ -5,18 +5,18 @@
 
 namespace talus {
 
-/// Bound that plausible() checks, as text for error messages.
+/// Condition that plausible() checks, as text for error messages.
 inline constexpr const char* kPlausible = "must be 0 or between 1e-15 and 1e15 in magnitude";
 
-/// True if a number is 0 or satisfies 1e-15 <= |value| <= 1e15; false for NaN and infinity. Products and
-/// quotients of such numbers stay in the range of a double. Every reader checks plausible() first, then the
-/// range of the field.
+/// Returns true if a number is 0 or satisfies 1e-15 <= |value| <= 1e15, and false for NaN and infinity.
+/// Products and quotients of such numbers are in the range of a double. Every file reader first checks
+/// plausible(), then the range of the field.
 inline bool plausible(double value) noexcept {
   return value == 0.0 || (std::abs(value) >= 1e-15 && std::abs(value) <= 1e15);
 }
 
-/// True if an integer is written in plain decimal. False for a leading 0 or 0x: other programs read 010 as
-/// octal 8 and 0x10 as hexadecimal 16.
+/// Returns true if an integer is written in plain decimal. Returns false for a leading 0 or 0x, because other
+/// programs read 010 as octal 8 and 0x10 as hexadecimal 16.
 inline bool isDecimal(std::string_view word) noexcept {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   if (word.size() < 2 || word[0] != '0') return true;

@@ -7,16 +7,17 @@ namespace talus {
 
 /// Progress callback and stop token of a long computation. Copyable; both members may be empty.
 struct ProgressMonitor {
-  std::function<void(double)>
-      progress;          ///< called repeatedly with the fraction done [-], 0 to 1, from one thread
-  std::stop_token stop;  ///< the computation ends early, at its next check, after a stop request
+  /// Callback that the computation calls repeatedly, from one thread, with the completed fraction [-], 0 to
+  /// 1.
+  std::function<void(double)> progress;
+  std::stop_token stop;  ///< stop token; after a stop request the computation ends early, at its next check
 
-  /// Calls `progress` with the fraction done [-], 0 to 1.
+  /// Calls `progress` with the completed fraction [-], 0 to 1, if the callback is not empty.
   void report(double fraction) const {
     if (progress) progress(fraction);
   }
 
-  /// True if a stop was requested.
+  /// Returns true if a stop was requested.
   bool stopped() const noexcept { return stop.stop_requested(); }
 };
 

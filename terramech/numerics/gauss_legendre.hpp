@@ -6,8 +6,8 @@
 
 namespace talus::terramech {
 
-/// Gauss-Legendre rule on (0, 1): ascending nodes and weights with sum 1, exact for polynomials of degree 2 N
-/// - 1.
+/// Gauss-Legendre quadrature rule on (0, 1): N ascending nodes, and N weights with sum 1. The rule is exact
+/// for polynomials of degree 2 N - 1.
 template <std::size_t N>
 struct GaussLegendre {
   std::array<double, N> node{};
@@ -16,18 +16,20 @@ struct GaussLegendre {
 
 namespace detail {
 
-constexpr double cosine(double x) {  // |x| <= pi; initial values of the Newton iteration below only
+// Taylor series for |x| <= pi; gives initial values of the Newton iteration below.
+constexpr double cosine(double x) {
   double term = 1.0, sum = 1.0;
   for (int k = 1; k < 16; ++k) sum += term *= -x * x / ((2.0 * k - 1.0) * (2.0 * k));
   return sum;
 }
 
-/// Legendre polynomial P_N and its derivative at x, by the three-term recurrence.
+/// Value and derivative of the Legendre polynomial P_N at x.
 struct LegendreValue {
   double value;
   double slope;
 };
 
+/// Evaluates P_N for N = order by the three-term recurrence.
 constexpr LegendreValue legendre(std::size_t order, double x) {
   double previous = 1.0, current = x;
   for (std::size_t k = 2; k <= order; ++k) {
@@ -41,7 +43,8 @@ constexpr LegendreValue legendre(std::size_t order, double x) {
 
 }  // namespace detail
 
-/// The rule of order N, by Newton's method on P_N from the cosine estimate of its roots.
+/// Returns the rule of N nodes. The nodes follow from the roots of P_N, found by Newton's method from a
+/// cosine estimate.
 template <std::size_t N>
 constexpr GaussLegendre<N> gaussLegendre() {
   static_assert(N >= 2);

@@ -2,17 +2,19 @@
 
 #include <cstdint>
 
-/// Elementary functions of one double or of four doubles at once, with identical bits in each lane: every
-/// lane executes the same additions and multiplications in the same order, without tables and without
-/// contraction. Private to the batch kernels, which inline the functions for their own target. The accuracy
-/// suffices for wheel forces to 1e-7, but is below double precision. Results for arguments outside the stated
-/// range are finite and undefined; no argument traps.
+/// Elementary functions of one double, or of four doubles (lanes) at once. The results of all lanes are
+/// bit-identical to those of a single double, because every lane executes the same additions and
+/// multiplications in the same order, without tables and without contraction. Private to the batch kernels,
+/// which inline the functions for their own processor. The accuracy suffices for wheel forces to 1e-7, but is
+/// below double precision. Results for arguments outside the stated range are finite and undefined; no
+/// argument traps.
 namespace talus::terramech::lanes {
 
-/// Four doubles, in one vector register if the machine supports this.
+/// Four doubles, in one vector register if the processor supports this.
 using Four = double __attribute__((vector_size(32)));
 using FourBits = std::uint64_t __attribute__((vector_size(32)));
 
+/// Integer type and number of lanes of a lane type.
 template <class T>
 struct Traits;
 template <>
@@ -28,7 +30,7 @@ struct Traits<Four> {
 
 #define TALUS_LANES [[gnu::always_inline]] inline
 
-/// Returns a in lanes where the condition is true, otherwise b.
+/// Returns a in the lanes where the condition is true, and b in the other lanes.
 template <class Mask, class T>
 TALUS_LANES T pick(Mask condition, T a, T b) {
   return condition ? a : b;
@@ -40,8 +42,8 @@ TALUS_LANES T spread(double value) {
   return T{} + value;
 }
 
-/// Returns e^max(x, -700) for x <= 700, with a relative error below 2e-12: x = k ln 2 + f, and e^f is a
-/// Chebyshev polynomial.
+/// Returns e^max(x, -700) for x <= 700, with a relative error below 2e-12. With x = k ln 2 + f, e^f is
+/// evaluated as a Chebyshev polynomial.
 template <class T>
 TALUS_LANES T exponential(T x) {
   using Bits = typename Traits<T>::Bits;
@@ -63,8 +65,8 @@ TALUS_LANES T exponential(T x) {
   return p * __builtin_bit_cast(T, power);
 }
 
-/// ln x for normal x > 0, error below 2e-12. x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m -
-/// 1)/(m + 1)) by a Chebyshev polynomial.
+/// Returns ln x for normal x > 0, with an error below 2e-12. With x = 2^e m and m in [1/sqrt 2, sqrt 2), ln m
+/// = 2 artanh((m - 1)/(m + 1)) is evaluated as a Chebyshev polynomial.
 template <class T>
 TALUS_LANES T logarithm(T x) {
   using Bits = typename Traits<T>::Bits;
@@ -83,8 +85,8 @@ TALUS_LANES T logarithm(T x) {
   return e * 0.6931471805599453 + 2.0 * f * p;
 }
 
-/// 1 / sqrt x for normal x > 0, relative error below 1e-15: initial value by halving the exponent, then four
-/// Newton steps.
+/// Returns 1 / sqrt x for normal x > 0, with a relative error below 1e-15. The initial value follows by
+/// halving the exponent of x; then four Newton steps are made.
 template <class T>
 TALUS_LANES T inverseRoot(T x) {
   using Bits = typename Traits<T>::Bits;
@@ -94,7 +96,7 @@ TALUS_LANES T inverseRoot(T x) {
   return y;
 }
 
-/// sin x for |x| <= pi/2, relative error below 3e-11, by a Chebyshev polynomial in x^2.
+/// Returns sin x for |x| <= pi/2, with a relative error below 3e-11, by a Chebyshev polynomial in x^2.
 template <class T>
 TALUS_LANES T sine(T x) {
   const T g = x * x;
@@ -106,7 +108,7 @@ TALUS_LANES T sine(T x) {
   return x * p;
 }
 
-/// 1 - cos x for |x| <= pi/2, relative error below 4e-12, by a Chebyshev polynomial in x^2.
+/// Returns 1 - cos x for |x| <= pi/2, with a relative error below 4e-12, by a Chebyshev polynomial in x^2.
 template <class T>
 TALUS_LANES T versine(T x) {
   const T g = x * x;

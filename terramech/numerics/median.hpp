@@ -5,7 +5,8 @@
 
 namespace talus::terramech {
 
-/// Returns the median; for an even count the upper of the two middle values, for an empty vector 0.
+/// Returns the median of the values. For an even count this is the upper of the two middle values, for an
+/// empty vector 0.
 inline double medianOf(std::vector<double> v) {
   if (v.empty()) return 0.0;
   std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());

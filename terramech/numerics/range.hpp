@@ -4,16 +4,17 @@
 
 namespace talus::terramech {
 
-/// Closed interval of valid values of a field, in the unit of the field.
+/// Closed interval [low, high] of valid values of a field, in the unit of the field.
 struct Interval {
   double low;
   double high;
 };
 
-/// Throws std::invalid_argument "owner: field = value, must be bound" if a field is not finite or outside its
-/// range.
+/// Checks the fields of one object. Each check throws std::invalid_argument with the message "owner: field =
+/// value, must be bound" if the value is not finite or outside its range.
 class RangeCheck {
  public:
+  /// `owner` names the checked object in messages.
   explicit RangeCheck(std::string owner) : owner_(std::move(owner)) {}
 
   void finite(const char* field, double value) const;

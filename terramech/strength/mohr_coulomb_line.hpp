@@ -8,47 +8,50 @@
 
 namespace talus::terramech {
 
-/// Equation c + normal tan(phi) = shear of one sample, the result of each linear method.
+/// Equation c + normal tan(phi) = shear of one sample, which each linear method produces.
 struct StressPair {
-  double normal_Pa = 0.0;
-  double shear_Pa = 0.0;
+  double normal_Pa = 0.0;  ///< coefficient of tan(phi)
+  double shear_Pa = 0.0;   ///< right-hand side
 };
 
-/// Cohesion and friction with their covariance, and the parameters that are not identifiable.
+/// Cohesion c and friction coefficient tan(phi) of a fit with their covariance, and the parameters that the
+/// data do not determine.
 struct ShearStrength {
-  double cohesion_Pa = 0.0;   ///< c; not clipped; a negative value indicates an error of the method
+  double cohesion_Pa = 0.0;   ///< c, not clipped; a negative value indicates an error of the method
   double tan_friction = 0.0;  ///< tan(phi) [-]
-  /// Covariance of (c [Pa], tan phi [-]) from the residuals: [Pa^2, Pa; Pa, -]. NaN with fewer than three
-  /// samples.
+  /// Covariance of (c [Pa], tan phi [-]) from the residuals; NaN with fewer than three samples.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  /// Standard deviation about the line [Pa]; NaN with fewer than three samples.
+  /// Standard deviation of the samples about the line [Pa]; NaN with fewer than three samples.
   double residual_std_Pa = 0.0;
-  double condition = 0.0;  ///< 2-norm condition number of K_1 with columns scaled to equal length [-]
+  /// 2-norm condition number of the equations, with columns scaled to equal length [-].
+  double condition = 0.0;
+  /// Number of samples.
   std::size_t samples = 0;
-  /// Parameters that the data do not determine, each with the reason; empty if all are determined.
+  /// Parameters that the data do not determine, each with the reason; empty if all parameters are determined.
   std::vector<std::string> unseen;
 
-  /// phi = arctan(tan_friction) [rad].
+  /// Returns the friction angle phi = arctan(tan_friction) [rad].
   double frictionAngle_rad() const;
 };
 
-/// Recursive least squares of shear = c + normal tan(phi) (thesis Eqs. 2.13 to 2.16, B.9 to B.12, A.2).
+/// Recursive least-squares fit of the line shear = c + normal tan(phi) (thesis Eqs. 2.13 to 2.16, B.9 to
+/// B.12, A.2).
 ///
-/// Constant memory: count, means and central second moments (Welford). The result equals the batch solution
-/// within rounding; the normal equations as printed lose accuracy for almost equal stresses. Copyable; const
-/// members are thread-safe.
+/// The memory is constant: count, means and central second moments (Welford). The result equals the batch
+/// solution within rounding, while the normal equations as printed lose accuracy for almost equal stresses.
+/// Copyable; const members are thread-safe.
 class MohrCoulombLine {
  public:
-  /// Adds one sample in constant time. The weight [-], > 0, is the inverse of the relative variance of the
-  /// pair's shear.
+  /// Adds the equation of one sample in constant time. `weight` > 0 [-] is the inverse of the relative
+  /// variance of the sample's shear.
   void add(StressPair pair, double weight = 1.0);
 
   /// Returns the least-squares line of all samples. Throws std::domain_error with fewer than two samples, or
   /// if all normal stresses are equal.
   ShearStrength estimate() const;
 
-  /// Returns sqrt(sum of weighted squared residuals / number of samples) [Pa times root of weight]; 0 with
-  /// fewer than three samples.
+  /// Returns sqrt(sum of weighted squared residuals / number of samples) [Pa times square root of weight]; 0
+  /// with fewer than three samples.
   double relativeResidual() const;
 
   std::size_t samples() const { return count_; }
@@ -63,13 +66,13 @@ class MohrCoulombLine {
   double shear_shear_ = 0.0;
 };
 
-/// Returns the entries of `unseen` for a fit; empty if all parameters are determined. A parameter is
-/// undetermined if the condition number exceeds kWorstCondition, or if its standard deviation exceeds half
-/// the range of soils (limits ours).
+/// Returns the entries of ShearStrength::unseen for a fit. A parameter is undetermined if the condition
+/// number exceeds kWorstCondition, or if its standard deviation exceeds half the range of soils (limits
+/// ours).
 std::vector<std::string> unseenStrength(const ShearStrength& fit);
 
-/// Above this scaled condition number a reading error of 1 % changes tan(phi) by more than the differences
-/// between soils (ours).
+/// Greatest scaled condition number of a determined fit. Above it a reading error of 1 % changes tan(phi) by
+/// more than the differences between soils (ours).
 inline constexpr double kWorstCondition = 200.0;
 
 }  // namespace talus::terramech

@@ -7,24 +7,25 @@
 
 namespace talus::terramech {
 
-/// Criterion for K (thesis App. D); see shear_modulus.hpp.
+/// Error criterion that determines the shear modulus K (thesis App. D; symbols in shear_modulus.hpp).
 enum class ModulusCriterion {
-  Joint,              ///< smallest error relative to the torque
-  ErrorMinimisation,  ///< D.1, by rms of the distances from the line
-  EffectiveTorque,    ///< D.8 as printed, by least squares over the samples instead of their median
-  TorqueRatio         ///< T/W = tau A(i; K), tau and K by least squares: D.8 without A(i_max) = 1
+  Joint,              ///< smallest error relative to the torque: modulusJointly()
+  ErrorMinimisation,  ///< method D.1, by rms of the distances from the line
+  EffectiveTorque,    ///< method D.8 as printed, by least squares over the samples instead of their median
+  /// T/W = tau A(i; K), with tau and K by least squares: D.8 without the assumption A(i_max) = 1.
+  TorqueRatio
 };
 
-/// Linear method: returns the equation of a sample at a given K [m].
+/// Linear method for c and tan(phi): function that returns the equation of a sample at a given K [m].
 using PairOf = StressPair (*)(const Wheel&, const WheelSample&, double);
 
-/// Returns c + M3 tan(phi) = M4 of linear_offset.hpp.
+/// Returns the equation c + M3 tan(phi) = M4 of linear_offset.hpp for a sample.
 inline StressPair linearOffsetPair(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m) {
   return linearOffset(wheel, sample, shear_modulus_m).pair();
 }
 
-/// Recursive estimate of K, c and tan(phi). For each K of a fixed grid the object stores the sums for the
-/// criterion and for the linear method, so that memory and time per sample are constant. Copyable; const
+/// Recursive estimate of K, c and tan(phi). For each K of a fixed grid the object stores the sums of the
+/// criterion and of the linear method, so that memory and time per sample are constant. Copyable; const
 /// members are thread-safe.
 class ShearModulusGrid {
  public:
@@ -37,28 +38,29 @@ class ShearModulusGrid {
   explicit ShearModulusGrid(const Wheel& wheel) : ShearModulusGrid(wheel, Options{}) {}
   ShearModulusGrid(const Wheel& wheel, const Options& options);
 
-  /// Adds a sample. Returns false, without adding, if torque or shear displacement is not above 0 (no shear
-  /// mobilised).
+  /// Adds a sample. Returns false and does not add the sample if torque or shear displacement is <= 0, i.e.
+  /// if no shear is mobilised.
   bool add(const WheelSample& sample);
 
-  /// Returns the K of the smallest error, refined by a parabola through three grid values. Throws
+  /// Returns the K with the smallest error, refined by a parabola through three grid values. Throws
   /// std::domain_error with fewer than four samples.
   ModulusEstimate modulus() const;
 
-  /// Returns the line of the linear method at that K, interpolated between two grid values. Throws as
-  /// modulus() and MohrCoulombLine::estimate().
+  /// Returns c and tan(phi) of the linear method at the K of modulus(), interpolated between two grid values.
+  /// Throws the exceptions of modulus() and MohrCoulombLine::estimate().
   ShearStrength strength() const;
 
   std::size_t samples() const { return count_; }
 
  private:
-  // 17 values have a spacing of 28 %; with the parabola, a finer grid is slower and no more accurate.
+  // 17 values have a ratio of 1.28 between neighbours. With the parabola, a finer grid takes longer and is no
+  // more accurate.
   static constexpr std::size_t kValues = 17;
 
   struct GridValue {
     double modulus_m = 0.0;  // K
     MohrCoulombLine method;  // line of the linear method, c + x tan(phi) = y
-    // Line of the criterion, linear-offset: weighted for Joint, plain for ErrorMinimisation.
+    // Line of the linear-offset criterion: weighted for Joint, unweighted for ErrorMinimisation.
     MohrCoulombLine line;
     double torque_share = 0.0;   // sum of (T/W) A
     double share_squares = 0.0;  // sum of A^2
@@ -67,7 +69,7 @@ class ShearModulusGrid {
 
   double squaredError(const GridValue& rung) const;
 
-  // Location of the minimum: grid value with the smallest error, and shift in grid steps.
+  // Location of the minimum: index of the grid value with the smallest error, and shift in grid steps.
   struct Place {
     std::size_t rung;
     double shift;  // [-0.5, 0.5]
