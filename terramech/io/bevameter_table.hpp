@@ -9,22 +9,25 @@
 
 namespace talus::terramech {
 
-/// Plate and shear tests from a CSV file: rows of a shear test (normal_stress_Pa, shear_stress_Pa,
-/// shear_displacement_m), of a pressure-sinkage test (plate_width_m or plate_d_m, pressure_Pa or p_Pa,
-/// sinkage_m or z_m), or both. The diameter plate_d_m of a round plate is used as its smaller dimension b
-/// (thesis A.1); wong_2001 uses the radius, which halves k_c. If the width is neither given as an option nor
-/// a column, it is the diameter of a round plate with area F_N / pressure, test by test; a test with variable
-/// F_N / pressure is rejected. Readings belong to one trial if they agree in `trial`, `test` and all text
-/// columns with repeated values; the soil is the text of column `soil`.
+/// Plate tests (bevameter) from a CSV file. The file contains rows of a shear test (normal_stress_Pa,
+/// shear_stress_Pa, shear_displacement_m), of a pressure-sinkage test (plate_width_m or plate_d_m,
+/// pressure_Pa or p_Pa, sinkage_m or z_m), or both. The diameter plate_d_m of a round plate is used as its
+/// smaller dimension b (thesis A.1); wong_2001 uses the radius, which halves k_c. If neither an option nor a
+/// column gives the width, the plate is taken as round with the area F_N / pressure, and its diameter is
+/// computed for each test; a test with variable F_N / pressure is rejected. Readings belong to one trial if
+/// they agree in `trial`, `test` and all text columns with repeated values. The soil is the text of column
+/// `soil`.
 struct BevameterTable {
+  /// Readings of the shear tests.
   std::vector<ShearReading> shear;
+  /// Trials of the pressure-sinkage tests.
   std::vector<PlateTrial> plates;
   std::vector<RejectedRow> rejected;
-  bool width_from_force = false;  ///< true: the widths were computed from F_N / pressure
+  bool width_from_force = false;  ///< true: the plate widths were computed from F_N / pressure
 };
 
-/// Reads the tests of a file. A plate_width_m > 0 applies to all rows; 0: not given. Throws InputError if the
-/// file has the columns of neither test, or no usable row.
+/// Reads the plate tests of a file. A plate_width_m > 0 applies to all rows; 0: not given. Throws InputError
+/// if the file has the columns of neither test, or no usable row.
 BevameterTable readBevameterTable(const TableFile& file, double plate_width_m, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

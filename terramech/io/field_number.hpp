@@ -4,8 +4,8 @@
 
 namespace talus::terramech {
 
-/// Parses a whole field as a number ("1", "-2.5e3", "+4", "nan", "inf") with `.` as decimal point in any
-/// locale. Returns false if the field is not a number.
+/// Parses a whole text field as a number ("1", "-2.5e3", "+4", "nan", "inf"), with `.` as decimal point in
+/// any locale. Returns false if the field is not a number.
 bool parseNumber(std::string_view field, double& value) noexcept;
 
 }  // namespace talus::terramech

@@ -4,29 +4,30 @@
 #include <string>
 #include <vector>
 
-/// Names of keys and columns in files of Talus, used by the readers, by `talus help formats` and by
-/// docs/formats.md.
+/// Names of keys and columns in the input files of Talus. The readers, `talus help formats` and
+/// docs/formats.md use them.
 namespace talus::terramech {
 
-/// Key of a YAML file or column of a table, with its unit as suffix.
+/// Key of a YAML file or column of a table. Its name has the unit as suffix.
 struct FileKey {
   const char* name = "";
-  const char* meaning = "";  ///< meaning, and range, default or "required"
+  const char* meaning = "";  ///< quantity, with range, and default or "required"
 };
 
-/// Keys of a soil.
+/// Returns the keys of a soil file.
 std::span<const FileKey> soilKeys();
-/// Keys of a rover and of its `wheels`.
+/// Return the keys of a rover file, and those of its mapping `wheels`.
 std::span<const FileKey> roverKeys();
 std::span<const FileKey> wheelKeys();
-/// Columns of telemetry and of other tables of wheels.
+/// Returns the columns of telemetry and of other tables of wheels.
 std::span<const FileKey> telemetryKeys();
 
 /// Returns the names of the keys in order.
 std::vector<std::string> namesOf(std::span<const FileKey> keys);
 
-/// Returns the known key that an unknown key probably means: the same key without unit or with a unit of
-/// another kind (`cohesion`, `mass_N`), otherwise the nearest spelling; empty if there is no similar key.
+/// Returns the known key that the user probably meant by an unknown key. This is the key of the same name
+/// without unit or with a unit of another kind (`cohesion`, `mass_N`), otherwise the key of nearest spelling.
+/// Returns an empty text if there is no similar key.
 std::string meantKey(const std::string& key, const std::vector<std::string>& known);
 
 }  // namespace talus::terramech

@@ -5,7 +5,8 @@
 
 namespace talus::terramech {
 
-/// YAML texts of the built-in soils and rovers by name, generated from terramech/library/ at configuration.
+/// Return the YAML texts of the built-in soils and rovers by name, generated from terramech/library/ when
+/// CMake configures the build.
 const std::map<std::string, std::string>& librarySoilTexts();
 const std::map<std::string, std::string>& libraryRoverTexts();
 

@@ -5,8 +5,8 @@
 
 namespace talus::terramech {
 
-/// Reads `fitted` and `covariance` of a model file into a model with known effects. Throws InputError if a
-/// parameter is unknown or listed twice, or if the matrix is not a covariance.
+/// Reads the fields `fitted` and `covariance` of a model file into a model whose effects have been read.
+/// Throws InputError if a parameter is unknown or listed twice, or if the matrix is not a covariance.
 void readFit(const YamlFields& root, RefinedModel& model);
 
 }  // namespace talus::terramech

@@ -9,18 +9,19 @@
 
 namespace talus::terramech {
 
-/// Columns of a file with the names and units of Talus, from the header of the file and the options of the
-/// TableFile.
+/// Columns of a table, converted from the names and units of a file to those of Talus. The options of the
+/// TableFile specify names and units of the file.
 class TableColumns {
  public:
-  /// `decimal_commas`: numbers may have decimal commas. Throws InputError if a mapped column is missing or
-  /// mapped twice, the known column also exists, or the unit is of another kind.
+  /// `header` contains the column names of the file. With decimal_commas, numbers may have a decimal comma.
+  /// Throws InputError if a mapped column is missing or mapped twice, if the known column exists as well, or
+  /// if the unit is of another kind.
   TableColumns(std::vector<std::string> header, const TableFile& table, bool decimal_commas);
 
   const std::vector<std::string>& header() const noexcept { return header_; }
 
-  /// Converts the numbers of a row and appends the constants. With `whole`, blank fields beyond the header
-  /// are removed first.
+  /// Converts the fields of a row to the units of Talus and appends the constant columns. With `whole`, blank
+  /// fields beyond the header are removed first.
   void apply(std::vector<std::string>& fields, bool whole) const;
 
  private:
@@ -41,8 +42,8 @@ class TableColumns {
   bool decimal_commas_;
 };
 
-/// Returns the factor from a unit to that of a known column; percent and permille if the column has no unit.
-/// Empty for units of different kinds.
+/// Returns the factor from `unit` to the unit of the known column `known`. For a column without unit, percent
+/// and permille are accepted. Returns nullopt for units of different kinds.
 std::optional<double> columnFactor(const std::string& unit, const std::string& known);
 
 }  // namespace talus::terramech

@@ -6,15 +6,17 @@
 
 namespace talus::terramech {
 
-/// Returns the factor from one unit to another of the same kind (value_in_to = factor * value_in_from); empty
-/// if the kinds differ or a unit is unknown. Names are those of suffixes: "deg" to "rad", "kPa" to "Pa".
+/// Returns the factor between two units of the same kind: value in `to` = factor * value in `from`. Units
+/// have the names of column suffixes, for example "deg" and "rad". Returns nullopt if the units are of
+/// different kinds or a unit is unknown.
 std::optional<double> conversion(std::string_view from, std::string_view to);
 
-/// Returns the units of the same kind for messages: "N, mN, kN"; empty for an unknown unit.
+/// Returns the names of all units of the same kind, for messages ("N, mN, kN"); an empty text for an unknown
+/// unit.
 std::string unitsLike(std::string_view unit);
 
-/// Returns the longest known unit at the end of a name, after an underscore ("cohesion_kPa": "kPa"), or an
-/// empty text.
+/// Returns the longest known unit that follows an underscore at the end of a name ("kPa" of "cohesion_kPa"),
+/// or an empty text.
 std::string_view unitOf(std::string_view name);
 
 }  // namespace talus::terramech
