@@ -7,15 +7,17 @@
 
 namespace talus::terramech {
 
-/// A possible addition to a model: an effect of the library, or curves of one covariate in some channels.
+/// Candidate: a possible addition to a wheel model. A candidate is an effect of the library, or a set of
+/// curves of one covariate (telemetry column), one curve for each of some channels.
 struct Candidate {
   std::vector<Effect> parts;  ///< one effect, or one curve per channel
-  std::string family;         ///< "empirical" for curves
+  std::string family;         ///< family of the effect; "empirical" for curves
   int parameters = 0;         ///< number of fitted parameters
 
-  /// Returns true for curves.
+  /// Returns true if the candidate consists of curves.
   bool empirical() const { return parts.front().empirical(); }
-  /// The explaining column; for an effect on one group of rows, the column of the group.
+  /// Returns the telemetry column that explains the residual. For an effect on one group of rows, this is the
+  /// text column of the group.
   const std::string& covariate() const {
     const Effect& front = parts.front();
     return front.only_column.empty() ? front.covariate : front.only_column;

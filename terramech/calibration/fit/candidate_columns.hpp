@@ -7,27 +7,31 @@
 
 namespace talus::terramech {
 
-/// A model evaluated on the rows of a trial.
+/// A wheel model, evaluated on the rows of a trial (table of measured rows).
 struct ModelOnRows {
   const RefinedModel& model;
   const Trial& trial;
+  /// Transforms residuals to unit variance.
   const Whitening& whitening;
   const Eigen::MatrixXd& level;  ///< predictions of the model, rows x kChannels
+  /// Sinkage of the model in each row.
   const Eigen::VectorXd& sinkage_m;
+  /// Solved wheel-soil contact of each row.
   const SolvedContacts& solved;
 };
 
-/// Returns the linearised contribution of a candidate, whitened row by row. For an effect: the change of the
-/// predictions at its typical size, and the derivatives by its other parameters. For a curve: the derivatives
-/// by its values at the knots.
+/// Returns the linearised contribution of a candidate (possible addition to the model), whitened row by row.
+/// For an effect this is the change of the predictions at the effect's typical size, with the derivatives
+/// with respect to its other parameters. For a curve it is the derivatives with respect to its values at the
+/// knots.
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
 
-/// Returns the derivatives of the predictions by the free parameters of a plan at a fitted model, in units of
-/// rangeOf().scale.
+/// Returns the derivatives of the predictions of a fitted model with respect to the free parameters of a
+/// plan. The unit of each parameter is rangeOf().scale.
 LinearModel linearised(const RefinedModel& fitted, const Trial& trial, const Whitening& whitening,
                        const FitPlan& plan, SolvedContacts& solved);
 
-/// The model with the parts of a candidate appended to its effects.
+/// Returns the model with the effects of a candidate appended to its effects.
 RefinedModel withCandidate(const RefinedModel& model, const Candidate& candidate);
 
 }  // namespace talus::terramech

@@ -14,68 +14,71 @@
 
 namespace talus::terramech {
 
-/// Free parameters and priors of a fit.
+/// Free parameters and priors of a fit of a wheel model.
 struct FitPlan {
+  /// Parameters that the fit may change.
   std::vector<FittedParameter> free;
-  /// By index into soilParameters(), in the parameter's unit (for log_stiffness the step from the start).
+  /// Priors of soil parameters, by index into soilParameters(), in the parameter's unit. The prior of
+  /// log_stiffness is that of the step from the start model.
   std::map<int, Estimate> soil_prior;
-  std::map<int, Estimate> effect_prior;  ///< by index of the effect; prior of its first parameter
-  /// Reference value k_c + k_phi (sum of the sinkage moduli) of log_stiffness; nullopt: that of the start
-  /// model.
+  /// Prior of the first parameter of an effect, by index of the effect.
+  std::map<int, Estimate> effect_prior;
+  /// Sum k_c + k_phi of the sinkage moduli at which log_stiffness is 0; nullopt: the sum of the start model.
   std::optional<double> prior_modulus;
-  /// Mean square of the whitened residuals (Birge's ratio) if the model is incomplete, else 1. The weight of
-  /// the rows relative to the priors is divided by this factor.
+  /// Mean square of the whitened residuals (Birge's ratio) if the model is incomplete, otherwise 1. The
+  /// weight of the rows relative to the priors is divided by this value.
   double misfit = 1.0;
-  int iterations = 12;
-  /// Whitened derivative, used in all iterations; null: recomputed in each iteration.
+  int iterations = 12;  ///< greatest number of iterations
+  /// Derivative of the whitened predictions, used in all iterations; null: recomputed in each iteration.
   const Eigen::MatrixXd* derivative = nullptr;
 };
 
-/// A fitted model.
+/// Fitted model with its sums of squares.
 struct Fit {
   RefinedModel model;
   double chi2 = 0.0;  ///< sum of squares of the whitened residuals, without priors
+  /// Sum of squares of the parameters' deviations from their priors, in standard deviations.
   double prior_chi2 = 0.0;
   double cost() const { return chi2 + prior_chi2; }
 };
 
-/// Fits a model by the Levenberg-Marquardt method to the whitened residuals, with bounded parameters.
-/// `solved` is the cache of predictRows().
+/// Fits a model to the rows of a trial by the Levenberg-Marquardt method. The fit minimises the squared
+/// whitened residuals plus the priors; parameters are bounded. `solved` is the cache of predictRows().
 Fit fitModel(const RefinedModel& start, const Trial& trial, const Whitening& whitening, const FitPlan& plan,
              SolvedContacts& solved);
 
-/// Prior of free parameter `k` of a plan, in the parameter's unit; for log_stiffness as a step from the
-/// model's current value.
+/// Returns the prior of free parameter number `k` of a plan, in the parameter's unit, or nullopt without a
+/// prior. For log_stiffness the prior is that of the step from the model's current value.
 std::optional<Estimate> priorOf(const RefinedModel& model, const FitPlan& plan, std::size_t k);
 
-/// Covariance of the free parameters [units of the parameters] at a fitted model.
+/// Returns the covariance of the free parameters of a fitted model, in the units of the parameters.
 Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& trial,
                                     const Whitening& whitening, const FitPlan& plan, SolvedContacts& solved);
 
-/// Derivative of the predictions by each parameter, scaled by `scale` (whitening or marginal scaling),
-/// rows*kChannels x parameters.
+/// Returns the derivative of the predictions with respect to each parameter in `free`, rows*kChannels x
+/// parameters. `scale` (whitening or marginal scaling) is applied to each column.
 Eigen::MatrixXd jacobian(const RefinedModel& model, const Trial& trial,
                          const std::vector<FittedParameter>& free, SolvedContacts& solved,
                          const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& scale);
 
-/// FitPlan::misfit for the whitened residuals of a trial.
+/// Returns FitPlan::misfit for the whitened residuals of a trial.
 double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
 
-/// Plan with all free parameters of a model: its effects, and the soil parameters that have a standard
-/// deviation, or with `fit_soil` all soil parameters under vague priors. The prior of an effect's first
-/// parameter is 0 with a standard deviation of fifty typical sizes: negligible if the rows determine the
-/// effect; otherwise the fitted effect is 0.
+/// Returns a plan with all free parameters of a model: the parameters of its effects, and the soil parameters
+/// that have a standard deviation. With `fit_soil`, all soil parameters are free and have vague priors. The
+/// first parameter of an effect has the prior 0 with a standard deviation of fifty typical sizes. This prior
+/// is negligible if the rows determine the effect; otherwise the fitted effect is 0.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
-/// Assigns default standard deviations to a soil whose file states none (ours): half the general uncertainty
-/// of soils. Cohesion 1000 Pa, friction angle 0.06 rad, n 0.125, stiffness a factor of e^1.5, K 6 mm, c1
-/// 0.04, c2 0.06.
+/// Assigns default standard deviations to the soil of a model whose file states no standard deviations
+/// (ours). They are half the general uncertainty of soils: cohesion 1000 Pa, friction angle 0.06 rad, n
+/// 0.125, stiffness a factor of e^1.5, K 6 mm, c1 0.04, c2 0.06.
 void giveDefaultDeviations(RefinedModel& model);
 
-/// The fitted parameters of the effect with index `effect`.
+/// Returns the fitted parameters of the effect with index `effect`.
 std::vector<FittedParameter> parametersOf(const RefinedModel& model, int effect);
 
-/// Bounds and typical step of a parameter.
+/// Bounds and typical step of a parameter, in its unit.
 struct ParameterRange {
   double low, high, scale;
 };

@@ -7,28 +7,31 @@
 #include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/io/model_file.hpp>
 
-/// Extrapolation error of a model: the outermost level of a column is held out and predicted from the other
-/// levels.
+/// Extrapolation error of a model. The rows with the outermost values of a column (an end of the column) are
+/// held out and predicted by a model that is fitted to the other rows. A level of a column is the set of rows
+/// with the same value.
 namespace talus::terramech {
 
-/// Returns true if the refined model has effects that the base lacks.
+/// Returns true if the refined model has effects that the base model does not have.
 bool hasCorrections(const TraceResult& result);
 
-/// Errors at both ends of slip, slip angle, load and the columns of effects, for columns with at least three
-/// levels. The held-out end is the outermost level if there are at most eight levels, otherwise the outermost
-/// tenth of the rows. If there are effects, ends of up to half of the rows are also held out: the levels with
-/// at most half of the rows, or the outermost half. Parameters are refitted without the held-out rows.
+/// Returns the errors at both ends of each column: slip, slip angle, load and the columns of effects, if the
+/// column has at least three levels. An end is the outermost level if there are at most eight levels,
+/// otherwise the outermost tenth of the rows. If the refined model has effects, larger ends of up to half of
+/// the rows are held out as well: the outermost levels with together at most half of the rows, or the
+/// outermost half. The parameters are refitted without the held-out rows.
 std::vector<EndLevel> endLevels(const TraceResult& result, const TraceOptions& options,
                                 const ProgressMonitor& watch = {});
 
-/// Limits the extrapolation of effects. Outside the trained rows the formula of an effect applies up to the
-/// held-out ends of its column that the formula predicted; beyond, the effect is constant. Without a
-/// predicted end the effect is constant from the edge of the rows on.
+/// Limits the extrapolation of the effects of a model. Outside the range of the rows, the formula of an
+/// effect applies up to the farthest held-out end of its column that the formula predicted; beyond this
+/// distance the effect is constant. If the formula predicted no end, the effect is constant outside the range
+/// of the rows.
 void boundEffects(RefinedModel& model, const Trial& trial, const std::vector<EndLevel>& ends);
 
-/// Ranges of the columns for predictions, and the growth of the error outside each range: the rate by which
-/// the errors at the end levels exceed the floor, proportional to the distance, by least squares over the
-/// rows of the ends on one side (ours).
+/// Returns the range of each column in the rows, with the growth of the prediction error outside the range
+/// (ours). The growth is proportional to the distance from the range. Its rate is fitted by least squares to
+/// the errors at the ends of one side that exceed `floor`, the rms sensor error per channel.
 std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<EndLevel>& ends,
                                         const ChannelErrors& floor);
 

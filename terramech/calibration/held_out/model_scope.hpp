@@ -5,23 +5,27 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// Limits the use of traced effects to channels and ranges that held-out rows do not contradict.
+/// Scope of a refined model: the channels and column ranges in which its effects (corrections of the base
+/// model) are applied, because held-out rows do not contradict them there.
 namespace talus::terramech {
 
-/// Scope of a result: channels in which the refined model errs no more than the base on result.held_out,
-/// ranges of the rows, and the distance beyond each range up to which result.ends do not contradict the model
-/// significantly (unlimited without a contradiction).
+/// Returns the scope of a trace result. It contains the channels in which the refined model has no larger
+/// errors on result.held_out than the base model, the ranges of the columns in the rows, and the distances
+/// beyond each range up to which the errors result.ends do not contradict the effects significantly
+/// (unlimited without a contradiction).
 ModelScope scopeOf(const TraceResult& result);
 
-/// Replaces errors of the refined model by those of the base where the scope excludes the corrections.
+/// Replace errors of the refined model by those of the base model: in channels that the scope excludes, and
+/// at ends whose errors contradict the effects. `floor` is the rms sensor error per channel.
 void keepConfirmed(HeldOut& held, const ModelScope& scope);
 void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
 
-/// Returns the index of the last effect found in a channel in which the effects increase the errors on
-/// held-out rows; nullopt if no channel has larger errors.
+/// Returns the index of the last found effect whose channel has larger errors on held-out rows with the
+/// effects than without them; nullopt if there is no such channel.
 std::optional<std::size_t> lastRefuted(const TraceResult& result);
 
-/// Predictions of the refined model within its scope, rows x kChannels.
+/// Returns the predictions of the refined model within its scope, rows x kChannels. Outside the scope the
+/// predictions return to those of the base model.
 Eigen::MatrixXd predictInScope(const TraceResult& result, const Trial& rows);
 
 }  // namespace talus::terramech

@@ -5,16 +5,16 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// Refits of models to a subset of the rows, and errors on the other rows.
+/// Refits the models of a trace result to a part of the rows, and computes errors on other rows.
 namespace talus::terramech {
 
-/// Squared errors summed by channel; NaN is ignored.
+/// Mean squared error by channel, accumulated over several sets of rows; NaN is ignored.
 class SquaredErrors {
  public:
   /// Adds residuals, rows x kChannels.
   void add(const Eigen::MatrixXd& residual);
 
-  /// Root mean square by channel; NaN if nothing was added.
+  /// Returns the root mean square of all residuals by channel; NaN for a channel without residuals.
   ChannelErrors rmse() const;
 
  private:
@@ -22,18 +22,18 @@ class SquaredErrors {
   std::array<int, kChannels> count_{};
 };
 
-/// Base of a result, refitted to the rows marked by `train` by the method of the original fit: uses
-/// rowsOfSoil() and the shared errors beside the base.
+/// Returns the base model of a result, refitted to the rows marked by `train` by the method of the original
+/// fit: of these rows only those of rowsOfSoil() are used, with the errors shared by rows of a run.
 RefinedModel refittedBase(const TraceResult& result, const TraceOptions& options, std::vector<char> train);
 
-/// Refined model of a result, refitted to these rows.
+/// Returns the refined model of a result, refitted to the rows marked by `train`.
 RefinedModel refittedModel(const TraceResult& result, const TraceOptions& options,
                            const std::vector<char>& train);
 
-/// Errors with slip and load as measured.
+/// Returns the root mean square residual by channel, with slip and load as measured.
 ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial);
 
-/// Residuals (measured - predicted) with slip and load as measured, rows x kChannels.
+/// Returns the residuals (measured - predicted) with slip and load as measured, rows x kChannels.
 Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial);
 
 }  // namespace talus::terramech

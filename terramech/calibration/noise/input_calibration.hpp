@@ -11,33 +11,36 @@
 namespace talus::terramech {
 
 /// Returns true if the measured slip varies by more than twice its possible error. Otherwise the effect of
-/// the slip error on the readings is a smooth function of the measured slip, and a smooth of slip would hide
-/// the error. `noise` is estimated from residuals without a smooth of slip; at most a tenth of the slip is
-/// treated as error.
+/// the slip error on the readings is a smooth function of the measured slip, and a smooth function of slip
+/// that is removed from the residuals would hide the error. `noise` must be estimated from residuals from
+/// which no smooth function of slip was removed; at most a tenth of the slip is treated as error.
 bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Returns the index of the set speed over ground of each row. The whole table has one speed if the speeds,
-/// computed from slip and rim speed, vary by at most twice the effect of the slip error. Otherwise each run
-/// has one speed if the speeds within runs vary by no more than that. The mean speed v then gives a more
-/// accurate slip than the reading: 1 - v / (r omega). Empty if speeds vary more, if slip, speed and rim speed
-/// are not consistent, or if slipIsSeen() is false. `noise` as in slipIsSeen().
+/// Returns for each row the index of its set speed over ground, the constant speed of a group of rows. The
+/// whole table has one set speed if the speeds that follow from slip and rim speed vary by at most twice the
+/// effect of the slip error. Otherwise each run has one set speed if the speeds within runs vary by no more
+/// than that. The mean speed v of the group then gives a more accurate slip than the reading: 1 - v / (r
+/// omega). Returns an empty vector if speeds vary more, if slip, speed and rim speed are not consistent, or
+/// if slipIsSeen() is false. `noise` has the meaning it has there.
 std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise);
 
-/// Returns true if slips vary measurably and the table has more than one set speed.
+/// Returns true if slipIsSeen() is true and the rows do not all have one set speed.
 bool inputsAreSeen(const Trial& trial, const SensorNoise& noise);
 
-/// Standard deviation of the slip error shared by all rows: that of the mean for a single slip level, or of
-/// the mean speed for a single speed; empty if the rows have independent errors.
+/// Returns the standard deviation of the slip error that all rows share: for a single slip level, that of the
+/// mean slip; for a single set speed, that of the mean speed. Returns an empty vector if the rows have
+/// independent slip errors.
 Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise);
 
-/// Sets the slip. Also updates the speed over ground if the row's speeds were consistent with the previous
-/// slip: two of slip, speed and rim speed determine the third.
+/// Sets the slip of a state. Two of slip, speed and rim speed determine the third; if the three were
+/// consistent, the speed over ground is therefore updated as well.
 void setSlip(WheelState& state, double slip);
 
-/// Replaces slip and load of the states by the posterior means given the measurements, and sets the posterior
-/// variances. The distribution of true values is estimated from all rows (nonparametric maximum likelihood,
-/// kiefer_wolfowitz_1956), which removes the attenuation by noisy inputs. The states must contain the
-/// measured slip and load. Set loads, if known, replace the estimated distribution of loads.
+/// Replaces slip and load of each state by the posterior means of the true values given the measurements, and
+/// sets their posterior variances. The distribution of true values is estimated from all rows (nonparametric
+/// maximum likelihood, kiefer_wolfowitz_1956), which removes the attenuation of dependences by noisy inputs.
+/// The states must contain the measured slip and load. If nominal loads `set` are given, they replace the
+/// estimated distribution of loads.
 void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set = {});
 
 }  // namespace talus::terramech

@@ -7,73 +7,83 @@
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
-/// Likelihood for residual tracing: rows whitened separately, linear in the parameters about a fitted model,
-/// with a Gaussian prior and an error common to the rows of a run.
+/// Likelihood for residual tracing. Rows are whitened separately, and the model is linear in its parameters
+/// about a fitted model. The parameters have a Gaussian prior, and the rows of a run share an error.
 namespace talus::terramech {
 
-/// Prior of the parameters, as steps from the model's current values: mean and 1 / variance; precision 0: no
-/// prior.
+/// Gaussian prior of the parameter steps (changes from the model's current values): mean and precision = 1 /
+/// variance. A precision of 0 means no prior.
 struct StepPrior {
   Eigen::VectorXd mean, precision;
 };
 
-/// Derivatives of the whitened readings, rows*kChannels x parameters, and the prior of the steps.
+/// Derivatives of the whitened readings with respect to the parameters, rows*kChannels x parameters, with the
+/// prior of the parameter steps.
 struct LinearModel {
   Eigen::MatrixXd columns;
   StepPrior prior;
 };
 
-/// Sums over rows of columns X and of tables Y (whitened residuals, one table per column).
+/// Sums over rows of products of the derivatives X and the tables Y. Each column of Y is one table of
+/// whitened residuals. A fold is a group of rows held out together; a unit is a group of rows (such as a run)
+/// that share an error.
 struct RunSums {
-  std::vector<Eigen::MatrixXd> gram;   ///< X^T X, per fold
-  std::vector<Eigen::MatrixXd> cross;  ///< X^T Y, per fold
-  Eigen::MatrixXd unit_column;         ///< sum of F^T X, per unit: kShared x parameters, stacked
+  std::vector<Eigen::MatrixXd> gram;   ///< X^T X of each fold
+  std::vector<Eigen::MatrixXd> cross;  ///< X^T Y of each fold
+  /// Sum of F^T X of each unit, kShared x parameters, stacked; F: see RunLikelihood.
+  Eigen::MatrixXd unit_column;
   StepPrior prior;
 };
 
-/// Fitted steps of each table, and the likelihood of each fold under the fits to the other folds.
+/// Fitted parameter steps for each table, and the likelihood of each fold (held-out group of rows) under the
+/// fit to the other folds.
 struct HeldOutFit {
-  /// Sum over folds of ln p(rows of the fold | rows of the other folds, prior), without the constant common
-  /// to all models: the predictive density. A parameter that the other folds do not determine has its prior.
+  /// Predictive density: the sum over folds of ln p(rows of the fold | rows of the other folds, prior),
+  /// without the constant that is common to all models. A parameter that the other folds do not determine has
+  /// its prior.
   Eigen::VectorXd log_likelihood;
-  /// Sum over parameters of the least squared departure from the prior among all fits with and without each
-  /// fold: a departure that a single fold determines does not count.
+  /// Squared deviation of the parameters from their priors. For each parameter it is the least value among
+  /// the fits to all rows and the fits without one fold, so that a deviation that a single fold determines
+  /// does not count.
   Eigen::VectorXd prior_chi2;
-  Eigen::MatrixXd steps;  ///< fitted to all rows, parameters x tables
-  /// log_likelihood - prior_chi2 / 2 (T34): each prior counts once, and a soil closer to its prior has a
-  /// higher score.
+  Eigen::MatrixXd steps;  ///< steps fitted to all rows, parameters x tables
+  /// Returns the score log_likelihood - prior_chi2 / 2 (T34). Each prior counts once; of two models with
+  /// equal log_likelihood, the one with a soil closer to its prior has the higher score.
   Eigen::VectorXd score() const { return log_likelihood - 0.5 * prior_chi2; }
 };
 
-/// Likelihood of residuals Y = X step + e + F u: e independent of unit variance, F the effect of a shared
-/// error on a whitened row, u ~ N(0, R), one u per unit.
+/// Likelihood of residuals Y = X step + e + F u. The errors e are independent with unit variance. F is the
+/// effect of the shared error components on a whitened row. The components u ~ N(0, R) of each unit (group of
+/// rows that share an error) are independent of other units.
 class RunLikelihood {
  public:
-  /// `factor`: F of each row; `unit`: number of its run from 0, empty if rows share no error. Rows of a unit
-  /// in different folds count as different units.
+  /// `factor` contains F of each row, and `unit` the number of each row's unit from 0; empty: rows share no
+  /// error. Rows of a unit in different folds count as different units.
   RunLikelihood(const std::vector<SharedFactor>& factor, const std::vector<int>& unit, const Folds& folds);
 
-  /// Sets the tables: whitened residuals, (rows * kChannels) x tables.
+  /// Sets the tables of whitened residuals, (rows * kChannels) x tables.
   void setTables(const Eigen::MatrixXd& tables);
 
+  /// Returns the sums for the columns of a model.
   RunSums sums(const LinearModel& model) const;
 
-  /// Returns the sums for the columns of `known` and `added` together, at the cost of those of `added`;
-  /// `of_known` are the sums of `known`.
+  /// Returns the sums for the columns of `known` and `added` together, at the cost of the sums for `added`
+  /// alone. `of_known` contains the sums for `known`.
   RunSums sums(const RunSums& of_known, const LinearModel& known, const LinearModel& added) const;
 
-  /// Predicts each fold from the other folds, for `count` tables from `first` on.
+  /// Predicts each fold from the other folds, for `count` tables beginning with table `first`.
   HeldOutFit heldOut(const RunSums& sums, const RunError& run, Eigen::Index first, Eigen::Index count) const;
 
-  /// Most likely covariance R of a unit's error with these columns in the model, with strength and stiffness
-  /// uncorrelated with other components: expectation maximisation of the restricted likelihood
-  /// (laird_ware_1982) from `start`.
+  /// Returns the most likely covariance R of a unit's error for one table, with the columns of `sums` in the
+  /// model. Soil strength and stiffness are uncorrelated with the other components. The method is expectation
+  /// maximisation of the restricted likelihood (laird_ware_1982), `steps` steps from `start`.
   RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
   bool hasUnits() const { return !information_.empty(); }
   int folds() const { return folds_; }
 
-  /// Log-likelihood of a table without parameters, for the choice of units.
+  /// Returns the log-likelihood of a table for a model without parameters. The choice of units uses this
+  /// value.
   double logLikelihood(const RunError& run, Eigen::Index table) const;
 
  private:
@@ -86,10 +96,10 @@ class RunLikelihood {
   std::vector<SharedFactor> factor_;
   std::vector<int> unit_, fold_, fold_of_unit_;
   int folds_;
-  std::vector<RunError> information_;    ///< sum of F^T F, per unit
-  std::vector<Eigen::MatrixXd> tables_;  ///< rows of each fold
+  std::vector<RunError> information_;    ///< sum of F^T F of each unit
+  std::vector<Eigen::MatrixXd> tables_;  ///< tables, as rows of each fold
   Eigen::MatrixXd square_;               ///< folds x tables
-  Eigen::MatrixXd unit_table_;           ///< sum of F^T Y, per unit: kShared x tables, stacked
+  Eigen::MatrixXd unit_table_;           ///< sum of F^T Y of each unit, kShared x tables, stacked
 };
 
 }  // namespace talus::terramech

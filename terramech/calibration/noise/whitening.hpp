@@ -9,52 +9,61 @@
 
 namespace talus::terramech {
 
-/// Slopes of the scaled predictions in the measured inputs slip and load, rows x kChannels.
+/// Derivatives of the predicted scaled channels with respect to the measured inputs slip and load, rows x
+/// kChannels.
 struct InputSlopes {
   Eigen::MatrixXd by_slip;  ///< per unit of slip
-  Eigen::MatrixXd by_load;  ///< per relative change of load; forces over the measured load
+  Eigen::MatrixXd by_load;  ///< per relative change of load, with forces divided by the measured load
 };
+/// Returns the derivatives of a model's predictions on the rows of a trial.
 InputSlopes inputSlopes(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
 
-/// Covariance of one row's scaled residuals. `slip_variance` is absolute, `load_variance` relative.
+/// Returns the covariance of one row's scaled residuals. `level` contains the model's predictions;
+/// `slip_variance` is absolute, `load_variance` relative.
 Eigen::Matrix4d rowCovariance(const Trial& trial, int row, const Eigen::MatrixXd& level,
                               const InputSlopes& slopes, const SensorNoise& noise, double slip_variance,
                               double load_variance);
 
-/// Inverse of the lower Cholesky factor of a row's covariance; rows and columns of channels without a
-/// measurement are zero.
+/// Returns the inverse of the lower Cholesky factor of a row's covariance. Its rows and columns of channels
+/// without a measurement are zero.
 Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::MatrixXd& measured, int row);
 
-/// One row of the residuals; 0 for missing measurements.
+/// Returns one row of the residuals, with 0 for missing measurements.
 Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 
-/// Transforms residuals to unit variance without correlation in three steps: rowFactor() of the covariance of
-/// a row, then the slip error shared by rows of a moment, then the error shared by rows of a run.
+/// Transformation of residuals to uncorrelated values of unit variance. It removes in turn the covariance of
+/// the channels of a row (rowFactor()), the slip error shared by the rows of a moment (all wheels at one
+/// time), and the error shared by the rows of a run.
 struct Whitening {
+  /// rowFactor() of each row.
   std::vector<Eigen::Matrix4d> factor;
-  Eigen::MatrixXd std;   ///< marginal standard deviations of a row's independent error, rows x kChannels
-  MomentSlip slip{};     ///< slip error shared by rows of a moment
-  SharedError common{};  ///< error shared by rows of a run
+  Eigen::MatrixXd std;   ///< standard deviations of each row's independent errors, rows x kChannels
+  MomentSlip slip{};     ///< slip error shared by the rows of a moment
+  SharedError common{};  ///< error shared by the rows of a run
 
-  /// Returns the effect of each shared error component on every row of rowByRow(), after removal of the slip
-  /// error of moments.
+  /// Returns the effect of each component of the error shared by a run on every row of rowByRow(), after
+  /// removal of the slip error of moments.
   std::vector<SharedFactor> shared() const;
 
-  Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;     ///< rows*kChannels; 0 where missing
-  Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;  ///< without the shared errors of runs
-  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;  ///< each value divided by its own std
+  /// Whitened residuals, rows*kChannels; 0 where missing.
+  Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;
+  /// as apply(), but without removal of the error shared by a run.
+  Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;
+  /// Each residual divided by its own standard deviation.
+  Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;
 
  private:
   void settleRuns(Eigen::VectorXd& rows) const;
 };
-/// Whitening of the rows marked by `keep`.
+/// Returns the whitening of the rows marked by `keep`.
 Whitening subset(const Whitening& whitening, const std::vector<char>& keep);
 
-/// Linearised effect of soil strength and stiffness on each row at the model's predictions; empty for a
-/// drive, on which soil and slip vary together.
+/// Returns the linearised effect of soil strength and stiffness on each row, at the model's predictions
+/// `level`. Returns an empty vector for a rover's own drive, on which soil and slip vary together.
 std::vector<SoilFactor> soilFactors(const RefinedModel& model, const Trial& trial,
                                     const Eigen::MatrixXd& level, const SolvedContacts& solved);
 
+/// Returns the whitening of a trial at the model's predictions `level`, for the given sensor errors.
 Whitening whitening(const Trial& trial, const Eigen::MatrixXd& level, const InputSlopes& slopes,
                     const SensorNoise& noise);
 
