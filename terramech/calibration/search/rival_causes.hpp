@@ -7,14 +7,14 @@
 
 namespace talus::terramech {
 
-/// Alternative causes for accepted candidate `k` of a search: the best form and the best curve of each
-/// column, and other forms of the candidate's column. Each cause is fitted in place of the candidate,
-/// together with the other effects. At most three, of different columns or forms, best first; gains are
-/// comparable to TraceSearch::gainOf(k).
+/// Returns alternative causes for accepted candidate `k` of a search: the best form and the best curve of
+/// each other column, and other forms of the candidate's own column. Each alternative is fitted in place of
+/// the candidate, together with the other effects. Returns at most three causes of different columns or
+/// forms, best first. Their gains are comparable to TraceSearch::gainOf(k).
 std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k);
 
-/// Alternative causes from `ranked` for a model without accepted candidates: at most three, of different
-/// columns or forms.
+/// Returns alternative causes from `ranked` for a model without accepted candidates: at most three, of
+/// different columns or forms.
 std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked);
 
 }  // namespace talus::terramech

@@ -10,7 +10,8 @@
 
 namespace talus::terramech {
 
-/// Search of traceResiduals(): compares candidate additions to a model and adds the accepted candidates.
+/// Search of traceResiduals(). It compares candidates (possible additions to a wheel model) and adds accepted
+/// candidates to the model. A candidate has one or more parts, each of which is an effect.
 class TraceSearch {
  public:
   /// `go_on` is called between steps of work with the completed share; a return value of false ends the call
@@ -21,98 +22,101 @@ class TraceSearch {
 
   const RefinedModel& model() const { return fit_.model(); }
 
-  /// Linearised gains of all candidates, and their distribution under noise.
+  /// Linearised gains of all candidates, and the distribution of gains under noise.
   struct Screening {
-    std::vector<Promise> promises;  ///< best first
-    double threshold = 0.0;
+    std::vector<Promise> promises;  ///< candidates, best first
+    double threshold = 0.0;         ///< gain that noise exceeds with probability `significance`
     double p_value(double gain) const { return noise.pValue(gain); }
     GainDistribution noise;
   };
+  /// Returns the linearised gains, with a distribution from `draws` drawn tables.
   Screening screen(int draws);
 
-  /// Linearised gains of the candidates, in their order.
+  /// Returns the linearised gains of the candidates, in their order.
   std::vector<double> gainsOf(const std::vector<Candidate>& candidates);
 
-  /// Fits the most promising candidates inside the full model; best gain first.
+  /// Fits the most promising candidates inside the full model. Returns them with the best gain first.
   std::vector<Explanation> fitBest(const std::vector<Promise>& promises);
 
-  /// Fits a candidate together with all other parameters.
+  /// Returns a candidate fitted together with all other parameters.
   Explanation fitted(const Candidate& candidate);
 
-  /// The fitted model with a candidate, including the covariance of its parameters.
+  /// Returns the fitted model with a candidate, including the covariance of its parameters.
   RefinedModel modelWith(const Candidate& candidate) const;
 
   /// Returns true if the predictions of a model depend on a column: an exchange of the column's values among
   /// rows (the first with the middle row, and so on) changes the log-likelihood by more than closeGain().
   bool dependsOn(const RefinedModel& model, const std::string& column) const;
 
-  /// Gains of pairs of candidates, best first; the first candidate is fitted before the second is searched.
+  /// Returns pairs of candidates as explanations, best gain first. The first candidate of a pair is fitted
+  /// before the second is searched.
   std::vector<Explanation> pairs();
 
-  /// Adds a candidate to the model, refits all parameters and re-estimates the noise.
+  /// Adds a candidate to the model, refits all parameters and estimates the noise again.
   void accept(const Candidate& candidate);
 
   /// Sets a prior for the first parameter of the effect accepted first.
   void trust(const std::optional<Estimate>& prior);
 
-  /// Removes accepted candidate k and refits the others with unchanged noise.
+  /// Removes accepted candidate number k and refits the others with unchanged noise.
   void leaveOut(std::size_t k);
 
-  /// Refits all parameters and re-estimates the noise.
+  /// Refits all parameters and estimates the noise again.
   void settleAll();
 
-  /// Gain of accepted candidate k relative to the model without k, with unchanged noise.
+  /// Returns the gain of accepted candidate k relative to the model without it, with unchanged noise.
   double gainOf(std::size_t k) const;
 
-  /// Gain of part `part` of accepted candidate k relative to the model without the part, with unchanged
-  /// noise.
+  /// Returns the gain of part number `part` of accepted candidate k relative to the model without this part,
+  /// with unchanged noise.
   double gainOfPart(std::size_t k, std::size_t part) const;
 
   /// Returns true if accepted candidate k changes the predictions of some channel by at least a fiftieth of
-  /// its noise (root mean square). Smaller changes would gain less than closeGain() in any table that is
-  /// searched.
+  /// the channel's noise (root mean square). Smaller changes would gain less than closeGain() in any table
+  /// that is searched.
   bool acts(std::size_t k) const;
 
-  /// Removes the parts of accepted candidate k with a gain of at most `least`, from the last part on; at
-  /// least one part remains.
+  /// Removes the parts of accepted candidate k that have a gain of at most `least`, beginning with the last
+  /// part. At least one part remains.
   void thin(std::size_t k, double least);
 
-  /// Removes those parts of accepted candidate k that have no effect according to acts(), regardless of their
-  /// gain: a form at its bound may have a linearised gain from values beyond the bound. At least one part
-  /// remains.
+  /// Removes the parts of accepted candidate k that have no effect according to the criterion of acts(),
+  /// regardless of their gain: the linearised gain of a form at its bound may come from values beyond the
+  /// bound. At least one part remains.
   void dropIdleParts(std::size_t k);
 
-  /// Current effects of accepted candidate k in the model.
+  /// Returns the current effects of accepted candidate k in the model.
   std::vector<Effect> parts(std::size_t k) const;
 
-  /// Error shared by the rows of a run.
+  /// Returns the error shared by the rows of a run.
   const SharedError& sharedError() const { return fit_.rows().whitening().common; }
 
-  /// Squared norm of the whitened residuals.
+  /// Returns the squared norm of the whitened residuals.
   double chi2() const { return fit_.rows().white().squaredNorm(); }
 
-  /// Increases the number of knots of curves if this yields a gain.
+  /// Increases the number of knots of a curve if this yields a gain.
   void refineCurves();
 
-  /// Writes the model, errors and standard deviations to the result.
+  /// Writes the model, its errors and standard deviations to the result.
   void finish(TraceResult& result);
 
  private:
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
   bool refineCurve(std::size_t k);
   RefinedModel withoutPart(std::size_t k, std::size_t part) const;
-  /// Returns true if the predictions change without an effect, by the criterion of acts().
+  /// Returns true if the predictions without an effect differ from those of the model, by the criterion of
+  /// acts().
   bool differs(const RefinedModel& without) const;
-  std::size_t firstPart(std::size_t k) const;  ///< index of candidate k's first effect in the model
-  /// Sets the parameters, their standard deviations and the channel of each effect.
+  std::size_t firstPart(std::size_t k) const;  ///< index of the first effect of candidate k in the model
+  /// Sets the parameters, their standard deviations and the channel of each found effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;
 
   TraceOptions options_;
   std::function<bool(double)> go_on_;
   TrialFit fit_;
-  std::optional<Estimate> first_prior_;  ///< of the first parameter of the first accepted effect
-  std::size_t given_effects_;            ///< number of leading effects, those of the base; fitted, never
-                                         ///< removed
+  std::optional<Estimate> first_prior_;  ///< prior of the first parameter of the first accepted effect
+  /// Number of leading effects, those of the base model; they are fitted, never removed.
+  std::size_t given_effects_;
   std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
 };
 

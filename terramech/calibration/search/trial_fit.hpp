@@ -14,11 +14,12 @@
 
 namespace talus::terramech {
 
-/// Fits a model to rows, and scores other models on the same rows with the same noise.
+/// Fits a wheel model to the rows of a trial, and scores other models on the same rows with the same sensor
+/// noise.
 class TrialFit {
  public:
-  /// Estimates the noise for `base` and fits its free parameters, or the whole soil if `fit_soil`. `go_on` is
-  /// called before each round of the fit; false ends the fit.
+  /// Estimates the noise for `base` and fits its free parameters, or all soil parameters if `fit_soil` is
+  /// true. `go_on` is called before each round of the fit; a return value of false ends the fit.
   TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
            const std::function<bool(double)>& go_on);
 
@@ -26,39 +27,40 @@ class TrialFit {
   const CalibratedRows& rows() const { return rows_; }
   const SolvedContacts& solved() const { return solved_; }
 
-  /// Sets a prior for the first parameter of the first effect after those of the base.
+  /// Sets a prior for the first parameter of the first effect that follows those of the base model.
   void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
 
   /// Fits another model to the rows with unchanged noise.
   Fit fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const;
 
-  /// The model of fit(), started from the present solutions.
+  /// Returns the model of fit(), with the present contact solutions as initial values.
   RefinedModel fitted(const RefinedModel& model, int iterations) const;
 
-  /// Linearises another model on the rows.
+  /// Returns another model linearised on the rows, as null model of gainDistribution().
   NullModel standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
                      SolvedContacts& solved) const;
 
-  /// Score of a fitted model with unchanged noise.
+  /// Returns the score (held-out log-likelihood plus prior term) of a fitted model, with unchanged noise.
   double scoreOf(const RefinedModel& fitted) const;
 
-  /// Replaces the model with unchanged noise.
+  /// Replaces the model. The noise remains unchanged.
   void setModel(const RefinedModel& model);
 
-  /// Re-estimates the noise.
+  /// Estimates the noise again.
   void refresh();
 
-  /// Sets the model, then fits all parameters and re-estimates the noise, twice.
+  /// Sets the model, and then twice fits all parameters and estimates the noise.
   void settle(const RefinedModel& start);
 
-  /// Sets the free parameters of the model and their covariance, after another fit of all parameters if
-  /// `again` is true. Returns the covariance.
+  /// Sets the free parameters of the model and their covariance. If `again` is true, all parameters are
+  /// fitted once more before. Returns the covariance.
   Eigen::MatrixXd finish(bool again);
 
-  /// The channel in which the removal of an effect changes the predictions most, relative to the noise.
+  /// Returns the channel in which the removal of an effect changes the predictions most, relative to the
+  /// noise.
   Channel strongest(std::size_t effect) const;
 
-  /// noiseFloor() of the model with this noise, at slip and load as measured.
+  /// Returns noiseFloor() of the model for the given sensor noise, at slip and load as measured.
   std::array<double, kChannels> noiseFloor(const SensorNoise& noise);
 
  private:
@@ -69,12 +71,12 @@ class TrialFit {
 
   bool fit_soil_;
   RefinedModel model_;
-  int given_effects_;     ///< number of leading effects, those of the base
-  double prior_modulus_;  ///< k_c + k_phi of the base, reference of log_stiffness
+  int given_effects_;     ///< number of leading effects, those of the base model
+  double prior_modulus_;  ///< k_c + k_phi of the base model, at which log_stiffness is 0
   CalibratedRows rows_;
   Folds folds_;
   SolvedContacts solved_;
-  double misfit_ = 1.0;  ///< as FitPlan::misfit
+  double misfit_ = 1.0;  ///< value of FitPlan::misfit
   std::optional<Estimate> first_prior_;
 };
 

@@ -6,24 +6,26 @@
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/io/model_file.hpp>
 
-/// A table of wheel telemetry together with the model for its rows.
+/// Table of wheel telemetry together with the wheel model for its rows.
 namespace talus::terramech {
 
-/// Reads the model of a soil or model file, with the wheel of a rover (library name or file). Without a file
-/// the model is unknownSoil(); without a rover the wheel of the model is used. Throws InputError as
-/// loadModel() and loadRover().
+/// Reads the model from a soil or model file and sets its wheel to that of a rover (library name or file).
+/// With an empty `file` the model is unknownSoil(); with an empty `rover` the wheel of the model is kept.
+/// Throws the exceptions of loadModel() and loadRover().
 ModelFile baseModel(const std::string& file, const std::string& rover);
 
-/// A model, and the rows of a table to which it applies.
+/// Wheel model, and the rows of a table to which it applies.
 struct ModelRows {
-  RefinedModel model;  ///< the given model; sets slip_along_travel if slipIsAlongTravel() of the rows
+  RefinedModel model;  ///< the given model, with slip_along_travel set if slipIsAlongTravel() of the rows
+  /// Rows to which the model applies.
   Trial trial;
-  Trial beyond_axle;                  ///< rows with z >= r: beyondAxle()
-  std::vector<RejectedRow> rejected;  ///< rejected rows of the table, including rows with a side force but no
-                                      ///< slip angle
+  Trial beyond_axle;  ///< rows with sinkage z >= wheel radius r (beyondAxle())
+  /// Rejected rows of the table, including rows with a side force but no slip angle.
+  std::vector<RejectedRow> rejected;
 };
 
-/// Selects the rows of a table for a model. Throws InputError as leaveOutWithoutSlipAngle() and makeTrial().
+/// Selects the rows of a table for a model. Throws the exceptions of leaveOutWithoutSlipAngle() and
+/// makeTrial().
 ModelRows modelRows(Telemetry table, const RefinedModel& model);
 
 }  // namespace talus::terramech

@@ -5,7 +5,8 @@
 
 namespace talus::terramech {
 
-/// Estimates by the linear methods: sojourner, iagnemma, linear-offset. Throws as estimateSoil().
+/// Estimates the soil by one of the linear methods sojourner, iagnemma and linear-offset. Throws the
+/// exceptions of estimateSoil().
 SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

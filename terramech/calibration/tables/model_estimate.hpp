@@ -5,14 +5,14 @@
 
 namespace talus::terramech {
 
-/// Returns true if a side force is measured in rows with a slip angle above kStraightUpTo_rad, or exceeds
-/// kCoarse of the load (root mean square) in rows of straight wheels. Such rows require the complete model
-/// for a soil estimate. Throws as readTelemetry().
+/// Returns true if a soil estimate from the table requires the complete wheel model. This is the case if a
+/// side force is measured in rows with a slip angle above kStraightUpTo_rad, or if the side force in rows of
+/// straight wheels exceeds kCoarse of the load (root mean square). Throws the exceptions of readTelemetry().
 bool measuresSideForce(const TableFile& table);
 
-/// Estimates the soil by --method wong-reece from all channels of the table, with the effects of --model if
-/// given. Throws as estimateSoil(), and std::domain_error if no soil explains the rows (noSoilExplains()), or
-/// if a soil explains all columns except one of at least three (leavesUnexplained()).
+/// Estimates the soil by method wong-reece from all channels of the table, with the effects of options.model
+/// if given. Throws the exceptions of estimateSoil(). Throws std::domain_error if no soil explains the rows
+/// (noSoilExplains()), or if a soil explains all columns except one of at least three (leavesUnexplained()).
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -9,38 +9,39 @@
 
 namespace talus::terramech {
 
-/// Mean square of the whitened residuals above which the model is rejected [-].
+/// Mean square of the whitened residuals above which the model of the estimate is rejected [-].
 inline constexpr double kMisfit = 3.0;
 
-/// Root mean square of the residuals over load or radius that is acceptable for a rigid-wheel model [-].
+/// Root mean square residual, divided by load or radius, that is acceptable for a rigid-wheel model [-].
 inline constexpr double kCoarse = 0.1;
 
-/// Readings of rows, and predictions for the estimated soil.
+/// Measured channels of the rows, and the predictions for the estimated soil.
 struct SoilAnswer {
-  Eigen::MatrixXd measured;   ///< rows x kChannels [-] as Reading::scaled(); NaN: not measured
-  Eigen::MatrixXd predicted;  ///< same layout
+  Eigen::MatrixXd measured;  ///< scaled channels (Reading::scaled()), rows x kChannels [-]; NaN: not measured
+  Eigen::MatrixXd predicted;  ///< predictions of `measured`
   double misfit = 1.0;        ///< mean square of the whitened residuals [-]
 };
 
-/// Telemetry column of a channel, such as "side_force_N".
+/// Returns the telemetry column of a channel, for example "side_force_N".
 const char* columnOf(Channel channel);
 
-/// A column of the table, and the share that the soil leaves unexplained.
+/// Column of the table, and the share of its readings that the soil does not explain.
 struct UnexplainedColumn {
-  std::string column;  ///< empty: no column
+  std::string column;  ///< name; empty: no column is unexplained
   double left = 0.0;   ///< root mean square of the residuals over that of the readings [-]
 };
 
-/// The channel with the largest unexplained share, if more than half of its readings and more than 0.1 of
-/// load or radius are unexplained. The bounds are ours, not from the literature: they are independent of the
-/// stated noise, and soils of measured sand are below them.
+/// Returns the column with the largest unexplained share, among those for which the residual exceeds half of
+/// the readings and 0.1 of load or radius (root mean square). The limits are ours: they are independent of
+/// the stated noise, and soils of measured sand do not exceed them.
 UnexplainedColumn unexplained(const SoilAnswer& answer);
 
-/// Returns true if more than half of the channel and more than 0.1 of load or radius are unexplained.
+/// Returns true if the residual of a channel exceeds half of its readings and 0.1 of load or radius (root
+/// mean square).
 bool leavesUnexplained(const SoilAnswer& answer, Channel channel);
 
 /// Returns the reason why no soil explains the rows. Returns an empty text if the estimated strength is
-/// plausible (SoilEstimate::implausible()), and either the misfit is at most kMisfit or no column is
+/// plausible (SoilEstimate::implausible()) and if, in addition, the misfit is at most kMisfit or no column is
 /// unexplained.
 std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer);
 

@@ -5,7 +5,7 @@
 
 namespace talus::terramech {
 
-/// Estimates the soil from plate tests: bevameter. Throws as estimateSoil().
+/// Estimates the soil from plate tests by method bevameter. Throws the exceptions of estimateSoil().
 SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

@@ -5,8 +5,9 @@
 
 namespace talus::terramech {
 
-/// Posterior of the soil from the wheel's equilibrium: wong-reece without a model. Throws as estimateSoil(),
-/// and std::domain_error if no soil explains the rows (noSoilExplains()).
+/// Estimates the soil by method wong-reece without a model file: the posterior given the equilibrium of the
+/// wheel. Throws the exceptions of estimateSoil(), and std::domain_error if no soil explains the rows
+/// (noSoilExplains()).
 SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
 
 }  // namespace talus::terramech

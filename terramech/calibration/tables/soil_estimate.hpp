@@ -14,74 +14,77 @@
 
 namespace talus::terramech {
 
-/// Options of a soil estimate from a table. Methods:
+/// Options of a soil estimate from a telemetry table. The methods are
 ///   bevameter       plate tests (plate_estimate.hpp)
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
 ///   wong-reece      posterior from the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
 struct EstimateOptions {
-  TableFile table;              ///< the CSV
-  std::string method;           ///< one of estimateMethods()
-  std::string shear_modulus;    ///< K [m] or one of modulusMethods(); empty: column, else prior, else joint
-  std::string prior;            ///< soil file or name; empty: thesis Table 2.1 for wong-reece, otherwise none
-  std::string rover;            ///< library name or file with default wheel dimensions; may be empty
-  std::string model;            ///< wong-reece: refined model whose effects are applied; empty: no model
-  bool whole_equation = false;  ///< linear-offset: include M1 of Eq. 2.9
-  bool recursive = false;       ///< process rows one by one and store each estimate
-  double plate_width_m = 0.0;   ///< bevameter: width of all plates [m] for a table without a width column; 0:
-                                ///< not given
-  double noise = 0.05;          ///< relative standard deviation of each reading [-]
+  TableFile table;     ///< CSV file
+  std::string method;  ///< estimation method, one of estimateMethods()
+  /// K [m] or one of modulusMethods(); empty: column of the table, otherwise prior, otherwise joint.
+  std::string shear_modulus;
+  /// Soil file or library name; empty: thesis Table 2.1 for wong-reece, otherwise no prior.
+  std::string prior;
+  std::string rover;  ///< library name or file of the rover with default wheel dimensions; may be empty
+  std::string model;  ///< wong-reece: file of a refined model whose effects are applied; empty: no effects
+  bool whole_equation = false;  ///< linear-offset: include the coefficient M1 of thesis Eq. 2.9
+  bool recursive = false;       ///< process rows one by one and store the estimate after each row
+  /// bevameter: width of all plates for a table without a width column; 0: not given.
+  double plate_width_m = 0.0;
+  double noise = 0.05;  ///< relative standard deviation of each reading [-]
 };
 
-/// Estimate after a row of the table; NaN if not available yet.
+/// Soil estimate after a row of the table; NaN if not yet available.
 struct RunningSoil {
-  /// Marks a value that is not available.
+  /// Value of a quantity that is not available.
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-  std::size_t line = 0;                                          ///< line of the table
-  double cohesion_Pa = kNan;                                     ///< c
-  double friction_angle_rad = kNan;                              ///< phi
-  double shear_modulus_m = kNan;                                 ///< K
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< of (c, tan phi)
+  std::size_t line = 0;                                          ///< line number in the file
+  double cohesion_Pa = kNan;                                     ///< cohesion c
+  double friction_angle_rad = kNan;                              ///< friction angle phi
+  double shear_modulus_m = kNan;                                 ///< shear deformation modulus K
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kNan);  ///< covariance of (c, tan phi)
 };
 
-/// Returns options.shear_modulus as a number [m]; nullopt if the text is not a number. Throws InputError if
-/// the number is not > 0.
+/// Returns options.shear_modulus as a number [m], or nullopt if the text is not a number. Throws InputError
+/// if the number is not > 0.
 std::optional<double> statedModulus(const EstimateOptions& options);
 
-/// Standard deviation of phi [rad] from that of tan(phi), linearised at phi.
+/// Returns the standard deviation of phi [rad] from that of tan(phi) in `covariance`, linearised at phi.
 double frictionStd_rad(const Eigen::Matrix2d& covariance, double friction_angle_rad);
 
-/// Result of any method; quantities that a method does not provide are NaN.
+/// Soil estimate by any method. Quantities that a method does not provide are NaN or empty.
 struct SoilEstimate {
-  double cohesion_Pa;                        ///< c
-  double tan_friction;                       ///< tan(phi) [-]
-  double shear_modulus_m;                    ///< K
-  Eigen::Matrix2d covariance;                ///< of (c, tan phi)
-  double friction_angle_rad;                 ///< phi
-  double sinkage_exponent;                   ///< n [-]
-  std::optional<double> cohesive_modulus;    ///< k_c
-  std::optional<double> frictional_modulus;  ///< k_phi
-  std::vector<PlateModulus> plates;          ///< bevameter, if the table contains one soil
-  std::vector<TrialSoil> soils;              ///< bevameter: each soil of the table from its trials
-  std::size_t rows_used = 0;                 ///< number of readings in the fit
-  std::vector<RejectedRow> rejected;         ///< unusable rows with the reason
-  std::vector<std::string> ignored;          ///< numeric columns that the method does not read
-  std::vector<std::string> unseen;           ///< parameters not determined by the data, with the reason
-  std::vector<std::string> warnings;         ///< warnings about the fit
-  std::vector<std::string> effects;          ///< effects applied, of --model
-  std::vector<StressPair> points;            ///< points of a line fit, for a plot
-  std::optional<SoilPosterior> posterior;    ///< wong-reece
-  std::vector<std::string> class_names;      ///< of the prior of wong-reece
-  std::vector<RunningSoil> running;          ///< per used row, if recursive
+  double cohesion_Pa;                        ///< cohesion c
+  double tan_friction;                       ///< friction coefficient tan(phi) [-]
+  double shear_modulus_m;                    ///< shear deformation modulus K
+  Eigen::Matrix2d covariance;                ///< covariance of (c, tan phi)
+  double friction_angle_rad;                 ///< friction angle phi
+  double sinkage_exponent;                   ///< sinkage exponent n [-]
+  std::optional<double> cohesive_modulus;    ///< k_c [N/m^(n+1)]
+  std::optional<double> frictional_modulus;  ///< k_phi [N/m^(n+2)]
+  /// bevameter: modulus of each plate size, if the table contains one soil.
+  std::vector<PlateModulus> plates;
+  std::vector<TrialSoil> soils;       ///< bevameter: parameters of each soil of the table from its trials
+  std::size_t rows_used = 0;          ///< number of readings in the fit
+  std::vector<RejectedRow> rejected;  ///< unusable rows, with the reason
+  std::vector<std::string> ignored;   ///< numeric columns that the method does not read
+  std::vector<std::string> unseen;    ///< parameters that the data do not determine, each with the reason
+  std::vector<std::string> warnings;  ///< warnings about the fit
+  std::vector<std::string> effects;   ///< effects of the model file that were applied
+  std::vector<StressPair> points;     ///< equations of the samples in a line fit, for a plot
+  std::optional<SoilPosterior> posterior;  ///< wong-reece: posterior of the soil
+  std::vector<std::string> class_names;    ///< wong-reece: names of the soil classes of the prior
+  std::vector<RunningSoil> running;        ///< estimate after each used row, if `recursive` is true
 
   /// Initialises the numbers to NaN.
   SoilEstimate();
 
-  /// Copies c, tan(phi), their covariance and undetermined parameters from a line fit.
+  /// Copies c, tan(phi), their covariance and the undetermined parameters from a line fit.
   void take(const ShearStrength& fit);
 
-  /// Reason why the estimate is implausible for any soil by more than two standard deviations: c < 0, phi
-  /// below 0 or above 60 deg. Empty if plausible.
+  /// Returns the reason why no soil can have this strength: c < 0, phi < 0 or phi > 60 deg, each by more than
+  /// two standard deviations. Returns an empty text if the strength is plausible.
   std::string implausible() const;
 };
 

@@ -6,34 +6,40 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 
-/// Cross-validation of the complete tracing procedure: effects and parameters are determined from the other
-/// rows only.
+/// Cross-validation of the complete procedure of residual tracing: effects and parameters are determined
+/// without the rows that are left out.
 namespace talus::terramech {
 
-/// Rows left out together, with a label.
+/// Set of rows that are left out together, with a label.
 struct LeftOut {
-  std::string what;  ///< "slip_angle_rad = 0.7854"
-  std::vector<char> rows;
+  std::string what;        ///< label, for example "slip_angle_rad = 0.7854"
+  std::vector<char> rows;  ///< non-zero: the row is left out
 };
 
-/// Rows to leave out according to `request`: COLUMN leaves out each of its levels in turn (ten bands for more
-/// than twelve levels), COLUMN=VALUE,VALUE the rows with one of these values, COLUMN=LOW..HIGH the rows in
-/// the range. Throws InputError, with `source`, if the column is unknown or if no row or every row would be
-/// left out.
+/// Returns the sets of rows that `request` specifies. COLUMN leaves out each level of the column (rows with
+/// the same value) in turn, or ten bands if there are more than twelve levels. COLUMN=VALUE,VALUE leaves out
+/// the rows with one of these values, and COLUMN=LOW..HIGH the rows in this range. Throws InputError, with
+/// `source` as location, if the column is unknown or if no row or every row would be left out.
 std::vector<LeftOut> leftOut(const Trial& trial, const std::string& request, const std::string& source);
 
-/// Errors and predictions of rows left out.
+/// Errors and predictions for a set of rows that was left out.
 struct LeftOutErrors {
+  /// Label of the set.
   std::string what;
+  /// Number of rows.
   int rows = 0;
-  std::vector<std::string> effects;  ///< found without these rows: name (column)
+  std::vector<std::string> effects;  ///< effects found without these rows, as "name (column)"
+  /// Errors of the base and the refined model, and noise floor.
   ChannelErrors base{}, refined{}, floor{};
-  ChannelErrors regression{};  ///< plain regression for comparison: columns and squares, ridge by generalised
-                               ///< cross-validation (golub_1979)
-  Trial trial;                 ///< the rows left out
-  Eigen::MatrixXd base_predicted, predicted;  ///< predictions of base and refined model: rows x kChannels [-]
+  /// Errors of a plain regression for comparison: columns and their squares, ridge by generalised
+  /// cross-validation (golub_1979).
+  ChannelErrors regression{};
+  Trial trial;  ///< rows that were left out
+  /// Predictions of the base and the refined model, rows x kChannels [-].
+  Eigen::MatrixXd base_predicted, predicted;
 };
 
+/// Traces the residuals of `base` without the rows of `left`, and returns the errors on these rows.
 LeftOutErrors traceWithout(const RefinedModel& base, const Trial& trial, const LeftOut& left,
                            const TraceOptions& options, const ProgressMonitor& watch);
 

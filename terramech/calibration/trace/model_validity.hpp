@@ -6,18 +6,18 @@
 
 namespace talus::terramech {
 
-/// Applicability of the model of a rigid wheel on soil with physical effects.
+/// Conclusion whether the model of a rigid wheel on soil, with physical effects, applies to a table.
 struct Applicability {
   bool applies = true;  ///< true if the model describes the rows
-  std::string reason;   ///< reason if the model does not apply
+  std::string reason;   ///< reason why the model does not apply; otherwise empty
 };
 
-/// Tests the physical model, without empirical curves and sensor faults, on held-out rows. Only channels that
-/// vary are tested: by more than twice their noise or, for torque and sinkage, by more than a quarter of
-/// their mean. The model must explain at least half of the variance in one channel, and in no channel may its
-/// mean square error exceed twice the variance. If drawbar pull, torque and sinkage are measured together,
-/// the soil-independent relation between them (closure_offset.hpp) must not have a median error above 0.15
-/// while the error of the model in drawbar pull is as large. All limits are ours.
+/// Tests the physical model, i.e. without empirical curves and sensor faults, on held-out rows. Only channels
+/// that vary are tested: the scatter must exceed twice the noise or, for torque and sinkage, a quarter of the
+/// mean. The model must explain at least half of the variance in one channel, and in no channel may its mean
+/// square error exceed twice the variance. If drawbar pull, torque and sinkage are measured together, the
+/// soil-independent relation between them (closure_offset.hpp) is tested as well: its median error and the
+/// rms error of the model in DP/W must not both exceed 0.15. All limits are ours.
 Applicability applicability(const TraceResult& result, const TraceOptions& options);
 
 }  // namespace talus::terramech

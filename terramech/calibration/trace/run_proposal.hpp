@@ -7,53 +7,53 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// Design of the next experiment: runs for which the remaining causes differ most, and scores of the causes
-/// from measured runs.
+/// Design of the next experiment. The proposed runs are those for which the predictions of the possible
+/// causes of a residual differ most. Measured runs then score the causes.
 namespace talus::terramech {
 
-/// A possible cause, and the model that includes it.
+/// Possible cause of the residual, with the model that includes it.
 struct Cause {
   std::string name;
   RefinedModel model;
 };
 
-/// The refined model, then the refined model with one effect replaced by a rival. Rivals are the causes that
-/// the rows cannot distinguish from the effect or, without such causes, the candidate with the next greatest
-/// gain. If no candidate has a gain, returns the refined model alone.
+/// Returns the causes: first the refined model, then the refined model with one effect replaced by a rival.
+/// Rivals are the causes that the rows cannot distinguish from the effect or, if there are no such causes,
+/// the candidate with the next greatest gain. If no candidate has a gain, returns only the refined model.
 std::vector<Cause> causesOf(const TraceResult& result);
 
-/// A cause's prediction of the mean of a run's rows, in the unit of each answer; NaN for answers that the
-/// table does not measure.
+/// Prediction by a cause of the mean over the rows of a run, in the unit of each measured column; NaN for
+/// columns that the table does not measure.
 struct RunPrediction {
   std::string cause;
   std::array<double, kChannels> mean{}, std{};
 };
 
-/// A proposed run: constant conditions, and rows that differ in slip.
+/// Proposed run: conditions that are constant over the run, and rows that differ in slip.
 struct ProposedRun {
-  std::vector<std::pair<std::string, double>> columns;      ///< numeric columns except slip
-  std::vector<std::pair<std::string, std::string>> groups;  ///< text columns
-  std::vector<double> slip;                                 ///< of its rows, ascending
-  std::vector<std::vector<RunPrediction>> row_predictions;  ///< for each row, of each cause
-  std::vector<RunPrediction> predictions;                   ///< mean of the rows, of each cause
+  std::vector<std::pair<std::string, double>> columns;      ///< values of the numeric columns except slip
+  std::vector<std::pair<std::string, std::string>> groups;  ///< texts of the text columns
+  std::vector<double> slip;                                 ///< slip of each row, ascending
+  std::vector<std::vector<RunPrediction>> row_predictions;  ///< prediction for each row by each cause
+  std::vector<RunPrediction> predictions;  ///< prediction for the mean of the rows by each cause
 };
 
-/// Proposes at most `count` runs, in the order of selection, within the range of the rows. Columns of the
+/// Proposes at most `count` runs, in the order of selection, within the range of the rows. The columns of the
 /// causes and the load have the values at the ends and in the middle of their ranges; other columns have the
-/// values of the middle row. Each run minimises the sum over pairs of causes of exp(-B), with B the
-/// Bhattacharyya distance of their predictions (bhattacharyya_1943), which bounds the probability of
-/// confusing the causes. Predictions include the errors of sensors, parameters and the error shared by rows
-/// of a run.
+/// values of the middle row. Each run minimises the sum over pairs of causes of exp(-B), where B is the
+/// Bhattacharyya distance of their predictions (bhattacharyya_1943). This sum bounds the probability of
+/// confusing the causes. Predictions include the errors of sensors and parameters, and the error shared by
+/// the rows of a run.
 std::vector<ProposedRun> proposeRuns(const TraceResult& result, int count);
 
-/// Score of a cause from measured rows.
+/// Score of a cause, given measured rows.
 struct CauseScore {
   std::string cause;
   double log_likelihood = 0.0;
-  double probability = 0.0;  ///< posterior for equal prior probabilities of the causes
+  double probability = 0.0;  ///< posterior probability for equal prior probabilities of the causes
 };
 
-/// Scores of all causes, in the order of causesOf().
+/// Returns the scores of all causes given the rows `measured`, in the order of causesOf().
 std::vector<CauseScore> scoreCauses(const TraceResult& result, const Trial& measured);
 
 }  // namespace talus::terramech

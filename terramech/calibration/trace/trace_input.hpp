@@ -5,15 +5,16 @@
 
 namespace talus::terramech {
 
-/// Input of traceResiduals() from a table.
+/// Input of traceResiduals(), prepared from a table.
 struct TraceInput {
-  ModelRows rows;  ///< rows.model is the base
+  ModelRows rows;  ///< rows, and rows.model as base model
   TraceOptions options;
 };
 
-/// Rows and base model of a search. The soil is fitted if the base specifies none. A specified soil without
-/// standard deviations gets default ones (giveDefaultDeviations()) unless the table is a rover's own drive.
-/// Throws InputError as modelRows(), and if fewer than 5 rows are usable.
+/// Prepares rows and base model of a trace. The soil is fitted if the base model specifies no soil. A
+/// specified soil without standard deviations gets the default ones of giveDefaultDeviations(), unless the
+/// table is a rover's own drive. Throws the exceptions of modelRows(), and InputError if fewer than 5 rows
+/// are usable.
 TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options);
 
 }  // namespace talus::terramech

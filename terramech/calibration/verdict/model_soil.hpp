@@ -11,26 +11,28 @@
 
 namespace talus::terramech {
 
-/// Options for a soil fit under a model's effects.
+/// Options for a fit of the soil under the effects of a wheel model.
 struct ModelSoilOptions {
-  /// Model whose stated soil is the prior; empty: vague prior, as for a soil fitted by `talus trace`.
+  /// Model whose stated soil is the prior; empty: the vague prior of a soil that `talus trace` fits.
   std::optional<RefinedModel> prior;
-  std::optional<double> shear_modulus_m;  ///< stated K [m], which is not fitted
-  double noise = 0.05;  ///< relative standard deviation of readings without one in the model file [-]
+  std::optional<double> shear_modulus_m;  ///< stated K [m], which is then not fitted; empty: K is fitted
+  double noise = 0.05;  ///< relative standard deviation of sensors that the model file does not state [-]
 };
 
-/// A soil estimate with its uncertainty.
+/// Soil estimate with its uncertainty.
 struct ModelSoil {
   Soil soil;
-  Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();  ///< of (c [Pa], tan phi), priors included
-  double misfit = 0.0;  ///< mean square of the whitened residuals; about 1 if model and noise are correct
-  std::vector<std::string> unseen;  ///< parameters with the prior's width, or at the limit of their range
+  /// Covariance of (c [Pa], tan phi), including priors.
+  Eigen::Matrix2d strength_covariance = Eigen::Matrix2d::Zero();
+  double misfit = 0.0;  ///< mean square of the whitened residuals [-]; about 1 if model and noise are correct
+  /// Parameters whose uncertainty is that of the prior, or that are at a bound of their range.
+  std::vector<std::string> unseen;
 };
 
-/// Maximum a posteriori soil for rows of a wheel from all measured channels, with the effects of `model` as
-/// stated in its file; the contribution of the effects to sinkage, torque and pull is not attributed to the
-/// soil. The search starts from the unknown soil and, without a prior, also from the soil of the model; the
-/// more likely result is returned.
+/// Returns the maximum a posteriori soil for the rows of a trial, from all measured channels. The effects of
+/// `model` are those stated in its file; their contribution to sinkage, torque and pull is not attributed to
+/// the soil. The search starts from the unknown soil and, without a prior, also from the soil of the model;
+/// the more likely result is returned.
 ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options = {});
 
 }  // namespace talus::terramech
