@@ -157,7 +157,7 @@ RimForces rimForces(const Law& law, const Wheel& wheel, const Displacement& disp
 
 /// Entry angle theta_1 at which the rim carries a given load W, with the forces on the rim.
 struct RimEquilibrium {
-  double entry_angle_rad = 0.0;
+  double entry_angle_rad = 0.0;  ///< theta_1, in (0, pi/2]
   RimForces forces;
   double growth = 0.0;  ///< d log W / d log theta_1 at the last step of the search [-]
 };

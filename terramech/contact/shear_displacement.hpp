@@ -83,6 +83,7 @@ class ShearDisplacement {
 /// theta) (ishigami_2007).
 class SideSlipDisplacement {
  public:
+  /// Radii, slip, slip angle and entry angle of the wheel.
   struct Parameters {
     double shear_radius_m;   ///< radius for the component along the wheel plane, > 0
     double radius_m;         ///< radius of the rim, > 0

@@ -86,7 +86,7 @@ WheelForces equilibrium(const Soil& soil, const Wheel& wheel, const WheelOperati
 /// Forces on a wheel at an imposed entry angle.
 struct ImposedContact {
   double load_N = 0.0;  ///< vertical force of the soil on the wheel at this entry angle
-  WheelForces forces;
+  WheelForces forces;   ///< sinkage and forces at this entry angle
 };
 
 /// Returns the forces on a wheel at the entry angle theta_1 = entry_rad in (0, pi/2]. WheelOperation::load_N

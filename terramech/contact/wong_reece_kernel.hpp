@@ -9,16 +9,19 @@
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/lane_math.hpp>
 
-/// Kernel of wong_reece_batch.hpp: equilibrium with theta_2 = 0, written once for one lane and for four
-/// lanes. Private.
+/// Kernel of wong_reece_batch.hpp: sinkage and forces of wheels with exit angle theta_2 = 0. The code is
+/// written once for one lane (one wheel case, T = double) and for four lanes (T = Four of lane_math.hpp).
+/// Private.
 namespace talus::terramech::lanes {
 
-/// Quadrature rule for int_0^1 f(s) ds with s = t^2 or t^3, which smooths sigma ~ s^n.
+/// Quadrature rule for int_0^1 f(s) ds with N points s and weights ds. s = t^power smooths the stress sigma ~
+/// s^n.
 template <std::size_t N>
 struct PowerRule {
   std::array<double, N> s{}, ds{};
 };
 
+/// Returns the rule with power 2 or 3.
 template <std::size_t N>
 constexpr PowerRule<N> powerRule(int power) {
   constexpr auto rule = gaussLegendre<N>();
@@ -31,22 +34,22 @@ constexpr PowerRule<N> powerRule(int power) {
   return out;
 }
 
-inline constexpr auto kCoarse = powerRule<4>(2);  // first trials of the search
+inline constexpr auto kCoarse = powerRule<4>(2);  // for the first trials of the search
 inline constexpr auto kFine = powerRule<12>(3);   // relative error 1e-7 up to r theta_1 / K = 12
 
-/// Largest ratio of rim-point path to K at which kFine has the stated accuracy. The limit is higher at a slip
-/// angle, because the resultant displacement has no steep sign change.
+/// Largest ratio of rim-point path to shear modulus K at which kFine has the stated accuracy. The limit is
+/// higher at a slip angle (Sideways), because the resultant displacement has no steep sign change.
 template <bool Sideways>
 inline constexpr double kStiffest = Sideways ? 40.0 : 12.0;
 
-/// Forces divided by r b; torque divided by r^2 b.
+/// Forces on the rim divided by r b, and torque divided by r^2 b.
 template <class T>
 struct Sums {
   T load, torque, pull;
   T side{};  // 0 at slip angle 0
 };
 
-/// Constants of the cases, one per lane.
+/// Constants of the wheel cases in each lane.
 template <class T>
 struct Constants {
   T exponent, log_modulus;   // n, ln(k r^n)
@@ -57,7 +60,7 @@ struct Constants {
   T across{};                // (1 - i) tan beta: lateral travel per rolled arc
 };
 
-/// Geometry and displacement of one rim point.
+/// Geometry and shear displacement of one rim point at the rim angle theta.
 template <class T>
 struct RimPoint {
   T sine, cosine;  // of theta
@@ -66,7 +69,7 @@ struct RimPoint {
   T arc;  // theta_1 - theta
 };
 
-/// Adds a point with shear along the resultant displacement.
+/// Adds the forces at a rim point, with the shear stress along the resultant displacement.
 template <class T>
 TALUS_LANES void addSlidingPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, double ds,
                                  Sums<T>& sums) {
@@ -82,6 +85,7 @@ TALUS_LANES void addSlidingPoint(const Constants<T>& c, const RimPoint<T>& p, T 
   sums.side = sums.side - w * (tau * jy);
 }
 
+/// Adds the forces at a rim point with normal stress sigma.
 template <bool Sideways, class T>
 TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, double ds, Sums<T>& sums) {
   if constexpr (Sideways) return addSlidingPoint(c, p, sigma, ds, sums);
@@ -93,8 +97,8 @@ TALUS_LANES void addPoint(const Constants<T>& c, const RimPoint<T>& p, T sigma, 
   sums.pull = sums.pull + w * (tau * p.cosine - sigma * p.sine);
 }
 
-/// Thesis Eqs. C.8 to C.10 at entry angle x. Each s gives one point in front of the peak and its mirror point
-/// behind, with the same sigma (C.3).
+/// Returns the forces of thesis Eqs. C.8 to C.10 at entry angle x. Each s of the rule gives one point in
+/// front of the stress peak and its mirror point behind the peak, with the same normal stress sigma (C.3).
 template <bool Sideways, std::size_t N, class T>
 TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule) {
   const T sin_x = sine(x), cos_x = 1.0 - versine(x);
@@ -118,7 +122,8 @@ TALUS_LANES Sums<T> sumsAt(const Constants<T>& c, T x, const PowerRule<N>& rule)
   return sums;
 }
 
-/// One trial of the search: u = ln theta_1, excess = ln(load / wanted load), and the forces.
+/// One trial of the search for the entry angle: u = ln theta_1, excess = ln(load / wanted load), and the
+/// forces.
 template <class T>
 struct Trial {
   T u, excess;
@@ -131,7 +136,7 @@ TALUS_LANES Trial<T> trialAt(const Constants<T>& c, T u, const PowerRule<N>& rul
   return {u, logarithm(sums.load) - c.log_load, sums};
 }
 
-/// Secant slope d excess / d u; the fallback if outside (0.3, 20).
+/// Returns the secant slope d excess / d u of two trials, or `fallback` if the slope is outside (0.3, 20).
 template <class T>
 TALUS_LANES T slopeOf(const Trial<T>& a, const Trial<T>& b, T fallback) {
   const T slope = (b.excess - a.excess) / (b.u - a.u);
@@ -139,7 +144,7 @@ TALUS_LANES T slopeOf(const Trial<T>& a, const Trial<T>& b, T fallback) {
   return pick(low < spread<T>(20.0), low, fallback);
 }
 
-/// ln theta_1 after a secant step in [-2, 1], with theta_1 <= pi/2.
+/// Returns u = ln theta_1 after a secant step that is limited to [-2, 1], with theta_1 <= pi/2.
 template <class T>
 TALUS_LANES T stepped(const Trial<T>& trial, T slope) {
   constexpr double kDeepest = 0.45158270528945486;  // ln(pi/2)
@@ -150,7 +155,7 @@ TALUS_LANES T stepped(const Trial<T>& trial, T slope) {
   return pick(u > spread<T>(kDeepest), spread<T>(kDeepest), u);
 }
 
-/// Result of the search per lane; `sums` are the forces at u.
+/// Result of the search in each lane; `sums` contains the forces at u = ln theta_1.
 template <class T>
 struct Found {
   T u;
@@ -158,7 +163,8 @@ struct Found {
   T converged;  // 1 or 0
 };
 
-/// Linear extrapolation through two trials to excess 0; the error is of second order in the excesses.
+/// Extrapolates u and the forces linearly through two trials to excess 0. The error is of second order in the
+/// excesses.
 template <class T>
 TALUS_LANES Found<T> extrapolated(const Trial<T>& a, const Trial<T>& b) {
   const T run = b.u - a.u;
@@ -181,8 +187,8 @@ TALUS_LANES bool allConverged(const Found<T>& found) {
   }
 }
 
-/// Finds theta_1 in every lane. A converged lane keeps its result, so that the result is independent of the
-/// other lanes.
+/// Finds theta_1 in every lane, beginning at u = ln theta_1. A converged lane keeps its result, so that the
+/// result is independent of the other lanes.
 template <bool Sideways, class T>
 TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
   constexpr double kGood = 1e-8;  // limit of the product of the last two excesses
@@ -215,7 +221,7 @@ TALUS_LANES Found<T> solve(const Constants<T>& c, T u) {
   return found;
 }
 
-/// One field of the cases, one value per lane.
+/// Returns one field of the cases, one value per lane.
 template <class T>
 TALUS_LANES T gather(const WheelCase* cases, double WheelCase::*field) {
   if constexpr (Traits<T>::kLanes == 1) {
@@ -225,7 +231,7 @@ TALUS_LANES T gather(const WheelCase* cases, double WheelCase::*field) {
   }
 }
 
-/// shearGain() of the wheels, one value per lane.
+/// Returns shearGain() of the wheels, one value per lane.
 template <class T>
 TALUS_LANES T gatherGain(const WheelCase* cases) {
   const auto of = [](const WheelCase& c) {
@@ -252,7 +258,8 @@ TALUS_LANES double laneOf(const T& value, int lane) {
     return value[lane];
 }
 
-/// Slip angle, at most kSteepestSlipAngle_rad, and derived quantities.
+/// Sine and cosine of the slip angle beta, which is limited to kSteepestSlipAngle_rad, and derived
+/// quantities.
 template <class T>
 struct SideMotion {
   T sine, cosine;  // of |beta|
@@ -274,7 +281,7 @@ TALUS_LANES SideMotion<T> sideMotion(T slip, T travel, T beta) {
   return {s, c, pick(beta < T{}, -across, across), square * inverseRoot(square) / scale};
 }
 
-/// faceResistance_N() / r^2, from the Hegedus coefficients; the second coefficient is multiplied by r.
+/// Returns faceResistance_N() / r^2 from the Hegedus coefficients; the second coefficient is multiplied by r.
 template <class T>
 TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
   const T s = sine(theta), c = 1.0 - versine(theta), t2 = theta * theta, t3 = t2 * theta;
@@ -287,8 +294,8 @@ TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
   return per_depth * area + 2.0 * per_depth_squared_r * square;
 }
 
-/// Bulldozing component of the side force [N]: hegedus() in lanes, with tan X = cos phi / (1 + sin phi) and
-/// tan(X + phi) = cot X.
+/// Returns the bulldozing component of the side force [N]. It is hegedus() in lanes, with tan X = cos phi /
+/// (1 + sin phi) and tan(X + phi) = cot X.
 template <class T>
 TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {
   const T phi = gather<T>(cases, &WheelCase::friction_angle_rad),
@@ -301,14 +308,15 @@ TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {
                            entry);
 }
 
-/// travelRatio() in lanes; without a slip angle for driven wheels only.
+/// Returns travelRatio() in lanes. Without a slip angle only driven wheels are allowed.
 template <bool Sideways, class T>
 TALUS_LANES T travelOf(T slip) {
   if constexpr (Sideways) return pick(slip < T{}, 1.0 / (1.0 + slip), 1.0 - slip);
   return 1.0 - slip;
 }
 
-/// Solves one or four cases for which isFastCase() is true. `left` marks lanes that need the general solver.
+/// Solves one or four cases for which isFastCase() is true. `left` marks the lanes that the general solver
+/// must solve.
 template <bool Sideways, class T>
 TALUS_LANES void solveGroup(const WheelCase* cases, WheelForces* forces, bool* left) {
   const T r = gather<T>(cases, &WheelCase::wheel_radius_m), b = gather<T>(cases, &WheelCase::wheel_width_m);

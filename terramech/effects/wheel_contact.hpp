@@ -46,7 +46,7 @@ struct WheelContact {
   // Digging increases the static sinkage z0 to z = z0 + hypot(dug, ploughed_m) + extra_sinkage_m <= 1.95 r,
   // with dug = (sinkage_gain - 1) z0 + dug_m. The stress at the larger depth is scaled so that it carries the
   // load.
-  double sinkage_gain = 1.0;
+  double sinkage_gain = 1.0;     ///< factor on the static sinkage z0 [-]
   double dug_m = 0.0;            ///< sinkage that lugs excavate along the wheel plane
   double ploughed_m = 0.0;       ///< sinkage that the wheel excavates across the wheel plane
   double extra_sinkage_m = 0.0;  ///< sinkage by other causes

@@ -51,7 +51,7 @@ struct SoilPosterior {
   CredibleInterval shear_modulus_m;
   /// Posterior probability of each soil class, in the order of the prior.
   std::vector<double> class_probabilities;
-  std::vector<SoilDraw> draws;
+  std::vector<SoilDraw> draws;  ///< weighted soils of the posterior; empty after a stop
   /// Effective number of weighted draws, 1 / (sum of squared weights); below about 20 the results are
   /// inaccurate.
   double effective_draws = 0.0;

@@ -8,7 +8,7 @@ namespace talus::terramech {
 /// Telemetry sample with its wheel, for tables with several wheel sizes.
 struct WheelReading {
   Wheel wheel;
-  WheelSample sample;
+  WheelSample sample;  ///< readings of this wheel
 };
 
 }  // namespace talus::terramech

@@ -13,7 +13,7 @@ namespace talus::terramech {
 /// shear_stress_Pa, shear_displacement_m), of a pressure-sinkage test (plate_width_m or plate_d_m,
 /// pressure_Pa or p_Pa, sinkage_m or z_m), or both. The diameter plate_d_m of a round plate is used as its
 /// smaller dimension b (thesis A.1); wong_2001 uses the radius, which halves k_c. If neither an option nor a
-/// column gives the width, the plate is taken as round with the area F_N / pressure, and its diameter is
+/// column gives the width, the plate is assumed round, with the area F_N / pressure, and its diameter is
 /// computed for each test; a test with variable F_N / pressure is rejected. Readings belong to one trial if
 /// they agree in `trial`, `test` and all text columns with repeated values. The soil is the text of column
 /// `soil`.

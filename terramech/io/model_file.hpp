@@ -67,7 +67,7 @@ struct ModelScope {
 struct ModelFile {
   RefinedModel model;
   bool soil_given = true;  ///< false: the file contains no soil, so the soil must be fitted
-  ModelScope scope;
+  ModelScope scope;        ///< channels and ranges in which the corrections are applied
 };
 
 /// Reads a base or refined model from a YAML file of the form

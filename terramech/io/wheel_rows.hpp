@@ -31,7 +31,7 @@ struct WheelRows {
 
 /// Options of readWheelRows().
 struct WheelRowOptions {
-  /// Rover whose wheel is used for all rows; empty: the columns wheel_radius_m and wheel_width_m are used.
+  /// Rover that supplies the wheel of all rows; empty: the columns wheel_radius_m and wheel_width_m are used.
   std::string rover;
   bool needs_slip = true;  ///< true: rows with slip <= 0 are rejected
   double deepest = 2.0;    ///< rows with z/r (sinkage over radius) >= this value are rejected, (0, 2]

@@ -29,7 +29,7 @@ CategoryProbability categoryProbability(const ConditionEstimate& belief,
 /// correlation. The bounds may be infinite. probability() returns the probability that (X, Y) is in the
 /// rectangle.
 struct NormalRectangle {
-  double x1, x2, y1, y2, correlation;
+  double x1, x2, y1, y2, correlation;  ///< bounds and correlation [-]
 };
 double probability(const NormalRectangle& rectangle);
 

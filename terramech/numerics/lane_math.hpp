@@ -19,7 +19,7 @@ template <class T>
 struct Traits;
 template <>
 struct Traits<double> {
-  using Bits = std::uint64_t;
+  using Bits = std::uint64_t;  ///< unsigned integer of the same size
   static constexpr int kLanes = 1;
 };
 template <>

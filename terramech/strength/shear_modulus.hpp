@@ -22,7 +22,7 @@ struct ModulusRange {
 
 /// Estimated K, and the value of the minimised error criterion at this K.
 struct ModulusEstimate {
-  double shear_modulus_m = 0.0;
+  double shear_modulus_m = 0.0;  ///< estimated K
   /// Criterion at K: [Pa] for D.1, relative to the torque [-] for modulusJointly(), median absolute deviation
   /// [m] for D.8.
   double error = 0.0;

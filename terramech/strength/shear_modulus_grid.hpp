@@ -29,6 +29,7 @@ inline StressPair linearOffsetPair(const Wheel& wheel, const WheelSample& sample
 /// members are thread-safe.
 class ShearModulusGrid {
  public:
+  /// Error criterion for K, linear method for c and tan(phi), and range of the grid of K.
   struct Options {
     ModulusCriterion criterion = ModulusCriterion::Joint;
     PairOf pair = linearOffsetPair;
@@ -57,6 +58,7 @@ class ShearModulusGrid {
   // more accurate.
   static constexpr std::size_t kValues = 17;
 
+  /// Sums for one value of K.
   struct GridValue {
     double modulus_m = 0.0;  // K
     MohrCoulombLine method;  // line of the linear method, c + x tan(phi) = y
