@@ -86,9 +86,8 @@ ContactForces solveContact(const WheelContact& contact, double entry_guess_rad =
 
 /// Cache of solved contacts, for repeated solutions of similar contacts.
 struct SolvedContacts {
-  /// Contact parameters.
-  std::vector<WheelContact> contacts;
-  std::vector<ContactForces> forces;  ///< forces of each contact, in the order of `contacts`
+  std::vector<WheelContact> contacts;  ///< contact parameters
+  std::vector<ContactForces> forces;   ///< forces of each contact, in the order of `contacts`
 };
 
 /// Solves `contacts` and stores contacts and forces in `solved`. A contact equal to the stored contact of the

@@ -22,11 +22,10 @@ struct WheelState {
   double slip_angle_rad = 0.0;      ///< slip angle from the wheel plane to the travel direction
   double speed_mps = kUnknown;      ///< travel speed of the wheel centre
   double rim_speed_mps = kUnknown;  ///< rim speed r omega
-  /// Time of the reading.
-  double time_s = kUnknown;
-  double pass_index = kUnknown;   ///< number of wheel passes over this track, including this pass
-  double slope_rad = kUnknown;    ///< slope along the heading, positive uphill
-  double gravity_m_s2 = 9.80665;  ///< gravity at the driving site, > 0
+  double time_s = kUnknown;         ///< time of the reading
+  double pass_index = kUnknown;     ///< number of wheel passes over this track, including this pass
+  double slope_rad = kUnknown;      ///< slope along the heading, positive uphill
+  double gravity_m_s2 = 9.80665;    ///< gravity at the driving site, > 0
 
   /// Readings that only the base model linear-formula uses.
   double measured_torque_Nm = kUnknown;

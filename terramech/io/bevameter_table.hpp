@@ -18,8 +18,7 @@ namespace talus::terramech {
 /// they agree in `trial`, `test` and all text columns with repeated values. The soil is the text of column
 /// `soil`.
 struct BevameterTable {
-  /// Readings of the shear tests.
-  std::vector<ShearReading> shear;
+  std::vector<ShearReading> shear;  ///< readings of the shear tests
   /// Trials of the pressure-sinkage tests.
   std::vector<PlateTrial> plates;
   std::vector<RejectedRow> rejected;

@@ -16,8 +16,7 @@ inline constexpr double kUnlimited = 1e12;
 /// Range of a telemetry column in the rows to which a model was fitted, and the model's behaviour outside
 /// this range. Corrections are the effects by which a refined model differs from its base model.
 struct TrainedRange {
-  /// Name of the column.
-  std::string column;
+  std::string column;  ///< name of the column
   /// Least and greatest value of the column in these rows.
   double low = 0.0, high = 0.0;
   /// Standard deviation that is added to each scaled channel, per unit of distance below `low` and above

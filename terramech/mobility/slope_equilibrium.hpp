@@ -50,8 +50,7 @@ const char* name(SlopeFailure failure);
 /// Steady motion of a rover over an inclined plane, or the reason of failure. After a failure the numbers are
 /// those that were computed before the failure was found. The demand is the force demand of demandOf().
 struct SlopeState {
-  /// Reason of failure, or None.
-  SlopeFailure failure = SlopeFailure::None;
+  SlopeFailure failure = SlopeFailure::None;  ///< reason of failure, or None
   /// Failure other than tip-over. It is computed with wheel loads that are limited to those shortly before
   /// tip-over.
   SlopeFailure grip = SlopeFailure::None;
@@ -101,9 +100,9 @@ struct WheelOnSlope {
 /// quasi-static). The demand per normal force is demandOf(). The unknowns are slip and slip angle, equal for
 /// all wheels, and one difference between wheels that balances the yaw moment. This difference depends on the
 /// steering:
-///   all wheels steer   the body stays in the direction of travel, front and rear wheels steer differently;
-///   ackermann          the body turns with the rear wheels, the front wheels steer;
-///   skid               the body turns with the wheels, left and right wheels have different slip.
+///   all wheels steer   body axis in the direction of travel, front and rear wheels have different angles;
+///   ackermann          body axis and rear wheels have one angle, front wheels another angle;
+///   skid               body axis and all wheels have one angle, left and right wheels have different slip.
 /// If several equilibria exist, the result is the one with the least slip angle and, among those, the least
 /// slip. A slip > 0 is driven, a slip < 0 braked. No wheel is assumed to follow the track of another wheel.
 /// Pitch and roll limits of the rover are not checked. Immutable, cheap to copy, thread-safe.

@@ -19,9 +19,8 @@ struct SlopeTableOptions {
 /// Each node of the grid contains the state that SlopeEquilibrium computes there. Between nodes, the rover
 /// has a steady motion only if it has one at all nodes with a non-zero interpolation weight. The table
 /// therefore rejects feasible gradients that are less than one step from the limit of feasibility; it accepts
-/// an infeasible gradient only between four feasible nodes. Numbers are interpolated linearly in each
-/// direction. If several of the four nodes fail, the failure is that of the first in the order of increasing
-/// across, then increasing along gradient. SlopeState::grip is not tabulated. Immutable; thread-safe.
+/// an infeasible gradient only between four feasible nodes. Numbers are interpolated linearly; the failure is
+/// that of one failing node. SlopeState::grip is not tabulated. Immutable; thread-safe.
 class SlopeTable {
  public:
   /// Computes all nodes. Throws std::invalid_argument if an option is outside its range.

@@ -77,12 +77,10 @@ struct RandomEffect {
 
 /// Pressure-sinkage parameters of one soil from several trials (tests with one plate).
 struct TrialSoil {
-  /// Name of the soil.
-  std::string soil;
-  /// Number of trials.
-  std::size_t trials = 0;
-  PressureSinkage fit;    ///< n and k of the mean trial
-  RandomEffect exponent;  ///< mean and scatter of n over the trials [-]
+  std::string soil;        ///< name of the soil
+  std::size_t trials = 0;  ///< number of trials
+  PressureSinkage fit;     ///< n and k of the mean trial
+  RandomEffect exponent;   ///< mean and scatter of n over the trials [-]
   /// Depth at which pressures are compared: the pressure-weighted geometric mean depth.
   double depth_m = 0.0;
   /// Standard deviation of ln(sigma) at depth_m between trials with the same plate size [-].

@@ -25,8 +25,7 @@ struct ShearStrength {
   double residual_std_Pa = 0.0;
   /// 2-norm condition number of the equations, with columns scaled to equal length [-].
   double condition = 0.0;
-  /// Number of samples.
-  std::size_t samples = 0;
+  std::size_t samples = 0;  ///< number of samples
   /// Parameters that the data do not determine, each with the reason; empty if all parameters are determined.
   std::vector<std::string> unseen;
 

@@ -16,8 +16,7 @@ namespace talus::terramech {
 
 /// Free parameters and priors of a fit of a wheel model.
 struct FitPlan {
-  /// Parameters that the fit may change.
-  std::vector<FittedParameter> free;
+  std::vector<FittedParameter> free;  ///< parameters that the fit may change
   /// Priors of soil parameters, by index into soilParameters(), in the parameter's unit. The prior of
   /// log_stiffness is that of the step from the start model.
   std::map<int, Estimate> soil_prior;

@@ -35,8 +35,7 @@ Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 /// the channels of a row (rowFactor()), the slip error shared by the rows of a moment (all wheels at one
 /// time), and the error shared by the rows of a run.
 struct Whitening {
-  /// rowFactor() of each row.
-  std::vector<Eigen::Matrix4d> factor;
+  std::vector<Eigen::Matrix4d> factor;  ///< rowFactor() of each row
   Eigen::MatrixXd std;   ///< standard deviations of each row's independent errors, rows x kChannels
   MomentSlip slip{};     ///< slip error shared by the rows of a moment
   SharedError common{};  ///< error shared by the rows of a run

@@ -19,9 +19,12 @@ struct TraceOptions {
   double significance = 0.05;  ///< probability of finding an effect in a table without effects, (0, 1)
   int max_effects = 7;         ///< greatest number of effects that are found
   double least_share = 0.0;    ///< least reduction of chi-squared per measured value by an effect [-]
-  /// Number of known forms that are fitted in the full model per round; for curves half this number.
+  /// Number of candidate library effects that are fitted in the full model per round; for curves (empirical
+  /// functions of a column) half this number.
   int fits = 6;
-  int draws = 199;  ///< number of tables drawn from the null model: the least p-value is 1 / (draws + 1)
+  /// Number of random tables drawn from the current model with noise alone; the least p-value is 1 / (draws +
+  /// 1).
+  int draws = 199;
   /// Greatest number of rows that are searched; of a larger table a sample is searched (rowSample()). A
   /// thousand rows suffice: an effect of a tenth of the scatter of single readings then has 3 standard
   /// errors.
@@ -29,9 +32,8 @@ struct TraceOptions {
   /// Greatest number of additional columns (unknown to Talus) that are searched; screenColumns() selects
   /// them.
   int most_columns = 24;
-  bool fit_soil = false;  ///< true: the soil of the base model is fitted to the data, with vague priors
-  /// Seed of the random numbers.
-  std::uint64_t seed = 1;
+  bool fit_soil = false;   ///< true: the soil of the base model is fitted to the data, with vague priors
+  std::uint64_t seed = 1;  ///< seed of the random numbers
 };
 
 /// Explanation: a fitted candidate (possible addition to a model) and its gain.
@@ -62,15 +64,14 @@ inline double closeGain(const TraceOptions& options) {
 
 /// Effect that the search accepted.
 struct TracedEffect {
-  /// Effect, as a fitted candidate.
-  Explanation chosen;
+  Explanation chosen;                      ///< effect, as a fitted candidate
   Channel channel = Channel::DrawbarPull;  ///< channel in which the effect is largest
   std::vector<double> parameter_std;  ///< standard deviation of each fitted parameter of chosen.candidate
   double p_value = 1.0;               ///< probability of at least this gain in a table without the effect
   /// Other causes that the rows cannot distinguish from the effect, best first. In place of the effect, each
   /// has a gain of at least that of the effect minus closeGain().
   std::vector<Explanation> equal;
-  /// Curves of the same covariate for the residual that remains with the form.
+  /// Curves of the same covariate for the residual that remains after the effect.
   std::vector<Effect> correction;
 };
 
@@ -84,8 +85,7 @@ struct RivalCause {
 /// End of a column: the rows with the outermost values, predicted by a model that was fitted to the other
 /// rows.
 struct EndLevel {
-  /// Name of the column.
-  std::string column;
+  std::string column;     ///< name of the column
   bool high = false;      ///< true: the rows with the greatest values; false: with the least
   double edge = 0.0;      ///< outermost value of the column in the other rows
   double distance = 0.0;  ///< root mean square distance of the held-out rows from `edge`
@@ -111,10 +111,9 @@ struct GroupErrors {
 /// Errors on held-out rows. The parameters are refitted without each fold (held-out group of rows); the
 /// choice of effects used all rows.
 struct HeldOut {
-  std::string scheme;         ///< kind of rows that are held out together
-  ChannelErrors base_rmse{};  ///< errors of the base model; its soil is refitted if it is fitted
-  /// Errors of the refined model.
-  ChannelErrors refined_rmse{};
+  std::string scheme;            ///< kind of rows that are held out together
+  ChannelErrors base_rmse{};     ///< errors of the base model; its soil is refitted if it is fitted
+  ChannelErrors refined_rmse{};  ///< errors of the refined model
   /// Errors by group, for each text column with an effect on a single group.
   std::vector<GroupErrors> groups;
 };
@@ -132,8 +131,7 @@ struct TraceResult {
   RefinedModel refined;  ///< base model with the found effects, fitted
   Trial trial;           ///< searched rows, with estimated true slip and load
   UnsearchedRows unsearched;
-  /// Found effects, in the order of acceptance.
-  std::vector<TracedEffect> effects;
+  std::vector<TracedEffect> effects;  ///< found effects, in the order of acceptance
   /// Alternative causes of the effects; without effects, the best rejected explanations.
   std::vector<RivalCause> rivals;
   std::vector<Explanation> rejected;  ///< explanations that were fitted in the last round and not accepted

@@ -17,9 +17,8 @@ ModelFile baseModel(const std::string& file, const std::string& rover);
 /// Wheel model, and the rows of a table to which it applies.
 struct ModelRows {
   RefinedModel model;  ///< the given model, with slip_along_travel set if slipIsAlongTravel() of the rows
-  /// Rows to which the model applies.
-  Trial trial;
-  Trial beyond_axle;  ///< rows with sinkage z >= wheel radius r (beyondAxle())
+  Trial trial;         ///< rows to which the model applies
+  Trial beyond_axle;   ///< rows with sinkage z >= wheel radius r (beyondAxle())
   /// Rejected rows of the table, including rows with a side force but no slip angle.
   std::vector<RejectedRow> rejected;
 };

@@ -24,10 +24,8 @@ std::vector<LeftOut> leftOut(const Trial& trial, const std::string& request, con
 
 /// Errors and predictions for a set of rows that was left out.
 struct LeftOutErrors {
-  /// Label of the set.
-  std::string what;
-  /// Number of rows.
-  int rows = 0;
+  std::string what;                  ///< label of the set
+  int rows = 0;                      ///< number of rows
   std::vector<std::string> effects;  ///< effects found without these rows, as "name (column)"
   /// Errors of the base and the refined model, and noise floor.
   ChannelErrors base{}, refined{}, floor{};
