@@ -20,7 +20,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Returns the path of the temporary file, to which the content is written. It has the extension of the
+  /// Returns the path of the temporary file, to which the content is written. The extension is that of the
   /// final path.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
 

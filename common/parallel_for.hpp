@@ -9,8 +9,8 @@
 namespace talus {
 
 /// Calls each(k) for k = 0 ... count - 1 on `threads` threads, one of which is the calling thread. Calls for
-/// different k must be independent. The first exception stops the loop; it is rethrown in the calling thread
-/// after the calls in progress have finished.
+/// different k must be independent. The first exception stops the loop; the exception is rethrown in the
+/// calling thread after the calls in progress have finished.
 template <typename Each>
 void parallelFor(std::size_t count, int threads, Each each) {
   std::atomic<std::size_t> next{0};

@@ -60,7 +60,7 @@ struct Constants {
   T across{};                // (1 - i) tan beta: lateral travel per rolled arc
 };
 
-/// Geometry and shear displacement of one rim point at the rim angle theta.
+/// One point of the rim: geometry and shear displacement, at the rim angle theta.
 template <class T>
 struct RimPoint {
   T sine, cosine;  // of theta
@@ -294,7 +294,7 @@ TALUS_LANES T faceOverSquare(T per_depth, T per_depth_squared_r, T theta) {
   return per_depth * area + 2.0 * per_depth_squared_r * square;
 }
 
-/// Returns the bulldozing component of the side force [N]. It is hegedus() in lanes, with tan X = cos phi /
+/// Returns the bulldozing component of the side force [N]. This is hegedus() in lanes, with tan X = cos phi /
 /// (1 + sin phi) and tan(X + phi) = cot X.
 template <class T>
 TALUS_LANES T bulldozing(const WheelCase* cases, T entry, T beta) {

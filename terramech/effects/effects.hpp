@@ -57,10 +57,10 @@ const std::vector<EffectForm>& effectLibrary();
 const EffectForm* findEffect(std::string_view name);
 
 /// Effect of a model: a library form with parameter values, or a curve fitted to a measured residual. A curve
-/// has a name that begins with "empirical". It is a natural cubic spline through (knots, parameters) over the
-/// covariate, constant beyond the outermost knots. The curve "empirical" is added to one scaled channel. In
-/// the channel F/W (side force over load) the curve is multiplied by sin beta, where beta is the slip angle,
-/// because the side force is odd in beta.
+/// has a name that begins with "empirical". The curve is a natural cubic spline through (knots, parameters)
+/// over the covariate, constant beyond the outermost knots. The curve "empirical" is added to one scaled
+/// channel. In the channel F/W (side force over load) the curve is multiplied by sin beta, where beta is the
+/// slip angle, because the side force is odd in beta.
 struct Effect {
   std::string name{};                      ///< name of a library form, or "empirical..." for a curve
   std::string covariate{};                 ///< telemetry column on which the effect depends

@@ -44,7 +44,7 @@ struct FittedParameter {
 enum class BaseModel {
   WongReece,  ///< integral of the stresses along the rim (Wong and Reece)
   /// DP/W = T/(rW) - z/r - 0.1 (kang_2003, Eq. 3.21), with the measured torque T and sinkage z, or with the
-  /// solved ones if they are not measured.
+  /// solved values if T and z are not measured.
   LinearFormula
 };
 
@@ -77,14 +77,14 @@ struct RefinedModel {
   }
 };
 
-/// Returns the sensor readings that a model predicts for a wheel state. If `entry_guess_rad` is not null, it
-/// contains the initial entry angle of the sinkage search and receives the resulting angle. Never throws for
-/// a valid state. Thread-safe.
+/// Returns the sensor readings that a model predicts for a wheel state. A non-null `entry_guess_rad` contains
+/// the initial entry angle of the sinkage search and receives the resulting angle. Never throws for a valid
+/// state. Thread-safe.
 Reading predict(const RefinedModel& model, const WheelState& state, double* entry_guess_rad = nullptr);
 
 /// Returns the predicted sensor readings of many wheel states. The computation is several times faster than
-/// single calls if no effect changes the contact. It is also faster if `solved` already contains the contact
-/// of a state, because effects that change only the readings need no new solution.
+/// single calls if no effect changes the contact. The computation is also faster if `solved` already contains
+/// the contact of a state, because effects that change only the readings need no new solution.
 std::vector<Reading> predict(const RefinedModel& model, std::span<const WheelState> states,
                              SolvedContacts& solved);
 

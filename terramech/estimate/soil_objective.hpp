@@ -112,8 +112,8 @@ struct SoilMode {
 SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
                   const SoilQuadratic& before, const SoilVector& start);
 
-/// Runs findMode() from the centre of the prior, and from the mode that is found there without outliers.
-/// Returns the result with the higher evidence.
+/// Runs findMode() from the centre of the prior, and from the mode that findMode() finds with outlier_share =
+/// 0. Returns the result with the higher evidence.
 SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples);
 
 /// Returns the importance distribution of one soil class: the Gaussian given by the quadratic of -log

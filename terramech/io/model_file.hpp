@@ -23,7 +23,7 @@ struct TrainedRange {
   /// `high`.
   std::array<double, kChannels> below{}, above{};
   /// Distances below `low` and above `high` up to which the corrections of each channel are applied in full,
-  /// because no held-out rows contradict them there.
+  /// because no held-out rows contradict the corrections there.
   std::array<double, kChannels> reach_below = allChannels(kUnlimited), reach_above = reach_below;
 
   static constexpr std::array<double, kChannels> allChannels(double value) {

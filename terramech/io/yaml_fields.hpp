@@ -38,7 +38,7 @@ class YamlFields {
 
   /// Throws InputError if the mapping contains a name that is not in `known`, in any unit. The message
   /// contains the nearest known name. Call only() first, so that a misspelt name is reported before the field
-  /// that is missing because of it.
+  /// that is missing because of the misspelling.
   void only(const std::vector<std::string>& known) const;
 
   /// Returns true if the mapping contains the name, in any unit.

@@ -55,7 +55,7 @@ void validate(const CategoryThresholds& thresholds);
 /// DP/W < dp_low is dangerous, DP/W > dp_high is safe, and other DP/W is marginal. Then z/r > z_critical is
 /// dangerous, z/r < z_threshold causes no change, and other z/r moves the category one level down. T/(rW) has
 /// the rule of z/r with its own limits. The thesis does not specify how the level reductions by sinkage and
-/// by torque combine; here they add. The category is Unknown if a given number is NaN.
+/// by torque combine; here the reductions add. The category is Unknown if a given number is NaN.
 Category categorise(const WheelCondition& condition, const CategoryThresholds& thresholds);
 
 }  // namespace talus::terramech

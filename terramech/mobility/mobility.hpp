@@ -49,7 +49,7 @@ struct MobilitySolver;  ///< Private: computes the wheel forces for a MobilityCu
 /// Slip, sinkage, torque, energy and speed of a rover as functions of the slope along the heading, for one
 /// soil and one rover in its own gravity. On a slope alpha each of the equal wheels carries N = W cos(alpha)
 /// and needs the drawbar pull DP = W sin(alpha), so that DP/N = tan(alpha). Load transfer between axles is
-/// neglected. The curve is tabulated over slip, where it is smooth, and evaluated by monotone cubic
+/// neglected. The curve is tabulated over slip, as a smooth function of slip, and evaluated by monotone cubic
 /// interpolation: the slip is within 1e-3 of the exact solution and never decreases with the slope.
 /// Immutable; safe to share between threads.
 class MobilityCurve {

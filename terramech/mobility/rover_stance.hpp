@@ -47,7 +47,7 @@ class RoverStance {
   /// Returns the angle [rad] by which the plane may tilt further until the vertical through the centre of
   /// mass passes the nearest edge of the rectangle of the outermost wheels (static stability). A negative
   /// angle means that the rover tips over. Returns NaN if the height of the centre of mass is 0, i.e.
-  /// unknown. `demand` has the meaning it has in shares().
+  /// unknown. `demand` has the meaning of the argument of shares().
   double stabilityMargin_rad(const Planar& demand) const;
 
  private:

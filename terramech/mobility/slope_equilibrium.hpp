@@ -51,8 +51,7 @@ const char* name(SlopeFailure failure);
 /// those that were computed before the failure was found. The demand is the force demand of demandOf().
 struct SlopeState {
   SlopeFailure failure = SlopeFailure::None;  ///< reason of failure, or None
-  /// Failure other than tip-over. It is computed with wheel loads that are limited to those shortly before
-  /// tip-over.
+  /// Failure other than tip-over, computed with wheel loads limited to those at 97 % of the tip-over demand.
   SlopeFailure grip = SlopeFailure::None;
   /// RoverStance::stabilityMargin_rad() for the direction of the body on the plane.
   double stability_margin_rad = 0.0;

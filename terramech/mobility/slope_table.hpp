@@ -17,10 +17,10 @@ struct SlopeTableOptions {
 /// Table of the steady motion of one rover on one kind of ground, for cost functions. The table is a grid
 /// over the two gradients (rise over run) of an inclined plane: along and across the direction of travel.
 /// Each node of the grid contains the state that SlopeEquilibrium computes there. Between nodes, the rover
-/// has a steady motion only if it has one at all nodes with a non-zero interpolation weight. The table
-/// therefore rejects feasible gradients that are less than one step from the limit of feasibility; it accepts
-/// an infeasible gradient only between four feasible nodes. Numbers are interpolated linearly; the failure is
-/// that of one failing node. SlopeState::grip is not tabulated. Immutable; thread-safe.
+/// has a steady motion only if a steady motion exists at all nodes with a non-zero interpolation weight. The
+/// table therefore rejects feasible gradients that are less than one step from the limit of feasibility, and
+/// accepts an infeasible gradient only between four feasible nodes. Numbers are interpolated linearly; the
+/// failure is that of one failing node. SlopeState::grip is not tabulated. Immutable; thread-safe.
 class SlopeTable {
  public:
   /// Computes all nodes. Throws std::invalid_argument if an option is outside its range.

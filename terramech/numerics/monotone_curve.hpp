@@ -8,9 +8,9 @@ namespace talus::terramech {
 /// harmonic-mean slopes of Fritsch and Butland (fritsch_butland_1984), without extrema between the points.
 /// Immutable; safe to share between threads.
 ///
-/// Boost's pchip (1.74) is not used. It needs four points, while the mobility curve of a weak soil has only
-/// two, and its one-sided end slopes change the slip by up to 0.001 close to the maximum climbable slope.
-/// Elsewhere the results agree within rounding.
+/// Boost's pchip (1.74) is not used. Boost's function needs four points, while the mobility curve of a weak
+/// soil has only two, and its one-sided end slopes change the slip by up to 0.001 close to the maximum
+/// climbable slope. Elsewhere the results agree within rounding.
 class MonotoneCurve {
  public:
   MonotoneCurve() = default;

@@ -103,8 +103,8 @@ struct ShearFit {
 
 /// Returns the least-squares fit of tau = (c + sigma tan phi)(1 - exp(-j/K)) over c, tan(phi) and K in [1e-4,
 /// 0.2] m (thesis Eq. A.4). At a given K the equation is divided by the mobilised fraction m = 1 - exp(-j/K)
-/// and weighted with m^2; it is then a line in sigma, so that only K needs a search. Throws std::domain_error
-/// with fewer than three readings or with a single normal stress.
+/// and weighted with m^2; the equation is then a line in sigma, so that only K needs a search. Throws
+/// std::domain_error with fewer than three readings or with a single normal stress.
 ShearFit fitShear(std::span<const ShearReading> readings);
 
 }  // namespace talus::terramech

@@ -70,8 +70,8 @@ class MohrCoulombLine {
 /// ours).
 std::vector<std::string> unseenStrength(const ShearStrength& fit);
 
-/// Greatest scaled condition number of a determined fit. Above it a reading error of 1 % changes tan(phi) by
-/// more than the differences between soils (ours).
+/// Greatest scaled condition number of a determined fit. Above this number a reading error of 1 % changes
+/// tan(phi) by more than the differences between soils (ours).
 inline constexpr double kWorstCondition = 200.0;
 
 }  // namespace talus::terramech

@@ -21,9 +21,9 @@ struct ModelOnRows {
 };
 
 /// Returns the linearised contribution of a candidate (possible addition to the model), whitened row by row.
-/// For an effect this is the change of the predictions at the effect's typical size, with the derivatives
-/// with respect to its other parameters. For a curve it is the derivatives with respect to its values at the
-/// knots.
+/// The contribution of an effect is the change of the predictions at the effect's typical size, with the
+/// derivatives with respect to its other parameters. The contribution of a curve consists of the derivatives
+/// with respect to the curve's values at the knots.
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at);
 
 /// Returns the derivatives of the predictions of a fitted model with respect to the free parameters of a

@@ -70,8 +70,8 @@ double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
 /// Assigns default standard deviations to the soil of a model whose file states no standard deviations
-/// (ours). They are half the general uncertainty of soils: cohesion 1000 Pa, friction angle 0.06 rad, n
-/// 0.125, stiffness a factor of e^1.5, K 6 mm, c1 0.04, c2 0.06.
+/// (ours). The default values are half the general uncertainty of soils: cohesion 1000 Pa, friction angle
+/// 0.06 rad, n 0.125, stiffness a factor of e^1.5, K 6 mm, c1 0.04, c2 0.06.
 void giveDefaultDeviations(RefinedModel& model);
 
 /// Returns the fitted parameters of the effect with index `effect`.

@@ -6,12 +6,12 @@
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
 /// Scope of a refined model: the channels and column ranges in which its effects (corrections of the base
-/// model) are applied, because held-out rows do not contradict them there.
+/// model) are applied, because held-out rows do not contradict the effects there.
 namespace talus::terramech {
 
-/// Returns the scope of a trace result. It contains the channels in which the refined model has no larger
-/// errors on result.held_out than the base model, the ranges of the columns in the rows, and the distances
-/// beyond each range up to which the errors result.ends do not contradict the effects significantly
+/// Returns the scope of a trace result. The scope contains the channels in which the refined model has no
+/// larger errors on result.held_out than the base model, the ranges of the columns in the rows, and the
+/// distances beyond each range up to which the errors result.ends do not contradict the effects significantly
 /// (unlimited without a contradiction).
 ModelScope scopeOf(const TraceResult& result);
 
@@ -21,7 +21,7 @@ void keepConfirmed(HeldOut& held, const ModelScope& scope);
 void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
 
 /// Returns the index of the last found effect whose channel has larger errors on held-out rows with the
-/// effects than without them; nullopt if there is no such channel.
+/// effects than without them; nullopt if no effect has such a channel.
 std::optional<std::size_t> lastRefuted(const TraceResult& result);
 
 /// Returns the predictions of the refined model within its scope, rows x kChannels. Outside the scope the

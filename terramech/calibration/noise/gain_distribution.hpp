@@ -15,8 +15,9 @@ struct Contender {
 };
 
 /// Number of contenders for which the run error (error shared by the rows of a run) is re-estimated in a
-/// drawn table. They are the contenders of greatest gain under the null model's run error. The contender of
-/// greatest gain is practically always among these twelve, and the cost remains that of matrix products.
+/// drawn table. The selected contenders are those of greatest gain under the null model's run error. The
+/// contender of greatest gain is practically always among these twelve, and the cost remains that of matrix
+/// products.
 inline constexpr int kProfiled = 12;
 
 /// Gain of every contender on the measured table, and greatest gains on tables drawn from the null model (the

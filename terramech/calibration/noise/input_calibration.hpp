@@ -21,7 +21,7 @@ bool slipIsSeen(const Trial& trial, const SensorNoise& noise);
 /// effect of the slip error. Otherwise each run has one set speed if the speeds within runs vary by no more
 /// than that. The mean speed v of the group then gives a more accurate slip than the reading: 1 - v / (r
 /// omega). Returns an empty vector if speeds vary more, if slip, speed and rim speed are not consistent, or
-/// if slipIsSeen() is false. `noise` has the meaning it has there.
+/// if slipIsSeen() is false. `noise` has the meaning of the argument of slipIsSeen().
 std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise);
 
 /// Returns true if slipIsSeen() is true and the rows do not all have one set speed.
@@ -39,8 +39,8 @@ void setSlip(WheelState& state, double slip);
 /// Replaces slip and load of each state by the posterior means of the true values given the measurements, and
 /// sets their posterior variances. The distribution of true values is estimated from all rows (nonparametric
 /// maximum likelihood, kiefer_wolfowitz_1956), which removes the attenuation of dependences by noisy inputs.
-/// The states must contain the measured slip and load. If nominal loads `set` are given, they replace the
-/// estimated distribution of loads.
+/// The states must contain the measured slip and load. If nominal loads `set` are given, the nominal loads
+/// replace the estimated distribution of loads.
 void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set = {});
 
 }  // namespace talus::terramech

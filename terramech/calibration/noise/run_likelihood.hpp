@@ -42,7 +42,7 @@ struct HeldOutFit {
   /// without the constant that is common to all models. A parameter that the other folds do not determine has
   /// its prior.
   Eigen::VectorXd log_likelihood;
-  /// Squared deviation of the parameters from their priors. For each parameter it is the least value among
+  /// Squared deviation of the parameters from their priors. The value of each parameter is the least among
   /// the fits to all rows and the fits without one fold, so that a deviation that a single fold determines
   /// does not count.
   Eigen::VectorXd prior_chi2;

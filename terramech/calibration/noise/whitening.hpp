@@ -31,9 +31,9 @@ Eigen::Matrix4d rowFactor(const Eigen::Matrix4d& covariance, const Eigen::Matrix
 /// Returns one row of the residuals, with 0 for missing measurements.
 Eigen::Vector4d finiteOrZero(const Eigen::MatrixXd& residual, int row);
 
-/// Transformation of residuals to uncorrelated values of unit variance. It removes in turn the covariance of
-/// the channels of a row (rowFactor()), the slip error shared by the rows of a moment (all wheels at one
-/// time), and the error shared by the rows of a run.
+/// Transformation of residuals to uncorrelated values of unit variance. The transformation removes in turn
+/// the covariance of the channels of a row (rowFactor()), the slip error shared by the rows of a moment (all
+/// wheels at one time), and the error shared by the rows of a run.
 struct Whitening {
   std::vector<Eigen::Matrix4d> factor;  ///< rowFactor() of each row
   Eigen::MatrixXd std;   ///< standard deviations of each row's independent errors, rows x kChannels
@@ -46,7 +46,7 @@ struct Whitening {
 
   /// Whitened residuals, rows*kChannels; 0 where missing.
   Eigen::VectorXd apply(const Eigen::MatrixXd& residual) const;
-  /// as apply(), but without removal of the error shared by a run.
+  /// Residuals whitened by apply(), but without removal of the error shared by a run.
   Eigen::VectorXd rowByRow(const Eigen::MatrixXd& residual) const;
   /// Each residual divided by its own standard deviation.
   Eigen::VectorXd marginal(const Eigen::MatrixXd& residual) const;

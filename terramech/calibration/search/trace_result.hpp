@@ -45,7 +45,7 @@ struct Explanation {
   std::array<double, kChannels> by_channel{};  ///< reduction of chi-squared in each channel [-]
 };
 
-/// Promise: a candidate with its linearised gain, before it is fitted.
+/// Promise: a candidate before its fit, with its linearised gain.
 struct Promise {
   Candidate candidate;
   double gain = 0.0;  ///< linearised value of Explanation::gain
@@ -112,7 +112,7 @@ struct GroupErrors {
 /// choice of effects used all rows.
 struct HeldOut {
   std::string scheme;            ///< kind of rows that are held out together
-  ChannelErrors base_rmse{};     ///< errors of the base model; its soil is refitted if it is fitted
+  ChannelErrors base_rmse{};     ///< errors of the base model; a fitted soil is refitted
   ChannelErrors refined_rmse{};  ///< errors of the refined model
   /// Errors by group, for each text column with an effect on a single group.
   std::vector<GroupErrors> groups;

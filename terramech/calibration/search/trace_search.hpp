@@ -10,8 +10,8 @@
 
 namespace talus::terramech {
 
-/// Search of traceResiduals(). It compares candidates (possible additions to a wheel model) and adds accepted
-/// candidates to the model. A candidate has one or more parts, each of which is an effect.
+/// Search of traceResiduals(). The search compares candidates (possible additions to a wheel model) and adds
+/// accepted candidates to the model. A candidate has one or more parts, each of which is an effect.
 class TraceSearch {
  public:
   /// `go_on` is called between steps of work with the completed share; a return value of false ends the call
@@ -35,7 +35,8 @@ class TraceSearch {
   /// Returns the linearised gains of the candidates, in their order.
   std::vector<double> gainsOf(const std::vector<Candidate>& candidates);
 
-  /// Fits the most promising candidates inside the full model. Returns them with the best gain first.
+  /// Fits the most promising candidates inside the full model. Returns the fitted candidates, best gain
+  /// first.
   std::vector<Explanation> fitBest(const std::vector<Promise>& promises);
 
   /// Returns a candidate fitted together with all other parameters.
@@ -64,7 +65,8 @@ class TraceSearch {
   /// Refits all parameters and estimates the noise again.
   void settleAll();
 
-  /// Returns the gain of accepted candidate k relative to the model without it, with unchanged noise.
+  /// Returns the gain of accepted candidate k relative to the model without candidate k, with unchanged
+  /// noise.
   double gainOf(std::size_t k) const;
 
   /// Returns the gain of part number `part` of accepted candidate k relative to the model without this part,
@@ -115,7 +117,7 @@ class TraceSearch {
   std::function<bool(double)> go_on_;
   TrialFit fit_;
   std::optional<Estimate> first_prior_;  ///< prior of the first parameter of the first accepted effect
-  /// Number of leading effects, those of the base model; they are fitted, never removed.
+  /// Number of leading effects, those of the base model. These effects are fitted, never removed.
   std::size_t given_effects_;
   std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
 };

@@ -27,8 +27,8 @@ std::vector<double> closureErrors(const Trial& trial);
 /// (kang_2003, Eq. 3.12),
 ///   DP/W = -tan(theta_1/2) + [sin(theta_1/4)/(theta_1/4)]^2 / cos(theta_1/2) T/(rW)
 ///   theta_1 = acos(1 - z/r)
-/// with an error of 0.03 for soils of 0 to 3 kPa and 20 to 37 deg. Returns the group whose mean deviation is
-/// larger than that of the other rows of its column and differs from it by more than 0.06, twice the error of
+/// with an error of 0.03 for soils of 0 to 3 kPa and 20 to 37 deg. Returns a group with a larger mean
+/// deviation than the other rows; the two mean deviations must differ by more than 0.06, twice the error of
 /// the relation. Of several groups, returns the one with the largest difference. (A freely fitted soil would
 /// hide the offset.) Returns nullopt if no row has all three quantities, or if the permutation test of the
 /// group gives p > 0.01.

@@ -14,7 +14,7 @@ namespace talus::terramech {
 /// Throws the exceptions of loadModel() and loadRover().
 ModelFile baseModel(const std::string& file, const std::string& rover);
 
-/// Wheel model, and the rows of a table to which it applies.
+/// Wheel model, and the rows of a table to which the model applies.
 struct ModelRows {
   RefinedModel model;  ///< the given model, with slip_along_travel set if slipIsAlongTravel() of the rows
   Trial trial;         ///< rows to which the model applies

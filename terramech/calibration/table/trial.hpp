@@ -13,7 +13,8 @@ namespace talus::terramech {
 /// Trial: the measured rows of a telemetry table, prepared for residual tracing (search for the effects that
 /// a wheel model lacks). The answers are the measured channels.
 struct Trial {
-  /// State of each row; slip and load are estimates of the true values once these are calibrated.
+  /// State of each row; slip and load are measured values, or estimates of the true values after
+  /// calibrateInputs().
   std::vector<WheelState> states;
   std::vector<double> load_N;  ///< measured load of each row; denominator of every ratio
   std::vector<double> slip;    ///< measured slip of each row
@@ -77,7 +78,8 @@ Trial makeTrial(const Telemetry& telemetry, const RefinedModel& model);
 std::vector<WheelState> statesOf(const Telemetry& telemetry, const RefinedModel& model);
 
 /// Returns true if slip was measured with the full travel speed in place of its component along the wheel
-/// plane. The columns speed_mps and rim_speed_mps of rows with a slip angle decide; false if they do not.
+/// plane. The columns speed_mps and rim_speed_mps of rows with a slip angle decide; the result is false if
+/// these columns do not suffice.
 bool slipIsAlongTravel(const std::vector<WheelState>& states);
 
 /// Marks rows with sinkage z >= wheel radius r (wheel sunk to its axle or deeper). Such rows would distort a
@@ -92,8 +94,8 @@ Eigen::VectorXd covariateValues(const Trial& trial, const std::string& name,
 /// Returns the rows of a trial marked by `keep`.
 Trial subset(const Trial& trial, const std::vector<char>& keep);
 
-/// Marks the rows for fits of the soil. These are the rows without slip angle (|angle| < 0.1 rad) if there
-/// are at least 20 of them, otherwise all rows.
+/// Marks the rows for fits of the soil. These are the rows without slip angle (|angle| < 0.1 rad) if the
+/// trial has at least 20 such rows, otherwise all rows.
 std::vector<char> rowsOfSoil(const Trial& trial);
 
 /// Returns the trial with slip and load as measured.

@@ -33,7 +33,7 @@ struct UnexplainedColumn {
 
 /// Returns the column with the largest unexplained share, among those for which the residual exceeds half of
 /// the readings and 0.1 of load or radius (root mean square). The limits are ours: they are independent of
-/// the stated noise, and soils of measured sand do not exceed them.
+/// the stated noise, and fits to measured sand do not exceed these limits.
 UnexplainedColumn unexplained(const SoilAnswer& answer);
 
 /// Returns true if the residual of a channel exceeds half of its readings and 0.1 of load or radius (root

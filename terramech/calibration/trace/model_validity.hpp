@@ -16,8 +16,9 @@ struct Applicability {
 /// that vary are tested: the scatter must exceed twice the noise or, for torque and sinkage, a quarter of the
 /// mean. The model must explain at least half of the variance in one channel, and in no channel may its mean
 /// square error exceed twice the variance. If drawbar pull, torque and sinkage are measured together, the
-/// soil-independent relation between them (closure_offset.hpp) is tested as well: its median error and the
-/// rms error of the model in DP/W must not both exceed 0.15. All limits are ours.
+/// soil-independent relation between these three quantities (closure_offset.hpp) is tested as well: the
+/// median error of this relation and the rms error of the model in DP/W must not both exceed 0.15. All limits
+/// are ours.
 Applicability applicability(const TraceResult& result, const TraceOptions& options);
 
 }  // namespace talus::terramech

@@ -21,7 +21,7 @@ bool accepted(const std::vector<Explanation>& ranked, double threshold);
 void preferSimple(std::vector<Explanation>& ranked, double threshold);
 
 /// Traces the residuals of the model `base` on the rows of `trial`. The result is deterministic for a seed.
-/// After a stop by the watch it contains the effects found so far.
+/// After a stop by the watch the result contains the effects found so far.
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options = {},
                            const ProgressMonitor& watch = {});
 

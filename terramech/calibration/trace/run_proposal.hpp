@@ -11,15 +11,15 @@
 /// causes of a residual differ most. Measured runs then score the causes.
 namespace talus::terramech {
 
-/// Possible cause of the residual, with the model that includes it.
+/// Possible cause of the residual, with the model that includes this cause.
 struct Cause {
   std::string name;
   RefinedModel model;
 };
 
 /// Returns the causes: first the refined model, then the refined model with one effect replaced by a rival.
-/// Rivals are the causes that the rows cannot distinguish from the effect or, if there are no such causes,
-/// the candidate with the next greatest gain. If no candidate has a gain, returns only the refined model.
+/// Rivals are the causes that the rows cannot distinguish from the effect or, if no such cause exists, the
+/// candidate with the next greatest gain. If no candidate has a gain, returns only the refined model.
 std::vector<Cause> causesOf(const TraceResult& result);
 
 /// Prediction by a cause of the mean over the rows of a run, in the unit of each measured column; NaN for

@@ -31,8 +31,8 @@ struct TableTrace {
   int beyond_axle = 0;               ///< number of rows with sinkage >= wheel radius, which were left out
   ChannelErrors beyond_axle_rmse{};  ///< errors of the refined model on the rows left out
 
-  /// Returns the number of rows that were compared with the base model. In a large table, not all of them are
-  /// searched.
+  /// Returns the number of rows that were compared with the base model. In a large table, only a part of
+  /// these rows is searched.
   int rowsUsed() const { return result.trial.rows() + result.unsearched.rows; }
 
   /// Returns the refined model as text of a model file for loadModel().
@@ -46,8 +46,8 @@ Telemetry readTraceTable(const TableFile& file);
 
 /// Traces the residuals of a base model on a table. A specified soil without standard deviations gets default
 /// ones, unless the table is a rover's own drive. The result is deterministic for a seed. After a stop by the
-/// watch it contains the effects found so far, without held-out errors, answer and applicability. Throws
-/// InputError if too few rows are usable (traceInput()).
+/// watch the result contains the effects found so far, without held-out errors, answer and applicability.
+/// Throws InputError if too few rows are usable (traceInput()).
 TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options = {},
                       const ProgressMonitor& watch = {});
 

@@ -63,8 +63,8 @@ std::vector<std::string> soilAtBounds(const RefinedModel& model);
 std::vector<std::string> atBounds(const Effect& effect);
 
 /// Returns the refined model with additional error terms for predictions: the error that the rows of a new
-/// run share, and the unexplained error of held-out rows. The latter is the part that exceeds the shared
-/// error and the floor by more than three standard errors.
+/// run share, and the unexplained error of held-out rows. The unexplained error is the part of the held-out
+/// error that exceeds the shared error and the floor by more than three standard errors.
 RefinedModel forPrediction(const TraceResult& result);
 
 }  // namespace talus::terramech
