@@ -1,6 +1,7 @@
 #pragma once
 
-/// Entry header of talus::costmap: traversability map, learning from wheel measurements, and map files.
+/// Umbrella header of talus::costmap: includes the traversability map, learning from wheel measurements, and
+/// map files.
 
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/explanation.hpp>

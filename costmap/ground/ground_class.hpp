@@ -5,17 +5,19 @@
 
 namespace talus::costmap {
 
-/// Ground class of a soil prior on a rover. mean_std is the standard deviation of drawbar pull over load at
-/// the reference slip, by first-order propagation of the stated deviations of cohesion, friction, sinkage
-/// exponent, moduli, shear modulus and slip-sinkage exponent as independent parameters; a prior without
-/// deviations keeps GroundClass's default. A soil that was tested in greater gravity is converted by
-/// underGravity(), and mean_std then includes the effect of a gravity exponent of 0.5 instead of 1. Throws
-/// std::invalid_argument as MobilityCurve.
+/// Returns the terrain class number `number` for a soil prior and a rover. GroundClass::mean_std is the
+/// standard deviation of drawbar pull over load DP/W at the reference slip 0.5, by first-order propagation of
+/// the standard deviations of cohesion, friction angle, sinkage exponent, moduli, shear modulus and
+/// slip-sinkage exponent as independent parameters; a prior without standard deviations keeps GroundClass's
+/// default. A soil that was tested in greater gravity is converted by underGravity(); mean_std then includes
+/// the effect of a gravity exponent of 0.5 instead of 1. Throws std::invalid_argument if MobilityCurve
+/// rejects the soil or the rover.
 GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
 
-/// Ground class of a refined model on a rover. mean_std is the standard deviation of drawbar pull over load
-/// at the reference slip by the model's covariance; a model without a covariance keeps GroundClass's default.
-/// Sensor effects are omitted; gravity as for a soil prior. Throws std::invalid_argument as MobilityCurve.
+/// Returns the terrain class number `number` for a refined model (soil and effects fitted to wheel data) and
+/// a rover. mean_std is the standard deviation of DP/W at the reference slip by the model's covariance; a
+/// model without a covariance keeps GroundClass's default. Sensor effects are omitted. Gravity is converted,
+/// and exceptions are thrown, as for a soil prior.
 GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

@@ -17,17 +17,21 @@
 
 namespace talus::costmap {
 
-/// Prior of a terrain class for the ground of its cells. Plain data.
+/// A terrain class: the prior for the strength of the ground of its cells. Plain data.
 struct GroundClass {
-  int number = 0;                            ///< number in the terrain-class raster
-  terramech::Soil soil;                      ///< mean soil
-  std::vector<terramech::Effect> effects{};  ///< effects found in data, beyond a rigid wheel on the soil
-  double pull_std = 0.05;                    ///< standard deviation of DP/W between places of the class [-]
-  double mean_std = 0.05;                    ///< standard deviation of the class mean of DP/W [-]
-  double sinkage_std = 0.1;                  ///< standard deviation of z/r between places [-]
+  int number = 0;        ///< number of the class in the terrain-class raster
+  terramech::Soil soil;  ///< mean soil of the class
+  /// Effects found in wheel data, in addition to the model of a rigid wheel on the soil.
+  std::vector<terramech::Effect> effects{};
+  /// Standard deviation of the drawbar pull over load DP/W between places of the class, at slip 0.5 [-].
+  double pull_std = 0.05;
+  double mean_std = 0.05;    ///< standard deviation of the mean DP/W of the class [-]
+  double sinkage_std = 0.1;  ///< standard deviation of sinkage over wheel radius z/r between places [-]
 };
 
-/// Mobility curve of a rover on ground of a class. Throws std::invalid_argument as MobilityCurve.
+/// Returns the mobility curve (slip, sinkage, torque and energy over the gradient) of a rover on the mean
+/// soil of a terrain class. Throws std::invalid_argument if MobilityCurve rejects the soil, the rover or an
+/// option.
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options = {});
 
@@ -35,25 +39,32 @@ terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::
 terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
                                          const terramech::MobilityOptions& options = {});
 
-/// Estimated strength of ground, at the reference slip 0.5.
+/// Estimated strength of ground: quantities of a wheel at the reference slip 0.5, each with standard
+/// deviation.
 struct GroundBelief {
-  Estimate pull;     ///< drawbar pull divided by load, DP/W [-]
-  Estimate sinkage;  ///< sinkage divided by wheel radius, z/r [-]
+  Estimate pull;     ///< drawbar pull over load, DP/W [-]
+  Estimate sinkage;  ///< sinkage over wheel radius, z/r [-]
 };
 
-/// State of a driven wheel on fresh ground or in the rut of an equal wheel.
+/// State of a driven wheel.
 struct SlippingWheel {
+  /// Slip [-].
   double slip = 0.0;
+  /// True if the wheel runs in the rut of an equal wheel; false on undisturbed ground.
   bool in_rut = false;
-  double slip_angle_rad = 0.0;  ///< limited to 60 degrees
+  /// Angle from the wheel plane to the direction of travel; limited to 60 degrees.
+  double slip_angle_rad = 0.0;
 };
 
-/// Quantities of a wheel at constant speed.
+/// Quantities of a wheel that drives at constant speed.
 struct SteadyWheel {
-  double gradient = 0.0;  ///< gradient of the slope, equal to DP/W [-]
+  /// Gradient of the slope on which the wheel drives at constant speed; equal to DP/W [-].
+  double gradient = 0.0;
+  /// Sinkage over wheel radius, z/r [-].
   double sinkage_over_radius = 0.0;
+  /// Torque over (load * wheel radius), T/(W r) [-].
   double torque_over_load_radius = 0.0;
-  double hold = 0.0;  ///< side force that resists sideways motion, divided by load [-]
+  double hold = 0.0;  ///< side force that resists sideways motion, over load [-]
 };
 
 /// A category and its probability.
@@ -62,77 +73,89 @@ struct RankedCategory {
   double probability = 0.0;
 };
 
-/// Ground model of one rover on one body: the mobility curve of each class, and the cost of ground for any
-/// estimated strength. At the reference slip, a class has a thrust H (torque / (load * radius)),
-/// a resistance R and a pull P = H - R, all divided by load. Driving on ground with an estimated pull P - d
-/// at a gradient g equals driving on the class at the gradient
-///   g + d                                  for g <= P - d (up to the reference slip): shift of the curve;
-///   P + (g - P + d) / f,  f = 1 - d / H    beyond: the ground has the fraction f of the class's thrust
-/// (ours; both are exact at the reference slip. For soils drawn from the deviations of mars_crusty,
+/// Ground model of one rover on one body: the mobility curve of each terrain class, and the cost of driving
+/// for any estimated strength of the ground. At the reference slip, a class has a thrust H = torque / (load *
+/// radius), a resistance R and a pull P = H - R, all over load. Let the estimated pull be P - d. Driving on
+/// this ground at a gradient g is modelled as driving on the class at the equivalent gradient
+///   g + d                                  for g <= P - d (up to the reference slip): the curve is shifted;
+///   P + (g - P + d) / f,  f = 1 - d / H    for g > P - d: ground with the fraction f of the class's thrust
+/// (ours; both are exact at the reference slip. For soils drawn from the standard deviations of mars_crusty,
 /// sandy_loam and dry_sand, the shift overestimates the pull at slip 0.8 by 0.02, 0.04, 0.01 on average, and
-/// the fraction by 0.00, 0.01, 0.00. Below the reference slip, the shift underestimates the pull.) The
-/// standard deviation of the demand is that of the pull times the derivative of the demand by P - d. Ground
-/// with a greater pull is driven like a flatter slope of the class, but no flatter than level ground, and has
-/// no more reserve than its class. Cost and risk never decrease with the standard deviation nor, from level
-/// ground upwards, with the gradient (ExpectedTravel). Downhill, the braking force over load on ground weaker
-/// by d is less by d or by the fraction f, so that weaker ground is never allowed where stronger ground is
-/// refused. CrossSlope adds the effect of cross slopes.
+/// the fraction f by 0.00, 0.01, 0.00. Below the reference slip, the shift underestimates the pull.) The
+/// standard deviation of the equivalent gradient is that of the pull times the derivative of the equivalent
+/// gradient with respect to P - d. Ground with a greater pull than its class is treated as a flatter slope of
+/// the class, but no flatter than level ground, and has no more reserve than its class. Cost and risk never
+/// decrease with the standard deviation of the pull nor, from level ground upwards, with the gradient
+/// (ExpectedTravel). Downhill, on ground weaker by d, the braking force over load of locked wheels is lower
+/// by d, or equals the fraction f of the class's braking force if that is lower. Weaker ground therefore
+/// never allows a motion that is refused (has infinite cost) on stronger ground. CrossSlope adds the effect
+/// of slopes across the heading.
 ///
-/// Curves and cross slopes of a class are computed once, at the first use: a class raster may declare
+/// Curves and cross slopes of a class are computed at the first use, because a class raster may declare
 /// hundreds of classes, of which few occur in a window. Logically immutable and thread-safe; copies share the
 /// computed classes.
 class GroundModel {
  public:
-  /// Rover, classes and policy of the model.
+  /// Input of the model.
   struct Parts {
     terramech::Rover rover;
-    std::vector<GroundClass> classes;  ///< the first class is the default, for cells without a class
+    /// Terrain classes. The first class applies to maps without a class raster, to floors, and to unknown
+    /// cells that the policy allows.
+    std::vector<GroundClass> classes;
+    /// Permissions and cost weights of the mission.
     TravelPolicy policy;
-    bool prices_crossing = true;  ///< false: CrossSlope::alongOnly(), for comparison only; unsafe for driving
+    /// True if slopes across the heading add cost. False: CrossSlope::alongOnly(), for comparison only;
+    /// unsafe for driving.
+    bool prices_crossing = true;
   };
 
-  /// Throws std::invalid_argument if there is no class, if two classes have the same number, or if a field is
-  /// out of range.
+  /// Throws std::invalid_argument if there is no terrain class, if two classes have the same number, or if a
+  /// field is out of range.
   explicit GroundModel(Parts parts);
 
   const Parts& parts() const noexcept { return parts_; }
   const terramech::Rover& rover() const noexcept { return parts_.rover; }
 
-  /// Returns the index in parts().classes of a class number; -1 for an undeclared number.
+  /// Returns the index in parts().classes of the class with this number; -1 for a number without a class.
   int classIndex(int number) const noexcept;
 
-  /// Returns the estimate of a class before any evidence.
+  /// Returns the estimated strength of a class before any evidence from wheels.
   const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
 
-  /// Quantities of a wheel that drives steadily at this slip on the soil of the class; slips are limited to
-  /// the drivable range. The effect of a slip angle is computed for fresh ground, also in a rut.
+  /// Returns the quantities of a wheel that drives at constant slip on the soil of the class. The slip is
+  /// limited to the drivable range. The effect of the slip angle is computed for undisturbed ground, also in
+  /// a rut.
   SteadyWheel steady(int class_index, const SlippingWheel& wheel) const;
-  /// Quantities of a wheel that drives straight on a slope of this gradient (rise over run), limited to the
-  /// drivable gradients.
+  /// Returns the quantities of a wheel that drives straight up a slope of this gradient (rise over run),
+  /// limited to the drivable gradients.
   SteadyWheel onSlope(int class_index, double gradient, bool in_rut) const;
-  /// Quantities of a wheel at the reference slip.
+  /// Returns the quantities of a wheel at the reference slip 0.5.
   SteadyWheel reference(int class_index, bool in_rut) const noexcept;
 
-  /// Drive curve and states of ground of a class with an estimated strength.
+  /// Returns the cost curve and the tabulated travel states of ground that belongs to a class and has the
+  /// estimated strength `belief`.
   GroundCost ground(int class_index, const GroundBelief& belief) const {
     return ground(class_index, class_index, belief);
   }
-  /// Returns the drive curve and states of ground that may have either class: each quantity is the less
-  /// favourable of the two classes.
+  /// Returns the cost curve and the tabulated travel states of ground that may belong to either of two
+  /// classes: each quantity is the less favourable one of both classes.
   GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
 
-  /// Effect of cross slopes on ground of a class.
+  /// Returns the effect of slopes across the heading on ground of a class.
   const std::shared_ptr<const CrossSlope>& crossing(int class_index) const;
 
-  /// State at a gradient along the heading (rise over run) without cross slope, as tabulated by ground().
+  /// Returns the travel state at a gradient along the heading (rise over run) without cross slope, as
+  /// tabulated by ground().
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const;
 
-  /// Returns the cost of one horizontal metre [J]; infinite if refused.
+  /// Returns the cost of one horizontal metre [J]; infinite if the motion is refused.
   double cost_J_per_m(const TravelState& state) const noexcept;
 
-  /// Category of ground at a gradient along the heading, and its probability under the estimate.
+  /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and
+  /// the probability of that category under the uncertainty of `belief`.
   RankedCategory category(const GroundBelief& belief, double gradient) const;
 
+  /// Returns the limits of pitch and roll as gradients, and the tipping geometry of the rover.
   TravelCost::Limits limits() const;
 
  private:

@@ -7,10 +7,11 @@
 
 namespace talus::costmap {
 
-/// The map as an octree of estimates: all cells at their elevation, and the floors with evidence.
+/// Returns an OctoMap octree with the estimate of each cell of the map, at the cell's elevation, and of each
+/// floor (ground beneath the top surface) with evidence.
 TraversabilityTree treeOf(const TraversabilityMap& map);
 
-/// Writes the octree of treeOf() without storing the tree in memory; the stream must be seekable.
+/// Writes the octree of treeOf() without storing it in memory. The stream must be seekable.
 void writeTree(const TraversabilityMap& map, std::ostream& stream);
 
 }  // namespace talus::costmap

@@ -18,31 +18,34 @@
 
 namespace talus::costmap {
 
-/// The map of a site: surface with the hazards of each cell (MapSurface), wheel evidence (EvidenceField), and
-/// the cost grid for planners (MapCosts). Only the members below change these parts. Memory: 15 bytes per
-/// cell and about 60 bytes per block with evidence.
+/// The traversability map of a site. It consists of the surface with the hazards of each cell (MapSurface),
+/// the evidence from wheel measurements (EvidenceField), and the cost grid for planners (MapCosts). Only
+/// members of this class change these parts. Memory: 15 bytes per cell, and about 60 bytes per block with
+/// evidence. A block is a square of cells that stores its evidence together (BlockGrid).
 ///
-/// One thread changes a map: a concurrent call of learn(), forget(), refuse(), patch(), publish() or
-/// publishAll() throws std::logic_error. published() may be called from any thread at any time without
-/// waiting. Concurrent calls of other const members are safe while no thread changes the map.
+/// Only one thread may change a map: a concurrent call of learn(), forget(), refuse(), patch(), publish() or
+/// publishAll() throws std::logic_error. published() may be called from any thread at any time and does not
+/// wait. Concurrent calls of other const members are safe while no thread changes the map.
 class TraversabilityMap {
  public:
   struct Options {
-    double footprint_radius_m =
-        0.0;  ///< radius of the disc for slope and roughness; 0: half the diagonal of the rover's wheel base
-    int threads = 1;  ///< >= 1; the result does not depend on the number of threads
+    /// Radius of the disc over which slope and roughness of a cell are measured [m]; 0: half the diagonal of
+    /// the rover's wheel base.
+    double footprint_radius_m = 0.0;
+    int threads = 1;  ///< number of threads, >= 1; the result does not depend on this number
   };
 
-  /// Builds the map. Cells of a class without a soil are obstacles; cells outside the class raster are
-  /// unknown. Throws std::invalid_argument if a layer has another grid or an invalid value.
+  /// Builds the map and publishes version 1. Cells whose terrain class has no soil in `model` are obstacles.
+  /// If `layers` has a class raster, cells without a class number are unknown ground. Throws
+  /// std::invalid_argument if a layer has another grid than the elevation, or an invalid value.
   TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model, const Options& options,
                     const ProgressMonitor& watch = {});
   TraversabilityMap(TraversabilityMap&&) noexcept;
   ~TraversabilityMap();
 
-  /// Elevation, classes, layers and hazards.
+  /// Returns the surface: elevation, terrain classes, layers and hazards.
   const MapSurface& surface() const noexcept { return *surface_; }
-  /// Evidence from wheel measurements.
+  /// Returns the evidence from wheel measurements.
   const EvidenceField& evidence() const noexcept { return field_; }
   /// Returns the cost grid and the categories of the cells.
   const MapCosts& costs() const noexcept { return *costs_; }
@@ -50,68 +53,76 @@ class TraversabilityMap {
   const maps::Grid& grid() const noexcept { return surface_->grid(); }
   const maps::ElevationMap& elevation() const noexcept { return surface_->elevation(); }
   const GroundModel& model() const noexcept { return surface_->model(); }
-  /// The newest published version.
+  /// Returns the newest published version of the cost grid.
   std::shared_ptr<const CostGrid> published() const noexcept { return costs_->published(); }
 
-  /// Estimate of a cell inside the map, and of a floor of the cell; for many cells, use PlaceBeliefs.
+  /// Returns the estimate (soil strength, category, hazards) of a cell inside the map, or of a floor of that
+  /// cell. A floor is ground beneath the top surface. PlaceBeliefs is faster for many cells.
   CellBelief belief(maps::Cell cell) const;
   CellBelief belief(maps::Cell cell, const Floor& floor) const;
-  /// Strength of a cell's ground from the prior of the class and the evidence; nullopt for a cell without a
-  /// class.
+  /// Returns the estimated strength of a cell's ground, from the prior of the terrain class and the evidence;
+  /// nullopt for a cell without a terrain class.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
 
-  /// Adds an observation; visible to planners after publish(). A cell with a known class accumulates evidence
-  /// before its height is known, with the same result as in the reverse order. Evidence of danger on a cell
-  /// without a class, or beyond the map's edge by less than the pose error, refuses the place like refuse():
-  /// a block and two standard deviations of the pose around the place, independently of later patches.
-  /// Returns false if the map has no ground at the place.
+  /// Adds a wheel observation to the evidence. Planners use the observation after publish(). A cell with a
+  /// known class accumulates evidence before its elevation is known, with the same result as in the reverse
+  /// order. Evidence of danger on a cell without a class, or beyond the map's edge by less than the pose
+  /// error, declares the place impassable, like refuse(): within a block side plus two standard deviations of
+  /// the position, independently of later patches. Returns false if the map has no ground at the position of
+  /// the observation.
   bool learn(const WheelObservation& observation);
-  /// Removes learned pulls and sinkages, as returned by evidence().readingsOf(), before their replacement.
-  /// Bounds of the place remain. Visible to planners after publish().
+  /// Removes pull and sinkage readings that learn() stored, e.g. to replace them. `readings` is the result of
+  /// evidence().readingsOf(). Bounds of the ground at that place remain. Planners use the change after
+  /// publish().
   void forget(const SavedBlock& readings);
-  /// Restores the evidence of a block from a file; visible to planners after publish(). Returns false if the
-  /// map has no such block or class.
+  /// Adds the evidence of one block that was read from a file. Planners use the evidence after publish().
+  /// Returns false if the map has no such block or terrain class.
   bool restore(const SavedBlock& saved);
 
-  /// Ids of the drives in the map (driveId()), sorted.
+  /// Returns the identifiers (driveId()) of the drives whose telemetry the map contains, sorted.
   const std::set<std::string>& drives() const noexcept { return drives_; }
-  /// Records that a drive is in the map. `continued` is the id of the shorter drive that the drive replaces,
-  /// if any.
+  /// Records that the map contains the drive `id`. `continued` is the identifier of the shorter drive that
+  /// `id` replaces; empty: `id` replaces no drive.
   void noteDrive(const std::string& id, const std::string& continued = {}) {
     drives_.erase(continued);
     drives_.insert(id);
   }
 
-  /// Declares the ground around a place impassable, for example after an immobilisation: Hazard::Obstacle on
-  /// all cells whose centre lies within radius_m > 0. Visible to planners after publish(); stored in map
-  /// files. Throws std::invalid_argument for a non-finite place or radius, or a radius <= 0.
+  /// Declares the ground around a place impassable, for example after an immobilisation: all cells whose
+  /// centre lies within radius_m > 0 [m] of `place` become Hazard::Obstacle. Planners use the change after
+  /// publish(). Map files store the declaration. Throws std::invalid_argument for a non-finite place or
+  /// radius, or a radius <= 0.
   void refuse(const maps::Point& place, double radius_m);
 
-  /// Replaces a window of the ground and publishes the window, with all learned evidence, as one new version.
-  /// The new version equals a map that was built with these heights, rocks, classes and keep-out areas. Only
-  /// cells whose footprint, clearance or wheel swath overlaps the window are measured again. Evidence stays
-  /// assigned to the class for which the evidence was recorded. Throws std::invalid_argument with place and
-  /// remedy for a patch of another resolution, outside the map, without an observation, or with an invalid
-  /// value; the map is then unchanged.
+  /// Replaces the ground of a window (rectangle of cells) by a new observation, and publishes the change and
+  /// all learned evidence as one new version. The new version equals a map that was built with these
+  /// elevations, rocks, terrain classes and keep-out areas. Only cells whose footprint, clearance or wheel
+  /// swath overlaps the window are measured again. Evidence stays assigned to the terrain class for which the
+  /// evidence was recorded. Throws std::invalid_argument, with location and remedy, if the patch has another
+  /// resolution, lies outside the map, has no observation, or has an invalid value; the map is then
+  /// unchanged.
   void patch(const SurfacePatch& patch);
 
-  /// The map of a window shifted by `tiles` tiles of 64 cells eastward (columns) and northward (rows). The
-  /// common area keeps its surface, evidence and refused places; new tiles are unseen. Equals a map built
-  /// from the remaining data. The version number is that of this map plus 1. Throws std::invalid_argument if
-  /// the windows do not overlap, or if a block of evidence is larger than a tile.
+  /// Returns the map of a window that is shifted by `tiles` tiles of 64 cells eastward (columns) and
+  /// northward (rows). The area common to both windows keeps its surface, evidence and places declared
+  /// impassable; the cells of new tiles are unobserved. The result equals a map built from the remaining
+  /// data. Its version number is that of this map plus 1. Throws std::invalid_argument if the windows do not
+  /// overlap, or if a block of evidence is larger than a tile.
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
-  /// Publishes all changes since the last call as a new version: recomputes the cells whose ground changed,
-  /// or where a wheel reaches changed ground, and shares unchanged tiles. Readers do not wait; a running
-  /// planner keeps its version. If no index of a cost curve is free, all cells get new indices with coarser
-  /// steps (GroundKind).
+  /// Publishes all changes since the last call as a new version of the cost grid. Recomputes the cells whose
+  /// ground changed and the cells from which a wheel reaches changed ground; shares all other tiles with the
+  /// previous version. Readers do not wait, and a running planner keeps its version. The cost curves have at
+  /// most 254 indices: if no index is free, all cells receive new indices with coarser steps of the estimates
+  /// (GroundKind).
   ///
-  /// The costs are bitwise equal to those of publishAll(), for any sequence of changes. A cell depends on its
-  /// shape, on the class states in steps (ClassEvidence::stateInSteps()) and on the evidence within reach of
-  /// its patch of blocks, and is recomputed after a change of any of these. Exception: after curve indices
-  /// were exhausted, steps may be up to 8 times as coarse as those of publishAll(); no cost is lower.
+  /// The costs are bit-identical to those of publishAll(), for any sequence of changes. A cell depends on its
+  /// shape, on the rounded state of the terrain classes (ClassEvidence::stateInSteps()) and on the evidence
+  /// within reach of its patch of 8x8 blocks, and is recomputed after a change of any of these. Exception:
+  /// after the curve indices were exhausted, the steps may be up to 8 times as coarse as those of
+  /// publishAll(); no cost is lower.
   void publish();
-  /// Recomputes and publishes all cells.
+  /// Recomputes the cost of all cells and publishes a new version.
   void publishAll();
 
  private:
