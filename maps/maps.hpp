@@ -1,7 +1,7 @@
 #pragma once
 
-/// Entry header of talus::maps: elevation maps, heights from point clouds, positions, georeference, slope and
-/// roughness.
+/// Umbrella header of talus::maps: includes elevation maps with georeference, heights from point clouds,
+/// positions, and slope and roughness.
 
 #include <talus/maps/grid/point_heights.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>

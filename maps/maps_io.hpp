@@ -1,6 +1,7 @@
 #pragma once
 
-/// Entry header of talus::maps_io: elevation and layers from files, GeoTIFF written.
+/// Umbrella header of talus::maps_io: includes readers of elevation, layers and positions from files, and the
+/// writer of GeoTIFF files.
 
 #include <talus/maps/maps.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>

@@ -8,8 +8,8 @@
 
 namespace talus::maps {
 
-/// A projection on an ellipsoid. Longitudes are relative to the central meridian; Georeference adds the false
-/// origin. Immutable.
+/// Interface of a map projection on an ellipsoid. Longitudes are relative to the central meridian. Map
+/// coordinates exclude the false easting and northing, which Georeference adds. Immutable.
 class Transform {
  public:
   Transform() = default;
@@ -17,11 +17,14 @@ class Transform {
   Transform& operator=(const Transform&) = delete;
   virtual ~Transform() = default;
 
+  /// Returns the map coordinates [m] of a latitude and longitude [rad].
   virtual Point forward(GeoPoint place) const = 0;
+  /// Returns the latitude and longitude [rad] of map coordinates [m].
   virtual GeoPoint reverse(Point point) const = 0;
 };
 
-/// The transform of a projection method; null for Foreign. The parameters must have been validated.
+/// Returns the transform of a projection method, or null for ProjectionMethod::Foreign. The parameters must
+/// have been validated.
 std::unique_ptr<const Transform> makeTransform(const Ellipsoid& ellipsoid, const Projection& projection);
 
 }  // namespace talus::maps

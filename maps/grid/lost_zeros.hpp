@@ -8,41 +8,43 @@
 
 namespace talus::maps {
 
-/// A range of cells of one row, both ends included.
+/// A range of cells of one row, from column `first` to column `last`, both included.
 struct CellRun {
   int row = 0;
   int first = 0;
   int last = 0;
 };
 
-/// Cells whose value was lost.
+/// Cells whose value was lost, because a damaged file contains zeros there.
 struct LostCells {
-  std::vector<CellRun> runs{};  ///< lost regions with a margin of one cell; runs may overlap
-  std::size_t count = 0;        ///< number of cells with the value 0 (below 1e-37) in the lost regions
+  /// Cells of the lost regions, with a margin of one cell around each region; runs may overlap.
+  std::vector<CellRun> runs{};
+  std::size_t count = 0;  ///< number of cells of the lost regions with the value 0 (magnitude below 1e-37)
 };
 
 /// Finds connected regions of zeros that are lost data: a lost disk block becomes zero bytes in a file of
-/// numbers. Method (ours, not from the literature): at each border cell of a region, the height step from 0
-/// to the first cell outside is compared with the next three steps outwards. The border step is abrupt if it
-/// exceeds three times the largest of these three steps. A region is lost if more than half of its border
-/// steps are abrupt.
+/// numbers. The method (ours, not from the literature) examines each border cell of a region. The border step
+/// is the height step from the region's 0 to the first cell outside. It is abrupt if it exceeds three times
+/// the largest of the next three steps outwards. A region is lost if more than half of its border steps are
+/// abrupt.
 ///   - Terrain that descends to a plain or a sea of height 0 has no abrupt border steps.
 ///   - A border step to level cells (a wall on a plain), or to a single known cell, is not abrupt.
-///   - Border steps to unknown cells are omitted. A region without other border steps (a level map) is not
-///     lost.
-/// If 0 is an ordinary value, for example of rock abundance, a lost region must also have the shape of a lost
-/// byte range: every row of the region spans the full width of the region; only its first row may begin later
-/// and only its last row may end earlier.
+///   - Border steps to cells without data are omitted. A region without other border steps (a level map) is
+///     not lost.
+/// If 0 is an ordinary value of the layer, e.g. of rock abundance, a lost region must also have the shape of
+/// a lost byte range: every row of the region spans the full width of the region, except that the first row
+/// may begin later and the last row may end earlier.
 class LostZeros {
  public:
-  /// `zero_is_ordinary`: true if a lost region must also have the shape of a lost byte range.
+  /// Finds lost regions in rows of `width` cells. If `zero_is_ordinary`, a lost region must also have the
+  /// shape of a lost byte range.
   explicit LostZeros(int width, bool zero_is_ordinary = false);
 
-  /// Adds the next row of `width` values, NaN for no data. Rows may be added from south to north or from
-  /// north to south.
+  /// Adds the next row of `width` values; NaN marks cells without data. Rows may be added from south to north
+  /// or from north to south.
   void add(std::span<const float> row);
 
-  /// Returns the lost cells of all rows. Call once, after the last row.
+  /// Returns the lost cells of all rows. Must be called once, after the last row.
   LostCells finish();
 
  private:

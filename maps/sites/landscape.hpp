@@ -7,14 +7,15 @@
 
 namespace talus::maps {
 
-/// Elevation, soil class and rock abundance at a point of a site, before rocks are added.
+/// Elevation, soil class and rock abundance at a point of a generated site, before rocks are added.
 struct Ground {
   double height_m = 0.0;
   SiteClass soil = SiteClass::Firm;
-  double rock_share = 0.0;  ///< fraction of the area covered by rocks [-]
+  double rock_share = 0.0;  ///< rock abundance: fraction of the area covered by rocks [-]
 };
 
-/// Interface of a site generator; each point is computed independently of its neighbours. Immutable.
+/// Interface of the terrain of a generated site without rocks. Each point is computed independently of other
+/// points. Immutable.
 class Landscape {
  public:
   Landscape() = default;
@@ -22,10 +23,12 @@ class Landscape {
   Landscape& operator=(const Landscape&) = delete;
   virtual ~Landscape() = default;
 
+  /// Returns the ground at a point in map coordinates [m].
   virtual Ground at(Point p) const = 0;
 };
 
-/// The landscape of a site on this grid. @throws std::invalid_argument for an unknown kind
+/// Returns the landscape of a site of the kind options.kind on this grid. @throws std::invalid_argument for
+/// an unknown kind
 std::unique_ptr<const Landscape> makeLandscape(const Grid& grid, const SiteOptions& options);
 
 }  // namespace talus::maps

@@ -13,24 +13,26 @@ struct Rock {
   Point centre;
   double radius_m = 0.0;
 
-  /// Height above the ground [m] at a distance [m] from the centre.
+  /// Returns the height of the rock above the ground [m] at a distance [m] from its centre.
   double height_m(double distance_m) const;
 };
 
-/// Decay rate q of the rock-covered area with diameter [1/m]: q(k) = 1.79 + 0.152 / k [golombek_rapp_1997],
-/// for the rock abundance k [-].
+/// Returns the decay rate q [1/m] of the rock size distribution for a rock abundance k = total_share [-], the
+/// fraction of the area covered by rocks: q(k) = 1.79 + 0.152 / k [golombek_rapp_1997].
 double rockDecay_per_m(double total_share);
 
-/// Parameters of a rock population.
+/// Parameters of a random rock population.
 struct RockOptions {
   std::uint64_t seed = 0;
-  double least_diameter_m = 0.5;  ///< smaller rocks are represented by the abundance alone
+  /// Diameter of the smallest generated rocks; smaller rocks are represented by the abundance alone.
+  double least_diameter_m = 0.5;
+  /// Diameter of the largest generated rocks.
   double greatest_diameter_m = 4.0;
 };
 
-/// Random rocks with the exponential size-frequency distribution F(D) = k exp(-q(k) D) [golombek_rapp_1997]:
-/// F is the fraction of the area covered by rocks with a diameter above D, and k [-] the rock abundance at a
-/// point of the grid.
+/// Returns random rocks over a grid with the exponential size-frequency distribution F(D) = k exp(-q(k) D)
+/// [golombek_rapp_1997]. F is the fraction of the area covered by rocks with a diameter above D [m]. The
+/// function `abundance` returns the rock abundance k [-] at a point of the grid; q is rockDecay_per_m().
 std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>& abundance,
                             const RockOptions& options);
 

@@ -5,7 +5,7 @@
 
 namespace talus::maps {
 
-/// Pseudo-random 64-bit hash of a number: one step of SplitMix64.
+/// Returns a pseudo-random 64-bit hash of a number: one step of SplitMix64.
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -13,25 +13,27 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// Sequence of uniform random numbers in [0, 1) from a seed: mixed() of a counter. Each generator of a site
-/// uses a separate sequence.
+/// Sequence of uniform random numbers in [0, 1), made from a seed by mixed() of a counter. Each generator of
+/// a site uses a separate sequence.
 class RandomSequence {
  public:
   explicit RandomSequence(std::uint64_t seed) noexcept : state_(seed) {}
 
+  /// Returns the next number of the sequence.
   double operator()() noexcept { return static_cast<double>(mixed(state_++) >> 11) * 0x1.0p-53; }
 
  private:
   std::uint64_t state_;
 };
 
-/// Gradient noise in the plane, mostly in [-1, 1] and within +-sqrt(2): random gradients at integer points,
-/// interpolated by fifth-order polynomials. The wavelength is 1. Each point is computed independently of its
-/// neighbours.
+/// Gradient noise: a smooth random function of the plane with wavelength 1. Random gradients at integer
+/// points are interpolated by fifth-order polynomials. Values lie mostly in [-1, 1] and always within
+/// +-sqrt(2). The value at a point is computed independently of other points.
 class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed) noexcept : seed_(mixed(seed)) {}
 
+  /// Returns the noise [-] at a point with the coordinates x, y [wavelengths].
   double operator()(double x, double y) const noexcept {
     const double column = std::floor(x);
     const double row = std::floor(y);
@@ -60,21 +62,24 @@ class GradientNoise {
   std::uint64_t seed_;
 };
 
-/// Self-affine terrain: octaves of gradient noise from the longest to the shortest wavelength, with amplitude
-/// ~ wavelength^hurst.
+/// Self-affine random terrain: the sum of octaves of gradient noise, from the longest to the shortest
+/// wavelength. The amplitude of an octave is proportional to wavelength^hurst.
 class FractalGround {
  public:
   struct Options {
     std::uint64_t seed = 0;
+    /// Longest wavelength.
     double longest_m = 100.0;
+    /// Lower bound of the wavelengths; each octave has half the wavelength of the previous one.
     double shortest_m = 1.0;
     double amplitude_m = 1.0;  ///< amplitude at the longest wavelength
-    double hurst = 0.8;        ///< Hurst exponent, 0 to 1; higher is smoother
+    double hurst = 0.8;        ///< Hurst exponent, 0 to 1; a greater exponent gives smoother terrain [-]
   };
 
   explicit FractalGround(const Options& options) noexcept
       : options_(options), noise_(options.seed), fall_(std::pow(2.0, -options.hurst)) {}
 
+  /// Returns the height [m] at a point in map coordinates.
   double operator()(double x_m, double y_m) const noexcept {
     // Each octave is rotated by 36.9 degrees relative to the previous one, which hides the square lattice of
     // the noise.
