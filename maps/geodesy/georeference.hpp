@@ -12,9 +12,7 @@ namespace talus::maps {
 /// Coordinate reference system of a map file.
 struct CoordinateSystem {
   std::string name{};  ///< name of the system, e.g. "WGS 84 / UTM zone 10N"
-  /// Figure of the body.
   Ellipsoid ellipsoid{};
-  /// Map projection of latitude and longitude on the ellipsoid.
   Projection projection{};
   /// True if latitudes are angles at the centre of the body; false if latitudes are angles of the surface
   /// normal.

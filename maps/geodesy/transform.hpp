@@ -8,8 +8,8 @@
 
 namespace talus::maps {
 
-/// Interface of a map projection on an ellipsoid. Longitudes are relative to the central meridian. Map
-/// coordinates exclude the false easting and northing, which Georeference adds. Immutable.
+/// Interface of a map projection on an ellipsoid. Longitudes are relative to the central meridian;
+/// Georeference adds the false easting and northing. Immutable.
 class Transform {
  public:
   Transform() = default;
@@ -17,9 +17,9 @@ class Transform {
   Transform& operator=(const Transform&) = delete;
   virtual ~Transform() = default;
 
-  /// Returns the map coordinates [m] of a latitude and longitude [rad].
+  /// Returns map coordinates [m] of a latitude and longitude.
   virtual Point forward(GeoPoint place) const = 0;
-  /// Returns the latitude and longitude [rad] of map coordinates [m].
+  /// Returns latitude and longitude of map coordinates [m].
   virtual GeoPoint reverse(Point point) const = 0;
 };
 

@@ -7,14 +7,14 @@
 
 namespace talus::maps {
 
-/// Reads a DEM: any raster that GDAL opens, or a NumPy .npz archive with the arrays elevation, xmin, xmax,
-/// ymin, ymax (degrees), as matplotlib distributes one. Rasters in degrees and rasters with rotated or
-/// non-square pixels are resampled to square cells in metres, which the notes of the map record. @throws
-/// InputError with file, reason and remedy
+/// Returns the elevation map of a file: any raster that GDAL opens, or a NumPy .npz archive with the arrays
+/// elevation, xmin, xmax, ymin, ymax (degrees), as distributed with matplotlib. Rasters in degrees, and
+/// rasters with rotated or non-square pixels, are resampled to square cells in metres; ElevationMap::notes
+/// record the resampling. @throws InputError with file, reason and remedy
 ElevationMap readElevation(const std::string& path, const ReadOptions& options = {});
 
-/// Grid that readElevation() would return, without reading the values. @throws InputError, also if the grid
-/// exceeds ReadOptions::max_cells
+/// Returns the grid of the map that readElevation() would return, without reading the elevations. @throws
+/// InputError, also if the grid exceeds ReadOptions::max_cells
 Grid elevationGrid(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace talus::maps

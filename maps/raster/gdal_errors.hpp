@@ -4,7 +4,8 @@
 
 namespace talus::maps {
 
-/// Suppresses GDAL's error output during its lifetime and gives access to the last error of this thread.
+/// Suppresses GDAL's error output during the lifetime of the object, and gives access to the last error of
+/// this thread.
 class GdalErrors {
  public:
   GdalErrors();
@@ -14,7 +15,7 @@ class GdalErrors {
 
   /// Returns the first line of GDAL's last message; "unknown error" if GDAL has reported no error.
   std::string last() const;
-  /// True if the last error since construction has class CE_Failure or worse.
+  /// Returns true if the last error since construction has class CE_Failure or worse.
   bool any() const;
 };
 

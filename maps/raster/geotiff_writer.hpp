@@ -14,24 +14,25 @@ class OutputFile;
 
 namespace talus::maps {
 
-/// One band of a GeoTIFF.
+/// One band of a GeoTIFF file.
 struct Layer {
   std::string name{};      ///< band description
-  std::string unit{};      ///< "m", "rad", ...; "" for a dimensionless value
-  Raster<float> values{};  ///< NaN = no data
+  std::string unit{};      ///< unit of the values: "m", "rad", ...; empty for a dimensionless quantity
+  Raster<float> values{};  ///< values of the cells; NaN marks cells without data
 };
 
-/// Path and coordinate system of a GeoTIFF.
+/// Path and coordinate reference system (CRS) of a GeoTIFF file.
 struct GeoTiff {
   std::string path{};
-  const Georeference* georeference = nullptr;  ///< null: local metres without a CRS
-  OutputFile* into = nullptr;  ///< output file that the caller commits; null: the function writes and commits
-                               ///< `path`
+  /// Coordinate system of the file; null: local metres without a CRS.
+  const Georeference* georeference = nullptr;
+  /// Output file that the caller commits. Null: the writing function creates `path` and commits it.
+  OutputFile* into = nullptr;
 };
 
-/// Writes layers on a common grid as a tiled, compressed GeoTIFF. The file replaces `path` atomically
-/// (OutputFile). @throws InputError if the file cannot be written, std::invalid_argument if the grids differ
-/// or there is no layer
+/// Writes layers on a common grid as bands of a tiled, compressed GeoTIFF file. The file replaces file.path
+/// atomically (OutputFile). @throws InputError if the file cannot be written, std::invalid_argument if the
+/// grids of the layers differ or if there is no layer
 void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers);
 
 /// Name and display colour of a class of an integer raster.
@@ -40,10 +41,11 @@ struct NamedClass {
   std::array<std::uint8_t, 3> colour{};  ///< red, green, blue
 };
 
-/// Writes an integer raster (classes, masks) as a GeoTIFF with one band; `nodata` is declared as the no-data
-/// value. With `classes`, entry i gives the name (band item CLASS_i) and the colour-table entry of value i,
-/// and the file has overviews whose cells are the maximum of the cells beneath. @throws InputError if the
-/// file cannot be written, std::invalid_argument for an empty raster
+/// Writes an integer raster (terrain classes, masks) as a GeoTIFF file with one band named `name`. The file
+/// declares `nodata` as the value of cells without data. With `classes`, entry i gives the name (band item
+/// CLASS_i) and the colour of the value i, and the file has overviews, i.e. coarser copies whose cells are
+/// the maximum of the cells that they cover. @throws InputError if the file cannot be written,
+/// std::invalid_argument for an empty raster
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes = {});
 

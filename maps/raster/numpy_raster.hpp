@@ -7,13 +7,14 @@
 
 namespace talus::maps {
 
-/// True if the path ends in .npy or .npz.
+/// Returns true if the path ends in .npy or .npz.
 bool isNumpyFile(const std::string& path);
 
-/// Opens a NumPy elevation grid as an in-memory raster, north up. Reads the array of a .npy file, or of a
-/// .npz archive the array "elevation", else the only two-dimensional array. The scalars xmin, xmax, ymin,
-/// ymax of an archive, if present, are the outer edges: degrees on WGS 84 if their magnitudes permit. Limits
-/// in reverse order are swapped, which is recorded in `notes`. @throws InputError
+/// Opens a NumPy elevation grid as an in-memory raster, with north up. Reads the array of a .npy file. Of a
+/// .npz archive, reads the array "elevation" or, if this is missing, the only two-dimensional array. The
+/// scalars xmin, xmax, ymin, ymax of an archive, if present, are the outer edges of the grid, in degrees on
+/// WGS 84 if their magnitudes permit. Limits in reverse order are swapped, and `notes` records the swap.
+/// @throws InputError
 Dataset openNumpyRaster(const std::string& path, std::vector<std::string>& notes);
 
 }  // namespace talus::maps

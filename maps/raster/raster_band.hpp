@@ -13,23 +13,24 @@ class GDALDataset;
 
 namespace talus::maps {
 
-/// Value of cells without data in a raster of floats.
+/// Value of cells without data in a raster of floats: NaN.
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// Criteria for the choice of a band.
+/// Criteria for the choice of a band of a raster file.
 struct BandCriteria {
-  std::string path{};                      ///< path in error messages
-  std::optional<int> band{};               ///< selected by the user, from 1
+  std::string path{};                      ///< path of the file in error messages
+  std::optional<int> band{};               ///< band number from 1 that the user selected
   std::vector<std::string_view> words{};   ///< lower-case substrings of the description that select a band
   std::vector<std::string_view> others{};  ///< lower-case substrings of the description that exclude a band
 };
 
-/// Returns the selected band, else the first band whose description fits, else the first band. A choice among
-/// several bands is recorded in `notes`. @throws InputError for a band that does not exist, or for a colour
-/// image without a selected band
+/// Returns the number of the band that the user selected, or otherwise of the first band whose description
+/// fits, or otherwise of the first band. A choice among several bands is appended to `notes`. @throws
+/// InputError for a band that does not exist, or for a colour image without a selected band
 int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::string>& notes);
 
-/// A rectangle of pixels, counted from the upper left corner.
+/// A rectangle of pixels; column and row of its first pixel are counted from the upper left corner of the
+/// raster.
 struct PixelBox {
   int column = 0;
   int row = 0;
@@ -39,25 +40,27 @@ struct PixelBox {
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
 };
 
-/// Reads raw values of a band in file order; masked pixels and infinities are NaN. With overview > 1, returns
-/// the mean of each block of overview x overview pixels, from the overviews of the file if present. The width
-/// and height of the box are multiples of `overview`, or less than one. @throws InputError with GDAL's
-/// message
+/// Returns the values of a band in file order, before any conversion; masked pixels and infinities are NaN.
+/// With `overview` > 1, returns the mean of each block of overview x overview pixels, from the overviews
+/// (coarser copies) of the file if present. Width and height of the box must be multiples of `overview` or
+/// less than one multiple. `where` names the file in error messages. @throws InputError with GDAL's message
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
 
 /// Returns the cells of a box that were overwritten by zeros, found by LostZeros within the box. `nodata` is
-/// the no-data value of the band; `zero_is_ordinary` as for LostZeros. @throws InputError
+/// the no-data value of the band. If `zero_is_ordinary`, 0 is an ordinary value of the layer (see LostZeros).
+/// `where` names the file in error messages. @throws InputError
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
                     const std::string& where, bool zero_is_ordinary = false);
 
-/// Sets each value to NaN whose block of overview x overview pixels contains a lost cell.
+/// Sets to NaN each value of `values` whose block of overview x overview pixels contains a lost cell.
 void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values);
 
-/// Message about lost cells; `remedy` is the option to use if 0 is their true value.
+/// Returns a message about lost cells. `remedy` is the command-line option to use if 0 is the true value of
+/// the cells.
 std::string lostNote(const LostCells& lost, const std::string& remedy);
 
-/// Reverses the row order: values from north to south become a raster from south to north.
+/// Returns a raster in order from south to north of values in order from north to south.
 Raster<float> northUp(const Grid& grid, std::vector<float> values);
 
 }  // namespace talus::maps

@@ -10,17 +10,18 @@
 
 namespace talus::maps {
 
-/// A raster of square cells in metres with its grid.
+/// A raster of square cells in metres, with its grid.
 struct FramedRaster {
   Dataset raster{};
   int band = 1;
-  Grid grid{};           ///< grid of the whole raster
+  Grid grid{};           ///< grid of the whole raster in map coordinates
   bool north_up = true;  ///< true if the first row of the raster is the northernmost
   std::optional<Georeference> georeference{};
 };
 
-/// Determines the grid of a file; resamples pixels that are not square cells in metres. Decisions are added
-/// to `notes`. `path` identifies the file in error messages. @throws InputError
+/// Returns a band of a file as a raster of square cells in metres; resamples the band if its pixels are not
+/// square cells in metres. Decisions are appended to `notes`. `path` names the file in error messages.
+/// @throws InputError
 FramedRaster frame(Dataset file, int band, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes);
 

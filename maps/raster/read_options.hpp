@@ -9,19 +9,26 @@ namespace talus::maps {
 
 /// Options for reading a raster file.
 struct ReadOptions {
-  std::optional<int> band{};  ///< from 1; unset: the band whose description names elevation, else the first
-  std::optional<double> resolution_m{};  ///< cell side; required for a file without a CRS; else causes
-                                         ///< resampling
-  std::optional<Window> window{};        ///< part of the file to read, in map coordinates or degrees
-  std::optional<double> nodata{};        ///< no-data value; overrides the file
-  bool keep_zeros = false;  ///< treat regions of 0 as ground even if the surrounding values are not near 0
-  double vertical_scale = 1.0;  ///< factor on the heights, applied after the conversion of the stated unit
-  bool ignore_crs = false;      ///< ignore the CRS of the file and read local metres
-  bool allow_vrt = false;       ///< accept a virtual raster whose files lie in its own folder
-  /// Number of cells per side that are averaged into one cell, from the overviews of the file if present; >=
-  /// 1.
+  /// Band number from 1; unset: the band whose description names elevation, or otherwise the first band.
+  std::optional<int> band{};
+  /// Side length of a cell. Required for a file without a coordinate reference system (CRS); for other files,
+  /// a value causes resampling.
+  std::optional<double> resolution_m{};
+  std::optional<Window> window{};  ///< part of the file to read, in map coordinates or degrees
+  std::optional<double> nodata{};  ///< value of cells without data; overrides the value that the file states
+  /// True if regions of 0 are ground even if the surrounding elevations are not near 0. False: such regions
+  /// are lost data.
+  bool keep_zeros = false;
+  /// Factor on the heights, applied after the conversion from the unit that the file states [-].
+  double vertical_scale = 1.0;
+  bool ignore_crs = false;  ///< true if the CRS of the file is ignored and coordinates are local metres
+  /// True if a virtual raster (VRT) is accepted whose source files lie in its own folder.
+  bool allow_vrt = false;
+  /// Number of cells per side, >= 1, whose mean becomes one cell; the file's overviews (coarser copies) are
+  /// used if present.
   int overview = 1;
-  std::uint64_t max_cells = 400'000'000;  ///< larger maps are rejected (the default takes 1.6 GB as float)
+  /// Maximum number of cells; larger maps are rejected (the default takes 1.6 GB as float).
+  std::uint64_t max_cells = 400'000'000;
 };
 
 }  // namespace talus::maps

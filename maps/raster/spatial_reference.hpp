@@ -9,26 +9,26 @@ class OGRSpatialReference;
 
 namespace talus::maps {
 
-/// Converts a projected CRS of GDAL; ProjectionMethod::Foreign for a projection unknown to Georeference.
-/// `where` is the location in error messages. @throws InputError if the CRS is not projected or its x axis
-/// points west
+/// Returns the CoordinateSystem of a projected coordinate reference system (CRS) of GDAL. The method is
+/// ProjectionMethod::Foreign for a projection that Georeference does not implement. `where` names the file in
+/// error messages. @throws InputError if the CRS is not projected or its x axis points west
 CoordinateSystem coordinateSystem(const OGRSpatialReference& reference, const std::string& where);
 
-/// Converts a coordinate system to GDAL's form with the axis order x, y (longitude, latitude): from its WKT,
-/// else from its parameters.
+/// Returns GDAL's form of a coordinate system, from its WKT if present, or from its parameters. The axis
+/// order is x, y (longitude, latitude).
 OGRSpatialReference spatialReference(const CoordinateSystem& system);
 
-/// Makes the georeference of a map that contains the given points. Latitude and longitude refer to WGS 84 on
-/// Earth, and to the ellipsoid of the system on other bodies. Uses GeographicLib if it agrees with PROJ
-/// within 0.01 m at each point; otherwise uses PROJ and sets ProjectionMethod::Foreign.
+/// Returns the georeference of a map that contains the given points. Latitude and longitude refer to WGS 84
+/// on Earth, and to the ellipsoid of the system on other bodies. Uses the projection of GeographicLib if it
+/// agrees with PROJ within 0.01 m at each point; otherwise uses PROJ and sets ProjectionMethod::Foreign.
 Georeference georeferenceAt(CoordinateSystem system, std::span<const Point> points);
 
-/// georeferenceAt() for the corners and the centre of a grid.
+/// Returns georeferenceAt() for the corners and the centre of a grid.
 Georeference georeferenceOn(const CoordinateSystem& system, const Grid& grid);
 
-/// A local projection around a position: transverse Mercator with scale 1 on the central meridian, or for
-/// |latitude| > 80 degrees polar stereographic with scale 1 at the pole (1.008 at latitude 80). Uses WGS 84
-/// on Earth, else the ellipsoid of `geographic`.
+/// Returns a local projection around a position: transverse Mercator with scale 1 on the central meridian or,
+/// for |latitude| > 80 degrees, polar stereographic with scale 1 at the pole (1.008 at latitude 80). Uses WGS
+/// 84 on Earth, and the ellipsoid of `geographic` on other bodies.
 OGRSpatialReference localProjection(const OGRSpatialReference& geographic, GeoPoint centre);
 
 }  // namespace talus::maps

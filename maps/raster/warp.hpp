@@ -8,18 +8,21 @@
 
 namespace talus::maps {
 
-/// Target of resampling: square cells of 32-bit floats, NaN for no data.
+/// Target of resampling a raster: square cells of 32-bit floats; NaN marks cells without data.
 struct WarpTarget {
   int band = 1;
-  std::string wkt{};             ///< CRS of the result; empty: the CRS of the source
-  double resolution = 0.0;       ///< cell side in units of the target CRS; 0: chosen by GDAL from the source
+  /// WKT of the coordinate reference system (CRS) of the result; empty: the CRS of the source.
+  std::string wkt{};
+  /// Side length of a cell in units of the target CRS; 0: GDAL chooses the size from the source.
+  double resolution = 0.0;
   std::optional<Grid> grid{};    ///< exact grid of the result, instead of `resolution`
   std::string method = "cubic";  ///< GDAL's resampling method: near, bilinear, cubic, average
-  std::optional<double> nodata{};  ///< no-data value of the source; overrides the file
+  /// Value of source cells without data; overrides the value that the file states.
+  std::optional<double> nodata{};
 };
 
-/// The resampled band as a virtual raster, computed on reading. `where` is the location in error messages.
-/// @throws InputError
+/// Returns the resampled band as a virtual raster, which is computed on reading. `where` names the file in
+/// error messages. @throws InputError
 Dataset warp(GDALDataset& source, const WarpTarget& target, const std::string& where);
 
 }  // namespace talus::maps

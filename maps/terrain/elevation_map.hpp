@@ -10,28 +10,34 @@
 
 namespace talus::maps {
 
-/// A digital elevation model: square cells in map coordinates, row 0 the southernmost.
+/// A digital elevation model: the elevation of each square cell of a grid in map coordinates. Row 0 is the
+/// southernmost row.
 struct ElevationMap {
-  Raster<float> elevation_m{};  ///< above the datum of the body; NaN for no data, never infinite
-  std::optional<Georeference> georeference{};  ///< nullopt: x, y are local metres
-  std::string source{};                        ///< path of the file, as the user stated it
-  std::vector<std::string> notes{};  ///< decisions of the reader that the user should know, one line each
+  /// Elevation above the datum of the body; NaN for cells without data, never infinite.
+  Raster<float> elevation_m{};
+  /// Conversion to latitude and longitude; nullopt: x and y are local metres.
+  std::optional<Georeference> georeference{};
+  std::string source{};  ///< path of the map file, as the user stated it
+  /// Decisions of the file reader that the user should know, one line each.
+  std::vector<std::string> notes{};
 
-  /// The georeference if it converts to latitude and longitude, else null.
+  /// Returns the georeference if it can convert to latitude and longitude, or null.
   const Georeference* places() const noexcept {
     return georeference && georeference->reachesPlaces() ? &*georeference : nullptr;
   }
+  /// Returns the grid of the cells.
   const Grid& grid() const noexcept { return elevation_m.grid(); }
 };
 
-/// Fraction of the cells with an elevation [-], 0 to 1.
+/// Returns the fraction of the cells that have an elevation, 0 to 1 [-].
 double validFraction(const Raster<float>& elevation_m);
 
-/// Elevation [m] at a point by bilinear interpolation between cell centres; nullopt outside the map or next
-/// to a cell without data.
+/// Returns the elevation [m] at a point in map coordinates, by bilinear interpolation between cell centres;
+/// nullopt outside the map or next to a cell without data.
 std::optional<double> elevationAt(const Raster<float>& elevation_m, Point point);
 
-/// Elevation [m] at a point of a grid whose cell elevations are given by a function.
+/// Returns the elevation [m] at a point like the function above, for cell elevations that the function
+/// `elevation_m` returns.
 std::optional<double> elevationAt(const Grid& grid, Point point,
                                   const std::function<float(Cell)>& elevation_m);
 

@@ -7,17 +7,17 @@
 
 namespace talus::maps {
 
-/// A least-squares plane fitted to the footprint of a cell.
+/// A least-squares plane fitted to the elevations of the footprint of a cell, i.e. the cells under a rover.
 struct PlaneFit {
-  double dz_dx = 0.0;        ///< [-]
-  double dz_dy = 0.0;        ///< [-]
+  double dz_dx = 0.0;        ///< gradient of the plane eastward [-]
+  double dz_dy = 0.0;        ///< gradient of the plane northward [-]
   double roughness_m = 0.0;  ///< root mean square of the residuals
-  double relief_m = 0.0;     ///< greatest minus least residual
+  double relief_m = 0.0;     ///< greatest residual minus least residual
 };
 
-/// Plane fitted to the cells of the footprint that lie on the raster and have data. Returns nullopt if the
-/// central cell has no data, or if the cells with data (the central cell included) are fewer than four, fewer
-/// than a quarter of the footprint, or collinear.
+/// Returns the plane fitted to the cells of the footprint that lie on the raster and have data. Returns
+/// nullopt if `cell` has no data, or if the cells with data (`cell` included) are fewer than four, fewer than
+/// a quarter of the footprint, or collinear.
 std::optional<PlaneFit> fitPartialPlane(const Raster<float>& elevation_m, const Footprint& footprint,
                                         Cell cell);
 

@@ -10,29 +10,30 @@
 
 namespace talus::maps {
 
-/// Reads a GeoJSON file. @throws InputError: missing, unreadable, not JSON, not GeoJSON, or beyond the memory
-/// budget (32 bytes per byte of the file)
+/// Returns the document of a GeoJSON file. @throws InputError if the file is missing, unreadable, not JSON,
+/// not GeoJSON, or beyond the memory budget (32 bytes per byte of the file)
 nlohmann::json readGeoJson(const std::string& path);
 
-/// Returns true if the document's "crs", in the form before RFC 7946, is a system in metres.
+/// Returns true if the member "crs" of the document (GeoJSON before RFC 7946) names a system in metres.
 bool namesProjectedCrs(const nlohmann::json& document);
 
-/// Geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order, as references into
-/// the document.
+/// Returns the geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order, as
+/// references into the document.
 std::vector<std::reference_wrapper<const nlohmann::json>> geometries(const nlohmann::json& document);
 
-/// Converts positions of a GeoJSON document to map coordinates. Longitude and latitude [deg] are projected
-/// with the map's georeference. Positions are already in map metres if the map has no georeference or the
-/// document has "crs": "local".
+/// Converts positions of a GeoJSON document to map coordinates. Longitudes and latitudes [deg] are projected
+/// with the georeference of the map. If the map has no georeference or the document has "crs": "local",
+/// positions are map coordinates [m] already.
 class PositionReader {
  public:
   PositionReader(const nlohmann::json& document, const ElevationMap& map, std::string path);
 
-  /// Converts a position. @throws InputError unless the position has two or three numbers in range
+  /// Returns the map coordinates of a position. @throws InputError unless the position has two or three
+  /// numbers in range
   Point operator()(const nlohmann::json& position) const;
 
  private:
-  const Georeference* georeference_;  // of the map; null: positions in map metres
+  const Georeference* georeference_;  // georeference of the map; null: positions are map coordinates
   std::string path_;
 };
 

@@ -6,10 +6,10 @@
 
 namespace talus::maps {
 
-/// Parses a place given by the user; returns map coordinates inside the map [m]. Accepts "x,y", "lat,lon"
-/// with a trailing d, or the path of a GeoJSON file, whose first point is used (longitude, latitude; map
-/// metres if the file has "crs": "local"). `name` begins the error message ("--start").
-/// @throws InputError
+/// Returns the map coordinates [m] of a position that the user stated, which must lie inside the map. `text`
+/// is "x,y", "lat,lon" with a trailing d on each number, or the path of a GeoJSON file. Of a GeoJSON file,
+/// the first point is used (longitude and latitude, or map metres if the file has "crs": "local"). `name`
+/// begins the error message ("--start"). @throws InputError
 Point readPlace(const std::string& text, const ElevationMap& map, const std::string& name);
 
 }  // namespace talus::maps
