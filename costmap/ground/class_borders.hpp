@@ -7,8 +7,8 @@
 
 namespace talus::costmap {
 
-/// Returns, by cell index, whether a cell of another class lies within `reach` columns and rows of the cell;
-/// empty for an empty raster.
+/// Returns for each cell, by its index in the grid, whether a cell of another terrain class lies within
+/// `reach` columns and rows of it. Returns an empty vector for an empty raster.
 std::vector<bool> classBorders(const maps::Raster<std::uint8_t>& classes, int reach);
 
 }  // namespace talus::costmap

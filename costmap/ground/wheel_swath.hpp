@@ -10,43 +10,47 @@
 
 namespace talus::costmap {
 
-/// Computes the drawbar pull over load [-] of a whole rover whose centre is in a cell, from the ground under
-/// all its wheels.
+/// Computes the drawbar pull over load DP/W of a whole rover whose centre is in a cell, from the estimated
+/// ground under all its wheels.
 ///
-/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W (drawbar pull over load) of the
-/// rover is the mean over its wheels, each on the weakest cell within its width. The result is the least mean
-/// over all positions of the centre within the cell (edges, corners and pose error included) and over 16
-/// headings, 11.25 degrees apart, but at most the pull of the cell itself. The standard deviation and the
-/// sinkage are the maxima over the cells that a wheel may touch. Immutable.
+/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean of DP/W
+/// over its wheels, each of which is on the weakest cell within its width. The result is the least mean over
+/// all positions of the rover's centre within the cell (edges, corners and pose error included) and over 16
+/// headings, 11.25 degrees apart, but at most DP/W of the cell itself. The standard deviation of DP/W and the
+/// sinkage of the result are the maxima over all cells that a wheel may touch. Immutable.
 class WheelSwath {
  public:
-  /// For a rover on cells of this size; `pose_error_m` >= 0 widens the positions of the centre.
+  /// Makes the geometry for a rover on cells with sides of resolution_m [m]. `pose_error_m` >= 0 is the
+  /// position error by which the positions of the rover's centre are extended.
   WheelSwath(const terramech::Rover& rover, double resolution_m, double pose_error_m);
 
-  /// Returns the greatest column or row offset of the cells that a wheel may touch.
+  /// Returns the greatest column or row offset between a cell and the cells that a wheel may touch if the
+  /// rover's centre is in the cell.
   int reach() const noexcept { return reach_; }
 
-  /// Ground of a cell; class_index < 0: outside the map.
+  /// Ground of one cell. class_index is the index of its terrain class in the model; < 0: the cell has no
+  /// class, or lies outside the map.
   struct Ground {
     int class_index = -1;
     GroundBelief belief;
-    bool unseen = false;  ///< true if the class is unknown and the policy excludes unknown ground
+    bool unseen = false;  ///< true if the terrain class is unknown and the policy excludes unknown ground
     friend bool operator==(const Ground& a, const Ground& b) noexcept {
       return a.class_index == b.class_index && a.belief.pull.value == b.belief.pull.value &&
              a.belief.pull.std == b.belief.pull.std && a.belief.sinkage.value == b.belief.sinkage.value;
     }
   };
 
-  /// Combined ground of the cells that a wheel may touch.
+  /// Ground of the whole rover, combined from the cells that a wheel may touch.
   struct Judged {
     GroundBelief belief;
-    int weakest_class = 0;  ///< class of the weakest ground that a wheel may touch
-    bool unseen = false;    ///< true if a wheel may touch unseen ground
+    int weakest_class = 0;  ///< terrain class of the weakest ground that a wheel may touch
+    bool unseen = false;    ///< true if a wheel may touch a cell with Ground::unseen
   };
 
-  /// Combines the ground around a cell. `around` has (2 reach + 1)^2 cells, row by row from the south-west,
-  /// the cell itself in the centre. The central cell must have a class; cells without a class, such as cells
-  /// outside the map, have the pull of the central cell.
+  /// Returns the combined ground for the rover's centre in a cell. `around` contains the ground of (2 reach()
+  /// + 1)^2 cells, row by row from the south-west, with the cell itself in the middle. The middle cell must
+  /// have a class. For cells without a class, such as cells outside the map, the drawbar pull over load DP/W
+  /// of the middle cell is used.
   Judged judged(const std::vector<Ground>& around) const;
 
  private:

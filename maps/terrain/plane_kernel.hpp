@@ -7,7 +7,7 @@ namespace talus::maps {
 /// Input and output of plane fits for one row of cells. Elevations must be readable up to footprint.reach
 /// cells beyond both ends of the row, and kPlaneLanes further cells in the east; NaN: no data.
 struct PlaneRow {
-  /// elevations [m] of the rows -reach to +reach around this row
+  /// Elevations [m] of the rows -reach to +reach around this row.
   const float* const* heights = nullptr;
   int width = 0;
   float cells_per_metre = 1.0F;

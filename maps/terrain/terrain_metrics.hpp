@@ -7,8 +7,8 @@ namespace talus::maps {
 
 /// Options of terrainMetrics(). The footprint of a cell is the set of cells under a rover at that cell.
 struct FootprintOptions {
-  double radius_m =
-      0.0;  ///< Radius of the disc-shaped footprint; a disc smaller than 3x3 cells is replaced by 3x3 cells.
+  /// Radius of the disc-shaped footprint; a disc smaller than 3x3 cells is replaced by 3x3 cells.
+  double radius_m = 0.0;
   /// Greatest horizontal distance of two heights that form a step, >= 0; at least one cell is used.
   double step_span_m = 0.0;
   int threads = 1;  ///< number of threads, >= 1; the result does not depend on this number
@@ -22,10 +22,9 @@ struct TerrainMetrics {
   Raster<float> dz_dy;        ///< gradient of the plane northward [-]
   Raster<float> roughness_m;  ///< root mean square of the residuals
   Raster<float> relief_m;     ///< greatest residual minus least residual
-  Raster<float>
-      /// Greatest height step under the rover. The slope on both sides of the step is subtracted
-      /// (step_height.hpp). relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts.
-      step_m;
+  /// Greatest height step under the rover. The slope on both sides of the step is subtracted
+  /// (step_height.hpp). relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts.
+  Raster<float> step_m;
   int footprint_cells = 0;  ///< number of cells of a complete footprint
   bool fell_back = false;   ///< true if 3x3 cells replace a smaller footprint
   /// Standard error of dz_dx and dz_dy for a roughness of 1 m [1/m].
