@@ -4,17 +4,26 @@
 
 namespace talus::costmap {
 
-/// Reasons other than the soil for which a cell is refused or its category lowered; a bit set.
+/// Hazards of a cell: reasons other than the soil for which a cell is refused (may not be entered) or its
+/// category is lowered. A value is a set of bits.
 enum class Hazard : std::uint8_t {
+  /// The cell has no elevation, no terrain class, no measurable shape, or no data in a cost layer.
+  /// The gradient exceeds the limit for every heading.
+  /// A step or the relief under the wheels exceeds the ground clearance.
+  /// The roughness exceeds the clearance of the belly.
+  /// The probability of a rock too large to cross is too high.
+  /// The cell lies in a keep-out polygon, or has an infinite cost in a layer.
+  /// The terrain class has no soil, or the ground was declared impassable.
+  /// The cell is closer than half the rover's width to a cell that the whole rover must avoid.
   None = 0,
-  Unknown = 1,    ///< no elevation, no terrain class, no measurable shape, or no data in a cost layer
-  Slope = 2,      ///< gradient above the limit for any heading
-  Step = 4,       ///< step or relief under the wheels above the ground clearance
-  Roughness = 8,  ///< roughness above the clearance of the belly
-  Rocks = 16,     ///< rocks too large to cross are too probable
-  KeepOut = 32,   ///< keep-out polygon, or infinite cost in a layer
-  Obstacle = 64,  ///< terrain class without a soil, or a place declared impassable
-  Near = 128,     ///< closer to a refused cell than half the rover's width
+  Unknown = 1,
+  Slope = 2,
+  Step = 4,
+  Roughness = 8,
+  Rocks = 16,
+  KeepOut = 32,
+  Obstacle = 64,
+  Near = 128,
 };
 
 constexpr Hazard operator|(Hazard a, Hazard b) noexcept {
@@ -24,33 +33,34 @@ constexpr Hazard& operator|=(Hazard& a, Hazard b) noexcept {
   return a = a | b;
 }
 
-/// True if the set contains the hazard.
+/// Returns true if the set `set` contains the hazard `one`.
 constexpr bool has(Hazard set, Hazard one) noexcept {
   return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(one)) != 0;
 }
 
-/// Estimate of one cell: the strength of the ground from the prior of the terrain class and from wheel
-/// evidence, and the category, which is the worst over all headings. Payload of the octree.
+/// Estimate of one cell, stored in the octree. It contains the strength of the ground, from the prior of the
+/// terrain class and from wheel evidence, and the category of the cell, which is the worst over all headings.
 struct CellBelief {
-  float pull_mean = 0.0F;     ///< drawbar pull over load DP/W at slip 0.5 [-], mean
+  float pull_mean = 0.0F;     ///< mean drawbar pull over load DP/W at slip 0.5 [-]
   float pull_std = 0.0F;      ///< standard deviation of pull_mean [-]
-  float sinkage_mean = 0.0F;  ///< sinkage over radius z/r at slip 0.5 [-], mean
+  float sinkage_mean = 0.0F;  ///< mean sinkage over wheel radius z/r at slip 0.5 [-]
   float sinkage_std = 0.0F;   ///< standard deviation of sinkage_mean [-]
-  /// Samples in the cell's block, each weighted by its certainty [-]; 0: no evidence.
+  /// Number of pull readings in the block of the cell, each weighted by its certainty [-]; 0: no evidence. A
+  /// block is a square of cells that stores its evidence together.
   float evidence = 0.0F;
-  float evidence_pull = 0.0F;      ///< DP/W of the weakest part of the samples [-]
-  float evidence_sinkage = 0.0F;   ///< z/r of the deepest sample [-]; 0: not measured
-  std::uint32_t updated_s = 0;     ///< telemetry time of the newest sample, rounded down [s]
-  std::uint8_t terrain_class = 0;  ///< number in the terrain-class raster; 0 without a raster
+  float evidence_pull = 0.0F;      ///< DP/W of the weakest part of the readings [-]
+  float evidence_sinkage = 0.0F;   ///< z/r of the deepest part of the readings [-]; 0: not measured
+  std::uint32_t updated_s = 0;     ///< telemetry time of the newest reading, rounded down [s]
+  std::uint8_t terrain_class = 0;  ///< number of the terrain class in the class raster; 0 without a raster
   std::uint8_t category = 3;       ///< terramech::Category as a number: safe, marginal, dangerous, unknown
   std::uint8_t confidence = 0;     ///< probability of the category in steps of 1/16; 16 = certain
-  Hazard hazards = Hazard::None;   ///< hazards of the cell
+  Hazard hazards = Hazard::None;   ///< set of hazards of the cell
 
   friend bool operator==(const CellBelief&, const CellBelief&) = default;
 };
 
-/// True if the estimate belongs to a floor beneath the top surface: evidence exists, and the shape is
-/// unknown. The leaf of a floor represents one voxel and is never merged.
+/// Returns true if the estimate belongs to a floor, i.e. to ground beneath the top surface: it has evidence,
+/// and its shape is unknown. The leaf of a floor represents one voxel and is never merged with other leaves.
 inline bool ofFloor(const CellBelief& belief) noexcept {
   return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);
 }

@@ -9,20 +9,21 @@
 
 namespace talus::costmap {
 
-/// Terrain shape and hazards at each cell of a box, measured in bands of rows to limit memory. The results
-/// are bit-identical to those of measuring the whole map at once. Immutable.
+/// Measures the terrain shape and the hazards of each cell of a box, in bands of rows to limit memory. The
+/// results are bit-identical to those of measuring the whole map at once. Immutable.
 class SurfaceShape {
  public:
-  /// Throws std::invalid_argument as maps::terrainMetrics().
+  /// Throws std::invalid_argument for options that maps::terrainMetrics() rejects.
   explicit SurfaceShape(const maps::FootprintOptions& footprint) : footprint_(footprint) {}
 
-  /// Returns the greatest column or row offset between a cell and the cells whose shape depends on its
-  /// height.
+  /// Returns the greatest column or row offset between a cell and the cells whose shape depends on the
+  /// elevation of that cell.
   int reach(const maps::Grid& grid) const;
 
-  /// Receives a cell of the box, its shape and its hazards by the limits.
+  /// Callback with a cell of the box, its terrain shape and its hazards by the limits.
   using Visit = std::function<void(maps::Cell, const GroundShape&, Hazard)>;
-  /// Visits each cell of a box inside the map once; after a stop request, remaining cells are omitted.
+  /// Calls `visit` once for each cell of a box, which must lie inside the map. After a stop request through
+  /// `watch`, the remaining cells are omitted.
   void measure(const maps::Raster<float>& elevation_m, const maps::CellBox& box, const HazardLimits& limits,
                const Visit& visit, const ProgressMonitor& watch) const;
 

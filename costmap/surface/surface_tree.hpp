@@ -12,30 +12,31 @@
 
 namespace talus::costmap {
 
-/// A floor voxel with its estimate.
+/// A leaf of the octree for a floor, i.e. for ground beneath the top surface, with its estimate.
 struct FloorLeaf {
   octomap::OcTreeKey key;
   CellBelief belief;
 };
 
-/// Input of an octree: surface and floors.
+/// Input of an octree: the top surface and the floors.
 struct Surface {
-  const maps::Raster<float>& elevation_m;  ///< NaN: no cell
+  const maps::Raster<float>& elevation_m;  ///< elevation of the top surface; a NaN cell has no leaf
   const SurfaceKeys& keys;
-  std::vector<FloorLeaf> floors{};  ///< floors outside the voxels of the surface
+  std::vector<FloorLeaf> floors{};  ///< leaves of the floors, outside the voxels of the top surface
 };
 
-/// Octree of a surface: one leaf per cell at its elevation and one per floor. Equal neighbours are pruned
-/// during construction, so that memory depends on the number of different leaves.
+/// Returns the octree of a surface: one leaf per cell at its elevation, and one leaf per floor. The function
+/// `belief` returns the estimate of a cell. Equal neighbours are pruned (merged) during construction, so that
+/// memory depends on the number of different leaves.
 TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief);
 
-/// Writes the bytes of writeTree(surfaceTree(...)) without holding the tree in memory. The stream must be
+/// Writes the bytes of writeTree(surfaceTree(...)) without storing the tree in memory. The stream must be
 /// seekable.
 void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief,
                       std::ostream& stream);
 
-/// The surface, without floors, as a tree for octovis: green safe, amber marginal, red dangerous or refused,
-/// grey unknown.
+/// Returns the surface, without floors, as an octree for the viewer octovis: green for safe, amber for
+/// marginal, red for dangerous or refused, and grey for unknown cells.
 std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
                                                 const std::function<CellBelief(maps::Cell)>& belief);
 
