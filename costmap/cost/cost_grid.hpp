@@ -12,7 +12,7 @@
 
 namespace talus::costmap {
 
-/// A block of 64x64 cells, row-major from the south-west corner.
+/// A tile: a block of 64x64 cells of a map, row-major from the south-west corner.
 template <typename T>
 struct Tile {
   static constexpr int kSide = 64;
@@ -22,14 +22,15 @@ struct Tile {
 using CostTile = Tile<CellCode>;
 using HeightTile = Tile<float>;
 
-/// The tiles of a map, row-major, with copy-on-write in pages of 64 tiles. A copy of the table copies
-/// pointers only; a change of one tile copies the page of that tile.
+/// Table of the tiles of a map, row-major, with copy-on-write in pages of 64 tiles. A copy of the table
+/// copies pointers only; a change of one tile copies the pointers of its page.
 template <typename T>
 class SharedTiles {
  public:
   using Shared = std::shared_ptr<const Tile<T>>;
 
   SharedTiles() = default;
+  /// Makes a table of `tiles` entries that all share the tile `each`.
   SharedTiles(std::size_t tiles, const Shared& each);
   explicit SharedTiles(const std::vector<Shared>& tiles);
 
@@ -49,23 +50,27 @@ class SharedTiles {
 using TileTable = SharedTiles<CellCode>;
 using HeightTable = SharedTiles<float>;
 
-/// Divides a raster into tiles; tiles beyond the eastern and northern edge are padded.
+/// Returns the tiles of a raster of elevations [m]; tiles beyond the eastern and northern edge are padded.
 HeightTable tiled(const maps::Raster<float>& elevation_m);
 
-/// Returns the table with new tiles for the cells of a box; other tiles are shared.
+/// Returns the table with new tiles for the cells of a box. All other tiles are shared with `table`.
 HeightTable retiled(HeightTable table, const maps::Raster<float>& elevation_m, const maps::CellBox& box);
 
-/// One version of the cost map for planners. Immutable: readers need no lock and never block the writer.
-/// Versions share unchanged tiles.
+/// Cost grid: one version of the cost map for planners. Immutable: readers need no lock and never block the
+/// writer. Versions share unchanged tiles.
 class CostGrid {
  public:
   /// Content of one version.
   struct Content {
     maps::Grid grid;
-    TileTable tiles;  ///< tiles beyond the eastern and northern edge are padded
+    /// Codes of the cells (gradients and index of a cost curve); tiles beyond the eastern and northern edge
+    /// are padded.
+    TileTable tiles;
+    /// Cost function with the cost curves.
     std::shared_ptr<const TravelCost> cost;
     std::uint64_t version = 0;
-    HeightTable elevation_m{};  ///< NaN for unobserved cells; a table without tiles has no elevations
+    /// Elevations [m], NaN for unobserved cells; a table without tiles means no elevations.
+    HeightTable elevation_m{};
   };
 
   explicit CostGrid(Content content);
@@ -76,13 +81,13 @@ class CostGrid {
   std::uint64_t version() const noexcept { return content_.version; }
   int tileColumns() const noexcept { return tile_columns_; }
 
-  /// Returns the cell code (gradients and curve index) of a cell, which must lie inside the grid.
+  /// Returns the code (gradients and index of a cost curve) of a cell, which must lie inside the grid.
   CellCode at(maps::Cell c) const noexcept {
     const auto tile = static_cast<std::size_t>((c.row >> 6) * tile_columns_ + (c.column >> 6));
     return content_.tiles.tile(tile).cells[static_cast<std::size_t>((c.row & 63) << 6 | (c.column & 63))];
   }
 
-  /// Elevation of the ground [m] by maps::elevationAt(); nullopt if unknown.
+  /// Returns the elevation of the ground at a point [m], by maps::elevationAt(); nullopt if unknown.
   std::optional<double> elevation_m(maps::Point point) const;
 
  private:
@@ -90,20 +95,22 @@ class CostGrid {
   int tile_columns_;
 };
 
-/// First version of a cost map, from a raster of cell codes.
+/// Returns the first version of a cost grid, from a raster of cell codes and the cost function.
 CostGrid flattened(const maps::Raster<CellCode>& cells, std::shared_ptr<const TravelCost> cost);
 
-/// Changes from one version to the next.
+/// Changes from one version of a cost grid to the next.
 struct Revision {
-  std::vector<maps::CellBox> ranges;  ///< the changed cells, inside the grid
-  /// New code of a cell of the ranges, from its position and its old code.
+  std::vector<maps::CellBox> ranges;  ///< boxes of the changed cells, inside the grid
+  /// Returns the new code of a cell in `ranges`, from its position and its old code.
   std::function<CellCode(maps::Cell, CellCode)> code;
-  /// Returns the cost function of the new version. Is called after `code` was called for all changed cells.
+  /// Returns the cost function of the new version. revised() calls `cost` after `code` was called for all
+  /// changed cells.
   std::function<std::shared_ptr<const TravelCost>()> cost;
-  std::optional<HeightTable> elevation_m{};  ///< elevation of the new version; nullopt: unchanged
+  std::optional<HeightTable> elevation_m{};  ///< elevations of the new version; nullopt: unchanged
 };
 
-/// Returns the next version of the grid: copies the tiles that overlap the ranges and shares all others.
+/// Returns the next version of the grid: copies the tiles that overlap the changed cells and shares all
+/// others.
 CostGrid revised(const CostGrid& grid, const Revision& revision);
 
 }  // namespace talus::costmap

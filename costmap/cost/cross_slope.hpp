@@ -12,68 +12,76 @@ namespace talus::costmap {
 class LevelClimbs;
 class SlopeRows;
 
-/// Weights of the cost function: cost = energy_J * energy + time_s * time_W + hazard * risk_J.
+/// Weights of the cost function: cost = energy * energy_J + time_W * time_s + risk_J * hazard, where `hazard`
+/// is TravelState::risk_per_m.
 struct CostWeights {
-  double energy = 1.0;  ///< weight of energy [-], >= 0
-  double time_W = 1.0;  ///< weight of time [J/s], >= 0
-  double risk_J = 1e7;  ///< cost of the loss of the rover [J], >= 0
+  double energy = 1.0;  ///< weight of energy, >= 0 [-]
+  double time_W = 1.0;  ///< weight of time, >= 0 [J/s]
+  double risk_J = 1e7;  ///< cost of the loss of the rover, >= 0 [J]
 };
 
-/// Equivalent straight slopes for the ground of one class (ours). Each node of TravelCurve (gradient along,
-/// gradient across; row 0 included) is represented by three gradients without cross slope, under even wheel
-/// loads:
-///   - costs: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
-///   - leaves: the climb with the same strength reserve, i.e. the same loss d of drawbar pull over load at
-///     which the slope fails. A loss d reduces the side force by the fraction d / thrust, with thrust =
+/// Table of equivalent straight slopes for the ground of one terrain class (ours). It covers slopes with a
+/// gradient along the heading and a gradient across the heading, at the nodes (pairs of both gradients) of
+/// TravelCurve; a row has one gradient across, and row 0 has none. Each node is represented by three
+/// gradients of a slope without cross slope, under even wheel loads:
+///   - `costs`: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
+///   - `leaves`: the climb with the same strength reserve d, i.e. the loss of drawbar pull over load at which
+///     driving on the slope fails. A loss d reduces the side force by the fraction d / thrust, with thrust =
 ///     gross thrust / load at the reference slip;
-///   - brakes: the descent with the same braking reserve. Descents are solved up to the gradient 0.16 beyond
-///     the pitch limit.
-/// A climb is at least as steep as the node's gradient along, and no slope becomes less steep from row to
-/// row: cost, risk and refusal never decrease with the gradient across. The slopes follow from the class's
-/// soil alone; an estimate of the ground changes the states on these slopes. Nodes at which the rover tips
-/// are refused on any soil; the attitude of the body is that on the soil of the class.
+///   - `brakes`: the descent with the same braking reserve. Descents are solved up to the gradient 0.16
+///     beyond the pitch limit.
+/// `costs` and `leaves` are at least as steep as the node's gradient along the heading, and none of the three
+/// slopes becomes less steep from row to row: cost, risk and refusal never decrease with the gradient across.
+/// The three slopes depend on the soil of the class alone; an estimate of the ground changes the travel
+/// states on these slopes. Nodes at which the rover tips are refused on any soil; the attitude of the body is
+/// that on the soil of the class.
 ///
-/// The equilibria with load transfer and those under even loads use one table of wheel forces, so that the
-/// table errors cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are
-/// solved at gradients along 1/32 apart and interpolated linearly. If the gradients without failure form
-/// several intervals, the interval nearest to level ground is used; of equally near intervals, the longest.
-/// Immutable.
+/// The equilibria with load transfer and those under even loads use one table of wheel forces, so that errors
+/// of the table cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are
+/// solved at gradients along the heading in steps of 1/32 and interpolated linearly. If the gradients without
+/// failure form several intervals, the interval nearest to level ground is used; of equally near intervals,
+/// the longest. Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
   struct Level {
-    double first = 0.0, last = -1.0;  ///< gradients along without failure; first > last: empty interval
-    double thrust = 1.0;              ///< gross thrust / load at the reference slip [-], > 0
+    /// Interval of gradients along the heading without failure; empty if first > last.
+    double first = 0.0, last = -1.0;
+    double thrust = 1.0;  ///< gross thrust / load at the reference slip [-], > 0
   };
   CrossSlope(const terramech::SlopeEquilibrium& equilibrium, const Level& level,
              const TravelCost::Limits& limits);
 
-  /// Ignores cross slopes: no additional cost and no failure. For comparison with planners that consider
-  /// slopes along the heading only.
+  /// Returns a table that ignores cross slopes: no additional cost and no failure. It serves comparisons with
+  /// planners that consider slopes along the heading only.
   static CrossSlope alongOnly();
 
-  /// Slopes for ground of the class of `a` or of `b`: at each node the less favourable values of both.
+  /// Returns the table for ground that may belong to the class of `a` or of `b`: at each node the less
+  /// favourable values of both tables.
   static CrossSlope harder(const CrossSlope& a, const CrossSlope& b);
 
-  /// Returns the number of tabulated rows, row 0 included. Steeper gradients across use the last row, which
-  /// refuses every heading unless the limits of roll or pitch end the table first.
+  /// Returns the number of tabulated rows, row 0 included. Steeper gradients across the heading use the last
+  /// row. The last row refuses every heading, unless the limits of roll or pitch end the table first.
   int rows() const noexcept { return static_cast<int>(climbs_.size()) / TravelCurve::kBins; }
 
-  /// State at a node. Energy and time: maximum over the climbs up to `costs`. Pull margin and category: over
-  /// the climbs up to `leaves`. Risk and refusal: from `brakes` to `leaves`.
+  /// Returns the travel state at the node in `row` (gradient across) and `bin` (gradient along the heading),
+  /// from the states without cross slope `states`. Energy and time are maxima over the climbs up to `costs`.
+  /// Pull margin and category are the worst over the climbs up to `leaves`. Risk and refusal are the worst
+  /// from `brakes` to `leaves`.
   TravelState state(const TravelTable& states, int row, int bin) const noexcept;
 
   /// Returns the costs [J/m] of state() at all nodes, row by row.
   std::shared_ptr<const std::vector<float>> costs(const TravelTable& states,
                                                   const CostWeights& weights) const;
 
-  /// Slip angle, side force and stability margin on a slope, interpolated between equilibria; after harder(a,
-  /// b), those of a.
+  /// Returns slip angle, side force and stability margin on a slope, interpolated between equilibria. The
+  /// result of harder(a, b) has the values of `a`.
   SlopeHold hold(const terramech::Gradient& gradient) const noexcept;
 
-  /// Returns the gradient of the climb with the same strength reserve as a slope; 4 if refused on any soil.
+  /// Returns the gradient of the straight climb with the same strength reserve as a slope; 4 if any soil
+  /// refuses the slope.
   double climb(const terramech::Gradient& gradient) const noexcept;
-  /// Returns the maximum of climb() over the headings on a plane of this gradient, at least `gradient`.
+  /// Returns the maximum of climb() over all headings on a plane of this gradient; at least `gradient`.
   double steepest(double gradient) const noexcept;
 
  private:
@@ -114,7 +122,8 @@ class CrossSlope {
   std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
 };
 
-/// Returns the cost [J/m] of ground with these states and weights, with the rows of `crossing` if not null.
+/// Returns the cost curve [J/m] of ground with the travel states `states` and the given weights. The curve
+/// has the rows of `crossing` if `crossing` is not null.
 TravelCurve priced(const TravelTable& states, const CrossSlope* crossing, const CostWeights& weights);
 
 }  // namespace talus::costmap

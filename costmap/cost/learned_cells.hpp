@@ -10,12 +10,13 @@
 
 namespace talus::costmap {
 
-/// Sparse grid of 32-bit words for cells with learned values; 0 elsewhere. Memory is allocated for tiles with
-/// non-zero words only.
+/// Sparse grid of 32-bit words for cells with learned values; all other cells have the word 0. Memory is
+/// allocated only for tiles (blocks of 64x64 cells) with non-zero words.
 class LearnedCells {
  public:
   explicit LearnedCells(const maps::Grid& grid);
 
+  /// Returns the word of a cell.
   std::uint32_t operator[](maps::Cell cell) const noexcept {
     const auto& tile = tiles_[slot(cell)];
     return tile ? tile->words[inside(cell)] : 0U;
@@ -23,7 +24,7 @@ class LearnedCells {
   /// Sets the word of a cell; returns false if unchanged.
   bool set(maps::Cell cell, std::uint32_t word);
 
-  /// Bounding boxes of all cells ever set, one for each tile, in a fixed order.
+  /// Returns one box for each tile, which bounds the cells of the tile that were ever set, in a fixed order.
   std::vector<maps::CellBox> boxes() const;
 
  private:

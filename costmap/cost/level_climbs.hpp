@@ -6,18 +6,20 @@
 
 namespace talus::costmap {
 
-/// Linear interpolation of values at equal steps; `at` is in steps from the first value. Constant beyond the
-/// ends.
+/// Returns a value interpolated linearly between `values` at equal steps. `at` is the position in steps from
+/// the first value. The result is constant beyond both ends.
 double interpolated(const std::vector<double>& values, double at);
 
-/// Straight climbs under even loads, for finding the climb with the same cost as a two-dimensional slope.
+/// Straight climbs (no cross slope) under even wheel loads, for finding the climb with the same cost as a
+/// slope that has also a gradient across the heading.
 class LevelClimbs {
  public:
-  /// Uses row 0 (no gradient across); climbs beyond `last` are reduced to `last`.
+  /// Takes the climbs from the row without a gradient across; climbs steeper than the gradient `last` are
+  /// reduced to `last`.
   LevelClimbs(const SlopeRow& level, double last);
 
-  /// For each state of a row: additional gradient of the straight climb with the same energy and time (>= 0),
-  /// and additional slip of the state relative to that climb.
+  /// For each equilibrium of a row: `climb` is the additional gradient of the straight climb with the same
+  /// energy and time (>= 0), and `slip` is the additional slip of the equilibrium relative to that climb.
   struct Surcharges {
     std::vector<double> climb, slip;
   };
@@ -31,15 +33,16 @@ class LevelClimbs {
   std::vector<double> energies_, times_, slips_;
 };
 
-/// Gradient of the steepest climb without failure, and gross thrust divided by load at the reference slip
-/// [-].
+/// Strength of the class's ground without cross slope: `last` is the gradient of the steepest climb without
+/// failure, and `thrust` is the gross thrust over load at the reference slip [-].
 struct LevelStrength {
   double last, thrust;
 };
 
-/// Returns the loss of drawbar pull over load at which a slope fails; <= 0 if the slope fails without a loss.
-/// A loss of pull adds to the climb, and a loss of side force increases the effective gradient across.
-/// `losses[k]` is the reduction of the steepest climb at the gradient across k/64.
+/// Returns the loss of drawbar pull over load at which driving on a slope with the gradients `along` and
+/// `across` the heading fails; <= 0 if it fails without a loss. A loss of pull adds to the climb, and the
+/// corresponding loss of side force increases the effective gradient across. `losses[k]` is the reduction of
+/// the steepest climb at the gradient across k/64.
 double strengthToLose(double along, double across, const LevelStrength& level,
                       const std::vector<double>& losses);
 

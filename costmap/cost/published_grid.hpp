@@ -7,9 +7,10 @@
 
 namespace talus::costmap {
 
-/// The current version of the cost map; replaced as a whole. load() is thread-safe. Uses a mutex because
-/// std::atomic<std::shared_ptr> of GCC 12 unlocks without memory ordering: on a weakly ordered processor, a
-/// reader could combine one grid with the reference count of another.
+/// Holder of the current version of the cost grid; a new version replaces the current one as a whole. load()
+/// is thread-safe. The class uses a mutex because std::atomic<std::shared_ptr> of GCC 12 unlocks without
+/// memory ordering: on a weakly ordered processor, a reader could combine one grid with the reference count
+/// of another.
 class PublishedGrid {
  public:
   std::shared_ptr<const CostGrid> load() const {

@@ -14,24 +14,25 @@ class RoverStance;
 
 namespace talus::costmap {
 
-/// A heading as a unit vector in the map frame (x east, y north).
+/// A heading (horizontal direction of travel) as a unit vector in the map frame (x east, y north).
 struct Direction {
   double x = 1.0;
   double y = 0.0;
 };
 
-/// Planner data of one cell in 4 bytes: the gradient of the plane under the rover and the index of a drive
-/// curve. dz/dx and dz/dy are stored in steps of 1/1024 (rise over run, error at most half a step), clamped
-/// to [-2, 2).
+/// Cell code: planner data of one cell in 4 bytes. It contains the gradient of the fitted plane under the
+/// rover and the index of a cost curve (TravelCurve). dz/dx and dz/dy are stored in steps of 1/1024 (rise
+/// over run, error at most half a step), clamped to [-2, 2).
 class CellCode {
  public:
   static constexpr std::uint8_t kUnknown = 254;  ///< curve index of an unobserved cell
   static constexpr std::uint8_t kBlocked = 255;  ///< curve index of a cell that no heading may enter
 
-  /// The unpacked values.
+  /// The values of a cell code.
   struct Parts {
     double dz_dx = 0.0;  ///< rise over run eastward [-]
     double dz_dy = 0.0;  ///< rise over run northward [-]
+    /// Index of the cost curve, kUnknown or kBlocked.
     std::uint8_t curve = kUnknown;
   };
 
@@ -39,8 +40,10 @@ class CellCode {
   explicit CellCode(const Parts& parts)
       : bits_(quantised(parts.dz_dx) << 20 | quantised(parts.dz_dy) << 8 | parts.curve) {}
 
+  /// Gradients of the plane eastward and northward [-].
   double dzDx() const noexcept { return static_cast<double>(stepsX()) * kStep; }
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
+  /// Gradients of the plane eastward and northward, in steps of kStep.
   int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
   int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
   /// Returns the code with an unchanged gradient and another curve index.
@@ -54,6 +57,7 @@ class CellCode {
 
   friend bool operator==(CellCode, CellCode) = default;
 
+  /// Step of the gradients [-].
   static constexpr double kStep = 1.0 / 1024.0;
 
  private:
@@ -62,39 +66,41 @@ class CellCode {
   std::uint32_t bits_;
 };
 
-/// Cost per horizontal metre on one kind of ground, tabulated over the gradient along the heading (rise over
-/// run, climbing > 0; kBins nodes at k/256, k = -256..255) and over |gradient across| (rows at multiples of
-/// 1/64). Costs are bilinear between nodes, and infinite for a refused motion. price() is finite only if
-/// every node of positive weight is finite.
+/// Cost curve: cost per horizontal metre on ground of one estimated strength, tabulated over two gradients.
+/// The gradient along the heading (rise over run, climbing > 0) has kBins nodes at k/256, k = -256..255. The
+/// magnitude of the gradient across the heading has rows at multiples of 1/64. Costs are interpolated
+/// bilinearly between nodes, and are infinite for a refused motion: price() is finite only if every node of
+/// positive weight is finite.
 struct TravelCurve {
   static constexpr int kBins = 512;
   static constexpr int kBinsPerUnit = 256;
   static constexpr int kRowsPerUnit = 64;
-  static constexpr double kSame = 1e-9;  ///< tolerance [bins or rows] for positions on a node
-  static constexpr double kLastPlace =
-      kBins - 1 - kSame;  ///< upper bound of positions along [bins], exclusive
-  /// Row 0, without cross slope: energy + weighted time + weighted risk [J/m].
+  static constexpr double kSame = 1e-9;  ///< tolerance for positions on a node [bins or rows]
+  /// Upper bound of positions along the heading, exclusive [bins].
+  static constexpr double kLastPlace = kBins - 1 - kSame;
+  /// Row 0, i.e. costs without a gradient across: energy + weighted time + weighted risk [J/m].
   std::array<float, kBins> cost_J_per_m;
-  /// All rows, row 0 first; steeper gradients across use the last row. Null: a gradient across adds no cost.
-  /// Costs must not decrease from row to row in any bin, because the planners' lower bounds rely on monotone
-  /// costs.
+  /// Costs of all rows, row 0 first; gradients across beyond the last row use the last row. Null: a gradient
+  /// across adds no cost. Costs must not decrease from row to row in any bin, because the lower bounds of the
+  /// planners rely on this.
   std::shared_ptr<const std::vector<float>> crossing{};
 
-  /// Bin of the nearest node; outside 0..kBins-1 for a gradient outside the table.
+  /// Returns the bin of the node nearest to a gradient along the heading; outside 0..kBins-1 for a gradient
+  /// outside the table.
   static int bin(double gradient) noexcept;
-  /// Returns the gradient at a node, or at a position between nodes.
+  /// Returns the gradient at a node, or at a position between nodes [bins].
   static constexpr double gradient(double bin) noexcept { return (bin - 0.5 * kBins) / kBinsPerUnit; }
-  /// First row whose gradient is at least |across|.
+  /// Returns the first row whose gradient is at least |across|.
   static int row(double across) noexcept {
     const Between at = between((across < 0.0 ? -across : across) * kRowsPerUnit);
     return at.whole + static_cast<int>(at.share > 0.0F);
   }
 
-  /// A fractional node index >= 0 as the index of the node at or before it, and the fraction to the next
-  /// node.
+  /// A position between two nodes: `whole` is the index of the node at or before the position, and `share` is
+  /// the fraction of the distance to the next node.
   struct Between {
     int whole;
-    float share;  ///< [0, 1]
+    float share;  ///< 0 to 1 [-]
   };
   static Between between(double place) noexcept {
     const int whole = static_cast<int>(place + kSame);
@@ -102,11 +108,13 @@ struct TravelCurve {
     return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
   }
 
-  /// rows(): costs [J/m] of all nodes, row by row, kBins a row. lastRow(): index of the last row.
+  /// rows() returns the costs [J/m] of all nodes, row by row, with kBins costs per row. lastRow() returns the
+  /// index of the last row.
   const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
   int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
 
-  /// Returns the cost [J/m] at gradients along and across, both |g| <= 2; infinite outside the table.
+  /// Returns the cost [J/m] at the gradients `along` and `across` the heading, both |g| <= 2; infinite
+  /// outside the table.
   float price(double along, double across) const noexcept {
     constexpr float blocked = std::numeric_limits<float>::infinity();
     const double place = along * kBinsPerUnit + kBins / 2;
@@ -125,91 +133,104 @@ struct TravelCurve {
 
 class CrossSlope;
 
-/// Cost of a turn of one radian, or of a change of direction, in addition to the path length.
+/// Cost of a turn by one radian, or of a change of direction, in addition to the cost of the path length.
 struct TurnCost {
-  double cost_J = 0.0;    ///< by the weights of the cost function, >= 0
+  double cost_J = 0.0;    ///< weighted cost by the cost function, >= 0
   double energy_J = 0.0;  ///< >= 0
   double time_s = 0.0;    ///< >= 0
 };
 
-/// Costs of a turn of one radian on one kind of ground, for the three ways to turn.
+/// Costs of a turn by one radian on ground of one estimated strength, for three ways to turn.
 struct TurnCosts {
+  /// Turn while driving on an arc.
   TurnCost on_arc;
+  /// Turn on the spot.
   TurnCost in_place;
-  TurnCost at_vertex;  ///< vertex of a polyline: in place if the rover turns in place, else on an arc
+  /// Change of direction at a vertex of a polyline: in place if the rover can turn in place, otherwise on an
+  /// arc.
+  TurnCost at_vertex;
 };
 
-/// Cost curve of one kind of ground for planners, and the tabulated states from which the costs follow.
+/// Cost curve of ground of one estimated strength, and the tabulated travel states from which the costs
+/// follow.
 struct GroundCost {
   TravelCurve curve;
-  std::shared_ptr<const TravelTable> states;  ///< may be null if details are not needed (tests)
-  std::shared_ptr<const CrossSlope>
-      crossing{};     ///< source of the curve's rows; null for a curve without rows
-  TurnCosts turns{};  ///< cost of one radian on level ground; zeros if turning is free (tests)
+  /// Travel states over the gradient along the heading; may be null if details are not needed (tests).
+  std::shared_ptr<const TravelTable> states;
+  /// Source of the curve's rows; null for a curve without rows.
+  std::shared_ptr<const CrossSlope> crossing{};
+  TurnCosts turns{};  ///< costs of a turn by one radian on level ground; zeros if turning is free (tests)
 };
 
-/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the class; NaN on a
-/// slope without an equilibrium.
+/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the terrain class.
+/// Values are NaN on a slope without an equilibrium.
 struct SlopeHold {
-  /// relative to the direction of travel, left positive
+  /// Slip angle: angle between the wheel plane and the direction of travel, left positive.
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
-  double side_force_over_load = std::numeric_limits<double>::quiet_NaN();  ///< greatest |F|/N of a wheel
-  double stability_margin_rad =
-      std::numeric_limits<double>::quiet_NaN();  ///< additional tilt until the rover tips; NaN also for a
-                                                 ///< rover without a height of the centre of mass
+  /// Greatest side force over load |F|/N of a wheel [-].
+  double side_force_over_load = std::numeric_limits<double>::quiet_NaN();
+  /// Additional tilt until the rover tips; NaN also for a rover whose height of the centre of mass is
+  /// unknown.
+  double stability_margin_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Correlation of the soil uncertainty between places, and the consequence of insufficient drawbar pull.
+/// Correlation of the soil uncertainty between places of a route, and the consequence of insufficient drawbar
+/// pull.
 struct SoilUncertainty {
-  double correlation_length_m = 0.0;  ///< correlation length of the soil; 0: unknown, every metre independent
-  double entrapment = 1.0;            ///< probability that a place with insufficient drawbar pull immobilises
-                                      ///< the rover [-]
-  std::vector<double> shared{};  ///< by class: fraction of the variance of the pull that all places share
+  /// Correlation length of the soil; 0: unknown, every metre is taken as independent.
+  double correlation_length_m = 0.0;
+  /// Probability that a place with insufficient drawbar pull immobilises the rover [-].
+  double entrapment = 1.0;
+  /// Fraction of the variance of the drawbar pull that all places of a class share, by class index [-].
+  std::vector<double> shared{};
 };
 
-/// The cost function that planners, route checks and reports share. Immutable and thread-safe.
+/// Cost function of a map, shared by planners, route checks and reports. It combines the cost curves with
+/// limits that apply to every ground. Immutable and thread-safe.
 class TravelCost {
  public:
-  /// Limits on every ground, as rise over run.
+  /// Limits that apply to every ground; gradients are rise over run.
   struct Limits {
     double max_along = 0.36;   ///< greatest gradient along the heading, tan(max pitch)
     double max_across = 0.36;  ///< greatest gradient across the heading, tan(max roll)
-    std::shared_ptr<const terramech::RoverStance>
-        stance{};  ///< geometry for the tipping limit; null: the rover never tips
+    /// Geometry for the tipping limit; null: the rover never tips.
+    std::shared_ptr<const terramech::RoverStance> stance{};
   };
 
-  /// Throws std::invalid_argument for more than 254 curves.
+  /// Makes the cost function from cost curves in the order of their indices, at most 254. Throws
+  /// std::invalid_argument for more curves.
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
   TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty uncertainty = {});
 
-  /// Returns the cost [J/m] of one horizontal metre over the cell in a direction; infinite for a refused
+  /// Returns the cost [J/m] of one horizontal metre over the cell in a heading; infinite for a refused
   /// motion.
   float costPerMetre(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns the state from which costPerMetre() follows: the cost is finite if and only if refusal is None.
-  /// For a curve without states: zeros, category Unknown.
+  /// Returns the travel state from which costPerMetre() follows. The cost is finite if and only if
+  /// TravelState::refusal is None. For a curve without states, the quantities are 0 and the category is
+  /// Unknown.
   TravelState detail(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns slip angle, side force and stability margin on the cell.
+  /// Returns slip angle, side force and stability margin on the cell in a heading.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns the cost of one radian of heading at a vertex on this cell; 0 on cells without a curve. turns()
-  /// has the costs by curve.
+  /// Returns the cost of a turn by one radian at a vertex of a route on this cell; 0 on cells without a cost
+  /// curve. turns() returns the costs of turns by curve index.
   TurnCost turn(CellCode cell) const noexcept {
     return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnCost{};
   }
   const std::vector<TurnCosts>& turns() const noexcept { return turns_; }
 
-  /// True if the rover tips on the cell with this heading, standing or turning in place, on any soil.
+  /// Returns true if the rover tips on the cell with this heading, standing or turning in place, on any soil.
   bool tips(CellCode cell, Direction heading) const noexcept;
-  /// True if the cell is steep enough that the rover may tip in some heading.
+  /// Returns true if the cell is so steep that the rover may tip in some heading.
   bool mayTip(CellCode cell) const noexcept;
 
   const Limits& limits() const noexcept { return limits_; }
-  /// Correlation of the soil uncertainty, for the risk of a whole route.
+  /// Returns the correlation of the soil uncertainty, for the risk of a whole route.
   const SoilUncertainty& uncertainty() const noexcept { return uncertainty_; }
   const std::vector<TravelCurve>& curves() const noexcept { return curves_; }
-  /// States of each curve; null for a curve made without states.
+  /// Returns the travel states by curve index; null for a curve without states.
   const std::vector<std::shared_ptr<const TravelTable>>& states() const noexcept { return states_; }
   const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
 

@@ -7,21 +7,22 @@
 
 namespace talus::costmap {
 
-/// Returns the cost of a turn [J]: energy * energy_J + time_W * time_s.
+/// Returns the cost of a turn: cost_J = energy * energy_J + time_W * time_s, with the weight `energy` of
+/// energy [-] and the weight `time_W` of time [W].
 inline TurnCost priced(const terramech::TurnEffort& effort, double energy, double time_W) noexcept {
   return {.cost_J = energy * effort.energy_J + time_W * effort.time_s,
           .energy_J = effort.energy_J,
           .time_s = effort.time_s};
 }
 
-/// Returns the turns with cost_J recomputed from other weights of energy [-] and time [W].
+/// Returns the turn costs with cost_J recomputed from other weights of energy [-] and time [W].
 inline TurnCosts reweighted(TurnCosts turns, double energy, double time_W) noexcept {
   for (TurnCost* price : {&turns.on_arc, &turns.in_place, &turns.at_vertex})
     *price = priced({price->energy_J, price->time_s}, energy, time_W);
   return turns;
 }
 
-/// Returns the maximum of each quantity of two turns.
+/// Returns turn costs of which each quantity is the maximum of that quantity in `a` and `b`.
 inline TurnCosts dearer(const TurnCosts& a, const TurnCosts& b) noexcept {
   const auto of = [](const TurnCost& x, const TurnCost& y) {
     return TurnCost{std::max(x.cost_J, y.cost_J), std::max(x.energy_J, y.energy_J),
