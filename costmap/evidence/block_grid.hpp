@@ -8,33 +8,36 @@
 
 namespace talus::costmap {
 
-/// Square blocks of cells, in which evidence is stored. The side of a block is the largest power of two of
-/// cells, 1 to 256, that does not exceed a quarter of the correlation length; at least one cell. Blocks are
-/// aligned with the octree. A block is identified by its south-west cell, which may lie outside the grid, or
-/// by its column and row from the map's south-west. Immutable.
+/// Grid of blocks. A block is a square of cells whose evidence is stored together. The side of a block is the
+/// largest power of two of cells, 1 to 256, that does not exceed a quarter of the correlation length of the
+/// soil; at least one cell. Blocks are aligned with the octree. A block is identified by its south-west cell,
+/// which may lie outside the map, or by its column and row from the map's south-west corner. Immutable.
 class BlockGrid {
  public:
   explicit BlockGrid(std::shared_ptr<const GroundSite> site);
 
   int columns() const noexcept { return columns_; }
   int rows() const noexcept { return rows_; }
-  /// Side of a block, in cells and in metres.
+  /// Returns the side length of a block: side() in cells, side_m() in metres.
   int side() const noexcept { return 1 << shift_; }
   double side_m() const noexcept { return side() * site_->grid().resolution_m; }
-  /// Number of blocks that a correlation length spans, rounded up.
+  /// Returns the number of blocks that one correlation length spans, rounded up.
   int reach() const noexcept;
 
+  /// Returns the column and the row of the block that contains a cell.
   int columnOf(maps::Cell cell) const noexcept { return (cell.column - first_.column) >> shift_; }
   int rowOf(maps::Cell cell) const noexcept { return (cell.row - first_.row) >> shift_; }
-  /// South-west cell of the block that contains a cell, and of the block in a column and row.
+  /// Returns the south-west cell of a block: blockOf() of the block that contains a cell, blockAt() of the
+  /// block in a column and row.
   maps::Cell blockOf(maps::Cell cell) const noexcept;
   maps::Cell blockAt(int column, int row) const noexcept {
     return {first_.column + column * side(), first_.row + row * side()};
   }
+  /// Returns the map coordinates of the middle of a block.
   maps::Point middleOf(maps::Cell block) const noexcept;
 
-  /// keyOf(): octree height key of an elevation. topKey(): key of the first cell with an elevation in a
-  /// block; nullopt if no cell of the block has an elevation.
+  /// keyOf() returns the octree height key of an elevation. topKey() returns the height key of the first cell
+  /// of a block that has an elevation; nullopt if no cell of the block has an elevation.
   std::uint16_t keyOf(float height_m) const noexcept;
   std::optional<std::uint16_t> topKey(maps::Cell block) const noexcept;
 

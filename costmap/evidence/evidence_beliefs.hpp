@@ -10,9 +10,10 @@
 
 namespace talus::costmap {
 
-/// Estimates of ground for each cell. Evidence is collected once for each patch of 8x8 blocks and class; an
-/// estimate is computed once for each block and class. An estimate depends only on the class states and on
-/// the evidence that can reach the patch. Valid until the field changes. Not thread-safe.
+/// Computes the estimates of ground of cells. Evidence is collected once for each patch (8x8 blocks) and
+/// terrain class. An estimate is computed once for each block (square of cells) and class; it depends only on
+/// the class states and on the evidence that can affect the patch. Valid until the field changes. Not
+/// thread-safe.
 class EvidenceBeliefs {
  public:
   explicit EvidenceBeliefs(const EvidenceField& field,
@@ -21,7 +22,8 @@ class EvidenceBeliefs {
   EvidenceBeliefs(const EvidenceBeliefs&) = delete;
   EvidenceBeliefs& operator=(const EvidenceBeliefs&) = delete;
 
-  /// Estimate for the top surface of a cell as ground of a class. The reference is valid until the next call.
+  /// Returns the estimate for the top surface of a cell, as ground of a terrain class. The reference is valid
+  /// until the next call.
   const InferredGround& at(maps::Cell cell, int class_index);
 
  private:

@@ -9,49 +9,56 @@
 
 namespace talus::costmap {
 
-/// A class of ground on one level of a block. Columns and rows of blocks count from the map's south-west.
+/// Key of evidence: one terrain class, on one level of one block. A block is a square of cells; its levels
+/// are the top surface and the floors beneath it. Columns and rows of blocks count from the map's south-west
+/// corner.
 struct BlockLevel {
   int column = 0, row = 0;
+  /// BlockEvidence::kTop for the top surface, or the octree height key of a floor.
   std::uint16_t level = BlockEvidence::kTop;
-  std::uint8_t terrain_class = 0;  ///< number of the class
+  std::uint8_t terrain_class = 0;  ///< number of the terrain class
 };
 
-/// The evidence of a map, in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with evidence
-/// and a sorted list of their readings. A block takes 44 bytes and 12 for each distinct reading of a drive; a
-/// block without evidence takes less than one byte. (For comparison: a leaf of an OctoMap tree takes 64 bytes
-/// with its allocation, and its parents another 64.) Not thread-safe while changed; pointers are valid until
-/// the next change.
+/// The evidence of a map, stored in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with
+/// evidence and a sorted list of their readings. A block takes 44 bytes, and 12 bytes for each distinct
+/// reading of a drive; a block without evidence takes less than one byte. (For comparison: a leaf of an
+/// OctoMap tree takes 64 bytes with its allocation, and its parents another 64.) Not thread-safe while
+/// changed; pointers are valid until the next change.
 class EvidenceBricks {
  public:
-  /// Makes an empty store for a map with these numbers of block columns and rows.
+  /// Makes an empty store for a map with this number of block columns and rows.
   EvidenceBricks(int block_columns, int block_rows);
 
-  /// Evidence of a class on a level of a block; null if there is no evidence or the block lies outside the
-  /// map.
+  /// Returns the evidence of a class on a level of a block; null if there is no evidence or the block lies
+  /// outside the map.
   const BlockEvidence* find(const BlockLevel& block) const noexcept;
   /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
   /// inside the map.
   BlockEvidence& at(const BlockLevel& block);
-  /// Returns the readings of a block, sorted by kind, value and drive; an unread block has an empty list.
+  /// Returns the readings of a class on a level of a block, sorted by kind, value and drive; empty without
+  /// readings.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;
-  /// Adds reading.count readings of one kind, value and drive to a block that at() created; the count
+  /// Adds reading.count readings of one kind, value and drive to evidence that at() created; the count
   /// saturates at 65535.
   void count(const BlockLevel& block, const ReadingCount& reading);
-  /// Removes reading.count readings from a block that at() created. A block without readings is not changed.
-  /// A saturated count (65535) stays.
+  /// Removes reading.count readings from evidence that at() created. A saturated count (65535) is not
+  /// changed, nor is evidence without such readings.
   void uncount(const BlockLevel& block, const ReadingCount& reading);
 
+  /// Callback with a key and its evidence.
   using Visit = std::function<void(const BlockLevel&, const BlockEvidence&)>;
 
-  /// Visits all levels and classes of a block, in ascending order of level; the top surface is last.
+  /// Calls `visit` for all levels and classes of a block, in ascending order of level; the top surface is
+  /// last.
   void visitLevels(int column, int row, const Visit& visit) const;
-  /// A rectangle of blocks, both corners included; the rectangle may extend beyond the map.
+  /// A rectangle of blocks, given by columns and rows, both corners included. The rectangle may extend beyond
+  /// the map.
   struct Box {
     int west, south, east, north;
   };
-  /// Visits the evidence of the top surface within a box, brick by brick.
+  /// Calls `visit` for the evidence of the top surface within a box, brick by brick.
   void visitTop(const Box& box, const Visit& visit) const;
-  /// Visits all evidence by ascending row, column, level and class.
+  /// Calls `visit` for all evidence, by ascending row, column, level and class.
   void visitAll(const Visit& visit) const;
 
  private:

@@ -14,11 +14,12 @@
 
 namespace talus::costmap {
 
-/// All readings of one class on one level of a block, as a file stores them.
+/// All readings of one terrain class on one level of a block, as map files store them.
 struct SavedBlock {
   BlockLevel block;
+  /// Telemetry time of the newest reading, rounded down [s].
   std::uint32_t updated_s = 0;
-  std::uint8_t reach = 0;  ///< position uncertainty of the place, in steps of 0.1 m
+  std::uint8_t reach = 0;  ///< position uncertainty of the readings, in steps of 0.1 m
   std::vector<ReadingCount> counts;
 };
 
@@ -27,50 +28,55 @@ struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
 
-/// Wheel observations by place. Each class of ground in a block has its own evidence, which a Gaussian
-/// process over the class mean extends to nearby ground of the same class; each class has a posterior.
+/// Evidence of a map: wheel observations by place. Evidence is stored by block, level and terrain class. A
+/// block is a square of cells (BlockGrid), and its levels are the top surface and the floors beneath it. A
+/// Gaussian process over the class mean extends the evidence to nearby ground of the same class, and each
+/// class has a posterior.
 ///
-/// Blocks (BlockGrid) have a side of a quarter of the correlation length, so that the work for a sample does
-/// not depend on the map's resolution. Evidence from a floor below an overhang belongs to that floor: the
-/// evidence does not apply to the top surface, and contributes to the first class only if no raster contains
-/// classes. The same evidence in any order gives bitwise equal results. Not thread-safe while changed.
+/// Blocks have a side of a quarter of the correlation length, so that the work for an observation does not
+/// depend on the map's resolution. Evidence from a floor below an overhang belongs to that floor: it does not
+/// apply to the top surface, and it contributes to the first class only if the map has no class raster. The
+/// same evidence in any order gives bit-identical results. Not thread-safe while changed.
 ///
 /// Evidence lowers an estimate immediately: no estimate exceeds the value that any single nearby place
 /// implies, if that place is weaker than the variation of its class explains or has only unverified readings.
 /// Evidence raises an estimate, or reduces its standard deviation, only if at least three independent places
-/// of the class may raise, and by at most the departure that each of the three places reaches; until then no
-/// estimate exceeds that of the class without nearby evidence.
+/// of the class have readings that may raise an estimate (readings of verified sensors). The increase is at
+/// most the departure that each of the three places reaches. Until then, no estimate exceeds that of the
+/// class without nearby evidence.
 class EvidenceField {
  public:
-  /// A field without evidence.
+  /// Makes a field without evidence.
   explicit EvidenceField(std::shared_ptr<const GroundSite> site);
   ~EvidenceField();
   EvidenceField(EvidenceField&&) noexcept;
   EvidenceField& operator=(EvidenceField&&) noexcept;
 
-  /// Adds an observation. Returns the cells whose estimate may change while the class states are constant:
-  /// all cells of the patches of blocks within reach of the observation. Returns nullopt if the place is
-  /// outside the map or has no class, or if the observation contains neither an estimate nor a bound.
+  /// Adds an observation. Returns the box of cells whose estimate may change while the class states are
+  /// constant: all cells of the patches of blocks that the observation can affect. Returns nullopt if the
+  /// observation lies outside the map or on ground without a class, or if it contains neither an estimate nor
+  /// a bound.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
   /// Returns the block and the quantised readings that add() would store for an observation; nullopt if add()
-  /// returns nullopt.
+  /// would return nullopt.
   std::optional<SavedBlock> readingsOf(const WheelObservation& observation) const;
-  /// Removes stored readings of pull and sinkage; the bounds of the place remain. Returns the cells whose
+  /// Removes stored readings of pull and sinkage; bounds of the ground remain. Returns the box of cells whose
   /// estimate may change; nullopt if the block has no evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& readings);
 
-  /// Class states from which estimates are computed. AsKnown: exact. InSteps: rounded towards danger
-  /// (ClassEvidence::stateInSteps()), as used for publishing.
+  /// Form of the class states from which estimates are computed. AsKnown: exact. InSteps: rounded towards
+  /// danger (ClassEvidence::stateInSteps()), as used for publishing.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
 
-  /// Returns the evidence of the cell's class on the top surface of the cell's block; null without evidence.
+  /// Returns the evidence on the top surface of the block that contains a cell, for the cell's class; null
+  /// without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
   /// Returns the evidence of a floor below the top surface; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell, const Floor& floor) const;
-  /// Number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
+  /// Returns the number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
   double samplesOf(maps::Cell cell) const;
   double samplesOf(maps::Cell cell, const Floor& floor) const;
-  /// Returns the estimate for a floor, from the evidence on that floor and on ground at the same level.
+  /// Returns the estimate for a floor, from the evidence on that floor and on ground connected with it.
   GroundBelief floorBelief(maps::Cell cell, const Floor& floor) const;
 
   /// Evidence of a floor below the top surface, and a cell with that floor.
@@ -78,29 +84,32 @@ class EvidenceField {
     maps::Cell cell;
     BlockEvidence evidence;
   };
-  /// Evidence of all floors, in a fixed order.
+  /// Returns the evidence of all floors, in a fixed order.
   std::vector<FloorEvidence> floorEvidence() const;
 
-  /// Posterior of a class, not rounded.
+  /// Returns the posterior of a class, not rounded.
   const ClassPosterior& posterior(int class_index) const;
-  /// Estimate for ground of a class without nearby evidence.
+  /// Returns the estimate for ground of a class without nearby evidence.
   GroundBelief classBelief(int class_index, Classes classes = Classes::AsKnown) const;
-  /// States of all classes, in the order of GroundModel::Parts::classes.
+  /// Returns the states of all classes, in the order of GroundModel::Parts::classes.
   std::vector<ClassState> states(Classes classes) const;
-  /// Disjoint boxes of cells; ground outside these boxes has the estimate of its class.
+  /// Returns disjoint boxes of cells that evidence can affect; ground outside these boxes has the estimate of
+  /// its class.
   std::vector<maps::CellBox> reached() const;
 
-  static constexpr double kPoseReach = 2.0;  ///< reach of a bound in position deviations [-]
+  /// Radius within which a bound applies, in standard deviations of the position [-].
+  static constexpr double kPoseReach = 2.0;
 
-  /// Side of a block, in cells.
+  /// Returns the side length of a block [cells].
   int blockCells() const noexcept;
 
-  /// visit() visits all evidence in a fixed order. restore() adds visited evidence to a field of the same
-  /// site and returns the cells whose estimate may change; nullopt if the site has no such block or class.
+  /// visit() calls `visit` with all evidence in a fixed order. restore() adds such evidence to a field of the
+  /// same site, and returns the box of cells whose estimate may change; nullopt if the site has no such block
+  /// or class.
   void visit(const std::function<void(const SavedBlock&)>& visit) const;
   std::optional<maps::CellBox> restore(const SavedBlock& saved);
 
-  /// Data of the field, for EvidenceBeliefs.
+  /// Returns the data of the field, for EvidenceBeliefs.
   const EvidenceStore& store() const noexcept { return *store_; }
 
  private:

@@ -11,23 +11,23 @@
 
 namespace talus::costmap {
 
-/// Patches of 8x8 blocks within reach of evidence. The estimates of a patch are computed from all evidence
-/// that can reach any block of the patch; a changed block therefore changes whole patches. Not thread-safe
-/// while changed.
+/// Set of the patches that evidence can affect. A patch is 8x8 blocks, and a block is a square of cells whose
+/// evidence is stored together. The estimates of a patch are computed from all evidence that can affect any
+/// block of the patch; a changed block therefore changes whole patches. Not thread-safe while changed.
 class EvidenceReach {
  public:
   static constexpr int kPatchBlocks = 8;
 
   explicit EvidenceReach(std::shared_ptr<const GroundSite> site);
 
-  /// Adds the evidence of a block whose position may be wrong by reach_m, >= 0 [m]. Returns the cells of all
-  /// patches within the correlation length plus reach_m of the block.
+  /// Adds the evidence of a block whose position uncertainty is reach_m >= 0 [m]. Returns the box of the
+  /// cells of all patches within the correlation length plus reach_m of the block.
   maps::CellBox add(const BlockLevel& block, double reach_m);
 
-  /// Boxes of cells, one for each patch; evidence has no effect outside these boxes.
+  /// Returns the boxes of cells that evidence can affect, one for each patch.
   std::vector<maps::CellBox> boxes() const;
 
-  /// Greatest position uncertainty of a block [m].
+  /// Returns the greatest position uncertainty of a block [m].
   double farthest_m() const noexcept { return farthest_m_; }
 
  private:

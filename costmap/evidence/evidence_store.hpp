@@ -12,8 +12,9 @@
 
 namespace talus::costmap {
 
-/// Data of an EvidenceField: blocks, their readings, the evidence of classes, and the patches within reach.
-/// Internal to EvidenceField and the computation of estimates.
+/// Data of an EvidenceField: blocks (squares of cells), their readings, the evidence of terrain classes, and
+/// the patches of blocks that evidence can affect. Internal to EvidenceField and to the computation of
+/// estimates.
 struct EvidenceStore {
   explicit EvidenceStore(std::shared_ptr<const GroundSite> of)
       : site(std::move(of)),
@@ -26,13 +27,14 @@ struct EvidenceStore {
   BlockGrid blocks;
   EvidenceBricks bricks;
   EvidenceReach reach;
-  std::vector<ClassEvidence> contributions;  ///< one for each class
+  /// Evidence of each terrain class, in the order of the model's classes.
+  std::vector<ClassEvidence> contributions;
 
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {
     return model().parts().classes[static_cast<std::size_t>(class_index)];
   }
-  /// The top-surface level, with a class, of the block that contains a cell.
+  /// Returns the key of the evidence of a class on the top surface, in the block that contains a cell.
   BlockLevel topOf(maps::Cell cell, int class_index) const noexcept {
     return {blocks.columnOf(cell), blocks.rowOf(cell), BlockEvidence::kTop,
             static_cast<std::uint8_t>(groundClass(class_index).number)};

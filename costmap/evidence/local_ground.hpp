@@ -11,41 +11,44 @@ namespace talus::costmap {
 
 struct EvidenceStore;
 
-/// Bounds of the ground in a block, independent of all other evidence. NaN: no bound.
+/// Bounds of the ground in a block (square of cells), independent of all other evidence. NaN: no bound.
 struct PlaceBound {
   maps::Point block;           ///< centre of the block
-  double reach_m = 0.0;        ///< position uncertainty of the place [m]
+  double reach_m = 0.0;        ///< position uncertainty of the readings [m]
   double most_pull = 0.0;      ///< upper bound of drawbar pull over load [-]
   double least_sinkage = 0.0;  ///< lower bound of sinkage over radius [-]
 };
 
-/// A class of ground and its state.
+/// Index of a terrain class, and the state of the class after all evidence.
 struct GroundOfClass {
   int class_index = 0;
   ClassState state{};
 };
 
-/// Evidence within reach of a patch of ground of one class. Immutable.
+/// Evidence that can affect the ground of one terrain class in one patch. A patch is 8x8 blocks. Immutable.
 struct LocalGround {
-  GaussianProcess process;  ///< readings that may raise, as departures from the class's posterior mean
-  std::vector<WeakPlace> weak,
-      lower;  ///< departures from the prior: `weak` beyond the variation of the class, `lower` within
+  /// Readings that may raise an estimate, as departures from the posterior mean of the class.
+  GaussianProcess process;
+  /// Places with departures from the prior of the class. `weak`: ground weaker than the variation of the
+  /// class explains. `lower`: departures within that variation, which may only lower an estimate.
+  std::vector<WeakPlace> weak, lower;
   std::vector<PlaceBound> bounds;
 
   bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
 };
 
-/// Estimate for ground of a class without nearby evidence.
+/// Returns the estimate for ground of a class without nearby evidence.
 GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
 
-/// Spatial variation of ground of a class.
+/// Returns the spatial variation of ground of a class.
 Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
 
-/// Evidence on the top surface within reach of a patch of 8x8 blocks; `patch` is its south-west block.
+/// Returns the evidence on the top surface that can affect the patch of 8x8 blocks with the south-west block
+/// `patch`.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
 
-/// Evidence of the class on all surfaces, top surface and floors, that gradients of at most 0.6 connect with
-/// a level of a block.
+/// Returns the evidence of the class that gradients of at most 0.6 connect with one level of a block, on the
+/// top surface and on floors. The level is the octree height key of a floor.
 LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
                             const GroundOfClass& of);
 

@@ -6,9 +6,9 @@ namespace talus::costmap {
 
 struct WheelObservation;
 
-/// Returns the reason why an observation is not physically possible, e.g. "pull = inf, must be ..."; the
-/// empty string for a possible observation. Limits: |pull|, its standard deviation and |sinkage over radius|
-/// <= 100 [-]; coordinates and position uncertainty <= 1e9 m.
+/// Returns the reason why an observation is not physically possible, e.g. "pull = inf, must be ..."; returns
+/// the empty string for a possible observation. Limits: |drawbar pull over load|, its standard deviation and
+/// |sinkage over radius| <= 100 [-]; coordinates and position uncertainty <= 1e9 m.
 std::string fault(const WheelObservation& observation);
 
 }  // namespace talus::costmap

@@ -16,41 +16,43 @@
 
 namespace talus::costmap {
 
-/// Assigns a cost curve to the ground of each cell: the curve of the cell's ground if all ground that a wheel
-/// may touch is equal, else the curve of the ground by WheelSwath. Stores the learned ground of cells as
-/// GroundKind, and recomputes cells only after changes within reach. Not thread-safe.
+/// Assigns an index of a cost curve (cost per metre over the gradient) to each cell. If all ground that a
+/// wheel may touch has the same estimated strength, the curve is that of the cell's ground; otherwise it is
+/// that of the ground combined by WheelSwath. Stores the learned ground of cells as GroundKind, and
+/// recomputes cells only after changes within reach of the wheels. Not thread-safe.
 class GroundCurves {
  public:
   explicit GroundCurves(std::shared_ptr<const GroundSite> site);
 
   const CostCurveTable& table() const noexcept { return table_; }
 
-  /// Curve number of a cell whose class has a soil. CellCode::kUnknown if a wheel may touch ground without a
-  /// class and the policy excludes unknown ground.
+  /// Returns the curve index of a cell whose terrain class has a soil. Returns CellCode::kUnknown if a wheel
+  /// may touch ground without a class and the policy excludes unknown ground.
   std::uint8_t number(maps::Cell cell);
-  /// Curve number of an unseen cell that the policy allows, as ground of the first class.
+  /// Returns the curve index of an unobserved cell that the policy allows, as ground of the first class.
   std::uint8_t numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
 
-  /// Changes by learnClasses().
+  /// Changes made by learnClasses().
   struct ClassChange {
-    bool priors = false;   ///< true if priors of classes changed
-    bool learned = false;  ///< true if a class state used for learned ground changed
+    bool priors = false;   ///< true if the prior of a terrain class changed
+    bool learned = false;  ///< true if the state of a class changed from which learned ground was computed
   };
-  /// Updates the estimates of the classes.
+  /// Updates the estimates of the terrain classes from the evidence.
   ClassChange learnClasses(const EvidenceField& field);
-  /// Updates the estimates of the cells of the ranges, with class states in steps. Returns the ranges whose
-  /// curve indices may have changed.
+  /// Updates the estimates of the cells of the boxes `ranges`, from class states rounded to steps
+  /// (EvidenceField::Classes::InSteps). Returns the boxes of cells whose curve indices may have changed.
   std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
-  /// Reads changed terrain classes of the site in a box. Returns the box whose curve indices may have
-  /// changed.
+  /// Reads the changed terrain classes of the site in a box. Returns the box of cells whose curve indices may
+  /// have changed.
   maps::CellBox takeClasses(const maps::CellBox& box);
 
-  /// Returns boxes that contain all cells whose curve depends on several kinds of ground.
+  /// Returns boxes that contain all cells whose curve is combined from ground of different strengths.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Discards all curve indices when no index is free; a higher level has coarser steps. The steps of cost
-  /// layers become coarser before those of estimates, because estimates determine which ground is drivable.
+  /// Discards all curve indices, for use when no index is free. A higher level means coarser steps, so that
+  /// fewer curves are needed. The steps of cost layers become coarser before those of estimates, because
+  /// estimates determine which ground is drivable.
   void restart(int level) {
     level_ = level;
     step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);

@@ -6,10 +6,11 @@
 
 namespace talus::costmap {
 
-/// Guard of calls that change a map: a concurrent change throws instead of causing a data race.
+/// Guard of a call that changes a map: a concurrent change throws an error instead of causing a data race.
 class MapChange {
  public:
-  /// Throws std::logic_error that names the call if another thread is changing the map.
+  /// Marks the map as changing during the lifetime of the object. Throws std::logic_error, which names the
+  /// function `call`, if another thread is changing the map.
   MapChange(std::atomic_flag& changing, const char* call) : changing_(changing) {
     if (changing_.test_and_set(std::memory_order_acquire))
       throw std::logic_error(std::string("TraversabilityMap: ") + call +

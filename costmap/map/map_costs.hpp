@@ -17,48 +17,52 @@ class EvidenceField;
 class GroundCurves;
 class PublishedGrid;
 
-/// Number of cells of each category. Refused cells with a hazard are dangerous, unseen cells are unknown.
+/// Number of cells of each category. Refused cells with a hazard count as dangerous, unobserved cells as
+/// unknown.
 struct CategoryCounts {
   std::size_t safe = 0, marginal = 0, dangerous = 0, unknown = 0;
 };
 
-/// Category of a cell and its probability.
+/// Category of a cell and the probability of the category.
 struct CellCategory {
-  std::uint8_t category = 0;    ///< terramech::Category as a number
-  std::uint8_t confidence = 0;  ///< probability in steps of 1/16; dangerous: rounded to nearest, else down
+  std::uint8_t category = 0;  ///< terramech::Category as a number
+  /// Probability in steps of 1/16, rounded to nearest if dangerous and down otherwise.
+  std::uint8_t confidence = 0;
 };
 
-/// The published cost grid and the changes since its newest version. published() may be called from any
-/// thread at any time, other const members while no thread changes the map. Only the map calls non-const
-/// members.
+/// The published cost grid of a map, and the changes since its newest version. published() may be called from
+/// any thread at any time; other const members may be called while no thread changes the map. Only the map
+/// calls non-const members.
 class MapCosts {
  public:
-  /// Measures the surface and publishes version 1, without evidence from wheels.
+  /// Measures the surface and publishes version 1 of the cost grid, without evidence from wheels.
   MapCosts(std::shared_ptr<MapSurface> surface, const ProgressMonitor& watch);
   ~MapCosts();
 
-  /// The newest version.
+  /// Returns the newest version of the cost grid.
   std::shared_ptr<const CostGrid> published() const noexcept;
 
-  /// Ground estimate from which the published cost of a cell follows, after WheelSwath and the quantisation
-  /// of the cost curves; nullopt for blocked and unknown cells.
+  /// Returns the estimated strength of ground from which the published cost of a cell follows, after
+  /// WheelSwath combined the ground under all wheels and after quantisation (GroundKind); nullopt for blocked
+  /// and unknown cells.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
-  /// Published category of a cell; nullopt for blocked and unknown cells.
+  /// Returns the published category of a cell; nullopt for blocked and unknown cells.
   std::optional<CellCategory> ranked(maps::Cell cell) const;
-  /// Published category as a number (terramech::Category); blocked cells are dangerous.
+  /// Returns the published category of a cell as a number (terramech::Category); blocked cells are dangerous.
   std::uint8_t category(maps::Cell cell) const noexcept { return categoryOf(*published(), cell); }
   CategoryCounts countCategories() const;
 
-  /// Marks cells whose estimate (learned) or whose hazards or class (changed) may differ from the last
-  /// version.
+  /// Mark the cells of a box as possibly different from the newest version: noteLearned() for cells with a
+  /// changed estimate, noteChanged() for cells with changed hazards or terrain class.
   void noteLearned(const maps::CellBox& box);
   void noteChanged(const maps::CellBox& box) { changed_.push_back(box); }
-  /// Marks the changes of a patch; `classes`: true if the patch has terrain classes.
+  /// Marks the changes of a patch (new observation of a window of the ground). `classes` is true if the patch
+  /// has terrain classes.
   void notePatched(MapSurface::PatchEffect effect, bool classes);
 
-  /// Publishes the marked changes as a new version; see TraversabilityMap::publish().
+  /// Publishes the marked changes as a new version (TraversabilityMap::publish()).
   void publish(const EvidenceField& field);
-  /// Recomputes and publishes all cells.
+  /// Recomputes the cost of all cells and publishes a new version.
   void publishAll(const EvidenceField& field);
   /// Publishes the newest version under another version number.
   void republishAs(std::uint64_t version);

@@ -6,18 +6,20 @@
 
 namespace talus::costmap {
 
-/// Shift of a map window by whole tiles: tiles are dropped at one side, and unseen tiles are added at the
-/// other. Immutable.
+/// Shift of the window that a map covers, by whole tiles (blocks of 64x64 cells): tiles are dropped at one
+/// side, and unobserved tiles are added at the other side. Immutable.
 class MapShift {
  public:
-  /// Shift by `tiles` tiles of 64 cells eastward (columns) and northward (rows); evidence blocks have
-  /// block_cells cells per side. Throws std::invalid_argument if the new window does not overlap the old one,
-  /// or if a block is larger than a tile.
+  /// Makes the shift of `grid` by `tiles` tiles eastward (columns) and northward (rows). Blocks of evidence
+  /// have block_cells cells per side. Throws std::invalid_argument if the new window does not overlap the old
+  /// window, or if a block is larger than a tile.
   MapShift(const maps::Grid& grid, maps::Cell tiles, int block_cells);
 
-  /// The shifted layers of a surface; unseen cells are NaN or without class and hazard.
+  /// Returns the layers of a surface on the new window; unobserved cells are NaN, or have no class and no
+  /// hazard.
   MapLayers layers(const MapSurface& surface) const;
-  /// Returns the evidence block with its position in the new window, or outside the window.
+  /// Returns the evidence block `saved` with its position in the new window; the position may be outside the
+  /// window.
   SavedBlock block(SavedBlock saved) const;
 
  private:

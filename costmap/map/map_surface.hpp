@@ -15,44 +15,48 @@
 
 namespace talus::costmap {
 
-/// Options for measuring the terrain shape.
+/// Options for measuring the terrain shape of cells.
 struct ShapeOptions {
-  double footprint_radius_m = 0.0;  ///< radius of the disc for slope and roughness, > 0
-  int threads = 1;                  ///< >= 1; the result does not depend on the number of threads
+  /// Radius of the disc of cells over which slope and roughness are measured, > 0.
+  double footprint_radius_m = 0.0;
+  int threads = 1;  ///< number of threads, >= 1; the result does not depend on this number
 };
 
-/// Site and surface of a map: elevation, terrain classes, floors, cost layers, and the hazards of each cell
-/// including refused places. Independent of evidence and cost. Concurrent const calls are safe while no
-/// thread changes the surface; only the map changes the surface.
+/// Surface of a map: elevation, terrain classes, floors (ground beneath the top surface), cost layers, and
+/// the hazards of each cell, including ground declared impassable. The surface is independent of evidence and
+/// cost. Concurrent const calls are safe while no thread changes the surface; only the map changes the
+/// surface.
 class MapSurface {
  public:
-  /// Throws std::invalid_argument if a layer has another grid or an invalid value. Hazards are computed by
-  /// measure().
+  /// Makes the surface from `layers`. Hazards are computed later, by measure(). Throws std::invalid_argument
+  /// if a layer has another grid than the elevation, or an invalid value.
   MapSurface(MapLayers layers, std::shared_ptr<const GroundModel> model, const ShapeOptions& options);
 
   const maps::Grid& grid() const noexcept { return site_->grid(); }
   const maps::ElevationMap& elevation() const noexcept { return site_->elevation; }
   const GroundModel& model() const noexcept { return *site_->model; }
-  /// Elevation, classes and layers, shared with the evidence.
+  /// Returns elevation, terrain classes and layers, which the map shares with its evidence.
   std::shared_ptr<const GroundSite> site() const noexcept { return site_; }
   const SurfaceKeys& keys() const noexcept { return site_->keys; }
 
   const maps::Raster<std::uint8_t>& classes() const noexcept { return site_->classes; }
-  /// Class number in the raster; 0 without a raster.
+  /// Returns the terrain-class number of a cell; 0 without a class raster.
   int classNumber(maps::Cell cell) const noexcept {
     return site_->classes.empty() ? 0 : site_->classes[cell];
   }
-  /// Returns the index of the cell's class in model().parts().classes; -1 without a class.
+  /// Returns the index of the cell's terrain class in model().parts().classes; -1 for a class without a soil.
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
-  /// Class index of the ground at a height; the first class for a floor beneath the surface.
+  /// Returns the class index of the ground of a cell at the elevation z_m [m]; a floor has the first class of
+  /// the model.
   int classIndex(maps::Cell cell, double z_m) const noexcept {
     return floorAt(cell, z_m) ? 0 : classIndex(cell);
   }
   const std::vector<CostLayer>& costLayers() const noexcept { return site_->costs; }
 
-  /// Ground beneath the top surface. The cost grid covers the top surface only.
+  /// Returns the floors, i.e. the ground beneath the top surface. The cost grid covers the top surface only.
   const Floors& floors() const noexcept { return site_->floors; }
-  /// Floor at a height; nullopt if the height belongs to the top surface.
+  /// Returns the floor of a cell at the elevation z_m [m]; nullopt if the elevation belongs to the top
+  /// surface.
   std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
     return site_->floorAt(cell, z_m);
   }
@@ -60,41 +64,43 @@ class MapSurface {
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   const HazardLimits& limits() const noexcept { return limits_; }
-  /// Hazards by rocks, keep-out areas and refused places, without clearance; empty if the map contains none
-  /// of these hazards.
+  /// Returns the hazards by rocks, keep-out areas and ground declared impassable, without the clearance
+  /// around them (Hazard::Near); empty if the map contains none of these hazards.
   const maps::Raster<Hazard>& declared() const noexcept { return declared_; }
-  /// Returns the places declared impassable, in order.
+  /// Returns the places declared impassable, in the order of their declaration.
   const std::vector<RefusedPlace>& refused() const noexcept { return refused_; }
 
   double footprintRadius_m() const noexcept { return options_.footprint_radius_m; }
   int threads() const noexcept { return options_.threads; }
-  /// Options of maps::terrainMetrics() for `threads` threads (>= 1).
+  /// Returns the options of maps::terrainMetrics() for `threads` threads (>= 1).
   maps::FootprintOptions footprint(int threads) const noexcept {
     return {
         .radius_m = options_.footprint_radius_m, .step_span_m = limits_.wheel_diameter_m, .threads = threads};
   }
 
-  /// Callback with the gradient of a cell, as a code without a curve.
+  /// Callback with a cell and its code. The code has the gradients of the fitted plane, and no cost curve.
   using TakeShape = std::function<void(maps::Cell, CellCode)>;
-  /// Measures the whole surface: hazards and gradients of all cells.
+  /// Measures the whole surface: computes the hazards of all cells, and calls `take` with the gradients of
+  /// each cell.
   void measure(const TakeShape& take, const ProgressMonitor& watch);
 
-  /// Gradients of the cells of `box`: `codes` has one code for each cell of the box; the codes have no curve.
+  /// Gradients of the cells of `box`: `codes` has one cell code for each cell of the box. The codes have no
+  /// cost curve.
   struct Gradients {
     maps::CellBox box;
     maps::Raster<CellCode> codes;
   };
-  /// Cells changed by a patch.
+  /// Cells that a patch (new observation of a window of the ground) changed.
   struct PatchEffect {
-    maps::CellBox window;  ///< cells covered by the patch
-    maps::CellBox judged;  ///< cells whose hazards or gradients may have changed
-    Gradients gradients;   ///< gradients of the cells measured again
+    maps::CellBox window;  ///< box of cells that the patch covers
+    maps::CellBox judged;  ///< box of cells whose hazards or gradients may have changed
+    Gradients gradients;   ///< gradients of the cells that were measured again
   };
-  /// Replaces the surface in a window and measures all affected cells again. Throws std::invalid_argument
-  /// with place and remedy for an invalid patch; the surface is then unchanged.
+  /// Replaces the surface in the window of a patch, and measures all affected cells again. Throws
+  /// std::invalid_argument, with location and remedy, for an invalid patch; the surface is then unchanged.
   PatchEffect take(const SurfacePatch& patch);
 
-  /// Marks the cells of a place as obstacles. Returns the bounding box of the cells.
+  /// Marks the cells of a place as obstacles (impassable), and returns the bounding box of these cells.
   maps::CellBox refuse(const RefusedPlace& place);
 
  private:

@@ -12,18 +12,19 @@ namespace talus::costmap {
 
 class TraversabilityMap;
 
-/// Estimates of cells from surface, evidence and published category. Caches data common to adjacent cells.
-/// Valid until the map changes. Not thread-safe.
+/// Computes the estimates of the cells of a map from its surface, evidence and published categories. Data
+/// common to adjacent cells are cached. Valid until the map changes. Not thread-safe.
 class PlaceBeliefs {
  public:
   explicit PlaceBeliefs(const TraversabilityMap& map);
 
-  /// Estimate of a cell inside the map.
+  /// Returns the estimate of a cell inside the map.
   CellBelief at(maps::Cell cell);
-  /// Returns the estimate of a floor of a cell: soil strength only, with unknown shape (Hazard::Unknown).
+  /// Returns the estimate of a floor (ground of a cell beneath the top surface): soil strength only, with
+  /// unknown shape (Hazard::Unknown).
   CellBelief at(maps::Cell cell, const Floor& floor) const;
-  /// Strength of a cell's ground from the prior of the class and the evidence; nullopt for a cell without a
-  /// class.
+  /// Returns the estimated strength of a cell's ground, from the prior of the terrain class and the evidence;
+  /// nullopt for a cell without a class.
   std::optional<GroundBelief> ground(maps::Cell cell);
 
  private:
