@@ -11,8 +11,9 @@ struct TravelPolicy {
   bool allow_marginal = true;
   /// True if dangerous ground is allowed where the soil supports the required pull.
   bool allow_dangerous = false;
-  /// True if cells without elevation are allowed, as ground of the model's first class with the slope of
-  /// unseenSlope(). Such a cell is refused if that slope is too steep.
+  /// True if cells without elevation are allowed, with the slope of unseenSlope(), as ground of their terrain
+  /// class or, without a class, of the model's first class. Such a cell is refused if that slope is too
+  /// steep.
   bool allow_unknown = false;
 
   /// Margin of the category limits, which are tan(slope -+ margin); thesis 3.5: 5 deg.
