@@ -11,13 +11,13 @@ namespace talus::costmap {
 
 class JournalDatabase;
 
-/// EVIDENCE.db: all telemetry rows offered to a map, by drive, in an SQLite file with a write-ahead log. A
-/// drive is stored atomically and only once, whatever its file name, and is on the disk before append() or
-/// Transaction::commit() returns. Several processes may use one journal; each waits for the lock of the
-/// others. One object per thread.
+/// Journal EVIDENCE.db: all telemetry rows that were offered to a map, by drive, in an SQLite file with a
+/// write-ahead log. A drive is stored atomically and only once, whatever its file name, and is on the disk
+/// before append() or Transaction::commit() returns. Several processes may use one journal; each waits for
+/// the lock of the others. An object must not be used by several threads.
 class EvidenceJournal {
  public:
-  /// Write lock of the journal during the lifetime of the object; changes are undone unless commit() is
+  /// Write lock of the journal during the lifetime of the object. Changes are undone unless commit() is
   /// called. Throws InputError if another process keeps the lock for more than 30 s.
   class Transaction {
    public:
@@ -39,30 +39,31 @@ class EvidenceJournal {
   EvidenceJournal(const EvidenceJournal&) = delete;
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
-  /// Appends the rows of a drive with its driveId(), in a new transaction unless one is open; no effect if
-  /// the journal contains the drive. `continued`: id of the drive without these rows, if the journal contains
-  /// that drive. Throws InputError if the disk is full or if another process keeps the journal for more than
-  /// 30 s, std::invalid_argument for an invalid id (isDriveId()).
+  /// Appends the rows of a drive with its identifier `drive` (driveId()), in a new transaction unless one is
+  /// open. The call has no effect if the journal contains the drive. `continued` is the identifier of the
+  /// drive without these rows, if the journal contains that drive. Throws InputError if the disk is full or
+  /// if another process keeps the journal for more than 30 s, and std::invalid_argument for an invalid
+  /// identifier (isDriveId()).
   void append(const std::string& drive, const std::vector<JournalRow>& rows,
               const std::string& continued = {});
 
-  /// Replaces the rows of a drive, in a new transaction unless one is open; no effect if the journal lacks
-  /// the drive.
+  /// Replaces the rows of a drive, in a new transaction unless one is open. The call has no effect if the
+  /// journal lacks the drive.
   void replace(const std::string& drive, const std::vector<JournalRow>& rows);
 
-  /// Ids of the drives in the order of their addition. Throws InputError if a drive or its entry is missing,
-  /// or if an id is invalid.
+  /// Returns the identifiers of the drives in the order of their addition. Throws InputError if a drive or
+  /// its entry is missing, or if an identifier is invalid.
   std::vector<std::string> drives() const;
 
-  /// Verifies the rows and the id of a drive by the checksum, and returns the number of the drive. Throws
-  /// InputError if the drive is missing or changed.
+  /// Compares the rows and the identifier of a drive with the stored checksum, and returns the number of the
+  /// drive. Throws InputError if the drive is missing or changed.
   std::int64_t check(const std::string& drive) const;
 
-  /// The rows of a drive in order; numbers are bitwise equal to the written ones. Throws InputError as
-  /// check(), or for a physically impossible number (fault()).
+  /// Returns the rows of a drive, in order; numbers are bit-identical to the written ones. Throws InputError
+  /// in the cases of check(), and for a physically impossible number (fault()).
   std::vector<JournalRow> rows(const std::string& drive) const;
 
-  /// Returns the number of rows.
+  /// Returns the number of rows of all drives.
   std::int64_t size() const;
 
  private:

@@ -8,39 +8,40 @@
 #include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
 
-/// Access to the rows of the tables `evidence` and `drive` of a journal.
+/// Functions that read and write the rows of the tables `evidence` and `drive` of a journal.
 namespace talus::costmap {
 
-/// Returns the text of a column, zero bytes included.
+/// Returns the text of a column of a result row, zero bytes included.
 std::string journalText(sqlite3_stmt* row, int column);
 
-/// Appends rows to the drive with that number.
+/// Appends rows to the drive with the number `drive`.
 void insertRows(const JournalDatabase& database, std::int64_t drive, const std::vector<JournalRow>& rows);
 
-/// The rows of a drive in order.
+/// Returns the rows of a drive, in order.
 std::vector<JournalRow> selectRows(const JournalDatabase& database, std::int64_t drive);
 
 /// Lower bound of the ids of all rows, also in a modified journal.
 constexpr std::int64_t kBeforeAllRows = std::numeric_limits<std::int64_t>::min();
 
-/// Returns the chained checksum of the rows of a drive with an id above `after`; `before` is the checksum of
-/// the earlier rows, 0 without earlier rows.
+/// Returns the chained checksum of the rows of a drive whose id is above `after`. `before` is the checksum of
+/// the earlier rows; 0 if there are no earlier rows.
 std::uint64_t rowsChecksum(const JournalDatabase& database, std::int64_t drive, std::uint64_t before,
                            std::int64_t after);
 
-/// Entry of a drive in the table `drive`. The stored checksum combines that of the rows with the number and
-/// id (sealed()), so that an exchange of any of these is detected.
+/// Entry of a drive in the table `drive`. The stored checksum combines the checksum of the rows with the
+/// number and id of the drive (sealed()), so that an exchange of any of these is detected.
 struct DriveEntry {
   std::int64_t number = 0;
   std::string id;
   std::uint64_t checksum = 0;  ///< checksum of the rows
 };
 
-/// Converts the checksum of the rows to the stored checksum and back: XOR with a hash of number and id.
+/// Returns the stored checksum of an entry with the checksum of the rows, or vice versa: XOR with a hash of
+/// number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// True if the id has 16 hexadecimal digits, as from driveId(), or is "source NAME", as rows of Talus 0.1.0
-/// have.
+/// Returns true if the id has 16 hexadecimal digits, like driveId(), or the form "source NAME" of Talus
+/// 0.1.0.
 bool isDriveId(const std::string& id);
 
 }  // namespace talus::costmap

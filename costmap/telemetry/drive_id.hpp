@@ -10,23 +10,26 @@
 
 namespace talus::costmap {
 
-/// Identifier of a drive received in parts: a checksum of the used columns of each row, ordered by name, as
-/// 16 hexadecimal digits. The order of a file's columns and unused columns have no effect.
+/// Computes the identifier of a drive that is received in parts: a checksum of the used columns of each row,
+/// ordered by column name, as 16 hexadecimal digits. The order of a file's columns and unused columns have no
+/// effect.
 class DriveId {
  public:
+  /// Adds the next part of the drive.
   void add(const terramech::Telemetry& telemetry);
+  /// Returns the identifier of the parts so far.
   std::string text() const;
 
  private:
   Checksum sum_{};
 };
 
-/// Number of a drive in a map, WheelObservation::drive: a checksum of its first row, so that further rows of
-/// a file that grew, or of further parts, belong to the same drive. Two drives with the same number, of 65
-/// 536 possible numbers, count as one drive.
+/// Returns the number of a drive in a map (WheelObservation::drive): a checksum of the first row of the
+/// drive, so that further rows of a file that grew, or of further parts, belong to the same drive. Two drives
+/// with the same number, of 65 536 possible numbers, count as one drive.
 std::uint16_t driveTag(const terramech::Telemetry& telemetry);
 
-/// Number of rows in the beginning of a drive: `rows` accepted and `rejected` by the file's reader.
+/// Number of rows in the beginning of a drive: `rows` accepted by the file's reader, and `rejected` by it.
 struct DriveBeginning {
   std::size_t rows = 0, rejected = 0;
 };

@@ -8,28 +8,31 @@
 
 namespace talus::costmap {
 
-/// Linear regression of one number (effect) on another (cause), from sums.
+/// Linear regression of one number (effect) on another (cause), computed from sums.
 class Response {
  public:
-  /// Adds a pair; a pair with a number that is not finite is ignored.
+  /// Adds a pair of numbers; a pair with a number that is not finite is ignored.
   void add(double cause, double effect) noexcept;
 
   /// Conditions for follows().
   struct Claim {
-    double least = 0.0;      ///< least slope of the regression
+    double least = 0.0;      ///< least regression slope
     double variation = 0.0;  ///< least standard deviation of the cause
-    double certain = 4.0;    ///< number of standard errors of the slope
+    double certain = 4.0;    ///< number of standard errors by which the regression slope must exceed `least`
   };
-  /// True if the effect follows the cause: at least 12 pairs, a standard deviation of the cause of at least
-  /// `variation`, and a slope of the regression at least `certain` standard errors above `least`.
+  /// Returns true if the effect follows the cause: there are at least kEnough pairs, the standard deviation
+  /// of the cause is at least `variation`, and the regression slope exceeds `least` by at least `certain`
+  /// standard errors.
   bool follows(const Claim& claim) const noexcept;
-  /// Slope of the regression and its standard error; not finite for fewer than 12 pairs or a constant cause.
+  /// Returns the regression slope with its standard error; not finite for fewer than kEnough pairs or a
+  /// constant cause.
   terramech::Estimate slope() const noexcept;
-  /// Mean of effect minus cause; NaN without pairs.
+  /// Returns the mean of effect minus cause; NaN without pairs.
   double meanDifference() const noexcept;
   std::size_t size() const noexcept { return count_; }
   double causeVariance() const noexcept;
 
+  /// Least number of pairs of a regression.
   static constexpr std::size_t kEnough = 12;
 
  private:
@@ -37,13 +40,13 @@ class Response {
   double cause_ = 0.0, effect_ = 0.0, causes_ = 0.0, effects_ = 0.0, product_ = 0.0;
 };
 
-/// Regressions of a growing series of pairs: over all pairs, and over the last pairs.
+/// Regressions of a growing series of pairs: over all pairs, and over the most recent pairs.
 class ResponseSeries {
  public:
   void add(double cause, double effect);
   const Response& whole() const noexcept { return whole_; }
-  /// Regression of the last 24 pairs, and of earlier pairs until the standard deviation of the cause reaches
-  /// `variation`; at most 240 pairs.
+  /// Returns the regression of the last 24 pairs, extended by earlier pairs until the standard deviation of
+  /// the cause reaches `variation`, and by at most 240 pairs in total.
   Response recent(double variation) const;
 
  private:

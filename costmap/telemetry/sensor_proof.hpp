@@ -12,43 +12,47 @@
 
 namespace talus::costmap {
 
-/// Verifies the sensors of a drive against each other: only verified readings may raise an estimate. Each
-/// test checks a property that a stuck, biased, displaced or missing sensor does not have (all limits ours):
+/// Verifies the sensors of a drive against each other: only readings of verified sensors may raise an
+/// estimate. Each test checks a property that a stuck, biased, displaced or missing sensor does not have (all
+/// limits ours).
 ///
-/// slip        increases with the slope; at least 6 rows are on level ground, and the slip there has no step,
-///             because the slip on either side of a step may be wrong
-/// slope       as measured increases with the map's slope at the rover's position, differs from the map's by
-///             at most 0.03 on average, and its scale against the map's exceeds 1.15 by at most two standard
-///             errors
-/// torque and  taken together as pull, increase with the slope and differ from it by at most 0.08 on average
-/// sinkage
-/// pose        moves between rows no further than the speed of earlier rows explains; after a jump no sensor
-///             is verified until the position returns, because the position on either side may be wrong
+/// Slip: the slip increases with the slope. At least 6 rows are on level ground, and the slip there has no
+/// step, because the slip on either side of a step may be wrong.
+///
+/// Slope: the measured slope increases with the map's slope at the rover's position and differs from it by at
+/// most 0.03 on average. Its scale against the map's slope exceeds 1.15 by at most two standard errors.
+///
+/// Torque and sinkage: both, converted to a pull over load, increase with the slope and differ from it by at
+/// most 0.08 on average.
+///
+/// Position: the position moves between rows no further than the speed of earlier rows explains. After a jump
+/// no sensor is verified until the position returns, because the position on either side may be wrong.
 class SensorProof {
  public:
-  /// Measurements of one wheel, and data of its place. NaN: unknown.
+  /// Measurements of one wheel at one time, and data of its place. NaN: unknown.
   struct Row {
     std::string run, wheel;
     TelemetryReading reading;
-    double measured_gradient = 0.0;  ///< slope along the heading, measured by the rover [-]
-    double map_gradient = 0.0;       ///< slope along the heading, from the map [-]
-    double class_slip = 0.0;         ///< slip of the class on the measured gradient [-]
+    double measured_gradient = 0.0;  ///< gradient along the heading, measured by the rover [-]
+    double map_gradient = 0.0;       ///< gradient along the heading, from the map [-]
+    double class_slip = 0.0;         ///< slip of a wheel on the terrain class at the measured gradient [-]
     double torque_pull = 0.0;        ///< drawbar pull over load from torque and sinkage [-]
-    double share = 0.0;              ///< thrust of the class at the measured slip over that at the
-                                     ///< reference slip [-]
-    bool danger = false;             ///< true if the row indicates danger: the row is then used for the
-                                     ///< position only
+    /// Thrust of the class at the measured slip over its thrust at the reference slip [-].
+    double share = 0.0;
+    bool danger = false;  ///< True if the row indicates danger: it is then used for the position only.
   };
 
-  /// Least step of slip on level ground that is detected [-].
+  /// Least step of the slip on level ground that is detected [-].
   static constexpr double kLevelStep = 0.04;
   void take(const Row& row);
 
-  /// True if the rows so far verify the sensors from which the pull of a wheel is computed.
+  /// Returns true if the rows so far verify the sensors from which the pull of a wheel is computed.
   bool pullSound(const std::string& run, const std::string& wheel) const {
     return failedTest(run, wheel) == FailedTest::Nothing;
   }
-  /// The first test that fails.
+  /// Tests of the verification, in their order; Nothing means that no test fails. Pose: position; SlopeRows:
+  /// number of rows with a slope; Slopes: variation of the slopes; Slope, SlopeBias, SlopeScale: measured
+  /// slope; Slip: slip over slope; LevelRows, SlipStep: slip on level ground.
   enum class FailedTest : std::uint8_t {
     Nothing,
     Pose,
@@ -62,21 +66,21 @@ class SensorProof {
     SlipStep
   };
   FailedTest failedTest(const std::string& run, const std::string& wheel) const;
-  /// The first test that fails for any wheel.
+  /// Returns the first test that fails for any wheel.
   FailedTest failedTest() const;
-  /// Text of a failed test, with its remedy.
+  /// Returns a failed test as text, with its remedy.
   static const char* text(FailedTest failedTest) noexcept;
-  /// True if torque and sinkage are verified too.
+  /// Returns true if torque and sinkage are verified, too.
   bool torqueSound(const std::string& run, const std::string& wheel) const;
-  /// True if the last rows contradict the verification by earlier rows.
+  /// Returns true if the last rows contradict the verification by earlier rows.
   bool isSuspect(const std::string& run, const std::string& wheel) const;
-  /// True if the position is displaced by a jump in the rows so far.
+  /// Returns true if the position is displaced by a jump in the rows so far.
   bool displaced(const std::string& run) const;
-  /// True if enough rows of the wheel are at slips that mobilise most of the thrust of the class.
+  /// Returns true if enough rows of the wheel are at slips that mobilise most of the thrust of the class.
   bool mobilised(const std::string& run, const std::string& wheel) const;
-  /// Mean of the measured gradient minus the map's gradient in a run [-]; 0 without rows.
+  /// Returns the mean of the measured gradient minus the map's gradient in a run [-]; 0 without rows.
   double gradientExcess(const std::string& run) const;
-  /// Number of wheels with rows in a run.
+  /// Returns the number of wheels with rows in a run.
   std::size_t wheels(const std::string& run) const;
 
  private:

@@ -12,67 +12,72 @@
 
 namespace talus::costmap {
 
-/// Limits beyond which readings are rejected or reported.
+/// Limits of SensorWatch beyond which readings are rejected or reported.
 struct SensorLimits {
-  double slip_spike = 0.3;      ///< difference from the median of the last five readings
-  double torque_spike = 0.3;    ///< difference of torque T/(rW) from the same median
-  double sinkage_spike = 0.25;  ///< difference of sinkage z/r from the same median
-  std::size_t stuck_rows = 25;  ///< number of consecutive equal readings that counts as stuck
-  double lively = 0.8;          ///< share of rows with a changed value above which equal values count as
-                                ///< stuck
-  double slip_excess = 0.05;    ///< mean slip above that of the soil on these slopes from which an excess
-                                ///< above the scatter is reported
-  /// Least mean difference of the pull from torque and sinkage and the required pull that counts as a bias
-  /// [-].
+  double slip_spike = 0.3;  ///< difference of the slip from the median of the last five readings [-]
+  /// Difference of the torque T/(W r) from the median of the last five readings [-].
+  double torque_spike = 0.3;
+  /// Difference of the sinkage z/r from the median of the last five readings [-].
+  double sinkage_spike = 0.25;
+  std::size_t stuck_rows = 25;  ///< number of consecutive equal readings from which a sensor counts as stuck
+  /// Share of rows with a changed value above which later equal values of a sensor count as stuck [-].
+  double lively = 0.8;
+  /// Least magnitude of the mean difference from the slip of the soil on these slopes that is reported, if it
+  /// also exceeds the scatter [-].
+  double slip_excess = 0.05;
+  /// Least magnitude of the mean difference of the pull from torque and sinkage and the required pull, over
+  /// load, that counts as a bias [-].
   double bias = 0.04;
-  std::size_t bias_rows = 30;    ///< least number of rows for a bias or a slip excess
-  double climb = 0.03;           ///< gradient from which a driven wheel cannot slip backwards [-]
-  double backward_slip = -0.03;  ///< slip below which a wheel slips backwards
-  double gap = 10.0;             ///< time without a row, in mean intervals, that counts as a gap
+  std::size_t bias_rows = 30;    ///< least number of rows for the detection of a bias or a slip excess
+  double climb = 0.03;           ///< gradient above which a driven wheel cannot slip backwards [-]
+  double backward_slip = -0.03;  ///< slip below which a wheel slips backwards [-]
+  double gap = 10.0;             ///< time without a row that counts as a gap, in mean intervals between rows
 };
 
-/// Checks the readings of a drive, wheel by wheel, in their order. Rejects, with a reason, stuck values (of a
-/// wheel, or of one sensor that changed before), spikes, and negative slip of a driven wheel on a climb. A
-/// decrease of time is counted and begins a new series. An offset of torque or sinkage appears as pull that
-/// the slope does not require, on all ground; both channels are then excluded, so that only slip and slope
-/// remain. One rover cannot distinguish a bias of slip from ground that is weaker or firmer than estimated: a
-/// mean excess on all ground is reported with both explanations. Gaps in time and single missing values are
-/// counted.
+/// Checks the readings of a drive, wheel by wheel, in their order. Rejects, with a reason: stuck values (of
+/// all sensors of a wheel, or of one sensor that changed before), spikes, and negative slip of a driven wheel
+/// on a climb. A decrease of time is counted and begins a new series. An offset of torque or sinkage appears
+/// as pull that the slope does not require, on all ground; both channels are then excluded, so that only slip
+/// and slope remain. One rover cannot distinguish a bias of slip from ground that is weaker or firmer than
+/// estimated: a mean slip excess on all ground is reported with both explanations. Gaps in time and single
+/// missing values are counted.
 class SensorWatch {
  public:
   SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
 
-  /// Name of a wheel and its reading.
+  /// Reading of a wheel, with the name of the wheel.
   struct Named {
     std::string wheel;
     TelemetryReading reading;
   };
 
-  /// Returns the reason why each reading of one moment is rejected; nullopt for an accepted reading. A
-  /// simultaneous jump of all wheels (two or more) is slip of the rover and no spike.
+  /// Returns for each reading of one moment the reason why it is rejected; nullopt for an accepted reading.
+  /// If all wheels (two or more) jump at once, this is slip of the rover and not a spike.
   std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
-  /// Returns the reason why the reading of one wheel is rejected.
+  /// Returns the reason why the reading of one wheel is rejected; nullopt if it is accepted.
   std::optional<std::string> refuse(const std::string& wheel, const TelemetryReading& reading) {
     return refuse({{wheel, reading}}).front();
   }
 
-  /// Counts the pull from torque and sinkage minus the required pull.
+  /// Adds to the statistics of bias() the pull from torque and sinkage minus the required pull of an
+  /// observation.
   void compare(const WheelObservation& observation);
-  /// Counts the slip of a wheel minus the slip of its soil on the slope.
+  /// Adds to the statistics of slipExcess() the slip of a wheel minus the slip of its soil on the slope [-].
   void compareSlip(double excess);
-  /// Returns the mean difference of compare() [-]; nullopt before SensorLimits::bias_rows rows.
+  /// Returns the mean of the pull from torque and sinkage minus the required pull, over load [-]; nullopt
+  /// before SensorLimits::bias_rows rows.
   std::optional<double> bias() const;
-  /// True if |bias()| exceeds SensorLimits::bias.
+  /// Returns true if |bias()| exceeds SensorLimits::bias.
   bool biased() const { return bias() && std::abs(*bias()) > limits_.bias; }
 
-  /// Returns the mean slip above that of the soil on all ground [-]; nullopt if below
-  /// SensorLimits::slip_excess or below its scatter.
+  /// Returns the mean slip excess: measured slip minus slip of the soil, on all ground [-]. Returns nullopt
+  /// if its magnitude is below SensorLimits::slip_excess or below its scatter.
   std::optional<double> slipExcess() const;
 
-  /// True if time decreased in the rows of any wheel.
+  /// Returns true if time decreased in the rows of any wheel.
   bool clockWentBack() const noexcept { return clock_went_back_ > 0; }
 
-  /// Results of the checks, one line each.
+  /// Returns the results of the checks, one line each.
   std::vector<std::string> findings() const;
 
  private:

@@ -13,24 +13,24 @@
 
 namespace talus::costmap {
 
-/// Joint posterior of the slip sensor and the ground of each class, from the slips of one drive.
+/// Joint posterior of the slip sensor and of the ground of each terrain class, from the slips of one drive.
 struct SlipPosterior {
-  double slip_bias = 0.0;   ///< b: offset, the reading at zero slip [-]
+  double slip_bias = 0.0;   ///< b: offset of the sensor, i.e. its reading at zero slip [-]
   double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
-  /// By class: mean departure of drawbar pull over load at the reference slip from the class, and its
-  /// standard deviation by the likelihood alone; infinite if the drive gives no information [-].
+  /// By class index: mean departure d of drawbar pull over load DP/W at the reference slip from the class,
+  /// with its standard deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
-  /// By class: the same departure with its posterior standard deviation; and for a sound sensor: b normal,
-  /// 0.03, -ln s half normal, 0.05 [-].
+  /// By class index: `learned` is the same departure with its posterior standard deviation. `if_sound` is the
+  /// departure for a sound sensor, with the priors b normal, 0.03, and -ln s half normal, 0.05 [-].
   std::vector<Estimate> learned, if_sound;
-  /// By class: amount subtracted from the departure for decisions, >= 0: for ground stronger than its class
-  /// one posterior standard deviation, at most the departure [-].
+  /// By class index: amount >= 0 that is subtracted from the departure for decisions. For ground stronger
+  /// than its class, it is one posterior standard deviation, at most the departure [-].
   std::vector<double> caution;
 };
 
-/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. For
-/// wheels on ground of a class that pull P(i) at slip i, with thrust H(i), ground that departs by d at the
-/// reference slip pulls
+/// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. Let
+/// wheels on ground of a class have the pull P(i) at slip i, with the thrust H(i), both over load. Ground
+/// that departs by d at the reference slip has the pull
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)
@@ -39,30 +39,30 @@ struct SlipPosterior {
 /// adds a constant, s is proportional to slip, and d has the greatest effect where the slope requires most of
 /// the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half normal, 0.45; t uniform
 /// over five values. The scale is limited to 1, because a scale above 1 and weaker soil with a greater shear
-/// modulus have the same effect on slip; the ground of such a drive counts as weak. The departure is its
-/// posterior mean. Bias and scale are the means at these departures, so that slips corrected by both are
-/// consistent with the ground. The standard deviation c of the departure is computed from the likelihood
-/// alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class contains its prior
-/// already. A square of side 2/3 of the correlation length counts as one reading, independent of the number
-/// of passes (all numbers ours).
+/// modulus have the same effect on slip; the ground of such a drive counts as weak. The estimated departure
+/// is its posterior mean. Bias and scale are the means at these departures, so that slips corrected by both
+/// are consistent with the ground. The standard deviation c of the departure is computed from the likelihood
+/// alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class already contains the
+/// prior. A square with sides of 2/3 of the correlation length counts as one reading, independent of the
+/// number of passes (all numbers ours).
 class SlipFit {
  public:
   explicit SlipFit(const GroundModel& model) : model_(model) {}
 
-  /// All wheels of a rover at one moment, on ground of one class.
+  /// Mean slip of all wheels of a rover at one time, on ground of one class.
   struct Moment {
     std::string run;
     int class_index = 0;
-    int rutted = 0, wheels = 0;  ///< wheels in a rut, and all wheels
+    int rutted = 0, wheels = 0;  ///< number of wheels in a rut, and number of all wheels
     maps::Point place;
-    double gradient = 0.0;  ///< along the heading, rise over run
-    double slip = 0.0;      ///< mean of the wheels
+    double gradient = 0.0;  ///< gradient along the heading, rise over run [-]
+    double slip = 0.0;      ///< mean slip of the wheels [-]
   };
   /// Adds a moment; a moment with a number that is not finite is ignored.
   void take(const Moment& moment);
 
-  /// Estimate from all moments so far. `excess`: mean excess of the measured slopes of a run over the map's
-  /// [-].
+  /// Returns the estimate from all moments so far. The function `excess` returns the mean excess of the
+  /// measured gradients of a run over the map's [-].
   std::shared_ptr<const SlipPosterior> fitted(
       const std::function<double(const std::string& run)>& excess) const;
 

@@ -5,21 +5,24 @@
 
 namespace talus::costmap {
 
-/// Detects a step between two constants in a number with scatter: the greatest difference of two means over
-/// all positions of the step, relative to the scatter on both sides (ours).
+/// Detects a step between two constants in a noisy number, e.g. in the slip on level ground. The step is the
+/// greatest difference of two means over all positions of the step, relative to the scatter on both sides
+/// (ours).
 class StepWatch {
  public:
-  /// `least`: smallest step that is reported, > 0, in the unit of the values.
+  /// Makes the detector; `least` > 0 is the smallest step that is reported, in the unit of the values.
   explicit StepWatch(double least) : least_(least) {}
 
   /// Adds a value; a value that is not finite is ignored.
   void add(double value);
-  /// Mean after the step minus mean before. 0 (no step) for fewer than three places of kRows values on either
-  /// side, for a difference below `least`, and for a difference below kCertain standard errors.
+  /// Returns the mean after the step minus the mean before it. Returns 0 (no step) for fewer than three
+  /// groups of kRows values on either side, for a difference below `least`, and for a difference below
+  /// kCertain standard errors.
   double step() const noexcept { return step_; }
 
-  static constexpr std::size_t kRows = 10;  ///< consecutive values with a common error, averaged to one place
-  static constexpr double kCertain = 6.0;   ///< standard errors
+  /// Number of consecutive values, which may share an error, that are averaged to one group.
+  static constexpr std::size_t kRows = 10;
+  static constexpr double kCertain = 6.0;  ///< least difference [standard errors]
 
  private:
   void look();
