@@ -7,11 +7,12 @@
 
 namespace talus::cli {
 
-/// A coarser version of a grid: each cell is a block of factor x factor fine cells. Blocks at the east and
-/// north edges may have fewer cells.
+/// A coarser version of a grid: each coarse cell is a block of factor x factor fine cells. Blocks at the
+/// eastern and northern edges may have fewer cells.
 class Blocks {
  public:
-  /// Uses the smallest factor for which neither side exceeds max_side cells.
+  /// Divides the grid `fine` by the smallest factor for which no side of the coarse grid exceeds max_side
+  /// cells.
   Blocks(const maps::Grid& fine, int max_side)
       : fine_(fine), factor_(std::max(1, (std::max(fine.width, fine.height) + max_side - 1) / max_side)) {
     const auto count = [this](int cells) { return (cells + factor_ - 1) / factor_; };
@@ -20,10 +21,10 @@ class Blocks {
 
   const maps::Grid& coarse() const noexcept { return coarse_; }
 
-  /// Fine cells per side of a block.
+  /// Returns the number of fine cells per side of a block.
   int factor() const noexcept { return factor_; }
 
-  /// The fine cell at the centre of a block.
+  /// Returns the fine cell at the centre of a block.
   maps::Cell middle(maps::Cell block) const noexcept {
     return {std::min(fine_.width - 1, block.column * factor_ + factor_ / 2),
             std::min(fine_.height - 1, block.row * factor_ + factor_ / 2)};
@@ -40,7 +41,8 @@ class Blocks {
         visit(maps::Cell{column, row});
   }
 
-  /// Returns the mean of value(cell) over each block without NaNs; NaN if all values are NaN.
+  /// Returns a raster with the mean of value(cell) over each block, without NaN values; NaN for a block whose
+  /// values are all NaN.
   template <typename Value>
   maps::Raster<float> mean(Value value) const {
     maps::Raster<float> out(coarse_, std::nanf(""));

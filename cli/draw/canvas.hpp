@@ -31,14 +31,14 @@ struct Stroke {
   bool dashed = false;
 };
 
-/// Text style, and the point of the text that is placed at the given spot.
+/// Style of a text, and its alignment relative to the given position.
 struct TextStyle {
   double size = 12.0;
   Colour colour = rgb(0x222222);
   bool bold = false;
-  double anchor = 0.0;   ///< 0 left, 0.5 middle, 1 right
-  bool upright = false;  ///< turned 90 deg counter-clockwise
-  bool halo = false;     ///< white outline for legibility on a map
+  double anchor = 0.0;   ///< part of the text at the given position: 0 left end, 0.5 middle, 1 right end
+  bool upright = false;  ///< true if the text is turned 90 deg counter-clockwise
+  bool halo = false;     ///< true if the text has a white outline for legibility on a map
 };
 
 /// Drawing surface that produces a PNG or SVG file. Not thread-safe.
@@ -60,12 +60,12 @@ class Canvas {
   void line(std::span<const Spot> spots, const Stroke& stroke);
   void polygon(std::span<const Spot> spots, Colour colour);
   void disc(Spot centre, double radius, Colour colour);
-  /// Draws many discs of one colour as one shape: overlaps are no darker.
+  /// Draws many discs of one colour as one shape, so that overlaps are no darker.
   void discs(std::span<const Spot> centres, double radius, Colour colour);
   void text(const std::string& text, Spot spot, const TextStyle& style = {});
   double textWidth(const std::string& text, const TextStyle& style = {});
 
-  /// Scales the image into the box without smoothing: enlarged pixels stay squares.
+  /// Draws an image scaled into a box without smoothing: enlarged pixels stay squares.
   void image(const Image& image, const Box& box);
 
   /// Limits drawing to the box until unclip().
@@ -80,7 +80,7 @@ class Canvas {
   std::unique_ptr<Surface> surface_;
 };
 
-/// The image as a PNG file.
+/// Returns the bytes of an image as a PNG file.
 std::string png(const Image& image);
 
 /// Draws the outline of the box.

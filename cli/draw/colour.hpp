@@ -8,7 +8,7 @@
 
 namespace talus::cli {
 
-/// A colour; components 0 to 1, alpha not premultiplied.
+/// A colour with components 0 to 1; alpha (opacity) is not premultiplied.
 struct Colour {
   double red = 0.0;
   double green = 0.0;
@@ -16,47 +16,48 @@ struct Colour {
   double alpha = 1.0;
 };
 
-/// 0xRRGGBB as a colour.
+/// Returns the colour 0xRRGGBB.
 constexpr Colour rgb(unsigned hex) {
   return {.red = (hex >> 16 & 255) / 255.0, .green = (hex >> 8 & 255) / 255.0, .blue = (hex & 255) / 255.0};
 }
 
-/// The colour with another alpha.
+/// Returns the colour with another alpha.
 constexpr Colour faded(Colour c, double alpha) {
   c.alpha = alpha;
   return c;
 }
 
-/// Colour of a category: white with a trace of green, amber, dark red and black. Lightness decreases with
-/// danger in equal steps (99, 66, 33, 0 of CIE L*), so that the colours stay distinguishable for colour-blind
-/// readers, in grey print and under the shading of lit().
+/// Returns the colour of a category: white with a trace of green, amber, dark red and black. Lightness
+/// decreases with danger in equal steps (99, 66, 33, 0 of CIE L*), so that the colours stay distinguishable
+/// for colour-blind readers, in grey print and under the shading of lit().
 Colour colourOf(terramech::Category category);
 
-/// Relief share of lit(), for categories and for other layers. Category colours must differ by 30 of CIE
-/// L*a*b* under any shading.
+/// Values of the argument `relief` of lit(), for categories and for other layers. Category colours must
+/// differ by 30 of CIE L*a*b* under any shading.
 inline constexpr double kCategoryRelief = 0.08;
 inline constexpr double kValueRelief = 0.3;
 
-/// A colour under light, 0 to 1: each component times 1 - relief + relief * light. The HTML page uses the
-/// same formula.
+/// Returns a colour under a light of 0 to 1: each component times 1 - relief + relief * light. The HTML page
+/// uses the same formula.
 constexpr Colour lit(Colour c, double light, double relief) {
   const double f = 1.0 - relief + relief * light;
   return {.red = f * c.red, .green = f * c.green, .blue = f * c.blue, .alpha = c.alpha};
 }
 
-/// Colour i modulo 8 of eight colours that are distinguishable for colour-blind readers (Okabe and Ito).
+/// Returns colour i modulo 8 of eight colours that are distinguishable for colour-blind readers (Okabe and
+/// Ito).
 Colour seriesColour(std::size_t i);
 
-/// Support colours of a colour scale, equally spaced from low to high.
+/// A colour scale: support colours, equally spaced from low to high values.
 using Scale = std::span<const Colour>;
 
-/// Dark blue over green to yellow with uniform lightness steps (viridis), for magnitudes.
+/// Returns the scale for magnitudes: dark blue over green to yellow with uniform lightness steps (viridis).
 Scale viridis();
 
-/// Blue over white to red, for signed values; white is zero.
+/// Returns the scale for signed values: blue over white to red; white is zero.
 Scale blueRed();
 
-/// Colour of a scale at t, clamped to [0, 1], in 32 steps.
+/// Returns the colour of a scale at t, clamped to [0, 1], in 32 steps.
 Colour at(Scale scale, double t);
 
 }  // namespace talus::cli

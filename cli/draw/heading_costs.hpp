@@ -6,9 +6,9 @@
 
 namespace talus::cli {
 
-/// Data from which cli/page/rose.js computes the cost per heading: the cost curves used by the cells, at
-/// nodes within the limits of pitch and roll, an image of the cells' gradients, and an image of their curves
-/// and categories. Null if the scene has no costs.
+/// Returns the data from which cli/page/rose.js computes the cost by heading: the cost curves used by the
+/// cells, at nodes within the limits of pitch and roll, an image of the gradients of the cells, and an image
+/// of their curve indices and categories. Returns null if the scene has no costs.
 nlohmann::ordered_json headingCostsOf(const Scene& scene);
 
 }  // namespace talus::cli

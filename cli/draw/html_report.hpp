@@ -7,23 +7,24 @@
 
 namespace talus::cli {
 
-/// Returns the text with the characters that HTML reads as markup escaped.
+/// Returns the text with characters escaped that HTML reads as markup.
 std::string escaped(const std::string& text);
 
-/// A self-contained HTML page of headings, paragraphs, tables and charts, in the order they are added.
+/// A self-contained HTML page of headings, paragraphs, tables and charts, in the order in which they are
+/// added.
 class HtmlReport {
  public:
   explicit HtmlReport(std::string title) : title_(std::move(title)) {}
 
   void heading(const std::string& text);
   void paragraph(const std::string& text);
-  /// Adds a table. Numeric cells are right-aligned; on a phone each row of a wide table is a list of its
-  /// columns.
+  /// Adds a table. Numeric cells are right-aligned. On a narrow screen, each row of a wide table is shown as
+  /// a list of its columns.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  /// Adds charts, side by side as far as the screen is wide enough.
+  /// Adds charts, which are shown side by side if the screen is wide enough.
   void charts(const std::vector<Plot>& plots);
 
-  /// The finished page.
+  /// Returns the finished page.
   std::string html() const;
 
  private:

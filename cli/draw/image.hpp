@@ -9,11 +9,11 @@
 
 namespace talus::cli {
 
-/// An image; top row first.
+/// An image of pixels, top row first.
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint32_t> argb;  ///< premultiplied, cairo's ARGB32
+  std::vector<std::uint32_t> argb;  ///< pixels with premultiplied alpha, in cairo's format ARGB32
 
   Image() = default;
   Image(int w, int h)
@@ -24,10 +24,10 @@ struct Image {
   }
 };
 
-/// Converts a colour to a pixel.
+/// Returns a colour as a pixel.
 std::uint32_t pixel(Colour colour);
 
-/// Base64 of bytes, for data URIs.
+/// Returns bytes in Base64 encoding, for data URIs.
 std::string base64(const std::string& bytes);
 
 }  // namespace talus::cli

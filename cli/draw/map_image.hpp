@@ -5,23 +5,24 @@
 
 namespace talus::cli {
 
-/// Hillshade with the sun in the north-west at 45 deg elevation: brightness 0 to 1 [-]; NaN without data.
-/// Flat terrain is vertically exaggerated.
+/// Returns the hillshade of an elevation map: brightness 0 to 1 [-] with the sun in the north-west at 45 deg
+/// elevation; NaN without data. Flat terrain is vertically exaggerated.
 maps::Raster<float> hillshade(const maps::Raster<float>& elevation_m);
 
-/// Brightness values that lit() maps to light 0 and 1: the 2 % and 98 % quantiles.
+/// Returns the brightness values that lit() maps to light 0 and 1: the 2 % and 98 % quantiles.
 Range lightRange(const maps::Raster<float>& shade);
 
-/// Brightness as grey; cells without data are transparent.
+/// Returns brightness as a grey image; cells without data are transparent.
 Image shadeImage(const maps::Raster<float>& shade);
 
-/// Category colours, mixed by the shares of a cell; cells without data are transparent.
+/// Returns the category colours as an image, mixed by the shares of the categories in a cell; cells without
+/// data are transparent.
 Image categoryImage(const maps::Raster<CategoryShares>& categories);
 
-/// Returns the values in the colours of the layer; NaN is transparent.
+/// Returns the values of a layer as an image in the colours of the layer; NaN is transparent.
 Image valueImage(const ValueLayer& layer);
 
-/// Colour scale of a layer.
+/// Returns the colour scale of a layer.
 Scale scaleOf(const ValueLayer& layer);
 
 }  // namespace talus::cli

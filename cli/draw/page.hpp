@@ -7,12 +7,12 @@
 
 namespace talus::cli {
 
-/// The scene as one self-contained HTML page: a map with zoom and layers and, for a route, its summary and
-/// profiles of elevation, slope, slip and energy. Hovering over a profile marks the place on the map, and
-/// vice versa.
+/// Returns the scene as one self-contained HTML page: a map with zoom and layers and, for a route, its
+/// summary and profiles of elevation, slope, slip and energy. Hovering over a profile marks the position on
+/// the map, and vice versa.
 std::string page(const Scene& scene);
 
-/// Writes the page; the file appears complete or not at all. @throws InputError when the file cannot be
+/// Writes the page to a file, which appears complete or not at all. @throws InputError if the file cannot be
 /// written
 void savePage(const std::filesystem::path& path, const Scene& scene);
 

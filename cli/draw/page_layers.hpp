@@ -12,32 +12,33 @@
 
 namespace talus::cli {
 
-/// A number for a page: nine significant digits; null for NaN and infinity.
+/// Returns a number for the data of an HTML page: nine significant digits; null for NaN and infinity.
 nlohmann::ordered_json number(double value);
 
-/// The image as a PNG data URI.
+/// Returns an image as a data URI of a PNG file.
 std::string dataUri(const Image& image);
 
-/// 24 bits per cell, stored in red, green and blue of an image; the top row is north.
+/// Returns a data URI of an image with 24 bits per cell, in red, green and blue; word(cell) returns the bits.
+/// The top row is the northernmost row of the grid.
 std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(maps::Cell)>& word);
 
-/// The colour as "#rrggbb".
+/// Returns a colour as text "#rrggbb".
 std::string hex(Colour colour);
 
-/// The 32 colours of a scale in hexadecimal, from low to high.
+/// Returns 32 colours of a scale in hexadecimal form, from low to high.
 nlohmann::ordered_json coloursOf(Scale scale);
 
-/// Colour and label of each category.
+/// Returns the colour and label of each category.
 nlohmann::ordered_json categoryLegend();
 
-/// Layers of a scene for the page, categories first. Each has a name, a coloured image, a legend or a colour
-/// bar with range and unit, and the values that cli/page/probe.js shows: integers in units of the layer's
-/// last decimal, or the shares of the four categories.
+/// Returns the layers of a scene for an HTML page, categories first. Each layer has a name, a coloured image,
+/// a legend or a colour bar with range and unit, and the values that cli/page/probe.js shows: integers in
+/// units of the layer's last decimal, or the shares of the four categories.
 nlohmann::ordered_json layersOf(const Scene& scene);
 
-/// Latitudes and longitudes [deg] on a square lattice over the scene, row by row from the south-west. The
-/// lattice is refined until interpolation errs by less than a twentieth of a cell, or to 128 intervals; null
-/// without a georeference.
+/// Returns latitudes and longitudes [deg] on a square lattice over the scene, row by row from the south-west.
+/// The lattice is refined until the interpolation error is less than a twentieth of a cell, or to 128
+/// intervals. Returns null without a georeference.
 nlohmann::ordered_json latticeOf(const Scene& scene);
 
 }  // namespace talus::cli

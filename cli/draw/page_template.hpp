@@ -4,8 +4,8 @@
 
 namespace talus::cli {
 
-/// The page without its data, assembled at build time from cli/page/, Leaflet and Vega. Place-holders in
-/// order: @TALUS_TITLE@, @TALUS_SUBTITLE@, @TALUS_DATA@.
+/// Returns the HTML page without its data, assembled at build time from cli/page/, Leaflet and Vega. It has
+/// the place-holders @TALUS_TITLE@, @TALUS_SUBTITLE@ and @TALUS_DATA@ in this order.
 std::string_view pageTemplate();
 
 }  // namespace talus::cli

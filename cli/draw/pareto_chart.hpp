@@ -9,11 +9,11 @@
 
 namespace talus::cli {
 
-/// Draws the Pareto front: energy over risk and energy over time, one point per route. Writes PNG, SVG or,
-/// for .html, a page with the numbers. @throws InputError when the file cannot be written
+/// Draws the Pareto front of routes: energy over risk and energy over time, with one point per route. Writes
+/// PNG, SVG or, for .html, a page with the numbers. @throws InputError if the file cannot be written
 void saveParetoChart(const std::string& path, const std::vector<planner::ParetoRoute>& front);
 
-/// The energy_J, time_s and risk of the routes, and the weights with which the routes were planned.
+/// Returns energy_J, time_s and risk of the routes, and the weights with which the routes were planned.
 nlohmann::ordered_json paretoJson(const std::vector<planner::ParetoRoute>& front);
 
 }  // namespace talus::cli

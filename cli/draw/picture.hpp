@@ -7,12 +7,12 @@
 
 namespace talus::cli {
 
-/// The scene as one PNG: hillshade under categories (or under the first value layer if there are no
-/// categories), route, start, goal, scale bar, north arrow, legend, title.
+/// Returns the scene as a PNG file: a hillshade under the categories (or under the first value layer if there
+/// are no categories), with route, start, goal, scale bar, north arrow, legend and title.
 std::string drawPicture(const Scene& scene);
 
-/// Writes the picture; the file appears complete or not at all. @throws InputError when the file cannot be
-/// written
+/// Writes the picture to a file, which appears complete or not at all. @throws InputError if the file cannot
+/// be written
 void savePicture(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace talus::cli

@@ -11,23 +11,24 @@
 /// Charts of lines and points.
 namespace talus::cli {
 
-/// Data and style of one curve or one cloud of points.
+/// Data and style of one curve or of one cloud of points.
 struct Series {
   enum class Mark { Line, Points };
 
-  std::string name = {};           ///< name in the legend; empty: no legend entry
-  std::vector<double> x;           ///< in the unit of the axis
-  std::vector<double> y;           ///< same length as x; a NaN interrupts the line
-  std::vector<double> y_std = {};  ///< empty, or standard deviations: band (Line) or bars
+  std::string name = {};  ///< name in the legend; empty: no legend entry
+  std::vector<double> x;  ///< x values, in the unit of the axis
+  std::vector<double> y;  ///< y values, as many as x values; a NaN interrupts the line
+  /// Standard deviations of y, drawn as a band (Line) or as bars (Points); empty: none.
+  std::vector<double> y_std = {};
   Mark mark = Mark::Line;
   bool dashed = false;
-  std::optional<Colour> colour = {};  ///< empty: next distinguishable colour
+  std::optional<Colour> colour = {};  ///< colour; empty: the next distinguishable colour
 };
 
-/// One axis.
+/// One axis of a chart.
 struct Axis {
-  std::string label;               ///< includes the unit: "slip [-]"
-  std::optional<double> low = {};  ///< empty: range of the data
+  std::string label;               ///< label with the unit: "slip [-]"
+  std::optional<double> low = {};  ///< end of the axis at low values; empty: range of the data
   std::optional<double> high = {};
 };
 
@@ -46,12 +47,12 @@ struct PlotLayout {
   int panel_height = 380;  ///< pixels
 };
 
-/// Draws the charts row by row and returns the bytes of a PNG or SVG file.
-/// @throws std::invalid_argument when x, y or y_std of a series differ in length
+/// Returns the charts, drawn row by row, as the bytes of a PNG or SVG file. @throws std::invalid_argument if
+/// x, y or y_std of a series differ in length
 std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLayout& layout = {});
 
-/// Writes the charts as PNG or, for the extension .svg, as SVG; the file appears complete or not at all.
-/// @throws InputError when the file cannot be written
+/// Writes the charts to a file, as SVG for the extension .svg and as PNG otherwise. The file appears complete
+/// or not at all. @throws InputError if the file cannot be written
 void save(const std::filesystem::path& path, const std::vector<Plot>& plots, const PlotLayout& layout = {});
 
 }  // namespace talus::cli

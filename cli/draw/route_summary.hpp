@@ -9,23 +9,23 @@
 
 namespace talus::cli {
 
-/// Horizontal distance from the start to each vertex along the route [m].
+/// Returns for each vertex of a route the horizontal distance from the start along the route [m].
 std::vector<double> distances_m(const planner::Route& route);
 
-/// Summary of a route: up to ten quantities with value and unit; unknown quantities are omitted. For a route
-/// that was not found: status and reason.
+/// Returns the summary of a route: up to ten quantities with value and unit; unknown quantities are omitted.
+/// For a route that was not found, the summary contains status and reason.
 std::vector<std::pair<std::string, std::string>> summaryOf(const planner::Route& route);
 
-/// One aligned line of text with a quantity and its value.
+/// Returns one aligned line of text with a quantity and its value.
 std::string summaryLine(std::string_view what, std::string_view value);
 
-/// The summary as lines of text.
+/// Returns the summary of a route as lines of text.
 std::string summaryText(const planner::Route& route);
 
-/// Returns the energy in J, kJ or MJ with four digits.
+/// Returns an energy as text in J, kJ or MJ with four digits.
 std::string energyText(double joules);
 
-/// Duration as "2 h 05 min", "45 s" or "3 d 04 h".
+/// Returns a duration as text: "2 h 05 min", "45 s" or "3 d 04 h".
 std::string durationText(double seconds);
 
 }  // namespace talus::cli

@@ -21,40 +21,41 @@ class TraversabilityMap;
 
 namespace talus::cli {
 
-/// Number of cells of a block in each terramech::Category, indexed by the category's number.
+/// Number of map cells of each category in one block (cell of a scene), indexed by the number of
+/// terramech::Category.
 struct CategoryShares {
   std::array<std::uint8_t, 4> count{};
 };
 
-/// A class of a layer that shows classes instead of a scale.
+/// A class of a layer that shows classes instead of a continuous scale.
 struct LayerClass {
   std::string name;
   Colour colour;
 };
 
-/// Range from the 2 % to the 98 % quantile of the finite values, so that outliers do not compress the colour
-/// scale; nothing without finite values.
+/// Returns the range from the 2 % to the 98 % quantile of the finite values, so that outliers do not compress
+/// the colour scale; nullopt without finite values.
 std::optional<Range> innerRange(const maps::Raster<float>& values);
 
-/// A quantity over the map that is drawn in colours.
+/// A layer of a scene: a quantity over the map that is drawn in colours.
 struct ValueLayer {
-  std::string name;                   ///< "slope"
-  std::string unit;                   ///< "deg"; empty for a ratio
+  std::string name;                   ///< name of the quantity, e.g. "slope"
+  std::string unit;                   ///< unit, e.g. "deg"; empty for a ratio
   maps::Raster<float> values;         ///< NaN: no value
   Range range;                        ///< values at the two ends of the scale
-  bool zero_in_middle = false;        ///< diverging colours around the middle
-  int decimals = 4;                   ///< decimals of the values in a page
-  std::vector<LayerClass> classes{};  ///< `values` are indices into the classes; empty: a continuous scale
+  bool zero_in_middle = false;        ///< true if the scale has diverging colours around its middle
+  int decimals = 4;                   ///< number of decimals of the values in a page
+  std::vector<LayerClass> classes{};  ///< classes to which `values` are indices; empty: continuous scale
 };
 
-/// Driving cost by heading, of the cell at the centre of each block.
+/// Data of the driving cost by heading, for the cell at the centre of each block (cell of a scene).
 struct HeadingCosts {
   maps::Raster<costmap::CellCode> codes;
-  maps::Raster<std::uint8_t> categories;  ///< terramech::Category by its number, as `talus explain` states it
+  maps::Raster<std::uint8_t> categories;  ///< number of terramech::Category, as `talus explain` states it
   std::shared_ptr<const costmap::TravelCost> cost;
 };
 
-/// A small area, marked with a ring around it.
+/// A small area of the map that is marked with a ring around it.
 struct Ring {
   maps::Point centre;
   double radius_m = 0.0;  ///< radius of the marked area
@@ -77,43 +78,46 @@ struct ComparedFact {
   std::vector<std::string> values;
 };
 
-/// Contents of a picture or a page at display resolution. All rasters share one grid of at most
+/// Scene: contents of a picture or page at display resolution. All rasters share one grid of at most
 /// SceneOptions::max_side cells per side.
 struct Scene {
   std::string title;
   std::string subtitle;
   maps::Raster<float> elevation_m;          ///< NaN: no data
-  maps::Raster<CategoryShares> categories;  ///< empty: not known
+  maps::Raster<CategoryShares> categories;  ///< shares of the categories; empty: not known
   std::vector<ValueLayer> layers;
   std::vector<Fact> facts;
   std::vector<Fact> provenance{};  ///< data needed to reproduce the result
   std::optional<planner::Route> route;
-  std::vector<NamedRoute> routes{};        ///< in a comparison: the first route, then the others
+  std::vector<NamedRoute> routes{};        ///< routes of a comparison: the first route, then the others
   std::vector<ComparedFact> comparison{};  ///< quantities of `routes`
-  std::vector<std::pair<maps::Point, std::string>> partings{};  ///< begin and end of deviations
-  std::vector<std::pair<const char*, maps::Point>> marks{};  ///< labelled places of a scene without a route
+  /// Positions at which routes begin or end to deviate, with labels.
+  std::vector<std::pair<maps::Point, std::string>> partings{};
+  /// Labelled positions of a scene without a route.
+  std::vector<std::pair<const char*, maps::Point>> marks{};
   std::vector<Ring> rings{};
   std::optional<maps::Georeference> georeference{};  ///< georeference of the map, if known
-  int cells_per_pixel = 1;                           ///< cells of the map per cell of the scene and side
-  std::optional<HeadingCosts> costs{};               ///< traversability maps only
-  std::optional<TraverseRecord> story;               ///< a simulated drive for replay
+  int cells_per_pixel = 1;                           ///< number of map cells per scene cell and side
+  std::optional<HeadingCosts> costs{};  ///< driving cost by heading, for traversability maps only
+  std::optional<TraverseRecord> story;  ///< a simulated drive to be replayed
 
   const maps::Grid& grid() const noexcept { return elevation_m.grid(); }
 };
 
-/// How large a scene may be.
+/// Title and greatest size of a scene.
 struct SceneOptions {
   std::string title;
-  int max_side = 1200;  ///< cells; larger maps are averaged in blocks
+  int max_side = 1200;  ///< greatest number of cells per side; larger maps are averaged in blocks
 };
 
-/// Scene of an elevation map: elevation and slope.
+/// Returns the scene of an elevation map, with elevation and slope.
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options);
 
-/// Scene of a traversability map: also categories, drawbar pull with its standard deviation, and sinkage.
+/// Returns the scene of a traversability map, which has also categories, drawbar pull with its standard
+/// deviation, and sinkage.
 Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options);
 
-/// Scene of a route without a map: an empty area around the route.
+/// Returns the scene of a route without a map: an empty area around the route.
 Scene sceneOf(const planner::Route& route, const SceneOptions& options);
 
 /// Adds a route and its summary to a scene.

@@ -10,22 +10,23 @@ namespace talus::cli {
 
 /// Driving properties of a cell in one heading.
 struct RoseHeading {
-  double heading_rad = 0.0;  ///< counter-clockwise from east
+  double heading_rad = 0.0;  ///< heading, counter-clockwise from east
   double cost_J_per_m = 0.0;
   double slip = 0.0;
   double slip_angle_rad = 0.0;  ///< NaN: unknown
-  bool refused = false;         ///< refused headings have no values in the chart
+  bool refused = false;         ///< true if the heading is refused; it then has no values in the chart
 };
 
 /// Three polar charts over the heading (east to the right, north up): magnitudes of cost, slip and slip
-/// angle. Sectors of refused headings are shaded. An arrow points uphill on sloping ground.
+/// angle. Sectors of refused headings are shaded. On sloping ground, an arrow points uphill.
 struct SlopeRose {
   std::string title;
-  std::vector<RoseHeading> headings;  ///< evenly spaced; the first heading is not repeated at the end
+  /// Headings at equal spacing; the first heading is not repeated at the end.
+  std::vector<RoseHeading> headings;
   std::optional<double> uphill_rad;
 };
 
-/// Draws the charts and returns the bytes of a PNG or SVG file.
+/// Returns the drawn charts as the bytes of a PNG or SVG file.
 std::string draw(const SlopeRose& rose, Canvas::Kind kind);
 
 }  // namespace talus::cli

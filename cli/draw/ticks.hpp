@@ -11,13 +11,13 @@ struct Range {
   double high = 1.0;
 };
 
-/// Round tick values inside the range: multiples of 1, 2 or 5 times a power of ten, about `count` values.
+/// Returns round tick values inside the range: about `count` multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> ticks(Range range, int count);
 
-/// Returns the largest 1, 2 or 5 times a power of ten that does not exceed the value; value > 0.
+/// Returns the greatest number of the form 1, 2 or 5 times a power of ten that does not exceed `value` > 0.
 double roundBelow(double value);
 
-/// The number as a tick label, with no more decimals than the step needs.
+/// Returns a number as a tick label, with no more decimals than the step between ticks needs.
 std::string tickLabel(double value, double step);
 
 }  // namespace talus::cli

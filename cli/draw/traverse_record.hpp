@@ -16,8 +16,8 @@ struct CellChange {
   std::uint8_t category = 0;  ///< terramech::Category as a number
 };
 
-/// Data of a simulated drive for a page: events, changes of the map, and the true soil patches unknown to the
-/// rover.
+/// Record of a simulated drive for an HTML page: events, changes of the map, and the true soil patches, which
+/// the rover does not know.
 struct TraverseRecord {
   planner::TraverseSimulation drive;
   std::vector<CellChange> changes;

@@ -7,19 +7,19 @@
 
 namespace talus::cli {
 
-/// Path of the QGIS style file beside a GeoTIFF of categories.
+/// Returns the path of the QGIS style file that belongs to a GeoTIFF of categories.
 std::filesystem::path categoryStyle(const std::filesystem::path& tif);
 
 /// Writes the category of each cell in its worst heading as an integer GeoTIFF with category names, colour
-/// table and overviews, and a QGIS style. @throws InputError
+/// table and overviews (coarser copies), and a QGIS style file. @throws InputError
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
 
-/// Path of the image beside the YAML file of a ROS map_server map.
+/// Returns the path of the image that belongs to the YAML file of a ROS map_server map.
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
 
-/// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Free: safe cells, and marginal
-/// cells if the map's policy permits them. Occupied: dangerous cells. Other cells are unknown. Coordinates
-/// are those of the map [m]. @throws InputError
+/// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Safe cells, and marginal cells if
+/// the map's policy permits them, are free. Dangerous cells are occupied. Other cells are unknown.
+/// Coordinates are those of the map [m]. @throws InputError
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml);
 
 }  // namespace talus::cli

@@ -8,20 +8,20 @@
 
 namespace talus::cli {
 
-/// A file format for users, or a mapping inside such a file.
+/// Description of a file format for users, or of a mapping inside such a file.
 struct FileFormat {
   std::string title;
-  std::string about;  ///< one sentence
+  std::string about;  ///< description in one sentence
   std::span<const terramech::FileKey> keys;
 };
 
-/// All file formats, with the keys that their readers accept.
+/// Returns the descriptions of all file formats, with the keys that their readers accept.
 std::vector<FileFormat> fileFormats();
 
-/// Output of `talus help formats`.
+/// Returns the output of `talus help formats`.
 std::string formatsText();
 
-/// The formats as Markdown: docs/formats.md from its first format heading onwards.
+/// Returns the formats as Markdown: docs/formats.md from its first format heading onwards.
 std::string formatsMarkdown();
 
 }  // namespace talus::cli

@@ -14,38 +14,42 @@ namespace talus::cli {
 
 struct Context;
 
-/// Inputs of a traversability map: DEM, layers, soils, rover, policy.
+/// Inputs of a traversability map: elevation map (DEM), layers, soils, rover and policy.
 struct GroundOptions {
   MapOptions dem;
   LayerOptions layers;
-  std::string map_file;      ///< --map: file of `talus costmap` with its own layers, soils and rover
-  std::string soils;         ///< YAML: terrain class number -> soil
-  std::string soil;          ///< library name or YAML, for ground without a class; empty: default of the body
-  std::string model;         ///< refined model from `talus trace` for ground without a class, instead of soil
-  std::string rover;         ///< library name or YAML; empty: default of the body
-  double footprint_m = 0.0;  ///< radius of slope fits; 0: that of the rover
+  std::string map_file;  ///< file of --map, which `talus costmap` wrote with its own layers, soils and rover
+  std::string soils;     ///< YAML file that assigns a soil to each terrain-class number
+  /// Library name or YAML file of the soil for ground without a class; empty: default of the body.
+  std::string soil;
+  std::string model;  ///< refined model from `talus trace` for ground without a class, instead of `soil`
+  std::string rover;  ///< library name or YAML file of the rover; empty: default of the body
+  double footprint_m = 0.0;  ///< radius of the disc for slope fits; 0: derived from the rover
   costmap::TravelPolicy policy;
 };
 
-/// Declares the options of addMapOptions() and addGroundChoices(), and --map.
+/// Declares the option --map and the options of addMapOptions() and addGroundChoices().
 void addGroundOptions(CLI::App& command, GroundOptions& options);
 
-/// Declares the options that apply to any map: addLayerOptions(), --soils, --soil, --model, --rover,
-/// --footprint and the options of the policy.
+/// Declares the options that apply to any map: those of addLayerOptions(), --soils, --soil, --model, --rover,
+/// --footprint, and those of the policy.
 void addGroundChoices(CLI::App& command, GroundOptions& options);
 
-/// A traversability map and how it was obtained.
+/// A traversability map, with its files and computing times.
 struct Ground {
   costmap::TraversabilityMap map;
-  std::vector<std::string> files;  ///< files read, for the provenance
+  std::vector<std::string> files;  ///< files that were read, for the provenance
+  /// Time for reading the files.
   double load_s = 0.0;
+  /// Time for building the map.
   double build_s = 0.0;
 };
 
-/// Default soil and rover for the body of the map.
+/// Returns the default soil and the default rover for the body of the map.
 std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map);
 
-/// Reads and builds a map. A DEM that is a file of `talus costmap` is used as --map. @throws InputError
+/// Returns a traversability map from its inputs. A DEM that is a file of `talus costmap` is treated like
+/// --map. @throws InputError
 Ground readGround(const GroundOptions& options, const Context& context);
 
 }  // namespace talus::cli

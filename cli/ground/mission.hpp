@@ -10,14 +10,17 @@
 
 namespace talus::cli {
 
-/// Constraints on the motion of the rover, for planners of drives.
+/// Constraints on the motion of the rover, for planners of drives (paths with headings).
 struct MotionOptions {
-  std::optional<double> start_heading_rad;  ///< empty: any heading
-  std::optional<double> goal_heading_rad;   ///< empty: any heading at the goal
-  std::optional<double> turning_radius_m;   ///< empty: that of the rover
+  std::optional<double> start_heading_rad;  ///< heading at the start; empty: any heading
+  std::optional<double> goal_heading_rad;   ///< heading at the goal; empty: any heading
+  std::optional<double> turning_radius_m;   ///< turning radius; empty: that of the rover
   bool no_reverse = false;
-  std::string chassis;  ///< "rigid" or "rocker-bogie": limits clearance and tilt along the whole motion
+  /// "rigid" or "rocker-bogie": limits clearance and tilt of the rover along the whole motion; empty: no such
+  /// limits.
+  std::string chassis;
 
+  /// Returns true if an option other than the chassis is set.
   bool any() const { return start_heading_rad || goal_heading_rad || turning_radius_m || no_reverse; }
 };
 
@@ -25,25 +28,26 @@ struct MotionOptions {
 struct PlanOptions {
   GroundOptions ground;
   std::string start;
-  std::vector<std::string> goals;  ///< the route leads to the goal of least cost
+  std::vector<std::string> goals;  ///< positions of the goals; the route leads to the goal of least cost
   std::vector<std::string> via;
-  std::string pairs;  ///< CSV of starts and goals; empty: one route
+  std::string pairs;  ///< CSV table of starts and goals; empty: one route
   double tolerance_m = 0.0;
   std::string planner = "field";
-  std::string plugin;  ///< shared library of an external planner; empty: built-in planners
+  std::string plugin;  ///< shared library of an external planner; empty: a built-in planner is used
   MotionOptions drive;
-  double max_risk = 0.0;               ///< upper bound of the immobilisation probability; 0: none
-  std::size_t in_memory = 40'000'000;  ///< cells; larger maps are read window by window
-  bool whole_field = false;            ///< also on large maps
-  bool no_proof = false;               ///< computes no improved lower bound and no alternative corridors
-  std::string pareto;                  ///< chart file; empty: none
-  double time_limit_s = 0.0;           ///< 0: no limit
+  double max_risk = 0.0;  ///< upper bound of the immobilisation probability of the route; 0: no bound [-]
+  /// Number of cells up to which a map is kept in memory; larger maps are read window by window.
+  std::size_t in_memory = 40'000'000;
+  bool whole_field = false;   ///< true if the planner "field" processes the whole map also if it is large
+  bool no_proof = false;      ///< true if no improved lower bound and no alternative corridors are computed
+  std::string pareto;         ///< file for the chart of the Pareto front; empty: no chart
+  double time_limit_s = 0.0;  ///< time limit of planning; 0: no limit
   std::string output;
-  std::string html;  ///< HTML page; empty: none
-  std::string png;   ///< PNG picture; empty: none
+  std::string html;  ///< file for an HTML page; empty: no page
+  std::string png;   ///< file for a PNG picture; empty: no picture
 };
 
-/// The keys of a mission file, of its `maps` and of its `thresholds`.
+/// Return the keys of a mission file, of its mapping `maps` and of its mapping `thresholds`.
 std::span<const terramech::FileKey> missionKeys();
 std::span<const terramech::FileKey> missionMapKeys();
 std::span<const terramech::FileKey> thresholdKeys();
@@ -51,7 +55,7 @@ std::span<const terramech::FileKey> thresholdKeys();
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
-/// Reads the mission file at options.ground.dem.path into the options. Values from the command line have
+/// Reads the mission file options.ground.dem.path into `options`. Values from the command line have
 /// precedence. Paths in the file are relative to the file. @throws InputError with file and line
 void readMission(PlanOptions& options);
 

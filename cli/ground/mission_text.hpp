@@ -4,10 +4,10 @@
 
 namespace talus::cli {
 
-/// Values of a new mission file; all other keys are written as comments.
+/// Values of a new mission file (input of `talus plan`); all other keys are written as comments.
 struct MissionDraft {
   std::string dem{"dem.tif"};
-  double resolution_m = 0.0;  ///< for a map without a coordinate system; 0: not stated
+  double resolution_m = 0.0;  ///< cell size for a map without a coordinate system; 0: not stated
   bool ignore_crs = false;
   std::string rover{"mer"}, soil{"mars_blocky"};
   std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]

@@ -15,21 +15,21 @@ class Validator;
 
 namespace talus::cli {
 
-/// Declares --start-heading, --goal-heading (each also in degrees), --turning-radius, --no-reverse and
-/// --chassis.
+/// Declares the options --start-heading, --goal-heading (each also in degrees), --turning-radius,
+/// --no-reverse and --chassis.
 void addMotionOptions(CLI::App& command, MotionOptions& drive);
 
-/// Declares --chassis.
+/// Declares the option --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
 
-/// Refuses values that are not terramech::isTurningRadius().
+/// Returns a check that rejects values that are not terramech::isTurningRadius().
 CLI::Validator turningRadius();
 
-/// Kinematics of the map's rover, overridden by the options of the call.
+/// Returns the kinematics of the map's rover, overridden by the options of the call.
 planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::TraversabilityMap& map);
 
-/// Chassis of the kind "rigid" or "rocker-bogie"; nothing if `kind` is empty. The chassis refers to the map,
-/// which must outlive the chassis.
+/// Returns a chassis of the kind "rigid" or "rocker-bogie"; nullopt if `kind` is empty. The chassis refers to
+/// the map, which must outlive the chassis.
 std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
 
 }  // namespace talus::cli

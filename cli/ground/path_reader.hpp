@@ -7,10 +7,10 @@
 
 namespace talus::cli {
 
-/// Reads a polyline in map coordinates [m] from a file: the first line of a vector file, or a CSV table with
-/// the columns x_m, y_m. The polyline has at least one point. A route file of `talus plan` gives the exact
-/// values of its properties x_m, y_m. Coordinates that differ from these properties by more than a tenth of a
-/// cell were edited and are refused. @throws InputError
+/// Returns a polyline in map coordinates [m] from a file: the first line of a vector file, or a CSV table
+/// with the columns x_m, y_m. The polyline has at least one point. A route file of `talus plan` gives the
+/// exact values of its properties x_m, y_m. Coordinates of such a file that differ from these properties by
+/// more than a tenth of a cell were edited and are rejected. @throws InputError
 std::vector<maps::Point> readPath(const std::string& path, const maps::ElevationMap& map);
 
 }  // namespace talus::cli

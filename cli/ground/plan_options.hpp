@@ -11,7 +11,7 @@ namespace talus::cli {
 /// Declares the options of `talus plan`.
 void bindPlan(CLI::App& command, PlanOptions& options);
 
-/// Checks that the places and combined options of a call are consistent. @throws InputError
+/// Checks that positions and options of a call are consistent with each other. @throws InputError otherwise
 void requirePlaces(const PlanOptions& options);
 
 }  // namespace talus::cli

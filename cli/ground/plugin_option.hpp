@@ -10,15 +10,14 @@ class App;
 
 namespace talus::cli {
 
-/// Declares --plugin.
+/// Declares the option --plugin.
 void addPluginOption(CLI::App& command, std::string& plugin);
 
-/// Declares --time, the time limit of a plugin in calls without another limit.
+/// Declares the option --time, the time limit of a plugin, for calls without another time limit.
 void addPluginTime(CLI::App& command, double& time_limit_s);
 
-/// The planner of --plugin FILE.so and --planner; the value "field" (default of the program) selects the
-/// plugin's own default.
-/// @throws InputError
+/// Returns the planner `planner` of the shared library `plugin`. The value "field" (default of the program)
+/// selects the plugin's own default planner. @throws InputError
 planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& planner = {});
 
 }  // namespace talus::cli

@@ -7,10 +7,10 @@
 
 namespace talus::cli {
 
-/// The layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category (of the
-/// worst heading), drawbar_pull_over_load, drawbar_pull_over_load_std, sinkage_over_radius,
-/// energy_per_metre_uphill, energy_per_metre_downhill, category_best_heading. SI units and radians; NaN:
-/// unknown. Categories are 0 safe, 1 marginal, 2 dangerous, 3 unknown; hazards are dangerous.
+/// Returns the layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category
+/// (of the worst heading), drawbar_pull_over_load, drawbar_pull_over_load_std, sinkage_over_radius,
+/// energy_per_metre_uphill, energy_per_metre_downhill, category_best_heading. Units are SI and radians; NaN:
+/// unknown. Categories are 0 safe, 1 marginal, 2 dangerous, 3 unknown; cells with a hazard are dangerous.
 std::vector<maps::Layer> siteLayers(const costmap::TraversabilityMap& map, int threads);
 
 }  // namespace talus::cli

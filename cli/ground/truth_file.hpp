@@ -6,10 +6,10 @@
 
 namespace talus::cli {
 
-/// Description of the format of TRUTH.yaml for the help.
+/// Description of the format of TRUTH.yaml (true soils of a simulation) for the help.
 extern const char* const kTruthFormat;
 
-/// Reads a truth file. Throws InputError with file, line and field.
+/// Returns the content of a truth file. Throws InputError with file, line and field.
 planner::Truth readTruth(const std::string& path);
 
 }  // namespace talus::cli
