@@ -13,30 +13,31 @@ namespace talus::cli {
 /// Result of one job.
 struct JobOutcome {
   bool failed = false;
-  bool stopped = false;  ///< failed because a stop was requested before the job had a result
-  std::string text;      ///< result of the job, or the reason of its failure
+  bool stopped = false;  ///< true if the job failed because a stop was requested before the job had a result
+  std::string text;      ///< result of the job, or reason of its failure
 };
 
-/// Runs independent jobs: one after another, several at a time, or distributed over the ranks of an MPI run
-/// if the program was started by mpirun and built with Boost.MPI. Job i runs on rank i modulo the number of
-/// ranks; the results do not depend on the number of ranks.
+/// Runs independent jobs: one after another, several at a time, or distributed over the ranks (processes) of
+/// an MPI run, if mpirun started the program and the program was built with Boost.MPI. Job i runs on rank i
+/// modulo the number of ranks; the results do not depend on the number of ranks.
 class Campaign {
  public:
   /// Joins the MPI run in which the process was started, if any. Throws std::invalid_argument if the launcher
-  /// belongs to another MPI implementation, whose ranks would not find each other.
+  /// belongs to another MPI implementation, so that its ranks could not connect to each other.
   Campaign();
   ~Campaign();
   Campaign(const Campaign&) = delete;
   Campaign& operator=(const Campaign&) = delete;
 
+  /// Returns the number of ranks.
   int ranks() const noexcept;
   bool leads() const noexcept;  ///< true on rank 0, the only rank that receives results and prints
 
-  /// Returns the outcomes of job(0) .. job(count - 1) in order on rank 0, and nothing on other ranks. A job
-  /// that throws is marked as failed; the other jobs continue. After a requested stop each rank completes its
-  /// current job; jobs not started, and jobs that return an empty text, are marked as failed and stopped.
-  /// Without MPI, `workers` jobs run concurrently and must be thread-safe; an MPI rank runs one job at a
-  /// time.
+  /// Returns on rank 0 the outcomes of job(0) .. job(count - 1) in order, and an empty vector on other ranks.
+  /// A job that throws is marked as failed; the other jobs continue. After a stop request, each rank
+  /// completes its current job; jobs not started, and jobs that return an empty text, are marked as failed
+  /// and stopped. Without MPI, `workers` jobs run concurrently and must be thread-safe. With MPI, a rank runs
+  /// one job at a time.
   std::vector<JobOutcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                               const ProgressMonitor& watch = {}, std::size_t workers = 1) const;
 

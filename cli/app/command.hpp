@@ -12,7 +12,7 @@
 
 namespace talus::cli {
 
-/// Headings of `talus --help`.
+/// Headings of the groups of subcommands in `talus --help`.
 struct Group {
   static constexpr const char* kRoutes = "Routes";
   static constexpr const char* kMaps = "Maps";
@@ -23,13 +23,13 @@ struct Group {
 /// The text of a subcommand in --help.
 struct CommandText {
   std::string name;
-  std::string group;        ///< one of Group
+  std::string group;        ///< heading, one of Group
   std::string description;  ///< purpose in one line
-  std::string examples;     ///< at least two calls, each on lines indented by two blanks
+  std::string examples;     ///< at least two example calls, each on lines indented by two blanks
 };
 
 /// Registers a subcommand. `bind` declares the options of the subcommand as fields of a plain struct. `run`
-/// receives the parsed struct and returns the exit code of the program. Exceptions are printed by main.
+/// receives the parsed struct and returns the exit code of the program. main() prints exceptions.
 template <typename Options>
 CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
                      void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {

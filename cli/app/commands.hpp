@@ -8,8 +8,8 @@ namespace talus::cli {
 
 struct Context;
 
-// One function per subcommand, in alphabetical order. Each is defined in cli/commands/NAME_command.cpp and
-// uses addCommand() of cli/app/command.hpp.
+// One function per subcommand, in alphabetical order, registers the subcommand. Each function is defined in
+// cli/commands/NAME_command.cpp and uses addCommand() of cli/app/command.hpp.
 void addAssess(CLI::App& app, Context& context);
 void addBench(CLI::App& app, Context& context);
 void addCostmap(CLI::App& app, Context& context);

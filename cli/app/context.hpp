@@ -11,7 +11,7 @@
 
 #include <talus/common/progress_monitor.hpp>
 
-/// The command line program: one file per subcommand.
+/// Namespace of the command-line program, which has one file per subcommand.
 namespace talus::cli {
 
 /// Exit codes of the program, stable for scripts.
@@ -26,22 +26,22 @@ struct Exit {
 
 /// Global options and terminal output, shared by all subcommands.
 struct Context {
-  bool json = false;                          ///< results as JSON on stdout
-  bool quiet = false;                         ///< no progress, no warnings
-  bool force = false;                         ///< allows overwriting of files that checkOutput() protects
-  std::uint64_t seed = 1;                     ///< seed of all random numbers
-  int threads = 0;                            ///< largest number of threads; 0: one per core
-  const char* const* argv = nullptr;          ///< arguments of the call, terminated by a null pointer
-  std::stop_token stop;                       ///< stop requested by SIGINT or SIGTERM
-  std::atomic<bool>* answers_stop = nullptr;  ///< see answerStop()
+  bool json = false;                  ///< true if results are printed as JSON on stdout
+  bool quiet = false;                 ///< true if neither progress nor warnings are printed
+  bool force = false;                 ///< true if files that checkOutput() protects may be overwritten
+  std::uint64_t seed = 1;             ///< seed of all random numbers
+  int threads = 0;                    ///< greatest number of threads; 0: one per core
+  const char* const* argv = nullptr;  ///< arguments of the call, terminated by a null pointer
+  std::stop_token stop;               ///< token of the stop request by SIGINT or SIGTERM
+  std::atomic<bool>* answers_stop = nullptr;  ///< flag that answerStop() sets; null: no flag
   int exit_code = Exit::kDone;
 
-  /// Progress monitor of one stage of work: a bar on stderr if stderr is a terminal, no output otherwise.
-  /// Stopped by Ctrl-C.
+  /// Returns a progress monitor for one stage of work with the name `what`: a bar on stderr if stderr is a
+  /// terminal, otherwise no output. The monitor requests a stop after Ctrl-C.
   ProgressMonitor watch(std::string_view what) const;
 
-  /// Declares that the call ends by itself after a stop request, and outputs its results so far. Other calls
-  /// are terminated by Interrupt.
+  /// Declares that the call ends by itself after a stop request and outputs its results so far. Interrupt
+  /// terminates other calls.
   void answerStop() const noexcept {
     if (answers_stop) *answers_stop = true;
   }
@@ -53,8 +53,8 @@ struct Context {
   void warn(std::string_view text) const;
 };
 
-/// JSON as text, indented by `indent` blanks, or on one line if negative. NaN and infinity become null; each
-/// byte that is not valid UTF-8 (possible in file names) becomes U+FFFD.
+/// Returns JSON as text, indented by `indent` blanks, or on one line if `indent` is negative. NaN and
+/// infinity become null; each byte that is not valid UTF-8 (possible in file names) becomes U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& value, int indent = -1);
 
 /// Prints a result as indented JSON to stdout; NaN and infinity become null.
@@ -63,11 +63,11 @@ void printJson(const nlohmann::ordered_json& value);
 /// Prints a result as plain text to stdout.
 void print(std::string_view text);
 
-/// Writes to stderr. If stderr is closed, the text is lost and no error is reported.
+/// Prints a text to stderr. If stderr is closed, the text is lost and no error is reported.
 void printError(std::string_view text) noexcept;
 
-/// The text on one line: line breaks become "; ", other control characters blanks, invalid UTF-8 bytes
-/// U+FFFD.
+/// Returns a text on one line: line breaks become "; ", other control characters become blanks, and invalid
+/// UTF-8 bytes become U+FFFD.
 std::string oneLine(std::string_view text);
 
 }  // namespace talus::cli

@@ -6,13 +6,13 @@
 
 namespace talus::cli {
 
-/// Locks files against other Talus processes that read, change and rewrite a file; later processes wait.
-/// Paths of files that do not exist are ignored. The lock is advisory: programs that do not request the lock
-/// are not blocked.
+/// Locks files against other Talus processes that read, change and rewrite the same files; later processes
+/// wait. Paths of files that do not exist are ignored. The lock is advisory: programs that do not request the
+/// lock are not blocked.
 class FileLock {
  public:
-  /// Waits until all files are locked. Throws InputError if a file cannot be opened or locked,
-  /// std::runtime_error if a stop is requested.
+  /// Waits until all files are locked; the destructor releases the locks. Throws InputError if a file cannot
+  /// be opened or locked, and std::runtime_error if a stop is requested.
   FileLock(const std::vector<std::filesystem::path>& paths, const std::stop_token& stop);
   ~FileLock();
   FileLock(const FileLock&) = delete;

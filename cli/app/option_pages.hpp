@@ -8,10 +8,10 @@ class App;
 
 namespace talus::cli {
 
-/// The manual page talus(1) with all subcommands and their options.
+/// Returns the manual page talus(1) with all subcommands and their options.
 std::string manualPage(const CLI::App& app);
 
-/// A bash script that completes subcommands, options and the choices of an option.
+/// Returns a bash script that completes subcommands, options and the choices of an option.
 std::string bashCompletion(const CLI::App& app);
 
 }  // namespace talus::cli

@@ -14,30 +14,31 @@ namespace talus::cli {
 /// .HTML).
 bool isNamed(const std::filesystem::path& path, const std::string& ending);
 
-/// Declares an option for an output file, which checkOutputs() checks.
+/// Declares an option for an output file, which checkOutputs() checks. `names` are the names of the option,
+/// and `text` is its description.
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
                        const std::string& text);
 
-/// Refuses output paths that require --force: one of the `inputs`, a journal or SQLite's files beside a
-/// journal, a path that is not a regular file, a symbolic link to another folder. Throws InputError.
+/// Checks that an output path does not require --force. Throws InputError for one of the `inputs`, a journal,
+/// SQLite's files beside a journal, a path that is not a regular file, and a symbolic link to another folder.
 void checkOutput(const std::filesystem::path& path, const std::vector<std::string>& inputs);
 
-/// Refuses a file of a call that is the call's own journal or one of SQLite's files beside the journal (-wal,
-/// -shm, -journal), in any spelling. --force does not permit such a path, because the call would destroy data
-/// that it reads or writes. Throws InputError.
+/// Throws InputError if an output path of a call is the call's own journal or one of SQLite's files beside
+/// the journal (-wal, -shm, -journal), in any spelling. --force does not permit such a path, because the call
+/// would destroy data that it reads or writes.
 void checkBesideJournal(const std::filesystem::path& path, const std::filesystem::path& journal);
 
-/// Refuses a name whose ending denotes another known format than the written one. `written` is a file name,
-/// or several separated by | ("ROUTE.geojson|FILE.csv"). A name with no ending or an unknown ending is
-/// accepted. Throws InputError.
+/// Throws InputError if the ending of a file name denotes another known format than the written one.
+/// `written` is a file name, or several separated by | ("ROUTE.geojson|FILE.csv"). A name with no ending or
+/// an unknown ending is accepted.
 void checkFormat(const std::filesystem::path& path, const std::string& written);
 
-/// Checks every output of a parsed call before the work begins: checkOutput() against all other arguments of
-/// the call and checkFormat() against the option's type name (FILE.tif), both unless `force` is set, and
-/// whether the file can be written.
+/// Checks every output file of a parsed call before the work begins: whether the file can be written and,
+/// unless `force` is set, checkOutput() against all other arguments of the call and checkFormat() against the
+/// option's type name (FILE.tif).
 void checkOutputs(const CLI::App& command, bool force);
 
-/// Runs compareChecksum() on every file named by an option other than those of addOutput(), alone or as
+/// Calls compareChecksum() for every file that an option other than those of addOutput() states, alone or as
 /// NAME=FILE.
 void checkInputs(const CLI::App& command);
 

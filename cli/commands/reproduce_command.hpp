@@ -18,8 +18,8 @@ struct ReproduceOptions {
   int soils = 500;
 };
 
-/// Registers `reproduce` with the function that runs it. addReproduce() of commands.hpp starts the program
-/// talus-reproduce; that program passes its own function.
+/// Registers the subcommand `reproduce` with the function `run` that executes it. addReproduce() of
+/// commands.hpp starts the program talus-reproduce, and that program passes its own function.
 void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOptions&, Context&));
 
 }  // namespace talus::cli

@@ -20,9 +20,9 @@ struct Parting {
 /// is sampled every half tolerance, or in 4000 steps if these are longer.
 std::vector<Parting> partings(const planner::Route& route, const planner::Route& other, double tolerance_m);
 
-/// Adds further routes to a scene that contains the first route. Facts that are equal for all routes stay in
-/// Scene::facts. Facts that differ, and the sections that deviate from the first route, are added to
-/// Scene::comparison.
+/// Adds several routes and their comparison to a scene; the first route is the reference. Facts that are
+/// equal for all routes are appended to Scene::facts. Facts that differ, and the sections in which a route
+/// deviates from the first route, are appended to Scene::comparison.
 void compare(Scene& scene, std::vector<NamedRoute> routes);
 
 }  // namespace talus::cli

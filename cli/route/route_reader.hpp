@@ -8,18 +8,19 @@
 
 namespace talus::cli {
 
-/// A route file of `talus plan`.
+/// Content of a route file of `talus plan`.
 struct RouteFile {
   planner::Route route;
+  /// Input files of the route.
   std::vector<planner::RouteInput> inputs;
-  std::vector<std::pair<std::string, std::string>> provenance{};  ///< lines of provenanceOf()
+  std::vector<std::pair<std::string, std::string>> provenance{};  ///< the result of provenanceOf()
 };
 
-/// Returns true if the file starts like JSON or is named as a GeoPackage; maps are neither.
+/// Returns true if the file starts like JSON or has the name of a GeoPackage; neither applies to a map.
 bool looksLikeRoute(const std::string& path);
 
-/// Reads a route. @throws InputError naming file and field when the file is not a route as GeoJSON or
-/// GeoPackage
+/// Returns the route of a file. @throws InputError with file and field if the file is not a route in GeoJSON
+/// or GeoPackage format
 RouteFile readRoute(const std::string& path);
 
 }  // namespace talus::cli

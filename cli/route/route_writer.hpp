@@ -10,15 +10,17 @@ namespace talus::cli {
 
 struct Context;
 
-/// File names accepted by writeRoute(), as an option's type name.
+/// File names that writeRoute() accepts, as the type name of an option.
 inline constexpr const char* kRouteFiles = "ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|ROUTE.csv";
 
-/// Refuses a file format that cannot store routes of the map, before planning. @throws InputError
+/// Checks, before planning, that the file format of `path` can store routes of the map. @throws InputError
+/// otherwise
 void requireRouteFormat(const std::string& path, const maps::ElevationMap& map);
 
-/// Writes a route of routeGeoJson() in the format given by the ending of the name: GeoPackage (CRS of the
-/// map; layers route, vertices and segments), GPX and KML (Earth only), CSV of the vertices, otherwise
-/// GeoJSON. Warns if GeoJSON cannot state the body of the map. @throws InputError
+/// Writes a route of routeGeoJson() in the format that the ending of the file name selects: GeoPackage (in
+/// the CRS of the map, with the layers route, vertices and segments), GPX and KML (Earth only), CSV of the
+/// vertices, and GeoJSON for all other endings. Warns if GeoJSON cannot state the body of the map. @throws
+/// InputError
 void writeRoute(const std::string& path, const nlohmann::ordered_json& route, const maps::ElevationMap& map,
                 const Context& context);
 

@@ -12,7 +12,9 @@ namespace talus::cli {
 
 class Campaign;
 
-/// Results of random worlds under one or several beliefs.
+/// Results of traverse simulations in random worlds under one or several beliefs. A world is one draw of the
+/// true soils; a belief is the knowledge of the soils that the rover has at the start
+/// (planner::SoilKnowledge).
 struct SimulatedWorlds {
   /// A world whose simulation failed.
   struct Failure {
@@ -20,11 +22,11 @@ struct SimulatedWorlds {
     std::string reason;
   };
 
-  std::vector<std::vector<planner::WorldResult>> results;  ///< by belief, without failed worlds
+  std::vector<std::vector<planner::WorldResult>> results;  ///< results by belief, without failed worlds
   std::vector<Failure> failures;
 };
 
-/// Simulates world i under belief b.
+/// Function that simulates world i under belief b.
 using World = std::function<planner::WorldResult(std::size_t b, std::size_t i)>;
 
 /// Number of beliefs and worlds, and of concurrent simulations without MPI.
@@ -35,7 +37,7 @@ struct WorldCount {
 };
 
 /// Simulates all worlds under all beliefs, distributed over the ranks of the campaign; results do not depend
-/// on the number of ranks. An exception fails only its world. Empty except on rank 0.
+/// on the number of ranks. An exception fails only its world. Returns an empty result on ranks other than 0.
 SimulatedWorlds simulatedWorlds(const WorldCount& count, const World& world, const Campaign& campaign,
                                 const ProgressMonitor& watch);
 

@@ -8,8 +8,8 @@
 
 namespace talus::cli {
 
-/// Writes the wheel telemetry of a traverse simulation as CSV, an input of `talus update`.
-/// @throws InputError when the file cannot be written
+/// Writes the wheel telemetry of a traverse simulation as CSV, which `talus update` can read. @throws
+/// InputError if the file cannot be written
 void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSimulation& drive,
                    const terramech::Rover& rover);
 

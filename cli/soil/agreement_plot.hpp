@@ -11,11 +11,12 @@
 
 namespace talus::cli {
 
-/// Named predictions, rows x channels.
+/// Name and values of predictions: one matrix row per table row, one matrix column per channel (measured
+/// quantity).
 using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 
-/// Plots predicted against measured values of one channel; on the dashed line both are equal. Rows without a
-/// measurement are omitted.
+/// Returns a plot of predicted over measured values of one channel; on the dashed line both are equal. Rows
+/// without a measurement are omitted.
 Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
                    const std::vector<NamedPredictions>& predictions);
 

@@ -6,13 +6,15 @@
 
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
-/// Errors by channel as text and as JSON; channels without an error are omitted.
+/// Prediction errors by channel (measured quantity) as text and as JSON; channels without an error are
+/// omitted.
 namespace talus::cli {
 
-/// {NAME: ERROR}.
+/// Returns the errors as {NAME: ERROR}.
 nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
 
-/// Errors of base and refined model: " NAME BASE -> REFINED" for each channel.
+/// Returns the errors of the base model and of the refined model as text: " NAME BASE -> REFINED" for each
+/// channel.
 std::string changeText(const terramech::ChannelErrors& base, const terramech::ChannelErrors& refined);
 
 }  // namespace talus::cli

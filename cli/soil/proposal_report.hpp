@@ -9,19 +9,20 @@
 
 namespace talus::cli {
 
-/// Table of proposed runs as CSV: one row per slip with the conditions, empty columns for the measured
-/// channels of the result, and name, predictions and standard deviations (predicted_K_*) of each cause.
+/// Returns a table of proposed test runs as CSV: one row per slip with the conditions, empty columns for the
+/// measured channels of the result, and name, predictions and standard deviations (predicted_K_*) of each
+/// cause K. A cause is a possible explanation of the residual.
 std::string proposalTable(const std::vector<terramech::ProposedRun>& runs,
                           const terramech::TraceResult& result);
 
 nlohmann::ordered_json proposalsJson(const std::vector<terramech::ProposedRun>& runs);
 nlohmann::ordered_json scoresJson(const std::vector<terramech::CauseScore>& scores);
 
-/// Returns one line per run, with the columns that vary in the table and each cause's prediction of the mean
-/// of the run's rows.
+/// Returns one line of text per run, with the columns that vary in the table and, for each cause, the
+/// prediction of the mean of the run's rows.
 std::string proposalText(const std::vector<terramech::ProposedRun>& runs, const terramech::Trial& trial);
 
-/// Returns one line per cause.
+/// Returns one line of text per cause, with its score.
 std::string causeScoreText(const std::vector<terramech::CauseScore>& scores);
 
 }  // namespace talus::cli

@@ -8,7 +8,8 @@
 
 namespace talus::cli {
 
-/// Rows and columns of a large table that were not searched, one line each; empty if all were searched.
+/// Returns the rows and columns of a large table that were not searched, one line each; empty if all were
+/// searched.
 std::string searchedText(const terramech::TraceResult& result);
 
 /// Returns JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.

@@ -7,29 +7,32 @@
 
 namespace talus::cli {
 
-/// Reason why the best candidate of the last round was rejected: its gain and the threshold or check that
-/// rejected it. Empty if no candidate had a gain.
+/// Returns the reason for which the best candidate effect of the last round was rejected: its gain, and the
+/// threshold or check that rejected it. Returns an empty text if no candidate had a gain.
 std::string refusal(const terramech::TraceResult& result);
 
-/// Reason why a fitted candidate was not selected.
+/// Returns the reason for which a fitted candidate effect was not selected.
 std::string refusal(const terramech::TraceResult& result, const terramech::Explanation& rejected);
 
-/// The verdict in one line: nothing missing, explained by n effects, or unexplained with the reason. Includes
-/// the rms residual of the answer's channel, and for an unexplained residual the measurement that would
-/// identify its cause.
+/// Returns the answer in one line: nothing missing, explained by n effects, or unexplained with the reason.
+/// The line includes the rms residual of the channel of the answer and, for an unexplained residual, the
+/// measurement that would identify its cause.
 std::string verdictText(const terramech::TraceResult& result, const terramech::Answer& answer);
 
-/// Contribution of an effect to the refined model.
+/// Contribution of an effect (deviation from the base model that was found in data) to the refined model.
 struct EffectRole {
-  bool adds = true;  ///< false: without the effect and its replaced terms the model predicts the same
-  std::vector<std::string> takes_back;  ///< soil fields whose base-model term the effect removes
+  /// True if the effect changes predictions; false: the model predicts the same without the effect and the
+  /// terms that it replaces.
+  bool adds = true;
+  std::vector<std::string> takes_back;  ///< soil parameters whose term in the base model the effect removes
 };
 
-/// Roles of all effects in order. An effect adds if a prediction of any row changes by more than 1e-5 of the
-/// scale of its channel, ten times the difference between the two contact solvers.
+/// Returns the contributions of all effects, in order. EffectRole::adds is true if a prediction of any row
+/// changes by more than 1e-5 of the scale of its channel, which is ten times the difference between the two
+/// contact solvers.
 std::vector<EffectRole> rolesOf(const terramech::TraceResult& result);
 
-/// Returns one line about an effect that adds nothing; empty for other effects.
+/// Returns one line of text about an effect that adds nothing; empty for other effects.
 std::string roleText(const EffectRole& role);
 
 }  // namespace talus::cli

@@ -13,14 +13,16 @@ struct Context;
 
 /// Selection of the benchmark cases.
 struct SuiteOptions {
-  std::vector<std::string> names{"generated"};  ///< "generated", "slip", "grids", DEMs, MovingAI .scen files
-  int pairs = 3;                                ///< start-goal pairs per map, > 0; number of "slip" worlds
-  int side_cells = 300;                         ///< side length of generated sites
-  double turning_radius_m = -1.0;               ///< for planners of drives; < 0: that of the rover
-  GroundOptions ground;                         ///< for DEMs: layers, rover, soils, policy
+  /// Names of suites: "generated", "slip", "grids", elevation maps (DEMs), or MovingAI .scen files.
+  std::vector<std::string> names{"generated"};
+  int pairs = 3;         ///< number of start-goal pairs per map, > 0; number of worlds for "slip"
+  int side_cells = 300;  ///< side length of generated sites, in cells
+  /// Turning radius for planners of drives (paths with headings); < 0: that of the rover.
+  double turning_radius_m = -1.0;
+  GroundOptions ground;  ///< layers, rover, soils and policy for DEMs
 };
 
-/// Cases of all named suites. Throws InputError for an unusable file.
+/// Returns the benchmark cases of all named suites. Throws InputError for an unusable file.
 std::vector<planner::BenchmarkCase> suiteCases(const SuiteOptions& options, const Context& context);
 
 }  // namespace talus::cli
