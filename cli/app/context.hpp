@@ -16,12 +16,13 @@ namespace talus::cli {
 
 /// Exit codes of the program, stable for scripts.
 struct Exit {
-  static constexpr int kDone = 0;          ///< done
-  static constexpr int kNo = 1;            ///< valid input, negative result: no route, no fit
-  static constexpr int kInput = 2;         ///< invalid call or input
-  static constexpr int kInternal = 3;      ///< internal error
-  static constexpr int kCancelled = 130;   ///< interrupted by SIGINT (SIGTERM: 143)
-  static constexpr int kReaderGone = 141;  ///< reader of stdout closed the pipe; no message, as SIGPIPE
+  static constexpr int kDone = 0;         ///< the call succeeded
+  static constexpr int kNo = 1;           ///< the input is valid and the result is negative: no route, no fit
+  static constexpr int kInput = 2;        ///< the call or an input is invalid
+  static constexpr int kInternal = 3;     ///< an internal error occurred
+  static constexpr int kCancelled = 130;  ///< the call was interrupted by SIGINT (SIGTERM: 143)
+  /// The reader of stdout closed the pipe; no message is printed, as for SIGPIPE.
+  static constexpr int kReaderGone = 141;
 };
 
 /// Global options and terminal output, shared by all subcommands.

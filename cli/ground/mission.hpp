@@ -38,7 +38,8 @@ struct PlanOptions {
   double max_risk = 0.0;  ///< upper bound of the immobilisation probability of the route; 0: no bound [-]
   /// Number of cells up to which a map is kept in memory; larger maps are read window by window.
   std::size_t in_memory = 40'000'000;
-  bool whole_field = false;   ///< true if the planner "field" processes the whole map also if it is large
+  /// True if the whole map is searched at full resolution, not a corridor around a coarse route.
+  bool whole_field = false;
   bool no_proof = false;      ///< true if no improved lower bound and no alternative corridors are computed
   std::string pareto;         ///< file for the chart of the Pareto front; empty: no chart
   double time_limit_s = 0.0;  ///< time limit of planning; 0: no limit

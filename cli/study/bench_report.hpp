@@ -16,7 +16,7 @@ struct BenchmarkLine {
   int runs = 0;
   int found = 0;
   int breached = 0;  ///< number of routes that the independent check rejects
-  /// Number of runs that crashed.
+  /// Number of runs whose process ended without an answer.
   int crashed = 0;
   /// Median gap of the cost to the best known cost, over valid routes [-]; NaN: no valid route.
   double median_gap = 0.0;

@@ -43,8 +43,8 @@ class SharedTiles {
   static constexpr std::size_t kPage = 64;
   using Page = std::array<Shared, kPage>;
 
-  std::vector<const Tile<T>*> raw_;                 // direct access for readers
-  std::vector<std::shared_ptr<const Page>> pages_;  // ownership of the tiles
+  std::vector<const Tile<T>*> raw_;                 // pointers for direct access by readers
+  std::vector<std::shared_ptr<const Page>> pages_;  // pages that own the tiles
 };
 
 using TileTable = SharedTiles<CellCode>;

@@ -20,10 +20,10 @@ struct CostWeights {
   double risk_J = 1e7;  ///< cost of the loss of the rover, >= 0 [J]
 };
 
-/// Table of equivalent straight slopes for the ground of one terrain class (ours). It covers slopes with a
-/// gradient along the heading and a gradient across the heading, at the nodes (pairs of both gradients) of
-/// TravelCurve; a row has one gradient across, and row 0 has none. Each node is represented by three
-/// gradients of a slope without cross slope, under even wheel loads:
+/// Table of equivalent straight slopes for the ground of one terrain class (ours). The table covers slopes
+/// with a gradient along the heading and a gradient across the heading, at the nodes (pairs of both
+/// gradients) of TravelCurve. All nodes of a row have the same gradient across, which is 0 in row 0. Each
+/// node is represented by the gradients of three slopes without cross slope, under even wheel loads:
 ///   - `costs`: a climb with at least the energy and time per metre that SlopeEquilibrium finds at the node;
 ///   - `leaves`: the climb with the same strength reserve d, i.e. the loss of drawbar pull over load at which
 ///     driving on the slope fails. A loss d reduces the side force by the fraction d / thrust, with thrust =
@@ -33,14 +33,14 @@ struct CostWeights {
 /// `costs` and `leaves` are at least as steep as the node's gradient along the heading, and none of the three
 /// slopes becomes less steep from row to row: cost, risk and refusal never decrease with the gradient across.
 /// The three slopes depend on the soil of the class alone; an estimate of the ground changes the travel
-/// states on these slopes. Nodes at which the rover tips are refused on any soil; the attitude of the body is
-/// that on the soil of the class.
+/// states on these slopes. Nodes at which the rover tips are refused (have infinite cost) on any soil; the
+/// attitude of the body is that on the soil of the class.
 ///
 /// The equilibria with load transfer and those under even loads use one table of wheel forces, so that errors
 /// of the table cancel: without load transfer, row 0 has the cost of the mobility curve. Equilibria are
 /// solved at gradients along the heading in steps of 1/32 and interpolated linearly. If the gradients without
-/// failure form several intervals, the interval nearest to level ground is used; of equally near intervals,
-/// the longest. Immutable.
+/// failure form several intervals, the interval nearest to level ground is used; if several intervals are
+/// equally near, the longest of them is used. Immutable.
 class CrossSlope {
  public:
   /// Limits and thrust of the class's ground without cross slope.
@@ -85,11 +85,11 @@ class CrossSlope {
   double steepest(double gradient) const noexcept;
 
  private:
-  // Gradients of the three straight climbs (class comment), in bins of TravelCurve; `refused` applies at any
-  // strength.
+  // Gradients of the three equivalent straight slopes (class comment), in bins of TravelCurve; `refused` is
+  // the reason of a refusal on any soil.
   struct Climbs {
     float costs = 0.0F, leaves = 0.0F, brakes = 0.0F;
-    float more_slip = 0.0F;  // slip in addition to that of the climb `costs`
+    float more_slip = 0.0F;  // additional slip relative to the climb `costs`
     Refusal refused = Refusal::None;
   };
   // Equilibrium of a row at one gradient along the heading.
@@ -97,7 +97,7 @@ class CrossSlope {
     SlopeHold hold;
     terramech::SlopeFailure grip = terramech::SlopeFailure::None;
   };
-  // Interval of gradients along without failure on row 0 under even loads.
+  // Interval of gradients along the heading without failure, on row 0 under even loads.
   struct Ends {
     double first, last;
   };
@@ -117,9 +117,9 @@ class CrossSlope {
   Refusal reasonAt(int row, int bin) const noexcept;
 
   std::vector<Climbs> climbs_;
-  std::vector<std::vector<Held>> held_;  // by row, up to the last row with an equilibrium
-  int first_along_ = 0;                  // index of the first gradient along, in steps of kAlongStep
-  std::vector<float> steepest_;          // by gradient in steps of CellCode, up to 1
+  std::vector<std::vector<Held>> held_;  // equilibria by row, up to the last row with an equilibrium
+  int first_along_ = 0;          // index of the first gradient along the heading, in steps of kAlongStep
+  std::vector<float> steepest_;  // results of steepest(), by gradient in steps of CellCode up to 1
 };
 
 /// Returns the cost curve [J/m] of ground with the travel states `states` and the given weights. The curve

@@ -48,7 +48,7 @@ class ExpectedTravel {
   double sinkage_m(double demand) const noexcept;
 
  private:
-  // A quantity tabulated at equal steps of the demand, linear between steps, constant outside.
+  // A quantity tabulated at equal steps of the demand; linear between steps, and constant outside the table.
   struct Table {
     std::vector<double> values;
     std::vector<double> bends;  // demands at which the slope of the table decreases

@@ -30,8 +30,8 @@ class CellCode {
 
   /// The values of a cell code.
   struct Parts {
-    double dz_dx = 0.0;  ///< rise over run eastward [-]
-    double dz_dy = 0.0;  ///< rise over run northward [-]
+    double dz_dx = 0.0;  ///< gradient eastward, rise over run [-]
+    double dz_dy = 0.0;  ///< gradient northward, rise over run [-]
     /// Index of the cost curve, kUnknown or kBlocked.
     std::uint8_t curve = kUnknown;
   };
@@ -136,7 +136,7 @@ class CrossSlope;
 /// Cost of a turn by one radian, or of a change of direction, in addition to the cost of the path length.
 struct TurnCost {
   double cost_J = 0.0;    ///< weighted cost by the cost function, >= 0
-  double energy_J = 0.0;  ///< >= 0
+  double energy_J = 0.0;  ///< energy of the turn, >= 0
   double time_s = 0.0;    ///< >= 0
 };
 
@@ -165,7 +165,8 @@ struct GroundCost {
 /// Slip angle, side force and stability margin of a rover on a slope, on the soil of the terrain class.
 /// Values are NaN on a slope without an equilibrium.
 struct SlopeHold {
-  /// Slip angle: angle between the wheel plane and the direction of travel, left positive.
+  /// Slip angle: angle from the direction of travel to the wheel planes, left positive. It is positive where
+  /// the ground rises to the left; terramech::SlopeState::slip_angle_rad has the opposite sign.
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   /// Greatest side force over load |F|/N of a wheel [-].
   double side_force_over_load = std::numeric_limits<double>::quiet_NaN();
@@ -242,7 +243,7 @@ class TravelCost {
   std::vector<std::shared_ptr<const TravelTable>> states_;
   std::vector<std::shared_ptr<const CrossSlope>> crossings_;
   std::vector<TurnCosts> turns_;
-  double steady_gradient_;  // gradient up to which no heading tips
+  double steady_gradient_;  // gradient up to which the rover tips in no heading
   SoilUncertainty uncertainty_;
 };
 

@@ -34,8 +34,10 @@ inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the s
 inline constexpr std::uint8_t kPull = 0;
 /// First kind of pulls that may only lower an estimate; plus grade of certainty.
 inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;
-inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;  ///< sinkage that may raise an estimate
-inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;     ///< sinkage that may only lower an estimate
+/// Kind of sinkages that may raise an estimate of the strength.
+inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;
+/// Kind of sinkages that may only lower an estimate of the strength.
+inline constexpr std::uint8_t kSinkageLowers = kSinkage + 1;
 inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;      ///< upper bound of DP/W
 inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;  ///< lower bound of z/r
 inline constexpr std::uint8_t kCount = kSinkage + 4;             ///< number of kinds
@@ -72,9 +74,9 @@ struct BlockEvidence {
   float pull = 0.0F;       ///< DP/W from the readings that may raise an estimate [-]; NaN: no such reading
   float variance = 0.0F;   ///< variance of `pull` without the shared error [-]
   float shared = 0.0F;     ///< standard deviation of `pull` by the shared error [-]
-  float weak_pull = 0.0F;  ///< DP/W of the weakest subset of all readings [-]; NaN: no reading
+  float weak_pull = 0.0F;  ///< DP/W of the weakest part of all readings, see summarise() [-]; NaN: no reading
   float weak_variance = 0.0F;  ///< variance of `weak_pull` [-]
-  float sinkage = 0.0F;        ///< z/r of the deepest subset of all readings [-]; NaN: not measured
+  float sinkage = 0.0F;  ///< z/r of the deepest part of all readings, see summarise() [-]; NaN: not measured
   float most_pull = 0.0F;      ///< least upper bound of DP/W [-]; NaN: no bound
   float least_sinkage = 0.0F;  ///< greatest lower bound of z/r [-]; NaN: no bound
 

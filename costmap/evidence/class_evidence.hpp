@@ -129,7 +129,8 @@ class ClassEvidence {
  private:
   void sum(const BlockContribution& contribution, std::int64_t sign);
 
-  // Sums over contributions, in units of 2^-20: the weights, and weight times departure towards strength.
+  // Sums over contributions, in units of 2^-20: sum of the weights, and sum of weight times departure,
+  // positive towards strength.
   struct WeightedSum {
     std::int64_t weight = 0, departure = 0;
     void add(const WeightedSum& other) noexcept;
@@ -143,7 +144,7 @@ class ClassEvidence {
 
   GroundClass ground_;
   std::int64_t shared_ = 0;
-  WeightedSum pull_, sinkage_;  // of contributions that may raise
+  WeightedSum pull_, sinkage_;  // sums of contributions that may raise an estimate
   ByDrive pull_by_drive_, lower_pull_, lower_sinkage_;
   IndependentPlaces places_;
   ClassPosterior posterior_;

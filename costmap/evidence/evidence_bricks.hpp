@@ -63,7 +63,7 @@ class EvidenceBricks {
 
  private:
   struct BlockReadings {
-    std::uint32_t block = 0;  // sort key: place, level, class
+    std::uint32_t block = 0;  // sort key: place in the brick, level, class
     ReadingCount reading;
   };
   struct Brick {

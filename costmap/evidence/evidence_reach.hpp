@@ -35,7 +35,7 @@ class EvidenceReach {
 
   std::shared_ptr<const GroundSite> site_;
   BlockGrid blocks_;
-  std::set<std::pair<int, int>> patches_;  // by row and column
+  std::set<std::pair<int, int>> patches_;  // patches by row and column
   double farthest_m_ = 0.0;
 };
 

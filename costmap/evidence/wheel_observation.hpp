@@ -159,7 +159,8 @@ class WheelObserver {
     double departure = 0.0;  // slope minus the expected gradient of the wheels [-]; NaN: no slope
     // Departure at the reference slip by the side forces, <= 0 [-]; infinite: not known.
     double across = std::numeric_limits<double>::infinity();
-    double share = 1.0;  // thrust of the classes at the wheels' slips over that at the reference slip [-]
+    // thrust of the classes at the slips of the wheels over the thrust at the reference slip [-]
+    double share = 1.0;
     bool standing = false;
   };
 

@@ -92,8 +92,8 @@ class CostCurveTable {
   std::vector<CategoryTable> categories_;
   std::vector<GroundBelief> beliefs_;
   std::vector<GroundBelief> priors_;  // priors of the classes
-  // Use of the index of a class: free, by the class, by another estimate, or by another estimate after
-  // prior() was called for the class.
+  // Use of the index of a class: free; by the prior of the class; by another estimate; by another estimate
+  // although prior() was called for the class.
   enum class Slot : std::uint8_t { Free, Own, Lent, Wanted };
   std::vector<Slot> slots_;
   struct Dearer {
@@ -101,7 +101,7 @@ class CostCurveTable {
     double added_J_per_m;
   };
   std::map<GroundKind, std::uint8_t> numbers_;
-  std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // by curve index and step
+  std::map<std::pair<std::uint8_t, int>, Dearer> dearer_;  // curves of dearer(), by curve index and step
   std::map<PriorKey, Worked> worked_;
   mutable std::shared_ptr<const TravelCost> cost_;
 };

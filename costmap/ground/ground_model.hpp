@@ -35,7 +35,8 @@ struct GroundClass {
 terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
                                     const terramech::MobilityOptions& options = {});
 
-/// Returns mobilityOf().reference() without the other points of the curve, a hundred times as fast.
+/// Returns the result of mobilityOf().reference(), i.e. the quantities at the reference slip 0.5, without
+/// computing the other points of the curve, a hundred times as fast.
 terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
                                          const terramech::MobilityOptions& options = {});
 
@@ -52,7 +53,7 @@ struct SlippingWheel {
   double slip = 0.0;
   /// True if the wheel runs in the rut of an equal wheel; false on undisturbed ground.
   bool in_rut = false;
-  /// Angle from the wheel plane to the direction of travel; limited to 60 degrees.
+  /// Angle from the wheel plane to the direction of travel, left positive; limited to 60 degrees.
   double slip_angle_rad = 0.0;
 };
 
@@ -159,9 +160,9 @@ class GroundModel {
   TravelCost::Limits limits() const;
 
  private:
-  // Quantities computed at construction; Lazy contains those computed at the first use.
+  // Quantities computed at construction; Lazy contains the quantities computed at the first use.
   struct Reference {
-    terramech::MobilityReference fresh, in_rut;  // of one wheel
+    terramech::MobilityReference fresh, in_rut;  // quantities of one wheel on undisturbed ground and in a rut
     GroundBelief prior;
   };
   struct ClassGround;
@@ -172,7 +173,7 @@ class GroundModel {
   const ClassGround& groundOf(int class_index) const;
   ClassGround workedOut(const GroundClass& ground) const;
 
-  // DP/W below which a slope is dangerous (low), and above which it is safe (high).
+  // `low` is the DP/W below which a slope is dangerous, and `high` is the DP/W above which it is safe.
   struct Edges {
     double low, high;
   };
@@ -183,7 +184,7 @@ class GroundModel {
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
   static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
                                     double gradient) noexcept;
-  // Required DP/W: the maximum when driven, the minimum when braked.
+  // Required DP/W: maximum for driven wheels, minimum for braked wheels.
   struct Demand {
     double driven, braked;
   };

@@ -28,7 +28,7 @@ class EvidenceJournal {
     void commit();
 
    private:
-    EvidenceJournal* journal_;  // null after commit()
+    EvidenceJournal* journal_;  // journal; null after commit()
   };
 
   /// Opens or creates the file `path` (no URI, no in-memory database). A journal of Talus 0.1.0 is converted.

@@ -77,7 +77,7 @@ class GroundCurves {
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;
-  std::vector<ClassState> states_;  // class states used for learned_
+  std::vector<ClassState> states_;  // class states from which learned_ was computed
   bool any_learned_ = false;
   std::vector<WheelSwath::Ground> around_;
 };

@@ -79,9 +79,9 @@ class MapCosts {
   std::shared_ptr<MapSurface> surface_;
   std::unique_ptr<GroundCurves> curves_;
   std::unique_ptr<PublishedGrid> published_;
-  std::vector<maps::CellBox> learned_, changed_;    // since the last version
+  std::vector<maps::CellBox> learned_, changed_;    // changes since the newest version
   std::optional<MapSurface::Gradients> gradients_;  // gradients of the next version
-  std::optional<HeightTable> heights_m_;            // heights of the next version, whole map
+  std::optional<HeightTable> heights_m_;            // elevations of the next version, for the whole map
 };
 
 }  // namespace talus::costmap

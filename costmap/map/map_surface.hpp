@@ -121,7 +121,7 @@ class MapSurface {
   HazardLimits limits_;
   ShapeOptions options_;
   bool any_height_ = false;
-  maps::Raster<Hazard> declared_;  // hazards by layers other than elevation and classes
+  maps::Raster<Hazard> declared_;  // hazards by layers other than elevation and terrain classes
   maps::Raster<Hazard> hazards_;
   std::vector<RefusedPlace> refused_;
 };

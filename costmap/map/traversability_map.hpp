@@ -132,7 +132,8 @@ class TraversabilityMap {
   EvidenceField field_;
   std::unique_ptr<MapCosts> costs_;
   std::set<std::string> drives_;
-  std::unique_ptr<std::atomic_flag> changing_;  // indirect, because std::atomic_flag is not movable
+  // allocated separately, because std::atomic_flag is not movable
+  std::unique_ptr<std::atomic_flag> changing_;
 };
 
 }  // namespace talus::costmap

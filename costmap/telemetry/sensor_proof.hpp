@@ -103,8 +103,9 @@ class SensorProof {
   static const Wheel* find(const Run& run, const std::string& wheel);
 
   std::map<std::string, Run> runs_;
-  Response slopes_;                               // of all runs, which share one slope sensor
-  std::map<std::string, StepWatch> level_steps_;  // of each wheel in all runs, which share its slip sensor
+  Response slopes_;  // regression over all runs, which share one slope sensor
+  // detectors by wheel over all runs, because the runs share the slip sensor of the wheel
+  std::map<std::string, StepWatch> level_steps_;
 };
 
 }  // namespace talus::costmap

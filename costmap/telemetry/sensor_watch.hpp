@@ -81,7 +81,7 @@ class SensorWatch {
   std::vector<std::string> findings() const;
 
  private:
-  // One sensor of a wheel: rows, changes of value, and equal values in a row.
+  // One sensor of a wheel: number of rows, of changes of the value, and of consecutive equal values.
   struct Channel {
     std::size_t rows = 0, changes = 0, equal = 0;
   };

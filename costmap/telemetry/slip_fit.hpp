@@ -69,7 +69,8 @@ class SlipFit {
   std::size_t moments() const noexcept { return moments_; }
 
  private:
-  // Moments that are summed: class, rutted, wheels, run, column and row of the square, step of the gradient.
+  // Key of moments that are summed: class, wheels in a rut, wheels, run, column and row of the square, step
+  // of the gradient.
   using Key = std::tuple<int, int, int, std::string, int, int, int>;
   struct Sum {
     double count = 0.0, gradient = 0.0, slip = 0.0;

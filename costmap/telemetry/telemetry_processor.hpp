@@ -103,7 +103,7 @@ class TelemetryProcessor {
   SensorWatch watch_;
   SensorProof proof_;
   SlipFit fit_;
-  std::shared_ptr<const SlipPosterior> fitted_;  // from some of the moments so far
+  std::shared_ptr<const SlipPosterior> fitted_;  // estimate from some of the moments so far
   std::size_t next_fit_ = 0;                     // number of moments at which the fit is repeated
   WheelObserver observer_;
   std::size_t read_ = 0, transferred_ = 0, others_ = 0;

@@ -9,7 +9,7 @@
 
 namespace talus::maps {
 
-/// Coordinate reference system of a map file.
+/// Coordinate reference system (CRS) of a map file.
 struct CoordinateSystem {
   std::string name{};  ///< name of the system, e.g. "WGS 84 / UTM zone 10N"
   Ellipsoid ellipsoid{};

@@ -52,7 +52,7 @@ class LostZeros {
 
   struct Region {
     std::uint32_t parent = 0;
-    std::size_t steps = 0, abrupt = 0;  // counted border steps, and the abrupt ones among them
+    std::size_t steps = 0, abrupt = 0;  // number of counted border steps, and number of abrupt ones
     int first_row = 0, last_row = 0, west = 0, east = 0;
     bool follows = true;  // true if the cells are consecutive in the rows of a rectangle
   };

@@ -15,7 +15,7 @@ struct FramedRaster {
   Dataset raster{};
   int band = 1;
   Grid grid{};           ///< grid of the whole raster in map coordinates
-  bool north_up = true;  ///< true if the first row of the raster is the northernmost
+  bool north_up = true;  ///< true if the first row of `raster` is the northernmost row
   std::optional<Georeference> georeference{};
 };
 
