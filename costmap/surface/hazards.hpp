@@ -71,11 +71,11 @@ class ShapeJudge {
 inline constexpr Hazard kKeptClearOf = Hazard::KeepOut | Hazard::Obstacle | Hazard::Rocks | Hazard::Unknown;
 
 /// Adds Hazard::Near to all cells that have a point closer than limits.inflation_m to a cell with a hazard of
-/// the set `spreading`. If the set contains Unknown, cells that close to the border of the map are marked as
-/// well.
+/// the set `spreading`. If the set contains Unknown, cells closer than limits.inflation_m to the border of
+/// the map are marked, too.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading = kKeptClearOf);
-/// Does the same for the cells of `box` only, which must lie inside the map. Inside the box, the result
-/// equals that of inflate() on all cells.
+/// Adds Hazard::Near like the function above, but to cells of `box` only, which must lie inside the map.
+/// Inside the box, the result equals that of inflate() on all cells.
 void inflate(maps::Raster<Hazard>& hazards, const HazardLimits& limits, Hazard spreading,
              const maps::CellBox& box);
 /// Returns the greatest column or row offset between a cell with a spreading hazard and the cells marked for
