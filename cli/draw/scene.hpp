@@ -50,6 +50,7 @@ struct ValueLayer {
 
 /// Data of the driving cost by heading, for the cell at the centre of each block (cell of a scene).
 struct HeadingCosts {
+  /// Gradients and cost-curve index of the cells.
   maps::Raster<costmap::CellCode> codes;
   maps::Raster<std::uint8_t> categories;  ///< number of terramech::Category, as `talus explain` states it
   std::shared_ptr<const costmap::TravelCost> cost;

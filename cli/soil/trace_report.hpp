@@ -45,6 +45,7 @@ std::string beyondAxleText(const terramech::TableTrace& trace);
 /// Returns one line of text about a soil parameter far from its prior.
 std::string movedText(const terramech::MovedParameter& parameter);
 
+/// Return the whole analysis of a table as JSON, as text, and as an HTML page.
 nlohmann::ordered_json traceJson(const terramech::TableTrace& trace);
 std::string traceText(const terramech::TableTrace& trace);
 std::string tracePage(const terramech::TableTrace& trace);

@@ -92,18 +92,18 @@ class ClassEvidence {
   void refresh();
 
   /// Returns the posterior of the class mean m, computed as follows:
-  ///   - Conjugate normal update with the prior standard deviation mean_std and places that scatter by pull_std
-  ///     (B12).
-  ///   - The departure of m from the prior is multiplied by 0 for one independent place, by 0.5 for two, and by
-  ///     1 from three on: a single place cannot be distinguished from local variation.
-  ///   - m increases, and its standard deviation decreases, only if kPlaces places have contributions that may
-  ///     raise m. The increase is at most mostRise().
-  ///   - The error common to all contributions is one factor b, standard normal, of the regression y_i = m +
-  ///     c_i b of the contributions y_i. With v the variance of m without b, p the variance of the prior and c
-  ///     the mean of c_i, the posterior variance is p (v + c^2) / (p + v + c^2).
-  ///   - Contributions that may not raise m are summed for each drive. m is the least mean over all subsets of
-  ///     these drives, each combined with the contributions that may raise m (B12). A drive whose contributions
-  ///     may not raise m therefore never increases m or changes its standard deviation.
+  ///   - Conjugate normal update with the prior standard deviation mean_std and places that scatter by
+  ///     pull_std (B12).
+  ///   - The departure of m from the prior is multiplied by 0 for one independent place, by 0.5 for two, and
+  ///     by 1 from three on: a single place cannot be distinguished from local variation.
+  ///   - m increases, and its standard deviation decreases, only if kPlaces places have contributions that
+  ///     may raise m. The increase is at most mostRise().
+  ///   - The error common to all contributions is one factor b, standard normal, of the regression
+  ///     y_i = m + c_i b of the contributions y_i. With v the variance of m without b, p the variance of the
+  ///     prior and c the mean of c_i, the posterior variance is p (v + c^2) / (p + v + c^2).
+  ///   - Contributions that may not raise m are summed for each drive. m is the least mean over all subsets
+  ///     of these drives, each combined with the contributions that may raise m (B12). A drive whose
+  ///     contributions may not raise m therefore never increases m or changes its standard deviation.
   ///   - If several drives may raise m, m is at most the mean of each of these drives plus one standard
   ///     deviation without b, because the sensors of any drive may be faulty.
   const ClassPosterior& posterior() const noexcept { return posterior_; }

@@ -13,11 +13,12 @@ namespace talus::costmap {
 /// Computes the drawbar pull over load DP/W of a whole rover whose centre is in a cell, from the estimated
 /// ground under all its wheels.
 ///
-/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean of DP/W
-/// over its wheels, each of which is on the weakest cell within its width. The result is the least mean over
-/// all positions of the rover's centre within the cell (edges, corners and pose error included) and over 16
-/// headings, 11.25 degrees apart, but at most DP/W of the cell itself. The standard deviation of DP/W and the
-/// sinkage of the result are the maxima over all cells that a wheel may touch. Immutable.
+/// The wheels of a rigid rover have equal slip, so their pulls add: DP/W of the rover is the mean over its
+/// wheels, where DP/W of a wheel is that of the weakest cell within the wheel's width. The result is the
+/// least mean over all positions of the rover's centre within the cell (edges, corners and pose error
+/// included) and over 16 headings, 11.25 degrees apart, but at most DP/W of the cell itself. The standard
+/// deviation of DP/W and the sinkage of the result are the maxima over all cells that a wheel may touch.
+/// Immutable.
 class WheelSwath {
  public:
   /// Makes the geometry for a rover on cells with sides of resolution_m [m]. `pose_error_m` >= 0 is the

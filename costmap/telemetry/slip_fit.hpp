@@ -20,8 +20,9 @@ struct SlipPosterior {
   /// By class index: mean departure d of drawbar pull over load DP/W at the reference slip from the class,
   /// with its standard deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
-  /// By class index: `learned` is the same departure with its posterior standard deviation. `if_sound` is the
-  /// departure for a sound sensor, with the priors b normal, 0.03, and -ln s half normal, 0.05 [-].
+  /// By class index: `learned` has the mean of `departure` and the posterior standard deviation. `if_sound`
+  /// is the departure for a sound sensor, i.e. with the priors b normal, 0.03, and -ln s half normal, 0.05
+  /// [-].
   std::vector<Estimate> learned, if_sound;
   /// By class index: amount >= 0 that is subtracted from the departure for decisions. For ground stronger
   /// than its class, it is one posterior standard deviation, at most the departure [-].
@@ -30,21 +31,21 @@ struct SlipPosterior {
 
 /// Bayes estimate of the slip sensor of a drive and of the strength of its ground, from slip over slope. Let
 /// wheels on ground of a class have the pull P(i) at slip i, with the thrust H(i), both over load. Ground
-/// that departs by d at the reference slip has the pull
+/// that departs from the class by d at the reference slip 0.5 has the pull
 ///   P(i) + d H(i)/H(0.5) = g                                                            (1)
 /// on a slope of gradient g, which gives i(g, d). The sensor reads
 ///   b + s i(g, d) + e,  e normal with variance (t^2 p^2 + m^2) (H/(H0.5 P'))^2 + n^2 + (o/P')^2       (2)
 /// with p the standard deviation of the class between places, t the share of p in this ground, and m, n and o
-/// the errors of model, slip and slope. Bias, scale and strength have different effects on slip over slope: b
-/// adds a constant, s is proportional to slip, and d has the greatest effect where the slope requires most of
-/// the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half normal, 0.45; t uniform
-/// over five values. The scale is limited to 1, because a scale above 1 and weaker soil with a greater shear
-/// modulus have the same effect on slip; the ground of such a drive counts as weak. The estimated departure
-/// is its posterior mean. Bias and scale are the means at these departures, so that slips corrected by both
-/// are consistent with the ground. The standard deviation c of the departure is computed from the likelihood
-/// alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class already contains the
-/// prior. A square with sides of 2/3 of the correlation length counts as one reading, independent of the
-/// number of passes (all numbers ours).
+/// the errors of model, slip and slope. Offset b, scale s and departure d have different effects on slip over
+/// slope: b adds a constant, s is proportional to slip, and d has the greatest effect where the slope
+/// requires most of the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half normal,
+/// 0.45; t uniform over five values. The scale is limited to 1, because a scale above 1 and weaker soil with
+/// a greater shear modulus have the same effect on slip; the ground of such a drive counts as weak. The
+/// estimate of d is its posterior mean. The estimates of b and s are the means at these departures, so that
+/// slips corrected by both are consistent with the ground. The standard deviation c of d is computed from the
+/// likelihood alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class already
+/// contains the prior. A square with sides of 2/3 of the correlation length counts as one reading,
+/// independent of the number of passes (all numbers ours).
 class SlipFit {
  public:
   explicit SlipFit(const GroundModel& model) : model_(model) {}
