@@ -90,7 +90,7 @@ struct WheelObservation {
   bool bound = false;       ///< true if the rover may have been stationary: `pull` is then an upper bound
   /// True if the sensors of `pull` are verified; otherwise `pull` may only lower an estimate.
   bool pull_may_raise = false;
-  bool sinkage_may_raise = false;  ///< True if the sensors of the sinkage are verified.
+  bool sinkage_may_raise = false;  ///< true if the sensors of the sinkage are verified
   /// Number of the drive (driveTag()), because the sensors of each drive have their own errors.
   std::uint16_t drive = 0;
   GroundBound here{};  ///< bounds of the ground at this place

@@ -7,23 +7,15 @@ namespace talus::costmap {
 /// Hazards of a cell: reasons other than the soil for which a cell is refused (may not be entered) or its
 /// category is lowered. A value is a set of bits.
 enum class Hazard : std::uint8_t {
-  /// The cell has no elevation, no terrain class, no measurable shape, or no data in a cost layer.
-  /// The gradient exceeds the limit for every heading.
-  /// A step or the relief under the wheels exceeds the ground clearance.
-  /// The roughness exceeds the clearance of the belly.
-  /// The probability of a rock too large to cross is too high.
-  /// The cell lies in a keep-out polygon, or has an infinite cost in a layer.
-  /// The terrain class has no soil, or the ground was declared impassable.
-  /// The cell is closer than half the rover's width to a cell that the whole rover must avoid.
   None = 0,
-  Unknown = 1,
-  Slope = 2,
-  Step = 4,
-  Roughness = 8,
-  Rocks = 16,
-  KeepOut = 32,
-  Obstacle = 64,
-  Near = 128,
+  Unknown = 1,    ///< no elevation, no terrain class, no measurable shape, or no data in a cost layer
+  Slope = 2,      ///< the gradient exceeds the limit for every heading
+  Step = 4,       ///< a step or the relief under the wheels exceeds the ground clearance
+  Roughness = 8,  ///< the roughness exceeds the clearance of the belly
+  Rocks = 16,     ///< the probability of a rock too large to cross is too high
+  KeepOut = 32,   ///< the cell lies in a keep-out polygon, or has an infinite cost in a layer
+  Obstacle = 64,  ///< the terrain class has no soil, or the ground was declared impassable
+  Near = 128,     ///< the cell is closer than half the rover's width to a cell that the rover must avoid
 };
 
 constexpr Hazard operator|(Hazard a, Hazard b) noexcept {

@@ -17,7 +17,7 @@ struct LearnedClass {
   int class_number = 0;  ///< number of the terrain class
   Estimate pull;         ///< DP/W if the offset and scale of the slip sensor are estimated as well
   /// DP/W for a sensor whose offset has the standard deviation 0.03 and whose scale has the standard
-  /// deviation 5 %
+  /// deviation 5 %.
   Estimate if_sound;
   double counted_on = 0.0;  ///< DP/W used for decisions [-]
 };
@@ -49,7 +49,7 @@ struct DriveReport {
 
 /// Options for adding telemetry, and default values for missing columns.
 struct IntakeOptions {
-  double pose_std_m = 0.5;  ///< Standard deviation of positions [m] if the file has no column pose_std_m.
+  double pose_std_m = 0.5;  ///< standard deviation of positions if the file has no column pose_std_m
   /// True if a DriveIntake stores its rows for settle(); one row takes about 400 bytes.
   bool settles = false;
 };

@@ -39,7 +39,7 @@ class SensorProof {
     double torque_pull = 0.0;        ///< drawbar pull over load from torque and sinkage [-]
     /// Thrust of the class at the measured slip over its thrust at the reference slip [-].
     double share = 0.0;
-    bool danger = false;  ///< True if the row indicates danger: it is then used for the position only.
+    bool danger = false;  ///< true if the row indicates danger: it is then used for the position only
   };
 
   /// Least step of the slip on level ground that is detected [-].

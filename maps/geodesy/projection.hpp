@@ -5,10 +5,10 @@ namespace talus::maps {
 /// Map projections of the elevation maps that rovers use. Map files store the numbers.
 enum class ProjectionMethod {
   TransverseMercator = 0,
-  Mercator = 1,  ///< true along the parallel standard_parallel_1_rad, where `scale` is the scale factor
+  Mercator = 1,  ///< `scale` is the scale factor along the parallel standard_parallel_1_rad
   /// PROJ's eqc on a sphere of the equatorial radius; true to scale along standard_parallel_1_rad.
-  /// `scale` is the scale factor along standard_parallel_1_rad; the sign of that parallel selects the pole.
   Equirectangular = 2,
+  /// `scale` is the scale factor along standard_parallel_1_rad; the sign of that parallel selects the pole.
   PolarStereographic = 3,
   LambertConformalConic = 5,  ///< uses standard parallels 1 and 2, which are equal for a single parallel
   /// Projection defined by the WKT only: any other projection, or a datum of Earth other than WGS 84.
