@@ -16,8 +16,8 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
 
 /// Returns the terrain class number `number` for a refined model (soil and effects fitted to wheel data) and
 /// a rover. mean_std is the standard deviation of DP/W at the reference slip by the model's covariance; a
-/// model without a covariance keeps GroundClass's default. Sensor effects are omitted. Gravity is converted,
-/// and exceptions are thrown, as for a soil prior.
+/// model without a covariance keeps GroundClass's default. Sensor effects are omitted. Gravity is converted
+/// as for a soil prior. Throws std::invalid_argument if MobilityCurve rejects the soil or the rover.
 GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

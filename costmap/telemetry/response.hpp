@@ -20,12 +20,12 @@ class Response {
     double variation = 0.0;  ///< least standard deviation of the cause
     double certain = 4.0;    ///< number of standard errors by which the regression slope must exceed `least`
   };
-  /// Returns true if the effect follows the cause: there are at least kEnough pairs, the standard deviation
-  /// of the cause is at least `variation`, and the regression slope exceeds `least` by at least `certain`
-  /// standard errors.
+  /// Returns true if the effect follows the cause: there are at least 12 pairs, the standard deviation of the
+  /// cause is at least `variation`, and the regression slope exceeds `least` by at least `certain` standard
+  /// errors.
   bool follows(const Claim& claim) const noexcept;
-  /// Returns the regression slope with its standard error; not finite for fewer than kEnough pairs or a
-  /// constant cause.
+  /// Returns the regression slope with its standard error; not finite for fewer than 12 pairs or a constant
+  /// cause.
   terramech::Estimate slope() const noexcept;
   /// Returns the mean of effect minus cause; NaN without pairs.
   double meanDifference() const noexcept;
