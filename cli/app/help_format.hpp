@@ -19,8 +19,8 @@ std::size_t endOfTypeName(const std::string& type);
 /// line.
 std::string wrapped(std::string_view text, std::size_t width);
 
-/// Formatter of --help within kHelpWidth: the option and its value are in the left column, then follows the
-/// description with default, choices and exclusions in brackets.
+/// Formatter of --help within kHelpWidth. The left column has the option and its value; the right column has
+/// the description, with default, choices and exclusions in brackets.
 class HelpFormat : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;

@@ -20,7 +20,8 @@ struct SlopeRow {
   /// Equilibria in the interval, including those at which the rover tips.
   std::vector<terramech::SlopeState> states{};
   std::vector<terramech::SlopeState> all{};  ///< equilibria at all tabulated gradients
-  /// Pairs of gradient along the heading and stability margin [rad], over the interval of `states`.
+  /// Stability margins over the interval of `states`, as pairs of the gradient along the heading and the
+  /// margin [rad].
   std::vector<std::pair<double, double>> margins_rad{};
 
   /// Returns true if a gradient along the heading lies within the interval without failure.

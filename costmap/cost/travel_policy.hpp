@@ -18,7 +18,7 @@ struct TravelPolicy {
 
   /// Margin of the category limits, which are tan(slope -+ margin); thesis 3.5: 5 deg.
   double slope_margin_rad = 5.0 * kDegree;
-  /// Sinkage over wheel radius z/r up to which sinkage does not affect the category (thesis 3.5) [-].
+  /// Greatest sinkage over wheel radius z/r that does not affect the category (thesis 3.5) [-].
   double sinkage_threshold = 0.5;
   /// z/r above which ground is dangerous [-]; 0: the clearance of the rover over the wheel radius is used.
   double sinkage_critical = 0.0;

@@ -30,9 +30,10 @@ struct ReadingCount {
 namespace reading_kind {
 inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
 inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
-/// First kind of pulls that may raise an estimate; plus grade of certainty + 8 x grade of shared error.
+/// kPull + g + 8 h is the kind of a pull that may raise an estimate, with the grade of certainty g and the
+/// grade h of the shared error.
 inline constexpr std::uint8_t kPull = 0;
-/// First kind of pulls that may only lower an estimate; plus grade of certainty.
+/// kPullLowers + g is the kind of a pull that may only lower an estimate, with the grade of certainty g.
 inline constexpr std::uint8_t kPullLowers = kGrades * kSharedGrades;
 /// Kind of sinkages that may raise an estimate of the strength.
 inline constexpr std::uint8_t kSinkage = kPullLowers + kGrades;

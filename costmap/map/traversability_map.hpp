@@ -111,10 +111,10 @@ class TraversabilityMap {
   TraversabilityMap moved(maps::Cell tiles, const ProgressMonitor& watch = {}) const;
 
   /// Publishes all changes since the last call as a new version of the cost grid. Recomputes the cells whose
-  /// ground changed and the cells from which a wheel reaches changed ground; shares all other tiles with the
-  /// previous version. Readers do not wait, and a running planner keeps its version. The cost curves have at
-  /// most 254 indices: if no index is free, all cells receive new indices with coarser steps of the estimates
-  /// (GroundKind).
+  /// ground changed and the cells from which a wheel reaches changed ground. Tiles (64x64 cells) without such
+  /// cells are shared with the previous version. Readers do not wait, and a running planner keeps its
+  /// version. The cost curves have at most 254 indices: if no index is free, all cells receive new indices
+  /// with coarser steps of the estimates (GroundKind).
   ///
   /// The costs are bit-identical to those of publishAll(), for any sequence of changes. A cell depends on its
   /// shape, on the rounded state of the terrain classes (ClassEvidence::stateInSteps()) and on the evidence

@@ -22,11 +22,11 @@ struct SensorLimits {
   std::size_t stuck_rows = 25;  ///< number of consecutive equal readings from which a sensor counts as stuck
   /// Share of rows with a changed value above which later equal values of a sensor count as stuck [-].
   double lively = 0.8;
-  /// Least magnitude of the mean difference from the slip of the soil on these slopes that is reported, if it
-  /// also exceeds the scatter [-].
+  /// Least magnitude of the mean slip excess that is reported, if it also exceeds the scatter [-]. Slip
+  /// excess is the measured slip minus the slip of the soil on the same slope.
   double slip_excess = 0.05;
-  /// Least magnitude of the mean difference of the pull from torque and sinkage and the required pull, over
-  /// load, that counts as a bias [-].
+  /// Least magnitude of the mean difference that counts as a bias: pull from torque and sinkage minus
+  /// required pull, over load [-].
   double bias = 0.04;
   std::size_t bias_rows = 30;    ///< least number of rows for the detection of a bias or a slip excess
   double climb = 0.03;           ///< gradient above which a driven wheel cannot slip backwards [-]

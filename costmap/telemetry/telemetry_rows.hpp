@@ -16,7 +16,7 @@ namespace talus::costmap {
 std::span<const std::string_view> usedNumberColumns() noexcept;
 std::span<const std::string_view> usedWordColumns() noexcept;
 
-/// The rows of a telemetry file as readings on a map. Keeps references to the file and the map.
+/// Converts the rows of a telemetry file to readings on a map. Keeps references to the file and the map.
 class TelemetryRows {
  public:
   /// Makes the readings. `pose_std_m` is the position uncertainty [m] of rows without a value in the column

@@ -42,8 +42,9 @@ struct PixelBox {
 
 /// Returns the values of a band in file order, before any conversion; masked pixels and infinities are NaN.
 /// With `overview` > 1, returns the mean of each block of overview x overview pixels, from the overviews
-/// (coarser copies) of the file if present. Width and height of the box must be multiples of `overview` or
-/// less than one multiple. `where` names the file in error messages. @throws InputError with GDAL's message
+/// (coarser copies) of the file if present. The width and the height of the box must each be a multiple of
+/// `overview`, or less than `overview`. `where` names the file in error messages. @throws InputError with
+/// GDAL's message
 std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
                               int overview = 1);
 

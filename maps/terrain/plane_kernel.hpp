@@ -26,7 +26,7 @@ inline constexpr int kPlaneLanes = 8;
 /// footprint is NaN.
 using PlaneKernel = void (*)(const Footprint& footprint, const PlaneRow& row);
 
-/// Plane fits for any processor, and for processors with AVX2; both give bit-identical results.
+/// Fit planes on any processor, and on processors with AVX2; both functions give bit-identical results.
 void fitPlanesBaseline(const Footprint& footprint, const PlaneRow& row);
 void fitPlanesAvx2(const Footprint& footprint, const PlaneRow& row);
 

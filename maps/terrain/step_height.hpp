@@ -45,7 +45,8 @@ inline constexpr int kStepLanes = 8;
 /// height differences within a window (goldberg_2002, wermelinger_2016).
 using StepKernel = void (*)(const StepReach& reach, const StepRows& rows);
 
-/// Step search for any processor, and for processors with AVX2. Both functions give bit-identical results.
+/// Compute the steps on any processor, and on processors with AVX2. Both functions give bit-identical
+/// results.
 void measureStepsBaseline(const StepReach& reach, const StepRows& rows);
 void measureStepsAvx2(const StepReach& reach, const StepRows& rows);
 
