@@ -18,8 +18,8 @@ void writeCategories(const costmap::TraversabilityMap& map, const std::string& p
 std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
 
 /// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Safe cells, and marginal cells if
-/// the map's policy permits them, are free. Dangerous cells are occupied. Other cells are unknown.
-/// Coordinates are those of the map [m]. @throws InputError
+/// the map's policy permits them, are free. Dangerous cells, and other marginal cells, are occupied. Cells of
+/// unknown category are unknown. Coordinates are those of the map [m]. @throws InputError
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml);
 
 }  // namespace talus::cli

@@ -11,11 +11,10 @@ namespace talus::costmap {
 double interpolated(const std::vector<double>& values, double at);
 
 /// Straight climbs (no cross slope) under even wheel loads, for finding the climb with the same cost as a
-/// slope that has also a gradient across the heading.
+/// slope with a gradient across the heading.
 class LevelClimbs {
  public:
-  /// Takes the climbs from the row without a gradient across; climbs steeper than the gradient `last` are
-  /// reduced to `last`.
+  /// Takes the climbs from row 0 (no gradient across); climbs steeper than `last` are reduced to `last`.
   LevelClimbs(const SlopeRow& level, double last);
 
   /// For each equilibrium of a row: `climb` is the additional gradient of the straight climb with the same
@@ -33,8 +32,8 @@ class LevelClimbs {
   std::vector<double> energies_, times_, slips_;
 };
 
-/// Strength of the class's ground without cross slope: `last` is the gradient of the steepest climb without
-/// failure, and `thrust` is the gross thrust over load at the reference slip [-].
+/// Strength of ground without cross slope: gradient `last` of the steepest climb without failure, and gross
+/// `thrust` over load at the reference slip [-].
 struct LevelStrength {
   double last, thrust;
 };

@@ -7,8 +7,8 @@
 
 namespace talus::costmap {
 
-/// Row of slope equilibria: equilibria of the rover at one gradient across the heading, at equally spaced
-/// gradients along the heading.
+/// Slope equilibria of the rover at one gradient across the heading, at equally spaced gradients along the
+/// heading.
 struct SlopeRow {
   double step = 1.0;  ///< step of the gradients along the heading
   /// Interval of gradients along the heading without failure; infinite if no failure lies within the
@@ -33,9 +33,9 @@ struct SlopeRow {
   double margin_rad(double along) const;
 };
 
-/// Solves the slope equilibria at a gradient across the heading for all tabulated gradients along the
-/// heading. If the left and right sides of the rover differ, each equilibrium is that of the less favourable
-/// side: the side that fails, or otherwise the side with the higher energy.
+/// Solves the slope equilibria at a gradient across the heading for all tabulated gradients along. If the
+/// sides of the rover differ, each equilibrium is that of the less favourable side: the side that fails, or
+/// otherwise the side with the higher energy.
 class SlopeRows {
  public:
   /// Uses the gradients along the heading at the multiples of `step` from `low` to `high`, both included.

@@ -20,9 +20,8 @@ struct GroundKind {
   static constexpr int kCoarsest = 3;        ///< highest (coarsest) level
   static constexpr double kPullStep = 0.02;  ///< step of DP/W at level 0 [-]
 
-  /// Index of the terrain class of the ground.
   int class_index = 0;
-  /// Index of the second possible terrain class of the ground; equal to class_index if there is only one.
+  /// second possible terrain class of the ground; equal to class_index if there is only one
   int other_class = 0;
   /// DP/W minus that of the prior, in steps of kPullStep.
   int pull = 0;

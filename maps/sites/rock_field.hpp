@@ -30,9 +30,9 @@ struct RockOptions {
   double greatest_diameter_m = 4.0;
 };
 
-/// Returns random rocks over a grid with the exponential size-frequency distribution F(D) = k exp(-q(k) D)
-/// [golombek_rapp_1997]. F is the fraction of the area covered by rocks with a diameter above D [m]. The
-/// function `abundance` returns the rock abundance k [-] at a point of the grid; q is rockDecay_per_m().
+/// Returns random rocks over a grid with the size-frequency distribution F(D) = k exp(-q(k) D)
+/// [golombek_rapp_1997]. F is the fraction of the area covered by rocks with a diameter above D [m];
+/// abundance(point) returns the rock abundance k [-].
 std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>& abundance,
                             const RockOptions& options);
 
