@@ -21,7 +21,7 @@ struct GroundKind {
   static constexpr double kPullStep = 0.02;  ///< step of DP/W at level 0 [-]
 
   int class_index = 0;
-  /// second possible terrain class of the ground; equal to class_index if there is only one
+  /// Second possible terrain class of the ground; equal to class_index if there is only one.
   int other_class = 0;
   /// DP/W minus that of the prior, in steps of kPullStep.
   int pull = 0;
