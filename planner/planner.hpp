@@ -1,7 +1,7 @@
 #pragma once
 
-/// Entry header of talus::planner: routes by Talus' planners or by a planner from a shared library, and the
-/// independent check of a route.
+/// Umbrella header of talus::planner: planning of routes with Talus' own planners or with a planner from a
+/// shared library, and a check of routes that is independent of the planners.
 
 #include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/cell_judge.hpp>

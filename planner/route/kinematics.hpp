@@ -12,35 +12,38 @@ namespace talus::costmap {
 class GroundModel;
 }
 
-/// Motion constraints of a rover in the plane, and costs of turning.
+/// Constraints on the motion of a rover in the map plane, and costs of turning.
 namespace talus::planner {
 
 using costmap::TurnCost;
 using costmap::TurnCosts;
 
-/// Constraints on the curvature of a route. By default all motions are permitted and turning is free.
+/// Constraints on the curvature of a route, and costs of turning. The default values permit all motions and
+/// free turns.
 struct Kinematics {
-  double turning_radius_m = 0.0;            ///< smallest radius of an arc, 0.001 to 1000; 0: turns in place
-  bool may_reverse = true;                  ///< Reeds-Shepp when true, Dubins when false
-  TurnCosts turns{};                        ///< per radian, on ground not in `turns_by_curve`
-  std::vector<TurnCosts> turns_by_curve{};  ///< by the number of the drive curve
-  TurnCost cusp{};                          ///< change between forward and reverse
-  TurnCost stop{};                          ///< per turn in place: stop, steer the wheels, restart
+  double turning_radius_m = 0.0;  ///< smallest radius of an arc, 0.001 to 1000; 0: the rover turns in place
+  bool may_reverse = true;  ///< true: paths of Reeds and Shepp; false: paths of Dubins, without reversing
+  TurnCosts turns{};        ///< costs of one radian on ground without an entry in `turns_by_curve`
+  std::vector<TurnCosts> turns_by_curve{};  ///< costs of one radian by CellCode::curve()
+  TurnCost cusp{};                          ///< cost of a change between forward and reverse
+  TurnCost stop{};  ///< cost of one turn in place beside its angle: stop, steer the wheels, restart
 
-  /// Returns the costs of one radian of turning on ground with a curve index.
+  /// Returns the costs of one radian of turning on a cell with the cost-curve index `curve`
+  /// (CellCode::curve()).
   const TurnCosts& turnsOn(std::uint8_t curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };
 
-/// Kinematics of the map's rover, with turning costs from the curves of a cost function. A change between
-/// forward and reverse takes the time to drive one wheel radius, a stop for a turn in place 20 s (ours),
-/// which prevents drives with a turn at every cell. Throws std::invalid_argument for an Ackermann rover
-/// without a turning radius.
+/// Returns the kinematics of the rover of `model`, with the turning costs of `cost`. A change between forward
+/// and reverse takes the time in which the rover drives one wheel radius. A stop for a turn in place takes 20
+/// s (ours), which prevents drives with a turn at every cell. Throws std::invalid_argument for an Ackermann
+/// rover without a turning radius.
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost);
 
-/// Shortest paths between poses for a turning radius > 0: Reeds-Shepp with reversing (reeds_shepp_1990,
-/// OMPL's implementation), otherwise Dubins (dubins.hpp). Immutable, safe to share between threads.
+/// Shortest paths between two poses for a turning radius > 0: paths of Reeds and Shepp if the rover may
+/// reverse (reeds_shepp_1990, implementation of OMPL), otherwise paths of Dubins (dubins.hpp). Immutable,
+/// safe to share between threads.
 class ShortestCurves {
  public:
   /// Throws std::invalid_argument for a radius outside 0.001 to 1000 m.
@@ -48,10 +51,11 @@ class ShortestCurves {
   ~ShortestCurves();
   ShortestCurves(ShortestCurves&&) noexcept;
 
-  /// The shortest path between two poses; without reversing unless `may_reverse`.
+  /// Returns the shortest path from pose `from` to pose `to`, with reversing only if Kinematics::may_reverse
+  /// is true.
   std::vector<Arc> operator()(const Pose& from, const Pose& to) const;
 
-  /// The shortest path without reversing.
+  /// Returns the shortest path from `from` to `to` without reversing.
   std::vector<Arc> forward(const Pose& from, const Pose& to) const;
 
  private:
@@ -61,7 +65,7 @@ class ShortestCurves {
   bool may_reverse_;
 };
 
-/// ShortestCurves for a single pair of poses.
+/// Returns the path of ShortestCurves for a single pair of poses.
 std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics);
 
 }  // namespace talus::planner

@@ -8,52 +8,57 @@
 
 namespace talus::planner {
 
-/// A straight motion in the map plane.
+/// Straight motion in the map plane.
 struct Segment {
   maps::Point from;
   maps::Point to;
 };
 
-/// Direction of a motion; east for zero length.
+/// Returns the direction of the motion as a unit vector; east for a motion of zero length.
 costmap::Direction directionOf(const Segment& motion) noexcept;
 
-/// Exact cost of straight motions: integral of TravelCost along the segment, constant within each cell.
+/// Exact cost of straight motions: the integral of TravelCost along the segment. The cost per metre is
+/// constant within each cell.
 ///
-/// A motion that leaves the map, or enters a cell that does not permit the heading, is not allowed (infinite
-/// cost). Cells are closed: a segment through a corner needs both adjacent cells, and a segment along an edge
-/// needs both sides and has the cost of the more expensive side. A segment therefore cannot pass between two
-/// blocked cells that meet at a corner. Traversal of cells: Amanatides & Woo 1987 [amanatides_woo_1987].
-/// Immutable, safe to share between threads.
+/// A motion is not allowed (its cost is infinite) if it leaves the map or passes a cell on a heading that the
+/// cost map does not permit there. Cells are closed sets: a segment through a corner passes all four adjacent
+/// cells, and a segment along an edge passes the cells on both sides and has the cost of the more expensive
+/// side. Therefore no segment passes between two blocked cells that meet at a corner. Cells are traversed
+/// after Amanatides & Woo 1987 [amanatides_woo_1987]. Immutable, safe to share between threads.
 class MotionCost {
  public:
+  /// The map must not be null.
   explicit MotionCost(std::shared_ptr<const costmap::CostGrid> map);
 
-  /// Returns the cost of the motion [J], >= 0; infinite if not allowed; zero for a motion of zero length on
-  /// an allowed cell.
+  /// Returns the cost of the motion [J], >= 0; infinite if the motion is not allowed; 0 for a motion of zero
+  /// length in a cell that permits any heading.
   double operator()(const Segment& motion) const noexcept;
 
-  /// Returns the cost of a polyline [J], including turns between legs; infinite if any part is not allowed;
-  /// zero for fewer than two points.
+  /// Returns the cost of a polyline [J], including the turns between its legs; infinite if a leg or a turn is
+  /// not allowed; 0 for fewer than two points.
   double along(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Returns the sum of the costs of a polyline's legs [J], without turns.
+  /// Returns the sum of the costs of the legs of a polyline [J], without the costs of turns.
   double ofLegs(const std::vector<maps::Point>& points) const noexcept;
 
-  /// Returns the cost [J] of turning at a place from one heading to another by the smaller angle,
-  /// TravelCost::turn() per radian; infinite if the rover tips in a heading in between. Free outside the map.
+  /// Returns the cost [J] of the turn at `place` from heading `from` to heading `to` through the smaller
+  /// angle: TravelCost::turn() times the angle [rad]. Returns infinity if the rover tips at a heading between
+  /// both, and 0 outside the map.
   double turn(maps::Point place, costmap::Direction from, costmap::Direction to) const noexcept;
 
-  /// Returns true if a polyline may turn at an end of this motion: on an edge or a corner, every cell at the
-  /// end must permit the heading. Used by along() at each turn.
+  /// Returns true if a polyline may turn at `end`, one of the two ends of `motion`: every cell that contains
+  /// `end` (two cells on an edge, four at a corner) permits the heading of the motion. along() checks this at
+  /// each turn.
   bool turnAllowed(const Segment& motion, maps::Point end) const noexcept;
 
-  /// Returns true if every cell at a place permits the heading (unit vector): two cells on an edge, four on a
-  /// corner.
+  /// Returns true if every cell that contains `place` permits `heading` (unit vector). A point on an edge
+  /// belongs to two cells, a point at a corner to four.
   bool headingAllowed(maps::Point place, costmap::Direction heading) const noexcept;
 
-  /// Returns true if the cell of this point permits any heading.
+  /// Returns true if the cell that contains `place` permits at least one heading.
   bool allowed(maps::Point place) const noexcept;
 
+  /// Returns the cost map.
   const costmap::CostGrid& map() const noexcept { return *map_; }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace talus::planner {
 
-/// A plan without a route, with status and reason.
+/// Returns a plan without a route, with the given status and reason.
 inline Plan failedPlan(RouteStatus status, std::string reason) {
   Plan plan;
   plan.status = status;
@@ -17,13 +17,14 @@ inline Plan failedPlan(RouteStatus status, std::string reason) {
   return plan;
 }
 
-/// The failed plan for a stopped search: Cancelled or TimedOut.
+/// Returns the failed plan of a search that `stop` ended: status Cancelled or TimedOut.
 inline Plan cancelledPlan(const StopCheck& stop) {
   if (stop.cancelled()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
   return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; increase it");
 }
 
-/// Returns the plan, or NoneFound if its cost is infinite because a turn between legs tips the rover.
+/// Returns the plan unchanged, or a plan with status NoneFound if the cost of the plan is infinite. The cost
+/// of a Found plan is infinite if the rover would tip during a turn between two legs.
 inline Plan withoutTipping(Plan plan) {
   if (plan.status != RouteStatus::Found || std::isfinite(plan.cost_J)) return plan;
   return failedPlan(RouteStatus::NoneFound,

@@ -15,43 +15,48 @@
 
 namespace talus::planner {
 
-/// Input of a planner.
+/// Planning problem: the input of a planner. Points are map coordinates [m].
 struct Problem {
-  std::shared_ptr<const costmap::CostGrid> map;  ///< version of the map; fixed during planning
-  maps::Point start;
-  maps::Point goal;
-  std::vector<maps::Point> other_goals{};  ///< alternative ends of the route, for NamedPlanner
-  double goal_tolerance_m = 0.0;           ///< permitted distance of the end from the goal, >= 0
-  std::vector<maps::Point> via{};          ///< to be passed in this order
-  double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0
-  std::uint64_t seed = 1;                                         ///< same seed, same route
-  int threads = 1;                                                ///< >= 1; does not affect the result
-  /// Also compute an improved lower bound and search other corridors, which takes a multiple of the time of a
-  /// field; otherwise a simple bound.
+  /// Version of the cost map, constant during planning; not null.
+  std::shared_ptr<const costmap::CostGrid> map;
+  maps::Point start;                       ///< start of the route
+  maps::Point goal;                        ///< goal of the route
+  std::vector<maps::Point> other_goals{};  ///< alternative goals; only NamedPlanner uses them
+  double goal_tolerance_m = 0.0;           ///< permitted distance of the end of the route from the goal, >= 0
+  std::vector<maps::Point> via{};          ///< via points, through which the route passes in this order
+  double time_limit_s = std::numeric_limits<double>::infinity();  ///< time limit of planning, > 0
+  std::uint64_t seed = 1;  ///< seed of random numbers; equal seeds give equal routes
+  int threads = 1;         ///< number of threads, >= 1; does not affect the result
+  /// True: the planner also computes an improved lower bound and searches other corridors, which takes
+  /// several times as long as the cost-to-go field. False: the planner computes a simple lower bound.
   bool prove = false;
-  /// Causes of completely refused cells, to name the obstruction. If empty, all causes are assigned to
-  /// hazards. Must outlive planning.
+  /// Causes for which the rover may not enter cells on any heading, used to describe an obstruction. If
+  /// empty, every such cell is attributed to hazards. The function must outlive planning.
   HazardsOf hazards{};
-  bool whole_field = false;  ///< compute the complete field even on large maps (NamedPlanner)
-  ProgressMonitor watch{};
-  /// Heading at the start, for planners of drives; empty: any.
+  bool whole_field = false;  ///< true: compute the whole cost-to-go field even on large maps (NamedPlanner)
+  ProgressMonitor watch{};   ///< receives the progress and requests a stop
+  /// Heading of the rover at the start, for planners of drives (routes with a turning radius); empty: any
+  /// heading.
   std::optional<double> start_heading_rad{};
-  std::optional<double> goal_heading_rad{};  ///< heading at the goal; empty: any
-  Kinematics kinematics{};                   ///< motion constraints, for planners of drives
+  /// Heading of the rover at the goal, for planners of drives; empty: any heading.
+  std::optional<double> goal_heading_rad{};
+  Kinematics kinematics{};  ///< constraints on the motion of the rover, for planners of drives
 };
 
-/// Result of a planner: a polyline, which annotated() converts to a Route.
+/// Result of a planner: a polyline in the map plane. annotated() converts a plan to a Route.
 struct Plan {
   RouteStatus status = RouteStatus::NoneFound;
-  std::string reason;               ///< reason and remedy if there is no route; empty when Found
-  std::vector<maps::Point> points;  ///< start, turns, goal
-  double cost_J = std::numeric_limits<double>::infinity();  ///< exact cost by MotionCost
-  double lower_bound_J = 0.0;                               ///< no route has a lower cost
-  double proof_s = 0.0;      ///< time used for Problem::prove: lower bound and search of other corridors
-  std::size_t goal = 0;      ///< index of the reached goal: 0 is Problem::goal, then the other goals in order
-  bool interrupted = false;  ///< a stop was requested; route and bound are the best so far
-  std::optional<Obstruction> obstruction{};  ///< if NoRoute, and two required places are disconnected
-  PosePath drive{};  ///< planners of drives: `points` are its chords; otherwise without legs
+  std::string reason;               ///< reason and remedy if there is no route; empty if the status is Found
+  std::vector<maps::Point> points;  ///< vertices of the polyline, from start to goal
+  /// Exact cost of the polyline by MotionCost, or of the drive by PoseCost.
+  double cost_J = std::numeric_limits<double>::infinity();
+  double lower_bound_J = 0.0;  ///< proven lower bound of the cost of every route of the problem
+  double proof_s = 0.0;        ///< time used for Problem::prove
+  std::size_t goal = 0;        ///< index of the reached goal: 0 is Problem::goal, k > 0 is other_goals[k - 1]
+  bool interrupted = false;    ///< true: a stop was requested; route and bound are the best found until then
+  std::optional<Obstruction> obstruction{};  ///< reason of NoRoute, if two required points are not connected
+  /// Drive with arcs and turns in place, of which `points` are the chords; no legs for a polyline.
+  PosePath drive{};
 };
 
 }  // namespace talus::planner

@@ -15,127 +15,137 @@
 
 namespace talus::planner {
 
-/// Result status of planning.
+/// Status of a plan.
 enum class RouteStatus {
-  Found,         ///< a route that satisfies every constraint along its whole length
-  NoRoute,       ///< start and goal are valid but not connected: proven for all headings
-  NoneFound,     ///< no route was found, without proof
-  StartInvalid,  ///< the start is outside the map or on a cell that no heading may enter
-  GoalInvalid,   ///< the goal or a via point is outside the map or on such a cell
-  TimedOut,      ///< the time limit passed before any route was found
-  Cancelled,     ///< the caller requested a stop
+  Found,         ///< the route satisfies every constraint of the map along its whole length
+  NoRoute,       ///< start and goal are valid, but no route connects them: proven for all headings
+  NoneFound,     ///< the search found no route; a route may exist
+  StartInvalid,  ///< the start lies outside the map or in a cell that the rover may not enter on any heading
+  GoalInvalid,   ///< the goal or a via point lies outside the map or in such a cell
+  TimedOut,      ///< the time limit passed before a route was found
+  Cancelled,     ///< the caller requested a stop before a route was found
 };
 
 /// Returns the name of the status in files and JSON: "found", "no_route", "none_found", "start_invalid",
 /// "goal_invalid", "timed_out", "cancelled".
 std::string_view name(RouteStatus status) noexcept;
 
-/// A constraint that can block all routes.
+/// Constraint of the map that can block all routes.
 enum class Constraint {
-  Pitch,    ///< slope along the heading, limit of the rover
-  Roll,     ///< slope across the heading, limit of the rover
-  Soil,     ///< strength of soil or motors, or policy, on a slope
-  Hazard,   ///< hazards, keep-out areas and the clearance around them
+  Pitch,    ///< limit of the rover for the slope along the heading
+  Roll,     ///< limit of the rover for the slope across the heading
+  Soil,     ///< soil strength, motor torque or travel policy does not permit the slope
+  Hazard,   ///< hazards, keep-out areas, and the clearance around both
   Unknown,  ///< unobserved ground
-  Rim,      ///< clearance from the rim of the map
-  Slope,    ///< limits of the rover and soil together; neither alone suffices
+  Rim,      ///< required clearance from the edge of the map
+  Slope,    ///< Pitch, Roll and Soil must be removed together
 };
 
-/// Returns the name of a constraint in files and JSON: "pitch", "roll", "soil", "hazard", "unknown", "rim",
+/// Returns the name of the constraint in files and JSON: "pitch", "roll", "soil", "hazard", "unknown", "rim",
 /// "slope".
 const char* name(Constraint constraint) noexcept;
 
-/// Returns the name of a hazard in files and JSON: "keep_out" (or refused by a layer), "impassable_class",
-/// "rocks", "step", "roughness", otherwise "".
+/// Returns the name of the hazard in files and JSON: "keep_out" (also for a cell that a cost layer excludes),
+/// "impassable_class", "rocks", "step", "roughness"; "" for any other hazard.
 const char* name(costmap::Hazard hazard) noexcept;
 
-/// Cause why no heading may enter a cell: costmap::MapSurface::hazards() of the map from which the costs were
-/// computed.
+/// Function that returns the hazard for which the rover may not enter a cell on any heading. It is
+/// costmap::MapSurface::hazards() of the map from which the costs were computed.
 using HazardsOf = std::function<costmap::Hazard(maps::Cell)>;
 
-/// Reason why two places are not connected.
+/// Reason why no route connects two points, here called start and goal.
 struct Obstruction {
-  std::size_t cells_from_start = 0;  ///< cells reachable from the start
-  std::size_t cells_to_goal = 0;     ///< cells from which the goal may be reached
-  maps::Point last{};                ///< closest cell of the first set: its centre
-  maps::Point first{};               ///< closest cell of the second set
-  bool tried = false;                ///< true if constraints were tested separately
-  /// First constraint whose removal opens a route; empty if no single constraint suffices.
+  std::size_t cells_from_start = 0;  ///< number of cells reachable from the start
+  std::size_t cells_to_goal = 0;     ///< number of cells from which the goal is reachable
+  /// Centre of the cell reachable from the start that is closest to the cells of cells_to_goal.
+  maps::Point last{};
+  /// Centre of the cell of cells_to_goal that is closest to the cells of cells_from_start.
+  maps::Point first{};
+  bool tried = false;  ///< true if the search was repeated with single constraints removed
+  /// First constraint whose removal opens a route; empty if the removal of no single constraint opens a
+  /// route.
   std::optional<Constraint> lifting{};
-  /// If `lifting` is Hazard: the kind whose removal alone, with its clearance, opens a route; empty if
-  /// several kinds must be removed. If `lifting` is Slope: Step means that slopes and steps must be removed
-  /// together.
+  /// If `lifting` is Hazard: the kind of hazard whose removal, with its clearance, opens a route; empty if
+  /// several kinds must be removed. If `lifting` is Slope, the value Step means that slope limits and steps
+  /// must be removed together.
   std::optional<costmap::Hazard> hazard{};
 };
 
-/// Value of an unknown quantity, such as a layer that the map lacks.
+/// Value of a quantity that is not known, for example because the map lacks a layer.
 inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// State of the rover at a point of a route, moving on to the next point (at the last point: as it arrived).
-/// Slip, sinkage, torque, margin and category belong to the motion that leaves the vertex.
+/// State of the rover at a vertex of a route. Slopes, slip, sinkage, torque, margin and category apply to the
+/// motion from this vertex to the next vertex; at the last vertex, to the motion that ends there.
 struct RouteVertex {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double elevation_m = kNotKnown;           ///< ground elevation; NaN: unknown
-  double heading_rad = 0.0;                 ///< counter-clockwise from x (east), (-pi, pi]
-  double slope_along_rad = 0.0;             ///< climbing > 0
-  double slope_across_rad = 0.0;            ///< left side higher > 0
-  double slip = kNotKnown;                  ///< [-], driven > 0, braked < 0
-  double slip_angle_rad = kNotKnown;        ///< from the wheel planes to the direction of travel, left > 0
-  double side_force_over_load = kNotKnown;  ///< largest of all wheels, over the load of the wheel [-]
-  double stability_margin_rad = kNotKnown;  ///< additional tilt until the rover tips
-  double sinkage_m = kNotKnown;             ///< sinkage of one wheel, >= 0
-  double torque_Nm = kNotKnown;             ///< torque of one wheel
-  double drawbar_pull_margin = kNotKnown;   ///< available DP/W minus required DP/W, tan(slope) [-]
-  terramech::Category category = terramech::Category::Unknown;
-  double energy_J = 0.0;               ///< from the start to this vertex
-  double time_s = 0.0;                 ///< from the start to this vertex
-  double immobilisation_risk = 0.0;    ///< probability of immobilisation between the start and this vertex, 0
-                                       ///< to 1
-  double hazard_per_m = 0.0;           ///< hazard rate of immobilisation after this vertex, for independent
-                                       ///< metres
-  int soil_class = 0;                  ///< class of the ground in the model
-  double shared_variance_share = 0.0;  ///< share of the pull variance common to all ground of the class
-  bool reverse = false;                ///< reverse motion: heading_rad is opposite to the motion
-  double curvature_1_m = 0.0;          ///< curvature of the motion after this vertex, left > 0
-  double turn_rad = 0.0;               ///< turn in place before the next motion, left > 0
+  double x_m = 0.0;                   ///< map coordinate, east
+  double y_m = 0.0;                   ///< map coordinate, north
+  double elevation_m = kNotKnown;     ///< ground elevation; NaN: unknown
+  double heading_rad = 0.0;           ///< heading of the rover, counter-clockwise from x (east), (-pi, pi]
+  double slope_along_rad = 0.0;       ///< inclination along the direction of motion, climbing > 0
+  double slope_across_rad = 0.0;      ///< inclination across the direction of motion, left side higher > 0
+  double slip = kNotKnown;            ///< wheel slip [-], driven > 0, braked < 0
+  double slip_angle_rad = kNotKnown;  ///< angle from the wheel planes to the direction of travel, left > 0
+  double side_force_over_load = kNotKnown;  ///< largest |side force| / load of all wheels [-]
+  double stability_margin_rad = kNotKnown;  ///< additional tilt at which the rover tips
+  double sinkage_m = kNotKnown;             ///< wheel sinkage, >= 0
+  double torque_Nm = kNotKnown;             ///< drive torque of one wheel
+  /// Available DP/W (drawbar pull over load) minus required DP/W = tan(slope) [-].
+  double drawbar_pull_margin = kNotKnown;
+  terramech::Category category = terramech::Category::Unknown;  ///< traversability category of the motion
+  double energy_J = 0.0;                                        ///< energy from the start to this vertex
+  double time_s = 0.0;  ///< driving time from the start to this vertex
+  /// Probability of immobilisation between the start and this vertex, [0, 1].
+  double immobilisation_risk = 0.0;
+  /// Rate of immobilisation [1/m] after this vertex, if every metre of soil is independent.
+  double hazard_per_m = 0.0;
+  int soil_class = 0;  ///< number of the terrain class of the ground
+  /// Share of the variance of DP/W that is common to all ground of the class, [0, 1].
+  double shared_variance_share = 0.0;
+  bool reverse = false;  ///< true: the rover drives in reverse, and heading_rad is opposite to the motion
+  double curvature_1_m = 0.0;  ///< curvature [1/m] of the motion after this vertex, left > 0
+  double turn_rad = 0.0;       ///< angle of the turn in place at this vertex, left > 0
 };
 
-/// Number of manoeuvres, and curvature, of a drive.
+/// Number of manoeuvres of a drive (a route with arcs, reversing and turns in place), and its largest
+/// curvature.
 struct RouteShape {
-  int cusps = 0;  ///< changes between forward and reverse
-  int turns_in_place = 0;
-  double turned_rad = 0.0;         ///< sum of all changes of heading
-  double max_curvature_1_m = 0.0;  ///< at most 1 / turning radius
+  int cusps = 0;                   ///< number of changes between forward and reverse
+  int turns_in_place = 0;          ///< number of turns in place
+  double turned_rad = 0.0;         ///< sum of the magnitudes of all changes of heading
+  double max_curvature_1_m = 0.0;  ///< largest magnitude of curvature, at most 1 / turning radius
 };
 
-/// Totals and extremes of a route.
+/// Totals and extreme values of a route.
 struct RouteSummary {
-  double cost = 0.0;                  ///< under the cost function [J]: energy + weighted time and risk
-  double energy_J = 0.0;              ///< energy of driving
-  double time_s = 0.0;                ///< time of driving
-  double length_m = 0.0;              ///< along the map plane
-  double max_slip = 0.0;              ///< largest magnitude along the route [-]
-  double max_slope_rad = 0.0;         ///< steepest inclination along the heading, as a magnitude
-  double max_slope_across_rad = 0.0;  ///< steepest inclination across the heading, as a magnitude
-  double max_slip_angle_rad = 0.0;    ///< largest magnitude along the route
-  double lower_bound = 0.0;           ///< no route between these places has a lower cost; same unit as cost
-  double gap = 0.0;                   ///< proven optimality gap cost / lower_bound - 1 [-]
-  double proof_s = 0.0;  ///< time for PlanRequest::prove [s]: lower bound and search of other corridors
-  std::string planner;   ///< name of the planner
-  std::optional<RouteShape> drive{};  ///< if the route observes a turning radius
+  double cost = 0.0;           ///< value of the cost function [J]: energy + weighted time + weighted risk
+  double energy_J = 0.0;       ///< total energy
+  double time_s = 0.0;         ///< total driving time
+  double length_m = 0.0;       ///< length in the map plane
+  double max_slip = 0.0;       ///< largest magnitude of wheel slip [-]
+  double max_slope_rad = 0.0;  ///< largest magnitude of the inclination along the heading
+  double max_slope_across_rad = 0.0;  ///< largest magnitude of the inclination across the heading
+  double max_slip_angle_rad = 0.0;    ///< largest magnitude of the slip angle
+  /// Proven lower bound of the cost of all routes between these points, same unit as cost.
+  double lower_bound = 0.0;
+  double gap = 0.0;  ///< proven optimality gap cost / lower_bound - 1 [-]
+  /// Time [s] for PlanRequest::prove: improved lower bound and search of other corridors.
+  double proof_s = 0.0;
+  std::string planner;                ///< name of the planner
+  std::optional<RouteShape> drive{};  ///< manoeuvres of the route; empty if the planner has no turning radius
 };
 
-/// A route with all data for reports and controllers.
+/// Result of planning with all data for reports and controllers.
 struct Route {
   RouteStatus status = RouteStatus::NoneFound;
-  std::string reason;        ///< reason and remedy in one line if there is no route; empty when Found
-  bool interrupted = false;  ///< a stop was requested; the route is the best so far
-  std::optional<Obstruction> obstruction{};  ///< if NoRoute, and two required places are disconnected
-  std::size_t goal = 0;  ///< index of the reached goal: 0 is PlanRequest::goal, then the other goals in order
-  std::vector<RouteVertex> vertices;
+  /// One line with the reason and a remedy if there is no route; empty if the status is Found.
+  std::string reason;
+  bool interrupted = false;  ///< true: a stop was requested, and the route is the best found until then
+  std::optional<Obstruction> obstruction{};  ///< reason of NoRoute, if two required points are not connected
+  std::size_t goal = 0;  ///< index of the reached goal: 0 is PlanRequest::goal, k > 0 is other_goals[k - 1]
+  std::vector<RouteVertex> vertices;  ///< vertices from start to goal
   RouteSummary summary;
-  std::shared_ptr<const Route> refused{};  ///< route that failed the check: an error of the planner
+  /// Route rejected by the route check, which is an error of the planner; else null.
+  std::shared_ptr<const Route> refused{};
 };
 
 }  // namespace talus::planner

@@ -11,32 +11,33 @@
 
 namespace talus::planner {
 
-/// An input file of a route.
+/// Input file of a route.
 struct RouteInput {
-  std::string file;  ///< name without folder
-  std::string
-      path{};  ///< as given to the planner, relative to its working folder; empty if the route has none
-  std::string sha256{};  ///< SHA-256 of the content, hexadecimal
+  std::string file;      ///< file name without folder
+  std::string path{};    ///< path given to the planner, relative to its working folder; empty: unknown
+  std::string sha256{};  ///< SHA-256 of the file content, hexadecimal
 };
 
-/// Data needed to reproduce a route.
+/// Data with which a route can be computed again.
 struct RouteOrigin {
-  std::vector<RouteInput> files;  ///< files that were read
-  std::uint64_t seed = 1;
+  std::vector<RouteInput> files;     ///< files that the planner read
+  std::uint64_t seed = 1;            ///< seed of the planner
   std::string rover{};               ///< name of the rover
-  std::vector<std::string> soils{};  ///< names of the soils of the map's classes
-  std::string command{};             ///< shell command that creates the route; empty if unknown
+  std::vector<std::string> soils{};  ///< names of the soils, one per terrain class of the map
+  std::string command{};             ///< shell command that computes the route; empty if unknown
 };
 
-/// The origin as "inputs" of a route file.
+/// Returns the origin in the JSON form of "inputs" of a route file.
 nlohmann::ordered_json originJson(const RouteOrigin& origin);
 
-/// Summary fields of a route with its status; null without a route, with the cause ("obstruction") if known.
+/// Returns the status and the summary of the route. If there is no route, the summary values are null, and
+/// "obstruction" contains the cause if it is known.
 nlohmann::ordered_json summaryJson(const Route& route);
 
-/// The route as a GeoJSON FeatureCollection: longitude, latitude and elevation if the map has a CRS,
-/// otherwise map coordinates [m] and "crs": "local". A LineString needs two positions; the position of a
-/// single-vertex route is repeated. Layout: docs of `talus plan`.
+/// Returns the route in the form of a GeoJSON FeatureCollection. Positions are longitude, latitude and
+/// elevation if the map has a CRS, otherwise map coordinates [m] with "crs": "local". A LineString needs two
+/// positions; therefore the position of a route with a single vertex is repeated. The layout is documented at
+/// `talus plan`.
 nlohmann::ordered_json routeGeoJson(const Route& route, const maps::ElevationMap& map,
                                     const RouteOrigin& origin);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Entry header of talus::simulation: traverse simulations on soil that differs from the planner's map.
+/// Umbrella header of talus::simulation: simulated drives of a rover on true soils that may differ from the
+/// soils of the planner's map.
 
 #include <talus/planner/planner.hpp>
 #include <talus/planner/simulation/drive/simulation_rates.hpp>
