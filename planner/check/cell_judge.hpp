@@ -8,32 +8,33 @@
 
 namespace talus::planner {
 
-/// Summary of a cell for a planner without headings.
+/// Summary of a cost-grid cell over all headings, for planners without headings.
 struct CellJudgement {
-  /// Restriction of the allowed headings.
+  /// Restriction of the headings on which the rover may cross the cell.
   enum class Kind : std::uint8_t {
-    Unknown,     ///< not observed, and not drivable under the map's policy
+    Unknown,     ///< the cell was not observed, and the policy of the map does not permit unknown ground
     Refused,     ///< no heading is allowed
-    Restricted,  ///< some headings are not allowed
+    Restricted,  ///< some headings are allowed
     Open         ///< every heading is allowed
   };
   Kind kind = Kind::Unknown;
-  /// Highest cost per metre of 64 headings [J/m]; infinite unless Open.
+  /// Highest cost per metre over 64 equally spaced headings [J/m]; infinite unless `kind` is Open.
   float highest_J_per_m = std::numeric_limits<float>::infinity();
 };
 
-/// Summarises cells under the drive cost of a map. The allowed headings are exact (allowedHeadings()) and
-/// cached by cell code. Not thread-safe.
+/// Computes the summaries of cells for the cost function of a map. The allowed headings are exact
+/// (allowedHeadings()) and are kept by cell code (gradient and cost-curve index of a cell). Not thread-safe.
 class CellJudge {
  public:
   /// Throws std::invalid_argument if the cost is null.
   explicit CellJudge(std::shared_ptr<const costmap::TravelCost> cost);
   ~CellJudge();
 
-  /// Restriction and cost of a cell.
+  /// Returns the restriction and the highest cost of a cell with the given code.
   CellJudgement of(costmap::CellCode cell);
 
-  /// Lowest cost per metre on level ground over all curves [J/m]; infinite if level driving is not allowed.
+  /// Returns the lowest cost per metre on level ground of all cost curves [J/m]; infinite if the rover may
+  /// not drive on level ground.
   float level_J_per_m() const noexcept { return level_J_per_m_; }
 
  private:

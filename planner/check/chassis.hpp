@@ -9,66 +9,72 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
-/// Checks pitch, roll and ground clearance of a rover along a motion, by lower and upper bounds.
+/// Check of pitch, roll and ground clearance of a rover along a motion, with lower and upper bounds.
 namespace talus::planner {
 
 /// Connection of the wheels to the body.
 enum class Suspension {
-  Rigid,        ///< wheels fixed to the body; the body rests on three wheels
-  RockerBogie,  ///< three axles: a bogie connects front and middle, a rocker the bogie and the rear; all
-                ///< wheels touch the ground
+  Rigid,  ///< wheels fixed to the body; the body rests on three wheels
+  /// Three axles: the bogie joins front and middle wheels, the rocker joins bogie and rear wheel; all wheels
+  /// touch the ground.
+  RockerBogie,
 };
 
-/// "rigid", "rocker-bogie".
+/// Returns "rigid" or "rocker-bogie".
 std::string_view name(Suspension suspension) noexcept;
 
-/// Closed interval.
+/// Closed interval from `low` to `high`.
 struct Bounds {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Lower and upper bounds of pitch and roll, and lower bound of the clearance, of a rover at a pose.
+/// Lower and upper bounds of pitch and roll, and lower bound of the ground clearance, of a rover at a pose.
 struct Stance {
-  Bounds pitch_rad;          ///< pitch of the body's long axis, nose up > 0
-  Bounds roll_rad;           ///< roll of the body's cross axis, left side up > 0
-  double clearance_m = 0.0;  ///< lower bound of the belly's height above ground; < 0: contact possible
+  Bounds pitch_rad;  ///< pitch of the longitudinal axis of the body, nose up > 0
+  Bounds roll_rad;   ///< roll of the lateral axis of the body, left side up > 0
+  /// Lower bound of the height of the belly above the ground; < 0: contact is possible.
+  double clearance_m = 0.0;
 };
 
-/// Conservative stance of a rover over an elevation raster, interpolated bilinearly between cell centres,
-/// after ACE (otsu_2019). Bounds of each wheel's height are the lowest and highest ground in the box that its
-/// contact point cannot leave while the body tilts within its limits. Bounds of pitch, roll and body height
-/// follow from the wheel heights; the belly is compared with the highest ground below each of its sections.
-/// Wheels are evenly spaced in two rows and touch the ground at a point below their centre (the smoothing
-/// effect of the wheel radius is neglected). Pitch and roll are asin(rise) of the long and cross axes. The
-/// bounds are valid for tilts within the rover's limits. Immutable; safe to share between threads.
+/// Conservative bounds of the stance (pitch, roll and ground clearance) of a rover on an elevation raster,
+/// which is interpolated bilinearly between cell centres, after ACE (otsu_2019). The bounds of the height of
+/// a wheel are the lowest and highest ground in a box. The contact point of the wheel cannot leave this box
+/// while the body tilts within its limits. Bounds of pitch, roll and body height follow from the wheel
+/// heights; the belly is compared with the highest ground below each of its sections. Wheels are evenly
+/// spaced in two rows and touch the ground at a point below their centre (the smoothing effect of the wheel
+/// radius is neglected). Pitch and roll are asin(rise) of the longitudinal and lateral axes. The bounds are
+/// valid for tilts within the limits of the rover. Immutable; safe to share between threads.
 class Chassis {
  public:
-  /// Throws std::invalid_argument for a rocker-bogie without three axles. Keeps a reference to the raster.
-  /// The raster contains elevations [m]; NaN: unknown.
+  /// `elevation_m` contains elevations [m], NaN if unknown; the raster must outlive the object. Throws
+  /// std::invalid_argument for a rocker-bogie without three axles.
   Chassis(const maps::Raster<float>& elevation_m, const terramech::Rover& rover, Suspension suspension);
 
-  /// Distance of the represented poses from a pose: a shift of the whole rover, and the displacement of its
-  /// farthest wheel by a turn.
+  /// Deviation of a pose from the pose at which the bounds are computed. The bounds are valid for all poses
+  /// within the slack, so that a finite number of poses covers a continuous motion.
   struct Slack {
-    double shift_m = 0.0;  ///< >= 0
-    double turn_m = 0.0;   ///< >= 0
+    double shift_m = 0.0;  ///< largest translation of the rover, >= 0
+    /// Largest displacement by rotation of the wheel farthest from the centre of the rover, >= 0.
+    double turn_m = 0.0;
   };
 
-  /// Returns the bounds of pitch, roll and clearance over all poses within the slack; empty if the ground
-  /// under the rover is not known.
+  /// Returns the bounds of pitch, roll and clearance over all poses within `slack` of `pose`; empty if the
+  /// ground under the rover is not known.
   std::optional<Stance> stance(const Pose& pose, const Slack& slack) const;
-  /// Returns the bounds at the pose itself, without slack.
+  /// Returns the bounds at `pose` without slack.
   std::optional<Stance> stance(const Pose& pose) const { return stance(pose, {0.0, 0.0}); }
 
-  /// Reason why the rover may not stand at the pose; empty if allowed.
+  /// Returns the reason why the rover may not stand at a pose within `slack` of `pose`; empty if all poses
+  /// are allowed.
   std::string_view refusal(const Pose& pose, const Slack& slack) const;
-  /// Returns the reason at the pose itself, without slack; empty if allowed.
+  /// Returns the reason at `pose` without slack; empty if the pose is allowed.
   std::string_view refusal(const Pose& pose) const { return refusal(pose, {0.0, 0.0}); }
 
-  /// Violations along a drive, including arcs and turns in place, and along a polyline with turns in place at
-  /// its corners. The slack of the checked poses covers every pose between them.
+  /// Returns the violations along a drive with arcs and turns in place. The slack of the checked poses covers
+  /// every pose between them.
   std::vector<Violation> violations(const PosePath& drive) const;
+  /// Returns the violations along a polyline, with a turn in place at each vertex.
   std::vector<Violation> violations(const std::vector<maps::Point>& route) const;
 
  private:
@@ -80,7 +86,7 @@ class Chassis {
     double pitch_rad, roll_rad;  // largest magnitudes
   };
 
-  // Plane of height 0 at a place.
+  // Plane near the ground under the rover, relative to which heights are measured.
   struct Plane {
     maps::Point origin;
     double east, north;  // rise over run
@@ -110,7 +116,7 @@ class Chassis {
   terramech::Rover rover_;
   Suspension suspension_;
   std::vector<BodyPoint> p_body_wheels_;
-  double reach_m_;  // of the farthest wheel
+  double reach_m_;  // distance from the centre of the rover to its farthest wheel
 };
 
 }  // namespace talus::planner

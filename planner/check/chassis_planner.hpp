@@ -7,10 +7,11 @@
 
 namespace talus::planner {
 
-/// Plans a route along which the chassis may stand everywhere. The cell of each violation and the connected
-/// cells that refuse the same heading are closed, and planning is repeated, at most `most_rounds` times. A
-/// cell is closed for all headings, so a route on another heading may be lost. Returns NoneFound with the
-/// reason if no route is left, and StartInvalid if the rover may not stand at the start.
+/// Plans a route with `planner` such that `chassis` permits every pose of the route. After each plan, cells
+/// are closed, that is, excluded for all headings: the cell of each violation, and the cells connected to it
+/// at whose centres the chassis is not permitted on the same heading. Planning is then repeated, at most
+/// `most_rounds` times. A route through a closed cell on another heading may therefore be missed. Returns
+/// NoneFound with the reason if no route is left, and StartInvalid if the rover may not stand at the start.
 Plan planOnChassis(const Problem& problem, const Chassis& chassis,
                    const std::function<Plan(const Problem&)>& planner, int most_rounds = 100);
 

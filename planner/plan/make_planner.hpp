@@ -7,9 +7,9 @@
 
 namespace talus::planner {
 
-/// Creates one of Talus' own planners with default settings, without a shared library: the planner of the
-/// given name, or the default if empty. capabilities().planners lists the names. Throws std::invalid_argument
-/// for an unknown name.
+/// Creates one of Talus' own planners with default settings; no shared library is loaded. `name` is the name
+/// of the planner; an empty name selects the default planner. GlobalPlanner::capabilities().planners contains
+/// the names. Throws std::invalid_argument for an unknown name.
 std::unique_ptr<GlobalPlanner> makePlanner(const std::string& name = {});
 
 }  // namespace talus::planner

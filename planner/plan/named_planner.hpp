@@ -12,33 +12,36 @@
 
 namespace talus::planner {
 
-/// Planner selected by name: the field planner, drives with a turning radius, or an OMPL planner that
-/// improves the field's route. The field for a map and a goal is cached between plans. Not thread-safe: use
-/// one object per thread; objects may share a map.
+/// Planner selected by name. The planners are the field planner (polylines from a cost-to-go field), planners
+/// of drives (arcs with a turning radius), and planners of OMPL, which improve the route of the field
+/// planner. The cost-to-go field of a map and a goal is kept for later plans. Not thread-safe: use one object
+/// per thread; the objects may share a map.
 class NamedPlanner {
  public:
-  /// Accepts the names of samplingSettings(): a name of planner_names.hpp; OMPL's planners also accept
-  /// options, as in "NAME:cold:range=20". Throws std::invalid_argument for an invalid name.
+  /// `name` is a name of planner_names.hpp; empty: the default planner. Options may follow the name of an
+  /// OMPL planner, for example "NAME:cold:range=20" (samplingSettings()). Throws std::invalid_argument for an
+  /// invalid name.
   explicit NamedPlanner(const std::string& name = {});
 
-  /// Returns true if the planner honours headings and a turning radius.
+  /// Returns true if the planner computes drives, that is, takes account of headings and the turning radius.
   bool drives() const noexcept {
     return settings_.planner == PosePlanner::kName || settings_.planner == PosePlanner::kSampling;
   }
 
-  /// The canonical name.
+  /// Returns the canonical name of the planner.
   const std::string& name() const noexcept { return settings_.planner; }
 
-  /// Sets a callback for each improved cost [J]. Only sampling planners call it, for routes without via
-  /// points.
+  /// Sets a function that is called with the cost [J] of each improved route. Only sampling planners call it,
+  /// and only for problems without via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
-  /// From this number of cells the field is computed in a tube only (TubePlanner), unless the problem
-  /// requires the whole field: at 20 bytes per cell the field would exceed 400 MB.
+  /// Number of cells from which the cost-to-go field is computed only in a tube around a coarse route
+  /// (TubePlanner), unless Problem::whole_field is true. At 20 bytes per cell the whole field would need more
+  /// than 400 MB.
   static constexpr std::size_t kLarge = 20'000'000;
 
-  /// Returns the cheapest route found through all via points in order to the goal, or the reason why there is
-  /// none. Throws std::invalid_argument if the problem has no map.
+  /// Returns the cheapest route found from the start through all via points in order to the goal, or a plan
+  /// with the reason why there is no route. Throws std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
  private:

@@ -8,7 +8,8 @@
 
 namespace talus::planner {
 
-/// Talus' own planners behind the interface for embedding. Routes are equal to those of planRoute().
+/// Adapter that offers Talus' own planners through the interface GlobalPlanner. The routes are equal to those
+/// of planRoute().
 class OwnPlanner final : public GlobalPlanner {
  public:
   PlannerCapabilities capabilities() const override;

@@ -8,18 +8,18 @@
 
 namespace talus::planner {
 
-/// Plans one route on a map with the planner named in the settings. The search honours the chassis and the
-/// risk limit of the request; the result is checked with violations(), and each vertex has the elevation of
-/// the map. If there is no route, the status and reason are returned. makePlanner() gives the same routes and
-/// caches data for later requests. Throws std::invalid_argument without a map, for a field out of its range,
-/// and for a field that the planner does not honour.
+/// Plans one route on a map with the planner named in `settings`. The search takes account of the chassis and
+/// the risk limit of `request`. The route is checked with violations(), and each vertex has the elevation of
+/// the map. If there is no route, the result has the status and the reason. A planner of makePlanner()
+/// returns the same routes and keeps data for later requests. Throws std::invalid_argument if `map` is null,
+/// if a field of the request is out of its range, or if the planner does not support a field that is set.
 Route planRoute(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request,
                 const PlannerSettings& settings = {});
 
-/// Plans with planner "field" on a map that is not held in memory: the route of the overview guides the
-/// search, and windows of full resolution are built along it. The settings' planner must be "field" or empty.
-/// NoRoute is not a proof: routes that the overview does not show are missed. Of the optional constraints
-/// only via points are honoured.
+/// Plans one route with the planner "field" on a map that is not held in memory. A route on a coarse overview
+/// of the map guides the search, and windows of full resolution are computed along the overview route.
+/// `settings.planner` must be "field" or empty. The status NoRoute is not a proof, because routes that the
+/// overview does not resolve are missed. Of the optional constraints only via points are supported.
 Route planRoute(WindowedMap& map, const PlanRequest& request, const PlannerSettings& settings = {});
 
 }  // namespace talus::planner

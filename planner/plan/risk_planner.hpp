@@ -12,42 +12,43 @@
 
 namespace talus::planner {
 
-/// Objectives of a route: energy [J], time [s], probability of immobilisation [-].
+/// Values of the three objectives of a route.
 struct RouteDemand {
-  double energy_J = 0.0;
-  double time_s = 0.0;
-  double risk = 0.0;
+  double energy_J = 0.0;  ///< energy of the route
+  double time_s = 0.0;    ///< driving time of the route
+  double risk = 0.0;      ///< probability of immobilisation on the route, [0, 1]
 };
 
-/// Objectives of a plan on a map, from the route that annotated() returns for the plan. The risk therefore
-/// equals that of the summary and of `talus score`.
+/// Returns the objectives of a plan on a map. The values are those of the annotated() route; therefore the
+/// risk equals that of the route summary and of `talus score`.
 RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan);
 
-/// riskOptions() of a map for a limit and a seed. The correlation length of the limit is used if the map's
-/// cost has none.
+/// Returns the parameters of the risk simulation for a map, with the random seed `seed`. The correlation
+/// length of `limit` is used only if the cost function of the map has none.
 RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed);
 
-/// Plans under a chance constraint: returns the cheapest route found whose probability of immobilisation,
-/// according to demandOf(), is at most max_risk, in (0, 1); if possible with a margin of two standard errors
-/// of routeRisk(). The plan without the constraint is tried first. Then the risk enters the cost with a
-/// price, which is raised until the constraint is met and lowered as far as the constraint permits
-/// (Lagrangian relaxation; routes that are optimal for no price are missed [everett_1963]). The search takes
-/// two seconds if the problem has no time limit. Returns NoneFound with the least risk found if no route
-/// meets the limit; after a stop by the problem's watch the plan is `interrupted` or Cancelled. Cost and
-/// bound use the map's own weights. Throws std::invalid_argument if max_risk is out of range.
+/// Plans under a chance constraint: returns the cheapest route found for which demandOf().risk <= max_risk,
+/// with max_risk in (0, 1). Routes that meet the constraint with a margin of two standard errors of
+/// routeRisk() are preferred. The plan without the constraint is tried first. Then a price per unit of risk
+/// is added to the cost. The price is raised until the constraint is met, and lowered as far as the
+/// constraint permits (Lagrangian relaxation; routes that are not optimal for any price are missed
+/// [everett_1963]). Without a time limit of the problem the search takes two seconds. If no route meets the
+/// constraint, the status is NoneFound and the reason contains the lowest risk found. After a stop by
+/// Problem::watch, the plan is marked `interrupted` or has the status Cancelled. Cost and lower bound of the
+/// plan use the weights of the map. Throws std::invalid_argument if max_risk is out of range.
 Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_risk);
 
-/// A Pareto-optimal route.
+/// Pareto-optimal route: no other candidate is at least as good in energy, time and risk and better in one.
 struct ParetoRoute {
-  Plan plan;
-  RouteDemand demand;
-  costmap::CostWeights weights;  ///< prices with which the route was planned
+  Plan plan;                     ///< the route
+  RouteDemand demand;            ///< values of the objectives
+  costmap::CostWeights weights;  ///< weights of time and risk in the cost for which the route was planned
 };
 
-/// Pareto-optimal routes in energy, time and risk, in order of increasing energy. The candidates are the
-/// routes of `planner` for `steps` x `steps` prices of time and risk. Empty if there is no route or if the
-/// problem's watch was stopped, because a part of the prices gives a different set. Throws
-/// std::invalid_argument if steps < 2.
+/// Returns the Pareto-optimal routes in energy, time and risk, in order of increasing energy. The candidates
+/// are the routes that `planner` returns for `steps` x `steps` combinations of the weights of time and risk.
+/// Returns an empty set if there is no route, or if Problem::watch was stopped, because the set of a part of
+/// the combinations would differ. Throws std::invalid_argument if steps < 2.
 std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
                                    int steps);
 

@@ -13,25 +13,30 @@
 
 namespace talus::planner {
 
-/// Runs planRoute() with one of Talus' own planners, or with a plugin in a child process. Computed data are
-/// cached for later routes on the map or a newer version of the map. Not thread-safe.
+/// Runs planRoute() with one of Talus' own planners, or with a plugin (a planner from a shared library) in a
+/// child process. Computed data are kept for later routes on the same map or on a newer version of the map.
+/// Not thread-safe.
 class RoutePlanner {
  public:
-  /// Uses one of Talus' own planners; empty: the default. Throws std::invalid_argument for an unknown name.
+  /// Selects one of Talus' own planners by name; an empty name selects the default planner. Throws
+  /// std::invalid_argument for an unknown name.
   explicit RoutePlanner(const std::string& planner = {});
+  /// Selects a plugin.
   explicit RoutePlanner(PluginPlanner plugin) : planner_(std::move(plugin)) {}
 
   /// Returns the name of the planner for reports.
   const std::string& name() const noexcept;
 
-  /// Capabilities of the own planner. A plugin refuses unsupported fields in its own process.
+  /// Returns the capabilities of the selected own planner. For a plugin, unsupported fields of a request are
+  /// rejected in the child process.
   PlannerCapabilities capabilities() const;
 
-  /// Plans as planRoute(); the planner named in the settings is ignored.
+  /// Plans a route in the same way as planRoute(), except that `settings.planner` is ignored.
   Route plan(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request,
              const PlannerSettings& settings);
 
-  /// Computes paretoSet() for the request without its risk limit; the chassis is honoured.
+  /// Returns paretoSet() of the request with `steps` values each for the weights of time and risk. The risk
+  /// limit of the request is ignored; the chassis of the request is taken into account.
   std::vector<ParetoRoute> paretoRoutes(const std::shared_ptr<const costmap::CostGrid>& map,
                                         PlanRequest request, const PlannerSettings& settings, int steps);
 
@@ -43,7 +48,8 @@ class RoutePlanner {
   std::variant<std::unique_ptr<NamedPlanner>, PluginPlanner> planner_;
 };
 
-/// Converts a request to the input of a search, without chassis and risk limit.
+/// Converts a request to the planning problem of a search. The problem contains neither the chassis nor the
+/// risk limit of the request.
 Problem problemOf(std::shared_ptr<const costmap::CostGrid> map, const PlanRequest& request,
                   const PlannerSettings& settings);
 

@@ -10,29 +10,30 @@
 
 namespace talus::planner {
 
-/// Resource limits of a child process, which is killed if it exceeds them.
+/// Resource limits of a child process. A child process that exceeds a limit is killed.
 struct ChildLimits {
   double seconds = std::numeric_limits<double>::infinity();     ///< wall time, > 0
-  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< size of the result
-  std::uint64_t memory = 0;                                     ///< bytes beyond the parent's; 0: no limit
+  std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< size of the result [bytes]
+  std::uint64_t memory = 0;  ///< memory in addition to that of the parent process [bytes]; 0: no limit
 };
 
 /// Result of a child process.
 struct ChildAnswer {
-  /// The work returned; a stop was requested; the time limit was exceeded; the result was too large; or the
-  /// process ended without a result.
+  /// Reason why the process ended: the work returned its result, a stop was requested, the time limit was
+  /// exceeded, the result was too large, or the process ended without a result.
   enum class End { Answered, Stopped, TooLate, TooMuch, Died };
   End end = End::Died;
-  std::string bytes;       ///< result of the work; empty unless Answered
-  int signal = 0;          ///< signal that ended the process; 0: none
-  int exit_code = 0;       ///< exit code if no signal ended the process
-  double megabytes = 0.0;  ///< peak memory
+  std::string bytes;       ///< result of the work; empty unless `end` is Answered
+  int signal = 0;          ///< number of the signal that ended the process; 0: no signal
+  int exit_code = 0;       ///< exit code, if no signal ended the process
+  double megabytes = 0.0;  ///< peak memory of the process [MB]
 };
 
-/// Runs work in a child process and returns its result; crashes, aborts and endless loops are reported as
-/// results. The child is killed if the parent is killed. Output of the child is redirected to standard error.
-/// Must be called while the program has no other threads. An exception in the work gives the result Died.
-/// Throws std::runtime_error if no process can be created.
+/// Runs `work` in a child process and returns its result. Crashes, aborts and endless loops of the work are
+/// reported in ChildAnswer::end. The child process is killed if the parent process is killed. Output of the
+/// child process is redirected to standard error. The function must be called while the program has no other
+/// threads. An exception of the work gives the result Died. Throws std::runtime_error if no process can be
+/// created.
 ChildAnswer inChild(const std::function<std::string()>& work, const ChildLimits& limits,
                     const ProgressMonitor& watch = {});
 

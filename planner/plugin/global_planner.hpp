@@ -14,94 +14,106 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 
-/// Interface of all planners: Talus' own (plan/make_planner.hpp, plan/plan_route.hpp) and planners in shared
-/// libraries, which export one object named `talus_planner` (plugin/plugin_export.hpp) and are loaded by
-/// plugin/plugin_loader.hpp.
+/// Interface of all planners. Talus' own planners are created by plan/make_planner.hpp or called by
+/// plan/plan_route.hpp. A planner in a shared library is exported as an object named `talus_planner`
+/// (plugin/plugin_export.hpp) and is loaded by plugin/plugin_loader.hpp.
 namespace talus {
 
-/// Incremented with every change of this file that is incompatible with older plugins or programs.
+/// Version of this interface. The number increases with every change of this file that is incompatible with
+/// older plugins or programs.
 inline constexpr int kPlannerInterfaceVersion = 7;
 
-/// Properties of a plugin, and capabilities of its configured planner.
+/// Properties of a plugin (a shared library with planners), and capabilities of its configured planner.
 struct PlannerCapabilities {
-  int interface_version = kPlannerInterfaceVersion;
-  std::string name;                   ///< name of the plugin
-  std::string version;                ///< version of the plugin
-  std::vector<std::string> planners;  ///< names accepted by configure(), the default first
-  std::string planner;                ///< the configured planner, to which the following fields apply
-  bool heading_dependent = false;     ///< costs of climbing, descending and crossing a slope differ
-  bool lower_bound = false;           ///< a route has a proven optimality gap
-  bool via_points = false;            ///< PlanRequest::via is honoured
-  bool several_goals = false;         ///< PlanRequest::other_goals is honoured
-  bool headings = false;              ///< PlanRequest::start_heading_rad and goal_heading_rad are honoured
-  bool turning_radius = false;        ///< PlanRequest::kinematics is honoured
-  bool reversing = false;             ///< Kinematics::may_reverse = false is honoured as well
-  bool chassis = false;               ///< PlanRequest::chassis is honoured
-  bool risk_limit = false;            ///< PlanRequest::risk_limit is honoured
-  bool incremental_update = false;    ///< update() reuses unchanged data
-  bool deterministic = false;         ///< same input and seed give the same route unless a time limit ends
-                                      ///< the search
+  int interface_version = kPlannerInterfaceVersion;  ///< interface version for which the plugin was built
+  std::string name;                                  ///< name of the plugin
+  std::string version;                               ///< version of the plugin
+  std::vector<std::string> planners;  ///< names accepted by configure(), the default planner first
+  std::string planner;                ///< name of the configured planner, to which the following fields apply
+  bool heading_dependent = false;     ///< the cost of a motion depends on its heading on a slope
+  bool lower_bound = false;           ///< the planner proves an optimality gap of its routes
+  bool via_points = false;            ///< the planner supports PlanRequest::via
+  bool several_goals = false;         ///< the planner supports PlanRequest::other_goals
+  bool headings = false;        ///< the planner supports PlanRequest::start_heading_rad and goal_heading_rad
+  bool turning_radius = false;  ///< the planner supports PlanRequest::kinematics
+  bool reversing = false;       ///< the planner also supports Kinematics::may_reverse = false
+  bool chassis = false;         ///< the planner supports PlanRequest::chassis
+  bool risk_limit = false;      ///< the planner supports PlanRequest::risk_limit
+  bool incremental_update = false;  ///< update() reuses data of unchanged parts of the map
+  /// Equal input and seed give equal routes, unless a time limit ends the search.
+  bool deterministic = false;
 };
 
-/// Settings of a planner, valid until the next configure().
+/// Settings of a planner. They are valid until the next configure().
 struct PlannerSettings {
-  std::string planner;     ///< one of PlannerCapabilities::planners; empty: the default
-  std::uint64_t seed = 1;  ///< seed of sampling planners
-  int threads = 1;         ///< >= 1; does not affect the route
-  double time_limit_s = std::numeric_limits<double>::infinity();  ///< > 0; returns the best route so far
-  bool whole_field = false;  ///< search large maps completely at full resolution
+  /// Name of the planner, from PlannerCapabilities::planners; empty: the default planner.
+  std::string planner;
+  std::uint64_t seed = 1;  ///< seed of the random numbers of sampling planners
+  int threads = 1;         ///< number of threads, >= 1; does not affect the route
+  /// Time limit of a plan, > 0; at the limit the best route found is returned.
+  double time_limit_s = std::numeric_limits<double>::infinity();
+  bool whole_field = false;  ///< true: search large maps completely at full resolution
 };
 
-/// A chance constraint on the rover's immobilisation.
+/// Chance constraint: upper limit of the probability that the rover is immobilised on the route.
 struct RiskLimit {
-  double immobilisation = 0.01;       ///< probability over the whole route, above 0 and below 1
-  double correlation_length_m = 5.0;  ///< of the soil, > 0; used if the map's cost has none
+  double immobilisation = 0.01;  ///< largest permitted probability over the whole route, above 0 and below 1
+  /// Correlation length of the soil, > 0; used if the map's cost function has none.
+  double correlation_length_m = 5.0;
 };
 
-/// Start, goal and constraints of a route. A field that the configured planner does not honour is refused if
-/// set, never ignored: plan() throws std::invalid_argument with the name of the field
-/// (plugin/request_check.hpp).
+/// Start, goal and constraints of a route. Points are map coordinates [m]. If a field is set that the
+/// configured planner does not support, plan() throws std::invalid_argument with the name of the field
+/// (plugin/request_check.hpp); fields are never ignored.
 struct PlanRequest {
   maps::Point start;
   maps::Point goal;
-  std::vector<maps::Point> other_goals{};     ///< alternative goals; the cheapest is used
-  double tolerance_m = 0.0;                   ///< permitted distance of the end from the goal, >= 0
-  std::vector<maps::Point> via{};             ///< to be passed in this order
-  std::optional<double> start_heading_rad{};  ///< heading at the start; empty: any
-  std::optional<double> goal_heading_rad{};   ///< heading at the goal; empty: any
-  /// Turning radius, reversing and costs of turning, from planner::kinematicsOn(); empty: turning is free.
+  /// Alternative goals; the route leads to the goal with the lowest cost.
+  std::vector<maps::Point> other_goals{};
+  double tolerance_m = 0.0;        ///< permitted distance of the end of the route from the goal, >= 0
+  std::vector<maps::Point> via{};  ///< via points, through which the route passes in this order
+  std::optional<double> start_heading_rad{};  ///< heading of the rover at the start; empty: any heading
+  std::optional<double> goal_heading_rad{};   ///< heading of the rover at the goal; empty: any heading
+  /// Turning radius, permission to reverse, and costs of turning, from planner::kinematicsOn(). Empty: the
+  /// planner assumes that turning is free.
   std::optional<planner::Kinematics> kinematics{};
-  /// Limits clearance, pitch and roll along the whole motion; null: only the cost map limits the motion.
+  /// Chassis model that limits ground clearance, pitch and roll along the whole motion. Null: only the cost
+  /// map limits the motion.
   std::shared_ptr<const planner::Chassis> chassis{};
-  /// Causes of completely refused cells, to name the obstruction: TraversabilityMap::surface().hazards() of
-  /// the map used for planning.
+  /// Function that returns the hazard for which the rover may not enter a cell on any heading, used to
+  /// describe an obstruction: TraversabilityMap::surface().hazards() of the map used for planning.
   planner::HazardsOf hazards{};
-  bool prove = false;  ///< also compute an improved lower bound and search other corridors; slow
-  std::optional<RiskLimit> risk_limit{};  ///< empty: only the price of risk applies
-  ProgressMonitor watch{};  ///< progress and stop request; after a stop plan() returns Cancelled
+  bool prove = false;  ///< true: also compute an improved lower bound and search other corridors; slow
+  /// Limit of the immobilisation risk; empty: risk enters only through its weight in the cost.
+  std::optional<RiskLimit> risk_limit{};
+  /// Receives the progress and requests a stop. After a stop plan() returns the status Cancelled, or the best
+  /// route found with Route::interrupted.
+  ProgressMonitor watch{};
 };
 
-/// Plans routes on one map. Not thread-safe: use one object per thread, from create(); objects may share a
-/// map.
+/// Planner of routes on one map. Not thread-safe: use one object per thread, from create(); the objects may
+/// share a map.
 class GlobalPlanner {
  public:
   virtual ~GlobalPlanner() = default;
 
+  /// Returns the properties of the plugin and the capabilities of the configured planner.
   virtual PlannerCapabilities capabilities() const = 0;
 
-  /// Sets the settings. Throws std::invalid_argument with field, value and bound, or with the nearest planner
-  /// name.
+  /// Sets the settings. Throws std::invalid_argument with field, value and bound for a value out of range,
+  /// and with the most similar name for an unknown planner.
   virtual void configure(const PlannerSettings& settings) = 0;
 
-  /// Sets the map and discards data of the previous map. Throws std::invalid_argument for a null pointer.
+  /// Sets the map and discards data of the previous map. Throws std::invalid_argument if `map` is null.
   virtual void set_map(std::shared_ptr<const costmap::CostGrid> map) = 0;
 
-  /// Replaces the map by a newer version; unchanged tiles are not processed again. The next plan() is the
-  /// same as after set_map(). Throws std::invalid_argument if the grids differ.
+  /// Replaces the map by the newer version `newer`; unchanged tiles are not processed again. The next plan()
+  /// returns the same route as after set_map(). Throws std::invalid_argument if the grids of both versions
+  /// differ.
   virtual void update(std::shared_ptr<const costmap::CostGrid> newer) = 0;
 
-  /// Returns a route, or the status and reason why there is none. Throws std::logic_error before set_map(),
-  /// std::invalid_argument for a field that is out of range or not honoured.
+  /// Returns a route, or the status and the reason why there is no route. Throws std::logic_error before
+  /// set_map(), and std::invalid_argument for a field that is out of range or not supported.
   virtual planner::Route plan(const PlanRequest& request) = 0;
 
   /// Creates a planner of the same kind with default settings and without a map.

@@ -10,24 +10,27 @@
 
 namespace talus {
 
-/// Incremented with every change of CostSource that is incompatible with older plugins or programs.
+/// Version of the interface CostSource. The number increases with every change that is incompatible with
+/// older plugins or programs.
 inline constexpr int kLayerInterfaceVersion = 1;
 
-/// A cost layer from an external source, such as shadow, radio or hazards: see costmap::CostLayer.
+/// Source of a cost layer from outside Talus, such as shadow, radio coverage or hazards; see
+/// costmap::CostLayer.
 class CostSource {
  public:
   virtual ~CostSource() = default;
 
-  /// Additional cost [J/m] of each cell of a grid, row by row from the south-west: 0 to 1e6; infinite: must not be entered;
-  /// NaN: unknown. A place has the same value on every grid: a large map is computed window by window.
+  /// Returns the additional cost per metre [J/m] of each cell of `grid`, row by row from the south-west
+  /// corner. A value is 0 to 1e6; infinite: the rover must not enter the cell; NaN: unknown. The value at a
+  /// position must not depend on the grid, because large maps are computed window by window.
   virtual std::vector<float> over(const maps::Grid& grid) const = 0;
 };
 
 }  // namespace talus
 
-/// Exports a planner from a shared library. Use once, in one source file, at namespace scope. `Type` is
-/// derived from talus::GlobalPlanner only and is default constructible without throwing. Symbols:
-/// talus_planner, the prototype object; talus_planner_interface, the interface version.
+/// Exports a planner from a shared library. Use the macro once, in one source file, at namespace scope.
+/// `Type` is derived from talus::GlobalPlanner only, and its default constructor does not throw. The exported
+/// symbols are talus_planner (the prototype object) and talus_planner_interface (the interface version).
 #define TALUS_EXPORT_PLANNER(Type)                                                        \
   namespace talus::plugin_export {                                                        \
   static_assert(std::is_base_of_v<talus::GlobalPlanner, Type>, "not a GlobalPlanner");    \
@@ -39,8 +42,8 @@ class CostSource {
   BOOST_DLL_ALIAS(talus::plugin_export::prototype, talus_planner)                         \
   BOOST_DLL_ALIAS(talus::plugin_export::interface_version, talus_planner_interface)
 
-/// Exports a layer: `Type` is derived from talus::CostSource only. Symbols: talus_layer,
-/// talus_layer_interface.
+/// Exports a cost layer from a shared library. `Type` is derived from talus::CostSource only, and its default
+/// constructor does not throw. The exported symbols are talus_layer and talus_layer_interface.
 #define TALUS_EXPORT_LAYER(Type)                                                          \
   namespace talus::layer_export {                                                         \
   static_assert(std::is_base_of_v<talus::CostSource, Type>, "not a CostSource");          \

@@ -4,13 +4,12 @@
 
 namespace talus::planner {
 
-/// Throws std::invalid_argument with the name of the first field of the request that is set but not honoured
-/// by a planner of these capabilities, or out of range. Applied to every planner of loadPlugin() and
-/// makePlanner().
+/// Throws std::invalid_argument with the name of the first field of `request` that is out of range, or that
+/// is set although a planner with the capabilities `offers` does not support it. Every planner of
+/// loadPlugin() and makePlanner() calls this function.
 void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers);
 
-/// Returns the settings after checking their ranges. Throws std::invalid_argument with field, value and
-/// bound.
+/// Returns `settings` after a check of the ranges. Throws std::invalid_argument with field, value and bound.
 const PlannerSettings& validated(const PlannerSettings& settings);
 
 }  // namespace talus::planner

@@ -23,7 +23,7 @@ enum class RouteStatus {
   StartInvalid,  ///< the start lies outside the map or in a cell that the rover may not enter on any heading
   GoalInvalid,   ///< the goal or a via point lies outside the map or in such a cell
   TimedOut,      ///< the time limit passed before a route was found
-  Cancelled,     ///< the caller requested a stop before a route was found
+  Cancelled,     ///< the caller requested a stop before a route was available
 };
 
 /// Returns the name of the status in files and JSON: "found", "no_route", "none_found", "start_invalid",
