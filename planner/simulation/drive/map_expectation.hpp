@@ -5,19 +5,22 @@
 
 namespace talus::planner {
 
-/// Drive states and wheel readings predicted by the map before a step's readings are used, for ground on the
-/// slope at the rover's position, which the rover measures itself. The map must outlive the object.
+/// Drive states and wheel readings that the map predicts for a step, before the readings of that step update
+/// the map. The slope is that of the cell under the centre of the rover, because the rover measures its own
+/// slope. The map must outlive the object.
 class MapExpectation {
  public:
-  /// `slope`: code of the cell under the rover's centre; only the gradient is used.
+  /// `slope` is the code of the cell under the centre of the rover; only the gradient of the ground in this
+  /// code is used.
   MapExpectation(const costmap::TraversabilityMap& map, costmap::CellCode slope) : map_(map), slope_(slope) {}
 
-  /// Predicted state at a place; of the place's class if the cell is refused; zeros outside the map.
+  /// Returns the predicted drive state at `place` on `heading`. If the map excludes the cell of the place,
+  /// the state is that of the terrain class of the cell. Outside the map all values are 0.
   costmap::TravelState at(const maps::Point& place, const costmap::Direction& heading) const;
 
-  /// Predicted readings of a wheel at a place, assuming ground no weaker than its class, so that ground just
-  /// estimated as weak still raises the alarm. `middle`: the rover's centre, whose slip applies to all
-  /// wheels.
+  /// Returns the predicted readings of a wheel at `place`. The ground is assumed to be at least as strong as
+  /// its terrain class; otherwise ground that was just estimated as weak would raise no alarm. `middle` is
+  /// the centre of the rover; the slip predicted there applies to all wheels.
   WheelExpectation ofWheel(const maps::Point& place, const maps::Point& middle,
                            const costmap::Direction& heading) const;
 

@@ -8,37 +8,40 @@
 
 namespace talus::planner {
 
-/// Estimate from a sample of worlds with its 95 % confidence interval.
+/// Estimate of a quantity from a sample of worlds (random draws of the soils), with its 95 % confidence
+/// interval.
 struct Sampled {
   double value = 0.0;                   ///< estimate
-  std::array<double, 2> interval_95{};  ///< lower and upper end
+  std::array<double, 2> interval_95{};  ///< lower and upper end of the interval
 };
 
-/// Returns the share of worlds with Wilson's interval (wilson_1927); NaN if `all` is 0.
+/// Returns the share hits / all with Wilson's interval (wilson_1927); NaN if `all` is 0.
 Sampled share(std::size_t hits, std::size_t all);
 
-/// Returns the mean with the normal interval of its standard error; NaN if there are no values.
+/// Returns the mean of the values with the normal interval of its standard error; NaN if there are no values.
 Sampled mean(const std::vector<double>& values);
 
-/// Outcomes of the drives of several worlds.
+/// Rates of the outcomes of drives in several worlds, and their mean energy.
 struct Rates {
   std::size_t worlds = 0;            ///< number of worlds
-  std::array<Sampled, 5> outcome{};  ///< shares of the outcomes, in the order of Outcome
-  double energy_J = 0.0;             ///< mean of the drives that reached the goal; NaN if there are none
+  std::array<Sampled, 5> outcome{};  ///< share of each outcome, in the order of the enumeration Outcome
+  double energy_J = 0.0;             ///< mean energy of the drives that reached the goal; NaN if no drive did
 };
 
-/// Outcome shares and mean energy of the results.
+/// Returns the rates of the outcomes and the mean energy of `results`.
 Rates ratesOf(const std::vector<WorldResult>& results);
 
-/// Comparison of a soil knowledge with perfect knowledge in the same worlds, restricted to the worlds with a
-/// safe route: those in which perfect knowledge reached the goal.
+/// Comparison of drives with a given soil knowledge and drives with perfect knowledge in the same worlds.
+/// Only worlds with a safe route count, that is, worlds in which the drive with perfect knowledge reached the
+/// goal.
 struct Comparison {
-  Rates rates;                              ///< over the worlds with a safe route
-  Sampled energy_over_perfect_knowledge{};  ///< mean ratio over worlds in which both reached the goal [-]
+  Rates rates;  ///< rates of the given soil knowledge over the worlds with a safe route
+  /// Mean ratio of the energies, over worlds in which both drives reached the goal [-].
+  Sampled energy_over_perfect_knowledge{};
 };
 
-/// Both vectors contain the same worlds in the same order. Throws std::invalid_argument if their sizes
-/// differ.
+/// Returns the comparison of `results` with `perfect`, the results with perfect knowledge. Both vectors
+/// contain the same worlds in the same order. Throws std::invalid_argument if their sizes differ.
 Comparison compared(const std::vector<WorldResult>& results, const std::vector<WorldResult>& perfect);
 
 }  // namespace talus::planner

@@ -6,24 +6,26 @@
 
 namespace talus::planner {
 
-/// Errors of a map's predictions along a drive.
+/// Errors of the predictions of a map along a drive.
 struct PredictionErrors {
-  int steps = 0;              ///< number of steps
-  double slip_rmse = 0.0;     ///< root mean square slip error over all steps [-]
-  double energy_rmse = 0.0;   ///< RMS error of energy per metre, relative to the mean true value [-]
+  int steps = 0;           ///< number of steps of the drive
+  double slip_rmse = 0.0;  ///< root mean square error of the predicted slip over all steps [-]
+  /// Root mean square error of energy per metre, over the mean true energy per metre [-].
+  double energy_rmse = 0.0;
   double energy_error = 0.0;  ///< (predicted - true) / true energy of the whole drive [-]
 };
 
-/// Log of the steps of a simulated drive; pass record() as SimulationOptions::on_step.
+/// Log of the steps of a simulated drive. The function record() is called by SimulationOptions::on_step.
 class TraverseLog {
  public:
   /// Appends a step.
   void record(const TraverseStep& step) { steps_.push_back(step); }
 
-  /// All recorded steps in order.
+  /// Returns all recorded steps in order.
   const std::vector<TraverseStep>& steps() const noexcept { return steps_; }
 
-  /// Errors over the recorded steps; zeros without steps or if the true energy is not positive.
+  /// Returns the prediction errors over the recorded steps. The errors are 0 if there are no steps or if the
+  /// true energy is not positive.
   PredictionErrors errors() const;
 
  private:

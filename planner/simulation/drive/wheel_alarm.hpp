@@ -10,28 +10,30 @@
 
 namespace talus::planner {
 
-/// Limits of the alarm of a rover that monitors its wheels.
+/// Limits of the wheel readings at which the wheel monitor of a rover raises an alarm.
 struct AlarmLimits {
-  double slip = 0.2;  ///< slip above the larger of the expected slip and 0, at half of the wheels or more [-]
-  /// Sinkage of a wheel on fresh ground above the expected sinkage, over the wheel radius [-].
+  /// Limit of slip - max(expected slip, 0) [-]; at least half of the wheels must exceed it.
+  double slip = 0.2;
+  /// Limit of (sinkage - expected sinkage) / wheel radius for one wheel on ground without ruts [-].
   double sinkage = 0.08;
-  double slip_angle_rad = 0.15;  ///< magnitude of the slip angle above the expected magnitude
+  double slip_angle_rad = 0.15;  ///< limit of |slip angle| - |expected slip angle|
 };
 
-/// Readings expected by the map for the ground under a wheel and a heading.
+/// Readings that the map predicts for the ground under a wheel and a heading.
 struct WheelExpectation {
-  double slip = 0.0;                 ///< [-]
-  double sinkage_over_radius = 0.0;  ///< [-]
-  double slip_angle_rad = 0.0;       ///< magnitude; NaN (not known) is read as 0
+  double slip = 0.0;                 ///< expected slip [-]
+  double sinkage_over_radius = 0.0;  ///< expected sinkage / wheel radius [-]
+  double slip_angle_rad = 0.0;       ///< magnitude of the expected slip angle; NaN (not known) counts as 0
 };
 
-/// Compares the wheels' readings, including noise and faults, with the map's expectations. Half of the wheels
-/// must slip, so that a single sensor neither stops the rover nor prevents a stop. A single sinking wheel
-/// suffices, because it is the first to reach soft ground. A constant offset of a wheel's sinkage is its
-/// datum and is subtracted (ours: the median of its last 120 readings).
+/// Wheel monitor: compares the readings of the wheels, including noise and faults, with the readings that the
+/// map predicts. At least half of the wheels with a slip reading must slip, so that a single faulty sensor
+/// neither stops the rover nor prevents a stop. One sinking wheel suffices for an alarm, because the first
+/// wheel on soft ground sinks alone. A constant offset between measured and expected sinkage of a wheel is a
+/// zero error of the sensor and is subtracted (ours: the median of the last 120 readings of the wheel).
 class WheelAlarm {
  public:
-  /// The wheel radius [m] normalises sinkages, > 0.
+  /// `wheel_radius_m` > 0 is the radius by which sinkage is divided.
   WheelAlarm(const AlarmLimits& limits, double wheel_radius_m) : limits_(limits), radius_m_(wheel_radius_m) {}
 
   /// Result of one set of readings.
@@ -39,7 +41,7 @@ class WheelAlarm {
     std::optional<std::string> reason;  ///< "slips", "slides" or "sinks"; empty without an alarm
     std::vector<bool> sank;             ///< for each wheel: true if its sinkage exceeds the limit
   };
-  /// Compares readings with expectations; `expected` has one entry per wheel of `look`.
+  /// Compares the readings `look` with the predictions `expected`, which has one entry per wheel of `look`.
   AlarmCheck check(const WheelMeasurements& look, const std::vector<WheelExpectation>& expected);
 
  private:

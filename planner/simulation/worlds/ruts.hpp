@@ -7,20 +7,21 @@
 
 namespace talus::planner {
 
-/// Tracks of wheels, in squares as wide as a wheel. A square becomes a rut after the rover has moved on by
-/// more than two squares or has turned back, so that a wheel does not drive in the rut that it is making.
+/// Record of the ruts that the wheels of a rover made, on a grid of squares as wide as a wheel. A pressed
+/// square counts as a rut only after the rover has driven a further distance of two squares or has reversed
+/// its direction. Therefore a wheel does not drive in the rut that it is just making.
 class Ruts {
  public:
-  /// The width of the squares is the wheel width [m], > 0.
+  /// `wheel_width_m` > 0 is the side length of the squares.
   explicit Ruts(double wheel_width_m) : square_m_(wheel_width_m) {}
 
-  /// Marks the square under a wheel.
+  /// Marks the square under a wheel at `place` (map coordinates).
   void press(const maps::Point& place);
-  /// Adds a driven distance.
+  /// Adds a distance driven by the rover, >= 0.
   void moved(double distance_m) noexcept { odometer_m_ += distance_m; }
-  /// The rover reversed its direction: all squares behind it are ruts at once.
+  /// Records that the rover reversed its direction: all squares pressed before count as ruts at once.
   void turnBack() noexcept { odometer_m_ += 3.0 * square_m_; }
-  /// Returns the number of earlier wheel passes at a place.
+  /// Returns the number of earlier wheel passes at `place`.
   int passes(const maps::Point& place) const;
 
  private:

@@ -18,70 +18,71 @@ namespace talus::planner {
 /// Fault of one sensor, present during the whole drive.
 enum class SensorFault {
   None,           ///< no fault
-  SlipStuck,      ///< one wheel's slip stays at its first value
-  SlipBiased,     ///< one wheel's slip reads 0.2 too low
-  OdometryStuck,  ///< the slip of all wheels stays at its first value
-  TorqueOffset,   ///< one wheel's torque reads too high by 0.15 of load times radius
-  SinkageDatum,   ///< one wheel's sinkage reads too low by 0.1 of the radius
-  Silent,         ///< one wheel gives no slip, torque or sinkage
-  PoseDisplaced,  ///< the logged position is wrong by 5 m over 10 m of the drive
+  SlipStuck,      ///< the slip reading of one wheel keeps its first value
+  SlipBiased,     ///< the slip reading of one wheel is 0.2 too low
+  OdometryStuck,  ///< the slip readings of all wheels keep their first value
+  TorqueOffset,   ///< the torque reading of one wheel is too high by 0.15 * load * radius
+  SinkageDatum,   ///< the sinkage reading of one wheel is too low by 0.1 * radius
+  Silent,         ///< one wheel has no readings of slip, torque and sinkage
+  PoseDisplaced,  ///< the logged position has an error of 5 m during 10 m of the drive
 };
 
-/// "none", "slip_stuck", "slip_biased", "odometry_stuck", "torque_offset", "sinkage_datum", "silent",
-/// "pose_displaced"; in the order of SensorFault.
+/// Returns the names of the faults in the order of SensorFault: "none", "slip_stuck", "slip_biased",
+/// "odometry_stuck", "torque_offset", "sinkage_datum", "silent", "pose_displaced".
 const std::vector<std::string_view>& sensorFaultNames();
 
-/// Largest drift of the estimated position per metre driven [-]. With a drift of 1, the estimated position of
-/// a rover that drives to its goal may never reach the goal.
+/// Upper limit of the drift of the estimated position per metre driven [-]. With a drift of 1, the estimated
+/// position of a rover that drives to its goal may never reach the goal.
 inline constexpr double kMostPoseDrift = 0.5;
 
-/// Quality of a simulated rover's sensors. Plain data.
+/// Quality of the sensors of a simulated rover. Plain data.
 struct SensorOptions {
-  /// Noise of slip (0.02), slip angle (0.02 rad), torque (5 %) and sinkage (3 %), and missing values.
+  /// True: the readings have noise with the standard deviations slip 0.02, slip angle 0.02 rad, torque 5 %
+  /// and sinkage 3 %, and some values are missing.
   bool noise = true;
-  double dropout = 0.02;     ///< share of missing torque and sinkage values; only with noise
-  double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, in [0, kMostPoseDrift] [-]
+  double dropout = 0.02;     ///< share of missing torque and sinkage values, [0, 1]; only with `noise`
+  double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, [0, kMostPoseDrift] [-]
   SensorFault fault = SensorFault::None;  ///< fault of one sensor
-  std::uint64_t seed = 1;                 ///< seed of noise, drift direction and faulty wheel
+  std::uint64_t seed = 1;  ///< seed of the noise, the drift direction and the choice of the faulty wheel
 };
 
 /// Readings of all wheels of a rover at one time.
 struct WheelMeasurements {
-  double heading_rad = 0.0;     ///< heading of the rover
-  double slip_angle_rad = 0.0;  ///< from the wheels' planes to the direction of travel, as measured by visual
-                                ///< odometry
+  double heading_rad = 0.0;  ///< heading of the rover
+  /// Angle from the wheel planes to the direction of travel, measured by visual odometry.
+  double slip_angle_rad = 0.0;
   std::vector<costmap::TelemetryReading>
-      wheels;  ///< foremost wheels first, at estimated positions; NaN: missing
+      wheels;  ///< front wheels first, at estimated positions; NaN: missing value
 };
 
-/// Readings as rows of telemetry for DriveIntake, with wheels named w1, w2, ... A wheel without slip has no
-/// row.
+/// Converts readings to rows of telemetry for DriveIntake. The wheels have the names w1, w2, ... A wheel
+/// without a slip reading has no row.
 terramech::Telemetry telemetryOf(const WheelMeasurements& look);
 
-/// Sensors of one rover on one drive: noise, dropouts, a drifting position and at most one fault. The faulty
-/// wheel is drawn at random. Deterministic for a given seed.
+/// Simulated sensors of one rover on one drive, with noise, missing values, a drifting position and at most
+/// one fault. The faulty wheel is drawn at random. Deterministic for a given seed.
 class SimulatedSensors {
  public:
   /// Throws std::invalid_argument if pose_drift is out of range.
   SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover);
 
-  /// Estimated position of the rover at a true place.
+  /// Returns the estimated position of the rover at the true position `place`.
   maps::Point estimatedPlace(const maps::Point& place) const noexcept;
-  /// Adds a driven distance.
+  /// Adds a distance driven by the rover, by which the estimated position drifts.
   void moved(double distance_m);
 
   /// State of the drive at one time.
   struct Moment {
-    double time_s = 0.0;         ///< since the start
+    double time_s = 0.0;         ///< time since the start
     costmap::Direction heading;  ///< heading of the motion
-    double gradient = 0.0;       ///< along the heading, from the map
-    double across = 0.0;         ///< to the left of the heading, from the map
-    double dug_m = 0.0;          ///< depth of the holes dug on the spot
+    double gradient = 0.0;       ///< gradient of the ground along the heading, from the map, rise over run
+    double across = 0.0;  ///< gradient of the ground to the left of the heading, from the map, rise over run
+    double dug_m = 0.0;   ///< depth of the holes that the wheels dug while the rover did not move
   };
-  /// Readings of the wheels, including noise and faults.
+  /// Returns the readings of the wheels, with noise and faults, for the true state `step` of the rover.
   WheelMeasurements look(const TrueWorld::Step& step, const Moment& moment);
 
-  /// Returns the index of the wheel with the fault.
+  /// Returns the index of the wheel to which the fault applies.
   std::size_t faultyWheel() const noexcept { return faulty_wheel_; }
 
  private:

@@ -9,44 +9,46 @@
 
 namespace talus::planner {
 
-/// Forces of a wheel on one soil, with the effects that act there, tabulated with the forward model over slip
-/// (-1 to 1), load (0.25 to 1.9 times the load on level ground) and slip angle (0 to 45 degrees).
+/// Table of the forces and the sinkage of a wheel on one soil with its effects (terramech::Effect), computed
+/// with the forward model. The table has three dimensions: slip from -1 to 1 (index: row), load from 0.25 to
+/// 1.9 times the load on level ground (index: layer), and slip angle from 0 to 45 degrees (index: sheet).
 class SimulatedWheelTable {
  public:
-  /// Normalised forces and sinkage.
+  /// Entry of the table: normalised forces and sinkage.
   struct Row {
     double pull = 0.0;     ///< drawbar pull divided by load [-]
     double torque = 0.0;   ///< torque / (load * radius) [-]
     double sinkage = 0.0;  ///< sinkage divided by radius [-]
-    double hold = 0.0;     ///< side force against the wheel's lateral motion, divided by load [-]
+    double hold = 0.0;     ///< side force against the lateral motion of the wheel, divided by load [-]
   };
 
-  static constexpr std::size_t kRows = 81;   ///< number of slips
-  static constexpr std::size_t kLoads = 12;  ///< number of loads
-  static constexpr std::size_t kAngles = 9;  ///< number of slip angles
+  static constexpr std::size_t kRows = 81;   ///< number of slip values
+  static constexpr std::size_t kLoads = 12;  ///< number of load values
+  static constexpr std::size_t kAngles = 9;  ///< number of slip-angle values
 
-  /// Load of a layer relative to the load on level ground: 0.25 to 1.9.
+  /// Returns the load of a layer divided by the load on level ground, 0.25 to 1.9.
   static constexpr double load(std::size_t layer) noexcept {
     return 0.25 + 0.15 * static_cast<double>(layer);
   }
 
-  /// Slip angle of a sheet: 0 to 45 degrees.
+  /// Returns the slip angle of a sheet [rad], 0 to 45 degrees.
   static constexpr double angle_rad(std::size_t sheet) noexcept {
     return 0.09817477042468103 * static_cast<double>(sheet);
   }
 
-  /// On a soil that cannot carry the wheel, the pull is -1 and the side force 0.
+  /// Computes the table. On a soil that cannot carry the wheel, the pull is -1 and the side force is 0.
   SimulatedWheelTable(const terramech::Soil& soil, const terramech::Rover& rover,
                       const std::vector<terramech::Effect>& effects = {});
 
-  /// Slip of a row.
+  /// Returns the slip of a row, -1 to 1.
   static constexpr double slip(std::size_t row) noexcept {
     return 2.0 * static_cast<double>(row) / (kRows - 1) - 1.0;
   }
-  /// Entry of a row and sheet, interpolated at a load relative to level ground; clamped to the table's range.
+  /// Returns the entry of row `i` and `sheet`, interpolated at the load `load_over_flat` (load divided by the
+  /// load on level ground), which is clamped to the range of the table.
   Row row(std::size_t i, double load_over_flat, std::size_t sheet = 0) const noexcept;
-  /// Entry interpolated at a slip, a relative load and the magnitude of a slip angle; clamped to the table's
-  /// range.
+  /// Returns the entry interpolated at a slip, a load and a slip angle, of which the sign is ignored. The
+  /// arguments are clamped to the range of the table.
   Row at(double slip, double load_over_flat, double slip_angle_rad = 0.0) const noexcept;
 
  private:

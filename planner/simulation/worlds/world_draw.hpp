@@ -10,27 +10,30 @@
 
 namespace talus::planner {
 
-/// True soils of a site and their variation from world to world. Plain data.
+/// True soils of a site and their variation between worlds (random draws of the soils). Plain data.
 struct Truth {
-  std::map<int, terramech::Soil> classes;  ///< true soils that differ from those of the map
-  std::vector<SoilPatch> patches;          ///< present in every world
-  double spread = 0.0;     ///< relative standard deviation of cohesion, tangent of the friction angle and
-                           ///< moduli [-]
-  int random_patches = 0;  ///< random patches drawn per world; patches near start or goal are omitted
-  double patch_radius_m = 3.0;               ///< mean radius; uniform within +-50 %
-  terramech::Soil patch_soil;                ///< soil of the random patches, varied like the classes
-  std::vector<terramech::Effect> effects{};  ///< undeclared effects on all soils
+  /// True soils by class number, where they differ from the soils of the map.
+  std::map<int, terramech::Soil> classes;
+  std::vector<SoilPatch> patches;  ///< soil patches that are present in every world
+  /// Relative standard deviation of cohesion, tangent of the friction angle and moduli [-].
+  double spread = 0.0;
+  /// Number of random patches drawn per world; patches near start or goal are then omitted.
+  int random_patches = 0;
+  double patch_radius_m = 3.0;  ///< mean radius of random patches, > 0; radii are uniform within +-50 %
+  terramech::Soil patch_soil;   ///< soil of the random patches, varied by `spread`
+  std::vector<terramech::Effect> effects{};  ///< effects on all soils that the map does not declare
 };
 
-/// Seed of a world, and the places kept free of random patches.
+/// Seed of the random draw of a world, and positions that stay free of random patches.
 struct WorldDraw {
-  std::uint64_t seed = 1;  ///< world seed
-  maps::Point start;       ///< kept free of random patches [m]
-  maps::Point goal;        ///< kept free of random patches [m]
+  std::uint64_t seed = 1;  ///< seed of the random draw
+  maps::Point start;       ///< start of the drive, free of random patches [m]
+  maps::Point goal;        ///< goal of the drive, free of random patches [m]
 };
 
-/// Soils of one world on a grid, in the order of the classes. Equal draws give equal worlds; the soils of a
-/// class and of the random patches do not depend on the other classes.
+/// Returns the soils of one world on `grid`; the soils of terrain classes have the order of `classes`. Equal
+/// draws give equal worlds. The soil of a class does not depend on the other classes, nor do the random
+/// patches.
 WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>& classes,
                      const maps::Grid& grid, const WorldDraw& draw);
 
