@@ -16,9 +16,9 @@
 
 namespace talus_ros2 {
 
-/// Converts cells of a grid map to its indices. Index (0, 0) of a grid map is the cell with the largest x and
-/// y; the first index runs against x, the second against y. The data is a ring buffer, in which that corner
-/// cell is at the start index.
+/// Converter from cells of a Talus grid to indices of a grid map (grid_map::GridMap). Index (0, 0) of a grid
+/// map is the cell with the largest x and y; the first index runs against x, the second against y. The data
+/// is a ring buffer, in which cell (0, 0) is stored at the start index.
 class CellsOf {
  public:
   explicit CellsOf(const grid_map::GridMap& map)
@@ -27,11 +27,11 @@ class CellsOf {
     south_west_ = {map.getPosition().x() - 0.5 * size_(0) * resolution_m_,
                    map.getPosition().y() - 0.5 * size_(1) * resolution_m_};
   }
-  /// Returns the grid, with width along x and height along y.
+  /// Returns the Talus grid that covers the grid map, with width along x and height along y.
   talus::maps::Grid grid() const {
     return {.width = size_(0), .height = size_(1), .resolution_m = resolution_m_, .south_west = south_west_};
   }
-  /// Returns the index in the data of the cell in a column (along x) and row (along y).
+  /// Returns the index in the ring buffer of a cell of grid().
   grid_map::Index index(talus::maps::Cell cell) const {
     return {(size_(0) - 1 - cell.column + start_(0)) % size_(0),
             (size_(1) - 1 - cell.row + start_(1)) % size_(1)};
@@ -44,16 +44,18 @@ class CellsOf {
   talus::maps::Point south_west_;
 };
 
-/// Returns the offset between the cells of two grids in cells, 0 to 0.5.
+/// Returns the offset, in cells, between the cells of two grids with corners at `a_m` and `b_m` on one axis:
+/// the distance of (a_m - b_m) / resolution_m from the nearest integer, [0, 0.5].
 inline double offset(double a_m, double b_m, double resolution_m) {
   const double cells = (a_m - b_m) / resolution_m;
   return std::abs(cells - std::round(cells));
 }
 
-/// Returns the heights of a layer as a patch, cropped to the map, NaN where the layer is NaN. Empty if layer
-/// and map do not overlap or no height is known. Throws std::invalid_argument for a missing layer, another
-/// resolution, or an offset of more than 0.01 cells from the map: heights are not interpolated, because
-/// interpolation would flatten steps.
+/// Returns the heights of the layer `layer` of the grid map `seen` as a patch of the Talus map with the grid
+/// `map`. The patch is cropped to the map; it is NaN where the layer is NaN. Returns nullopt if layer and map
+/// do not overlap or no height is known. Throws std::invalid_argument if the layer is missing, if the
+/// resolutions differ, or if the cells of both grids are offset by more than 0.01 cells. Heights are not
+/// interpolated, because interpolation would flatten steps.
 inline std::optional<talus::costmap::SurfacePatch> patchOf(const grid_map::GridMap& seen,
                                                            const std::string& layer,
                                                            const talus::maps::Grid& map) {
@@ -94,8 +96,9 @@ inline std::optional<talus::costmap::SurfacePatch> patchOf(const grid_map::GridM
   return patch;
 }
 
-/// Returns the whole map as a grid map with layers `elevation`, `category` (0 safe, 1 marginal, 2 dangerous;
-/// NaN: not observed), `drawbar_pull` (mean DP/W) and `drawbar_pull_std`.
+/// Returns the whole Talus map as a grid map with the layers `elevation` [m], `category` (0 safe, 1 marginal,
+/// 2 dangerous; NaN: not observed), `drawbar_pull` (mean of DP/W, drawbar pull over load) and
+/// `drawbar_pull_std` (its standard deviation). `frame` is the frame of the grid map.
 inline grid_map::GridMap gridMapOf(const talus::costmap::TraversabilityMap& map, const std::string& frame) {
   const talus::maps::Grid& grid = map.grid();
   grid_map::GridMap out({"elevation", "category", "drawbar_pull", "drawbar_pull_std"});

@@ -1,5 +1,6 @@
-// Shows   Talus' traversability as a layer of Nav2's 2D costmap, for planners and controllers without headings.
-// Needs   talus::planner, nav2_costmap_2d (Jazzy or later), grid_map_core, grid_map_msgs.  Parameters: README.md.
+// Shows   traversability as a layer of Nav2's 2D costmap, for planners and controllers without headings.
+// Needs   talus::planner, nav2_costmap_2d (Jazzy or later), grid_map_core, grid_map_msgs. README.md lists the
+//         parameters.
 #pragma once
 
 #include <atomic>
@@ -13,10 +14,11 @@
 
 namespace talus_ros2 {
 
-/// Writes the maximum of the existing and its own cost: lethal for cells refused in every heading, 252 (the
-/// highest cost that is no obstacle) for cells refused in some headings, otherwise a cost by the most
-/// expensive heading. Cells off Talus' map are unchanged. The costmap calls the layer in one thread; the
-/// subscription may run in another.
+/// Costmap layer of Nav2 with the traversability of a Talus map. The layer writes the maximum of the existing
+/// cost and its own cost of a cell. Its own cost is lethal if no heading is allowed, 252 (the highest cost of
+/// a cell without obstacle) if some headings are not allowed, otherwise a value that increases with the cost
+/// of the most expensive heading. Cells outside the Talus map are unchanged. The costmap calls the layer in
+/// one thread; the subscription may run in another thread.
 class Nav2Layer : public nav2_costmap_2d::Layer {
  public:
   ~Nav2Layer() override;
@@ -36,12 +38,12 @@ class Nav2Layer : public nav2_costmap_2d::Layer {
   std::uint8_t worstIn(const talus::maps::CellBox& box);
 
   std::unique_ptr<PatchedMap> map_;
-  std::shared_ptr<void> subscription_;  // refers to map_
+  std::shared_ptr<void> subscription_;  // uses map_
   double full_cost_ratio_ = 20.0;
   bool refuse_unknown_ = true;
-  std::atomic<bool> redraw_ = true;  // true: the next update redraws everything
-  Version now_;                      // version drawn last
-  // Cost of each cell, with the cell code for which it was computed.
+  std::atomic<bool> redraw_ = true;  // true: the next update draws all cells
+  Version now_;                      // map version drawn last
+  // Cost of a cell, and the cell code from which the cost was computed.
   struct Judged {
     talus::costmap::CellCode code;
     std::uint8_t cost;

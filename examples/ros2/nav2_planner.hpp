@@ -18,7 +18,8 @@
 
 namespace talus_ros2 {
 
-/// Type of the first parameter of configure(), which differs between releases of Nav2.
+/// Type of the first parameter of the member function `Method`, here configure(), which differs between
+/// releases of Nav2.
 template <typename Method>
 struct FirstParameter;
 template <typename Class, typename First, typename... Others>
@@ -26,9 +27,10 @@ struct FirstParameter<void (Class::*)(const First&, Others...)> {
   using type = First;
 };
 
-/// Plans on a Talus map from a file, which patches of a grid map may change at run time. createPlan(), the
-/// subscription and deactivate() may run in three threads; a second createPlan() waits for the first. Throws
-/// the typed exceptions of nav2_core, each with a text of one line.
+/// Global planner of Nav2 on a Talus map from a file. Elevation messages of grid_map may change parts of the
+/// map at run time. createPlan(), the subscription and deactivate() may run in three threads; a second
+/// createPlan() waits for the first. Failures are thrown as the exception types of nav2_core, each with a
+/// text of one line.
 class Nav2Planner : public nav2_core::GlobalPlanner {
  public:
   using Poses = std::vector<geometry_msgs::msg::PoseStamped>;
@@ -38,10 +40,11 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
                  std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) override;
   void cleanup() override;
   void activate() override;
-  /// Cancels the running plan.
+  /// Cancels the plan that is running, if any.
   void deactivate() override;
 
-  // Depending on the release of Nav2, one of the two is an override; neither can be marked as such.
+  // One of the two functions is an override, depending on the release of Nav2; therefore neither can be
+  // marked as override.
   nav_msgs::msg::Path createPlan(const geometry_msgs::msg::PoseStamped& start,
                                  const geometry_msgs::msg::PoseStamped& goal,
                                  std::function<bool()> cancel_checker);
@@ -62,7 +65,7 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
   double spacing_m_ = 0.5;
   bool headings_ = false;
   std::unique_ptr<PatchedMap> map_;
-  std::shared_ptr<void> subscription_;  // refers to map_
+  std::shared_ptr<void> subscription_;  // uses map_
   std::shared_ptr<rclcpp::Publisher<visualization_msgs::msg::Marker>> categories_;
   std::mutex planning_;  // serialises plans
   std::unique_ptr<talus::GlobalPlanner> planner_;

@@ -1,4 +1,4 @@
-// Shows   parameters and subscriptions on any node class of ROS 2: nav2::LifecycleNode hides members of rclcpp.
+// Shows   parameters and subscriptions on any node class of ROS 2; nav2::LifecycleNode hides rclcpp members.
 // Needs   rclcpp.
 #pragma once
 
@@ -10,7 +10,8 @@
 
 namespace talus_ros2 {
 
-/// Returns a parameter, after declaring it if necessary.
+/// Returns the value of the parameter `name` of a node. A parameter that is not declared is first declared
+/// with the default value `usual`.
 template <typename T, typename Node>
 T parameter(Node& node, const std::string& name, const T& usual) {
   if (!node.has_parameter(name)) node.template declare_parameter<T>(name, usual);
@@ -19,8 +20,8 @@ T parameter(Node& node, const std::string& name, const T& usual) {
   return value;
 }
 
-/// Subscribes to the newest message of a topic, with any reliability of its publisher. Without a group the
-/// node's default group is used.
+/// Subscribes to a topic with a queue of one message, for publishers of any reliability. `callback` is called
+/// with each message, in the callback group `group`; null: the default group of the node.
 template <typename Message, typename Node, typename Callback>
 std::shared_ptr<void> newestOf(const std::shared_ptr<Node>& node, const std::string& topic, Callback callback,
                                const rclcpp::CallbackGroup::SharedPtr& group = nullptr) {

@@ -1,4 +1,4 @@
-// Shows   a Talus map from a file that elevation messages of grid_map patch at run time, for planner and layer.
+// Shows   a Talus map from a file whose heights are changed by elevation messages of grid_map.
 // Needs   talus::planner, grid_map_core, grid_map_msgs, rclcpp.  Used by nav2_planner.cpp and nav2_layer.cpp.
 #pragma once
 
@@ -17,28 +17,30 @@
 namespace talus_ros2 {
 
 /// Returns one layer of a message as a grid map. Throws std::invalid_argument for a message that is empty,
-/// lacks the layer, is rotated against its frame, or has inconsistent sizes: grid_map's own conversion
-/// asserts or reads beyond the data.
+/// lacks the layer, is rotated in its frame, or has inconsistent sizes. The conversion of grid_map itself
+/// would abort or read beyond the data of such messages.
 grid_map::GridMap gridMapFrom(const grid_map_msgs::msg::GridMap& message, const std::string& layer);
 
-/// Map from a file with patches from messages. One thread calls see(); published() may be called from any
-/// thread.
+/// Talus map from a file whose heights are changed by elevation messages of grid_map. One thread calls see();
+/// published() may be called from any thread.
 class PatchedMap {
  public:
-  /// Conditions on messages.
+  /// Conditions that a message must meet.
   struct Intake {
-    std::string frame;                ///< frame of the map file
-    std::string layer = "elevation";  ///< heights [m]
-    double max_age_s = 2.0;           ///< larger age of a stamp, in either direction, is an error; 0: any age
+    std::string frame;                ///< required frame of a message: the frame of the map file
+    std::string layer = "elevation";  ///< name of the layer with heights [m]
+    /// Largest difference between message stamp and present time, of either sign; 0: any difference.
+    double max_age_s = 2.0;
   };
 
   /// Throws talus::InputError if the file is not a map.
   PatchedMap(const std::string& file, Intake intake);
 
-  /// Patches the map with the heights of a message. Throws std::invalid_argument with one line; the map is
-  /// then unchanged.
+  /// Replaces heights of the map by the heights of a message; `now` is the present time. Throws
+  /// std::invalid_argument with a text of one line if the message is not usable; the map is then unchanged.
   void see(const grid_map_msgs::msg::GridMap& message, const rclcpp::Time& now);
 
+  /// Returns the current version of the cost map.
   std::shared_ptr<const talus::costmap::CostGrid> published() const { return map_.published(); }
 
  private:
@@ -47,8 +49,9 @@ class PatchedMap {
   talus::costmap::TraversabilityMap map_;
 };
 
-/// Returns the map given by the parameters `NAME.map_file`, `.elevation_layer` and `.max_age_s`. Throws
-/// std::invalid_argument with one line that names the parameter.
+/// Returns the map that is given by the parameters `NAME.map_file`, `NAME.elevation_layer` and
+/// `NAME.max_age_s` of a node, where NAME is `name`. `frame` is the frame of the map file. Throws
+/// std::invalid_argument with a text of one line that contains the name of the invalid parameter.
 template <typename Node>
 std::unique_ptr<PatchedMap> patchedMap(Node& node, const std::string& name, const std::string& frame) {
   const auto file = parameter<std::string>(node, name + ".map_file", "");
@@ -63,8 +66,9 @@ std::unique_ptr<PatchedMap> patchedMap(Node& node, const std::string& name, cons
   }
 }
 
-/// Subscribes to the topic `NAME.elevation_topic`, if given, to patch the map. Unusable messages are logged,
-/// at most every five seconds. The map must outlive the returned subscription.
+/// Subscribes to the topic in the parameter `NAME.elevation_topic` of a node, and updates `map` with its
+/// messages. Returns null if the parameter is empty. A message that is not usable is logged, at most every
+/// five seconds. The map must outlive the returned subscription.
 template <typename Node>
 std::shared_ptr<void> patchedByTopic(const std::shared_ptr<Node>& node, const std::string& name,
                                      PatchedMap& map,

@@ -9,13 +9,14 @@
 
 namespace talus_ros2 {
 
-/// Returns a path with a pose at each vertex and at most `spacing_m` > 0 apart. z is the ground elevation; at
-/// unobserved ground it is that of the previous pose.
+/// Returns the route as a path with a pose at each vertex, and further poses, so that poses are at most
+/// `spacing_m` > 0 apart. z is the elevation of the ground; on unobserved ground z is that of the previous
+/// pose.
 nav_msgs::msg::Path pathOf(const talus::planner::Route& route, const std_msgs::msg::Header& header,
                            double spacing_m);
 
-/// Returns the poses of pathOf() as a line: green where the motion is safe, amber marginal, red dangerous,
-/// grey unknown.
+/// Returns the poses of pathOf() as a line marker, coloured by the category of the motion: green safe, amber
+/// marginal, red dangerous, grey unknown.
 visualization_msgs::msg::Marker categoriesOf(const talus::planner::Route& route,
                                              const std_msgs::msg::Header& header, double spacing_m);
 

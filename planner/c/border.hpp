@@ -13,16 +13,19 @@
 #include <talus/common/input_error.hpp>
 #include <talus/planner/c/session.hpp>
 
-/// Boundary to C: checks sizes and pointers, and converts exceptions to a code and a one-line message.
+/// Boundary to the C interface: checks of sizes and pointers, and conversion of exceptions to an error code
+/// and a message of one line.
 namespace talus::border {
 
 using planner::Session;
 
+/// Returns all open sessions of the process.
 inline planner::Sessions& sessions() {
   static planner::Sessions all;
   return all;
 }
 
+/// Writes a message to `error`, which may be null; long messages are cut, control characters become blanks.
 inline void setError(talus_error* error, const std::string& what) noexcept {
   if (error == nullptr) return;
   const std::size_t length = std::min(what.size(), sizeof error->text - 1);
@@ -31,11 +34,14 @@ inline void setError(talus_error* error, const std::string& what) noexcept {
   error->text[length] = '\0';
 }
 
+/// Error of a call to a session that another thread is using.
 struct Busy : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs a call. Invalid arguments and input return TALUS_BAD_INPUT, other exceptions TALUS_FAILURE.
+/// Runs the body of a C function and returns its code. Invalid arguments and invalid input return
+/// TALUS_BAD_INPUT, Busy returns TALUS_BUSY, other exceptions return TALUS_FAILURE; the message is written to
+/// `error`.
 template <typename Work>
 talus_code guarded(talus_error* error, const Work& work) noexcept {
   try {
@@ -59,6 +65,7 @@ talus_code guarded(talus_error* error, const Work& work) noexcept {
   }
 }
 
+/// Throws std::invalid_argument with the text `what` unless `holds` is true.
 inline void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);
 }
@@ -67,7 +74,8 @@ inline void requirePointer(const void* pointer, const char* name) {
   require(pointer != nullptr, std::string(name) + " is NULL; pass one");
 }
 
-/// Returns the structure. Throws std::invalid_argument if its size is not that of this version.
+/// Returns the structure that a caller passed. Throws std::invalid_argument if the pointer is null or the
+/// size field differs from the size in this version.
 template <typename T>
 const T& read(const T* given, const char* name) {
   requirePointer(given, name);
@@ -77,14 +85,15 @@ const T& read(const T* given, const char* name) {
   return *given;
 }
 
+/// Returns the session with a number. Throws std::invalid_argument if the session is not open.
 inline std::shared_ptr<Session> open(talus_session number) {
   auto session = sessions().find(number);
   require(session != nullptr, "session " + std::to_string(number) + " is not open; call talus_create()");
   return session;
 }
 
-/// Exclusive access to a session for one call. Looks up the session again after locking, because talus_move()
-/// may have replaced the session.
+/// Exclusive access to a session during one call. After locking, the number is looked up again, because
+/// talus_move() may have replaced the session. Throws Busy if another thread uses the session.
 struct Held {
   explicit Held(talus_session number) {
     do {

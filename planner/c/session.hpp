@@ -11,7 +11,8 @@
 
 namespace talus::planner {
 
-/// Data of a session of the C interface. `work` is locked while a call reads or changes the session.
+/// Session of the C interface: a map with its planner, telemetry intake and latest route. The mutex `work` is
+/// locked while a call reads or changes the session.
 struct Session {
   explicit Session(costmap::TraversabilityMap built)
       : map(std::move(built)), intake(map, nullptr, {.settles = true}) {}
@@ -22,11 +23,11 @@ struct Session {
   Route route;
   std::mutex work;
 
-  /// Stop token for a plan that begins now.
+  /// Returns the stop token of a plan that begins now.
   std::stop_token begin();
-  /// Requests a stop of the running plan, if any.
+  /// Requests a stop of the plan that is running, if any.
   void cancel();
-  /// Requests a stop of the running plan and of every later plan.
+  /// Requests a stop of the plan that is running and of all later plans.
   void end();
 
  private:
@@ -35,15 +36,16 @@ struct Session {
   bool ended_ = false;
 };
 
-/// Sessions by number, so that a C program holds no pointer that may dangle. Thread-safe.
+/// Sessions by number. A C program holds numbers instead of pointers, which could dangle. Thread-safe.
 class Sessions {
  public:
+  /// Adds a session and returns its number.
   std::uint64_t add(std::shared_ptr<Session> session);
-  /// Null for a number that was never used or was removed.
+  /// Returns the session with a number; null if the number was never used or its session was removed.
   std::shared_ptr<Session> find(std::uint64_t number) const;
   /// Replaces the session of a number. Returns false, without a change, if the number is not in use.
   bool replace(std::uint64_t number, std::shared_ptr<Session> session);
-  /// Returns a session as find() and removes it.
+  /// Removes the session of a number and returns it; null if the number is not in use.
   std::shared_ptr<Session> remove(std::uint64_t number);
 
  private:

@@ -6,11 +6,14 @@
 
 namespace talus::planner {
 
-/// Lowest and highest drive cost per metre over all curves and all allowed gradients along and across.
+/// Lowest and highest cost per metre over all cost curves and all allowed gradients along and across the
+/// heading.
 struct CostRange {
-  double least_J_per_m = std::numeric_limits<double>::infinity();  ///< infinite if no motion is allowed
-  double most_J_per_m = 0.0;
+  /// Lowest cost; infinite if no motion is allowed.
+  double least_J_per_m = std::numeric_limits<double>::infinity();
+  double most_J_per_m = 0.0;  ///< highest finite cost
 };
+/// Returns the range of the costs per metre of a cost function.
 CostRange costRange(const costmap::TravelCost& cost);
 
 }  // namespace talus::planner

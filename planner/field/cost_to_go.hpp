@@ -11,70 +11,76 @@
 
 namespace talus::planner {
 
-/// Cell from which the field is computed, and the remaining cost from the cell's centre to the goal.
+/// Goal of a cost-to-go field: a cell, and the remaining cost from its centre to the goal of the problem.
 struct FieldGoal {
   maps::Cell cell;
-  double cost_J = 0.0;  ///< >= 0; values above EdgeLayer::kBlocked units are clamped
+  double cost_J = 0.0;  ///< remaining cost, >= 0; values above EdgeLayer::kBlocked units are clamped
 
   friend bool operator==(const FieldGoal&, const FieldGoal&) = default;
 };
 
-/// Cost-to-go field: the minimum cost over the grid's eight headings from every cell to the nearest goal,
-/// with ascent and descent distinguished. Cells are settled from the goals outwards, only as far as needed; a
-/// later call continues from there. Exact in the units of EdgeUnits, so the result does not depend on the
-/// order of work. Not thread-safe.
+/// Cost-to-go field: for every cell, the minimum cost of a path to the nearest goal that leads from cell
+/// centre to cell centre in the eight headings of the grid. Ascent and descent have different costs. A cell
+/// is settled when its final value is known. Cells are settled from the goals outwards, only as far as
+/// needed; a later call continues from there. Costs are integer multiples of the unit of EdgeUnits; therefore
+/// the result is exact and does not depend on the order of computation. Not thread-safe.
 class CostToGo {
  public:
+  /// Value of a cell from which no goal can be reached.
   static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
-  /// A goal's padded index and the remaining cost at the goal in units.
+  /// Goal by its padded index (index in PaddedGrid), and the remaining cost at the goal in units.
   struct Goal {
     std::uint32_t index;
     std::uint32_t units;
   };
 
+  /// `edges` are the costs of all steps between neighbouring cells. No cell is settled at construction.
   CostToGo(std::shared_ptr<const EdgeLayer> edges, const std::vector<FieldGoal>& goals,
            Kernels kernels = Kernels::Best);
 
-  /// Settles until the cell's value is final or the cell is known to be unreachable. Returns false when
-  /// stopped before.
+  /// Settles cells until `until` is settled or no goal can be reached from it. Returns false if a stop ended
+  /// the computation earlier.
   bool settle(maps::Cell until, const StopCheck& stop = {});
 
-  /// Settles every cell from which a goal can be reached. Returns false when stopped before.
+  /// Settles every cell from which a goal can be reached. Returns false if a stop ended the computation
+  /// earlier.
   bool settleAll(const StopCheck& stop = {});
 
-  /// Updates the field after the edge layer was updated for cells of this box. The result equals that of a
-  /// new search. Cells nearer to the goal than any cell of the box keep their values; the others are settled
-  /// again when needed. For a single start, PatchedField needs less work.
+  /// Updates the field after an update of the edge layer for the cells of the box `changed`. The result
+  /// equals that of a new computation. Cells that are nearer to the goal than all cells of the box keep their
+  /// values; the other cells are settled again when needed. For a single start, PatchedField needs less time.
   void repair(CellBox changed);
 
-  /// Returns the cost from the cell's centre to a goal's centre in units; kUnreached if there is no path.
-  /// Final for settled cells.
+  /// Returns the cost from the centre of a cell to the goal in units; kUnreached if there is no path. The
+  /// value is final for settled cells.
   std::uint32_t units(maps::Cell cell) const noexcept { return distance_[edges_->padded().index(cell)]; }
 
-  /// Returns units() in joules; empty if there is no path.
+  /// Returns units() converted to joules; empty if there is no path.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
 
-  /// Returns a lower bound of the minimum cost from a padded index in units, whether settled or not;
-  /// kUnreached if no path exists.
+  /// Returns a lower bound, in units, of the minimum cost from the cell with a padded index, which need not
+  /// be settled; kUnreached if there is no path.
   std::uint32_t atLeast(std::size_t index) const noexcept {
     const std::uint64_t front = current_ << shift_;
     return distance_[index] < front || queued_ == 0 ? distance_[index] : static_cast<std::uint32_t>(front);
   }
 
-  /// Lowest remaining cost of the goals in this cell in units; kUnreached if the cell is no goal.
+  /// Returns the lowest remaining cost, in units, of the goals in the cell with a padded index; kUnreached if
+  /// the cell is not a goal.
   std::uint32_t atGoal(std::size_t index) const noexcept;
 
-  /// Goals of the field. A cell may occur more than once.
+  /// Returns the goals of the field. A cell may occur more than once.
   const std::vector<Goal>& goals() const noexcept { return goals_; }
 
-  /// Returns the cells of the cheapest path from a settled cell to a goal, both included; empty if there is
+  /// Returns the cells of the cheapest path from a settled cell to a goal, including both; empty if there is
   /// no path.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
   /// Returns the number of settled cells.
   std::uint64_t settled() const noexcept { return settled_; }
 
+  /// Returns the costs of the steps between neighbouring cells.
   const EdgeLayer& edges() const noexcept { return *edges_; }
 
  private:
@@ -90,14 +96,14 @@ class CostToGo {
   void settleByVector(Bucket& bucket);
 
   std::shared_ptr<const EdgeLayer> edges_;
-  LargeArray<std::uint32_t> distance_;  // padded, units
-  std::vector<Bucket> buckets_;         // ring; each bucket holds the indices of cells of similar distance
-  std::uint64_t current_ = 0;           // current bucket, counted without wrapping
-  std::uint64_t queued_ = 0;            // entries in all buckets
+  LargeArray<std::uint32_t> distance_;  // cost to the goal in units, by padded index
+  std::vector<Bucket> buckets_;         // ring; each bucket holds the indices of cells of similar cost
+  std::uint64_t current_ = 0;           // number of the current bucket, without wrapping
+  std::uint64_t queued_ = 0;            // number of entries in all buckets
   std::uint64_t settled_ = 0;
   std::vector<Goal> goals_;
   bool vectors_ = false;
-  unsigned shift_ = 0;  // log2 of a bucket's width in units
+  unsigned shift_ = 0;  // binary logarithm of the bucket width in units
 };
 
 }  // namespace talus::planner

@@ -8,10 +8,11 @@
 
 namespace talus::planner {
 
-/// Returns the cells of the cheapest path from a cell to a goal, both included, following a cost-to-go field.
-/// Of equally cheap paths, the first in the order of headings is taken. distance(index) returns the exact
-/// distance or the largest uint32; atGoal(index) returns the remaining cost of a goal at the index or the
-/// largest uint32. Empty if there is no path.
+/// Returns the cells of the cheapest path from the cell `from` to a goal, including both, by following a
+/// cost-to-go field; empty if there is no path. Of equally cheap paths, the first in the order of headings is
+/// returned. distance(index) returns the exact cost to the goal in units for a padded index; atGoal(index)
+/// returns the remaining cost if the cell is a goal. Both return the largest uint32 if there is no such
+/// value.
 template <typename Distance, typename AtGoal>
 std::vector<maps::Cell> descent(const EdgeLayer& edges, maps::Cell from, Distance distance, AtGoal atGoal) {
   constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();

@@ -13,40 +13,43 @@
 
 namespace talus::planner {
 
-/// Cost of every step of the 8-neighbourhood on one version of the map, in units of EdgeUnits; 16 bytes per
-/// cell. A step consists of two half steps, in the cell left and in the cell entered, both in the heading of
-/// the step: the MotionCost of the segment between the centres. A diagonal step is blocked unless both cells
-/// beside the step also allow the heading.
+/// Costs of all steps from a cell centre to its eight neighbours, on one version of the map, in units of
+/// EdgeUnits; 16 bytes per cell. A step consists of two half steps, one in the cell that it leaves and one in
+/// the cell that it enters, both on the heading of the step. Its cost is that of MotionCost for the segment
+/// between the centres. A diagonal step is blocked unless the two other cells at its corner also allow the
+/// heading.
 class EdgeLayer {
  public:
   static constexpr std::uint16_t kBlocked = EdgeUnits::kBlocked;
 
-  /// Builds the layer with `threads` threads; the result does not depend on their number. Ends early and
-  /// incomplete when a stop is requested; see complete().
+  /// Computes the layer with `threads` threads; the result does not depend on their number. The computation
+  /// ends early when a stop is requested; complete() is then false.
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
-  /// Creates a layer for a grid of points other than the map's cells. The caller fills the steps through
-  /// into().
+  /// Size of the grid of points of a layer whose points are not the cells of the map.
   struct Unfilled {
     int width;
     int height;
   };
+  /// Creates a layer without step costs, which the caller writes through into().
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, Unfilled points);
 
   std::uint16_t* into(std::size_t index) noexcept { return edges_.get() + 8 * index; }
 
-  /// The eight steps into the cell at a padded index, indexed by the heading in which the neighbour lies.
+  /// Returns the costs of the eight steps into the cell with a padded index. The index of a step is the
+  /// heading, seen from the cell, of the neighbour at which the step begins.
   const std::uint16_t* into(std::size_t index) const noexcept { return edges_.get() + 8 * index; }
 
   const PaddedGrid& padded() const noexcept { return padded_; }
   const EdgeUnits& units() const noexcept { return units_; }
   const costmap::CostGrid& map() const noexcept { return *map_; }
   const std::shared_ptr<const costmap::CostGrid>& mapPointer() const noexcept { return map_; }
+  /// Returns false if a stop ended the computation.
   bool complete() const noexcept { return complete_; }
 
-  /// Updates the layer to a newer version of the same grid. The new units must extend the present units, and
-  /// cells outside the box must be unchanged.
+  /// Updates the layer to the newer version `newer` of the same grid. The units must extend the present units
+  /// (EdgeUnits::extends()), and cells outside the box `changed` must be equal in both versions.
   void update(std::shared_ptr<const costmap::CostGrid> newer, const EdgeUnits& units, CellBox changed);
 
  private:

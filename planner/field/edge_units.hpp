@@ -12,11 +12,12 @@
 
 namespace talus::planner {
 
-/// Costs of half steps, from a cell's centre to its edge or corner, for all eight headings, as integer
-/// multiples of an energy unit, so that sums do not depend on their order. An edge is the sum of two half
-/// steps and fits in 16 bits. Headings refused by TravelCurve::price() have kBlocked; costs above kHighest
-/// are stored as kHighest. Interpolation weights are rounded to 1/128, so a half step differs from the exact
-/// cost by at most one unit plus 1/256 of the difference of neighbouring nodes.
+/// Costs of half steps as integer multiples of an energy unit, so that sums do not depend on their order. A
+/// half step leads from the centre of a cell to a side or corner of the cell, in one of the eight headings of
+/// the grid. The cost of a step between cells is the sum of two half steps and fits in 16 bits. A heading
+/// that TravelCurve::price() does not allow has the cost kBlocked; costs above kHighest are stored as
+/// kHighest. Interpolation weights are rounded to 1/128. Therefore the cost of a half step differs from the
+/// exact cost by at most one unit plus 1/256 of the difference of neighbouring table nodes.
 class EdgeUnits {
  public:
   static constexpr std::uint16_t kBlocked = 0xffff;
@@ -24,41 +25,44 @@ class EdgeUnits {
 
   using Halves = std::array<std::uint16_t, 8>;  ///< indexed by GridHeading
 
-  /// Units for cells of side resolution_m [m] and the given cost. `coarsening` >= 1 enlarges the unit (for
-  /// huge maps).
+  /// Computes the costs of half steps in cells of side length `resolution_m` [m]. `coarsening` >= 1 is a
+  /// factor of the unit (for huge maps).
   EdgeUnits(const costmap::TravelCost& cost, double resolution_m, double coarsening = 1.0);
 
-  /// Unit only, for edges whose costs are computed elsewhere; halves() returns blocked headings only.
+  /// Sets only the unit, for steps whose costs are computed elsewhere; halves() then returns blocked
+  /// headings.
   EdgeUnits(double unit_J, std::uint32_t cheapest_edge) : unit_J_(unit_J), cheapest_edge_(cheapest_edge) {}
 
-  /// Joules per unit.
+  /// Returns the energy unit [J].
   double unit_J() const noexcept { return unit_J_; }
 
-  /// Returns a lower bound of every allowed edge in units; >= 1.
+  /// Returns a lower bound, in units, of the cost of all allowed steps; >= 1.
   std::uint32_t cheapestEdge() const noexcept { return cheapest_edge_; }
 
-  /// Returns true if these units assign the same cost to every cell that the older units cover (curves were
-  /// only added).
+  /// Returns true if these units give the same cost as the older units to every cell for which the older
+  /// units are defined, that is, if cost curves were only added.
   bool extends(const EdgeUnits& older) const noexcept;
 
-  /// Half-step costs of all headings in a cell.
+  /// Returns the half-step costs of all headings in a cell.
   Halves halves(costmap::CellCode cell) const noexcept;
 
-  /// Half-step costs of `count` consecutive cells. The AVX2 version returns identical values.
+  /// Writes the half-step costs of `count` consecutive cells to `out`. `by_vectors` selects the AVX2
+  /// implementation, which writes identical values.
   void halves(const costmap::CellCode* cells, std::size_t count, Halves* out, bool by_vectors) const noexcept;
 
  private:
   void halvesByVector(const costmap::CellCode* cells, std::size_t count, Halves* out) const noexcept;
 
-  // Interpolation weights in 1/kShares. A coordinate between two nodes never has a weight of 0 or kShares.
+  // Interpolation weights are in 1/kShares. A coordinate between two nodes has no weight of 0 or kShares.
   static constexpr int kShareBits = 7, kShares = 1 << kShareBits;
   // Fractional node index of a gradient: the lower 32 bits are an offset into pairs_, the upper two 16-bit
-  // fields are the weights of the next bin and the next row. A gradient beyond the limit has the highest bit
-  // of its weight set. Positions along and across are added.
+  // fields are the weights of the next bin and the next row. A gradient beyond the limit of the rover has the
+  // highest bit of its weight set. The indices along and across the heading are added.
   using Place = std::uint64_t;
   static constexpr Place kRefusedAlong = Place{1} << 47, kRefusedAcross = Place{1} << 63;
   struct Places {
-    std::vector<Place> along, across;  // by CellCode steps; `middle` is the index of zero
+    // By gradient in steps of CellCode; `middle` is the index of gradient 0.
+    std::vector<Place> along, across;
     int middle = 0;
   };
   Places places(const costmap::TravelCost::Limits& limits, double per_step, int shift) const;
@@ -75,11 +79,11 @@ class EdgeUnits {
             straight_along[y] + straight_across[x], diagonal_along[y - x] + diagonal_across[x + y]};
   }
 
-  // Half-step costs [units] of all nodes, ordered by curve, row, kind of step (straight, diagonal) and bin
-  // (-reach_ to reach_, then a blocked entry). The upper 16 bits are the cost in the opposite heading. Rows
-  // beyond the last row of a curve repeat the last row, so that all curves have equally many rows.
+  // Half-step costs [units] of all nodes, ordered by cost curve, row, kind of step (straight, diagonal) and
+  // bin (-reach_ to reach_, then a blocked entry). The upper 16 bits are the cost in the opposite heading.
+  // Rows beyond the last row of a curve repeat the last row, so that all curves have the same number of rows.
   std::vector<std::uint32_t> pairs_;
-  std::vector<std::uint32_t> first_;  // by curve
+  std::vector<std::uint32_t> first_;  // index of the first node of each cost curve
   int reach_ = 0;
   Places straight_, diagonal_;
   double unit_J_ = 1.0;

@@ -13,7 +13,7 @@ enum GridHeading : int { kEast, kNorthEast, kNorth, kNorthWest, kWest, kSouthWes
 inline constexpr std::array<maps::Cell, 8> kStep{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-/// The opposite heading.
+/// Returns the opposite heading.
 constexpr int opposite(int heading) noexcept {
   return heading ^ 4;
 }

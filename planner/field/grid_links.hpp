@@ -7,21 +7,23 @@
 
 namespace talus::planner {
 
-/// Cell whose centre is connected to a place by one allowed straight motion.
+/// Link of a point to the grid: a cell, and the cost of the straight motion between the point and the cell
+/// centre.
 struct GridLink {
   maps::Cell cell;
   double cost_J = 0.0;
 };
 
-/// Links to the centres of the cell of a place and its eight neighbours that can be reached from the place.
+/// Returns the links from `place` to the centres of its cell and of the eight neighbours of this cell, for
+/// the straight motions that are allowed.
 std::vector<GridLink> linksFrom(const MotionCost& cost, maps::Point place);
 
-/// Links from the centres of the cell of a place and its eight neighbours from which the place can be
-/// reached.
+/// Returns the links to `place` from the centres of its cell and of the eight neighbours of this cell, for
+/// the straight motions that are allowed.
 std::vector<GridLink> linksTo(const MotionCost& cost, maps::Point place);
 
-/// Goals of a field for this goal: linksTo(), plus every allowed cell whose centre lies within the tolerance,
-/// at cost 0.
+/// Returns the goals of the cost-to-go field for `goal`: the cells of linksTo(), and every cell that allows
+/// some heading and has its centre within the tolerance of the goal, with remaining cost 0.
 std::vector<FieldGoal> fieldGoals(const MotionCost& cost, maps::Point goal, double tolerance_m);
 
 }  // namespace talus::planner

@@ -8,14 +8,16 @@
 
 namespace talus::planner {
 
-/// Cheapest grid route between two places: to the centre of a cell near the first place, from centre to
-/// centre along the field, and to the second place if a straight motion leads there. Empty if there is no
-/// route, or when stopped. The field's goals must be the fieldGoals() of the second place.
+/// Returns the cheapest grid route from `places.from` to `places.to`. The route leads straight to the centre
+/// of a cell near the start, then from centre to centre along the cost-to-go field, then straight to the goal
+/// if that motion is allowed. The goals of the field must be fieldGoals() of `places.to`. The result is empty
+/// if there is no route, or after a stop.
 Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
                    const StopCheck& stop = {});
 
-/// Cheapest grid route after the edges of a box of cells changed, from the field before the change. Returns
-/// nullopt if repairing the field takes less work; an empty route if there is none or when stopped.
+/// Returns the cheapest grid route after the step costs in the box `changed` changed, computed from `before`,
+/// the field before the change. Returns nullopt if an update of the field takes less time; an empty route if
+/// there is no route or after a stop.
 std::optional<Polyline> gridRouteAfter(CellBox changed, const MotionCost& cost, const CostToGo& before,
                                        const Segment& places, const StopCheck& stop = {});
 

@@ -8,7 +8,7 @@
 namespace talus::planner {
 
 /// Returns the smallest box around all cells that differ between two versions of a map on the same grid;
-/// empty if none differs. Tiles shared by both versions are skipped.
+/// empty if no cell differs. Tiles that both versions share are skipped.
 std::optional<CellBox> changedCells(const costmap::CostGrid& old, const costmap::CostGrid& newer);
 
 }  // namespace talus::planner

@@ -7,26 +7,27 @@
 
 namespace talus::planner {
 
-/// Lower bound of the cost to go from any cell after an area of the map changed, computed from the field
-/// before the change. The bound is admissible, so A* with this bound finds the cheapest path. Ours, not from
-/// the literature.
+/// Lower bound of the cost from any cell to the goal after a change in an area of the map, computed from the
+/// cost-to-go field before the change. The bound is admissible; therefore A* with this bound finds the
+/// cheapest path. Ours, not from the literature.
 ///
-/// A box around the change contains every changed step and is settled from its rim inwards. A rim cell keeps
-/// its old cost, or improves by a path through the box, or improves by a path that leaves the box and enters
-/// again elsewhere. Such an excursion costs at least the drop of the old field and at least its number of
-/// steps times the cheapest edge. A cell outside the box keeps its old cost, or its path crosses the rim. In
-/// the second case the cell improves by at most the largest improvement on the rim, and its cost is at least
-/// the lowest cost of an improved rim cell.
+/// A box around the change contains every changed step. The cells of the box are settled from its rim
+/// (outermost cells) inwards. A rim cell has its old cost, or it is cheaper by a path inside the box, or it
+/// is cheaper by a path that leaves the box and enters it elsewhere. The part of such a path outside the box
+/// costs at least the decrease of the old field along it, and at least its number of steps times the cheapest
+/// step. A cell outside the box has its old cost, or its path crosses the rim. In the second case its cost
+/// decreases by at most the largest decrease on the rim, and is at least the lowest cost of a rim cell whose
+/// cost decreased.
 class PatchBound {
  public:
-  /// `before` is the field before the change; its edge layer is already updated. The bound refers to
-  /// `before`, which must outlive the bound.
+  /// `before` is the field before the change, with its edge layer already updated. The field must outlive the
+  /// bound.
   PatchBound(const CostToGo& before, CellBox changed);
 
-  /// False if the change connects cells that had no path before; no bound exists then.
+  /// Returns false if no bound exists, because the change connects cells that had no path to the goal before.
   bool holds() const noexcept { return holds_; }
 
-  /// Returns a lower bound in units, by padded index; kUnreached if no path exists.
+  /// Returns the lower bound, in units, for a padded index; kUnreached if there is no path.
   std::uint32_t operator()(std::size_t index) const noexcept;
 
  private:
@@ -48,8 +49,8 @@ class PatchBound {
   std::size_t columns_;
   std::size_t first_index_, last_index_;        // padded
   std::vector<std::uint32_t> inside_;           // by local index
-  std::uint32_t gain_ = 0;                      // largest improvement on the rim
-  std::uint32_t least_ = CostToGo::kUnreached;  // lowest cost of an improved rim cell
+  std::uint32_t gain_ = 0;                      // largest decrease of the cost on the rim
+  std::uint32_t least_ = CostToGo::kUnreached;  // lowest cost of a rim cell whose cost decreased
   bool holds_ = true;
 };
 

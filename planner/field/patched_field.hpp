@@ -10,26 +10,27 @@
 
 namespace talus::planner {
 
-/// Field of a goal after an area of the map changed, restricted to the cheapest paths from one place.
-/// Distances and paths equal those of a repaired CostToGo, with less work. A* from the place
-/// [hart_nilsson_raphael_1968], guided by the field before the change (PatchBound), selects the cells; the
-/// cells on cheapest paths are then settled from the goal.
+/// Cost-to-go field after a change in an area of the map, restricted to the cheapest paths from one start.
+/// Costs and paths equal those of CostToGo::repair() and need less time. A* from the start
+/// [hart_nilsson_raphael_1968], with the lower bound PatchBound, selects the cells; the cells on the cheapest
+/// paths are then settled from the goal.
 class PatchedField {
  public:
-  /// `before` is the field before the change, with its edge layer already updated; `before` must outlive the
-  /// object.
+  /// `before` is the field before the change, with its edge layer already updated; it must outlive the
+  /// object. `changed` is the box of the changed cells.
   PatchedField(const CostToGo& before, CellBox changed) : before_(before), changed_(changed) {}
 
+  /// Result of settle(): settled, abandoned because of too many cells, or stopped.
   enum class Outcome { Settled, TooMuch, Stopped };
 
-  /// Settles the cells needed to leave a place by its best link. Returns TooMuch if more than `most_cells`
-  /// cells would be processed.
+  /// Settles the cells of the cheapest path from the start, which is connected to the grid by `links`.
+  /// Returns TooMuch if more than `most_cells` cells would have to be processed.
   Outcome settle(const std::vector<GridLink>& links, std::uint64_t most_cells, const StopCheck& stop = {});
 
-  /// Returns CostToGo::cost_J() [J] for the cell of a link on a cheapest path; empty for other cells.
+  /// Returns the cost to the goal [J] from a cell of `links` on a cheapest path; empty for other cells.
   std::optional<double> cost_J(maps::Cell cell) const;
 
-  /// Returns CostToGo::path() from the cell of a link on the cheapest path.
+  /// Returns the cells of the cheapest path from a cell of `links` on this path to the goal.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
  private:
@@ -37,7 +38,7 @@ class PatchedField {
 
   const CostToGo& before_;
   CellBox changed_;
-  std::unordered_map<std::uint32_t, std::uint32_t> distance_;  // units, by padded index
+  std::unordered_map<std::uint32_t, std::uint32_t> distance_;  // cost in units, by padded index
 };
 
 }  // namespace talus::planner

@@ -8,15 +8,17 @@
 
 namespace talus::planner {
 
-/// Coarse map for finding a rough route: each coarse cell represents factor x factor cells (factor >= 2). A
-/// coarse cell has the mean gradient and the most frequent curve of its cells, sampled at every fourth cell.
-/// A surcharge on the curve makes the mean cost over all headings equal to the mean of the traversable cells,
-/// divided by the share of traversable cells. The coarse cell is blocked if less than a third of the samples
-/// are traversable. The result is no bound of the cost. Returns null when stopped.
+/// Returns a coarse map for the search of a rough route. Each coarse cell represents factor x factor cells of
+/// `map`, factor >= 2. The coarse cell has the mean gradient and the most frequent cost curve of its cells,
+/// sampled at every fourth cell. A surcharge on the cost curve makes the mean cost over all headings equal to
+/// the mean cost of the traversable cells divided by their share. The coarse cell is blocked if less than a
+/// third of the samples are traversable. The coarse costs are not bounds of the true costs. Returns null
+/// after a stop.
 std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, int factor, int threads = 1,
                                                 const StopCheck& stop = {});
 
-/// Pooled map of a newer version of the same map with the same cost, of which only a box of cells changed.
+/// Returns the coarse map of a newer version `map` with the same cost function, of which only the cells in
+/// the box `changed` differ. `older` is the coarse map of the previous version.
 std::shared_ptr<const costmap::CostGrid> repooled(const costmap::CostGrid& older,
                                                   const costmap::CostGrid& map, int factor, CellBox changed);
 

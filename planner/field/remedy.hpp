@@ -8,19 +8,20 @@
 
 namespace talus::planner {
 
-/// Information about the cells around an invalid start or goal.
+/// Information about the cells around an invalid start or goal, for the error message.
 struct PlaceDiagnostics {
-  HazardsOf hazards{};                       ///< hazards of blocked cells; empty if not known
-  std::function<bool(maps::Cell)> joined{};  ///< whether a cell is connected to the other end; empty if not
-                                             ///< known
+  HazardsOf hazards{};  ///< hazard of a cell without allowed heading; empty if not known
+  /// Returns true if a route connects a cell with the other end (goal or start); empty if not known.
+  std::function<bool(maps::Cell)> joined{};
 };
 
-/// One-line message for an invalid start or goal: the reason, and the nearest traversable cell, preferably a
-/// cell that is connected to the other end. `which` is "start" or "goal".
+/// Returns one line of text for an invalid start or goal at `place`: the reason, and the nearest traversable
+/// cell, if possible a cell that is connected with the other end of the route. `which` is "start" or "goal".
 std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, maps::Point place,
                          const PlaceDiagnostics& help = {});
 
-/// Returns true if some heading is allowed at the place, or at a cell centre within the tolerance >= 0 [m].
+/// Returns true if a route may end near `place`: some heading is allowed at the place itself, or at a cell
+/// centre within the tolerance `tolerance_m` >= 0 of the place.
 bool mayEnd(const MotionCost& cost, maps::Point place, double tolerance_m);
 
 }  // namespace talus::planner

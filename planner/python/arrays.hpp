@@ -9,35 +9,39 @@
 #include <talus/maps/grid/grid.hpp>
 #include <talus/maps/grid/point_heights.hpp>
 
-/// Conversion between NumPy arrays and rasters. Input is copied once, from any strides; output is a read-only
-/// view that keeps its owner alive.
+/// Conversion between NumPy arrays and rasters. An input array of any strides is copied once. An output array
+/// is a read-only view that keeps the owner of its memory alive. `name` is the name of the argument for error
+/// messages.
 namespace talus::planner {
 
-/// Placement of a two-dimensional array: rows south to north, columns west to east.
+/// Placement of a two-dimensional array on the map: rows from south to north, columns from west to east.
 struct Placed {
-  double resolution_m = 1.0;
-  maps::Point south_west{};
+  double resolution_m = 1.0;  ///< side length of a cell, > 0
+  maps::Point south_west{};   ///< south-western corner of the map
 };
 
-/// Grid of the array. Throws ValueError unless the array is two-dimensional and not empty.
+/// Returns the grid of a two-dimensional array at the given placement. Throws ValueError unless the array is
+/// two-dimensional and not empty.
 maps::Grid gridOf(const pybind11::object& array, const std::string& name, const Placed& placed);
 
-/// Raster from float32 or float64. Throws TypeError for another dtype, and ValueError for another shape or,
-/// if `finite`, an infinite value; NaN is kept. None gives an empty raster.
+/// Converts an array of float32 or float64 to a raster on `grid`; None gives an empty raster. Throws
+/// TypeError for another dtype, and ValueError for another shape or, if `finite` is true, for an infinite
+/// value. NaN is permitted.
 maps::Raster<float> floatsOf(const pybind11::object& array, const std::string& name, const maps::Grid& grid,
                              bool finite = true);
 
-/// Raster from uint8 or bool; otherwise as floatsOf().
+/// Converts an array of uint8 or bool to a raster, under the other conditions of floatsOf().
 maps::Raster<std::uint8_t> bytesOf(const pybind11::object& array, const std::string& name,
                                    const maps::Grid& grid);
 
-/// Returns the places from float64 or float32 of shape (n, 2); must be finite.
+/// Converts an array of float64 or float32 of shape (n, 2) with finite values to points (x, y).
 std::vector<maps::Point> pointsOf(const pybind11::object& array, const std::string& name);
 
-/// Returns the points of a cloud from float64 or float32 of shape (n, 3), any values.
+/// Converts an array of float64 or float32 of shape (n, 3) with any values to points (x, y, z) of a cloud.
 std::vector<maps::CloudPoint> cloudOf(const pybind11::object& array, const std::string& name);
 
-/// Read-only view of numbers at the given strides [bytes] in memory of `owner`.
+/// Returns a read-only view of memory that belongs to `owner`. `first` is the first number, `strides` are in
+/// bytes.
 template <typename T>
 pybind11::array viewOf(const T* first, std::vector<pybind11::ssize_t> shape,
                        std::vector<pybind11::ssize_t> strides, pybind11::handle owner) {
@@ -47,6 +51,7 @@ pybind11::array viewOf(const T* first, std::vector<pybind11::ssize_t> shape,
 }
 
 template <typename T>
+/// Returns a read-only view of the values of a raster that belongs to `owner`, row by row from the south.
 pybind11::array viewOf(const maps::Raster<T>& raster, pybind11::handle owner) {
   const auto width = static_cast<pybind11::ssize_t>(raster.grid().width);
   return viewOf(

@@ -9,9 +9,9 @@
 namespace talus::planner {
 
 /// Runs `work` in a separate thread without the GIL. Meanwhile the calling thread checks for Ctrl-C 20 times
-/// a second and calls `progress` (may be None) with the completed share, 0 to 1. Ctrl-C or an exception of
-/// `progress` stops the work; the exception is raised when the work has ended. Exceptions of the work itself
-/// are rethrown.
+/// per second and calls `progress` (may be None) with the completed share of the work, [0, 1]. Ctrl-C or an
+/// exception of `progress` requests a stop of the work; the exception is rethrown after the work has ended.
+/// Exceptions of the work are also rethrown.
 void inBackground(const std::function<void(const ProgressMonitor&)>& work, const pybind11::object& progress);
 
 }  // namespace talus::planner

@@ -2,7 +2,8 @@
 
 #include <pybind11/pybind11.h>
 
-/// Each function adds the classes and functions of one section of the Python package to the module.
+/// Registration functions of the Python package. Each function adds the classes and functions of one section
+/// to the module.
 namespace talus::planner {
 
 void bindRoute(pybind11::module_& module);

@@ -13,39 +13,46 @@
 
 namespace talus::planner {
 
-/// Map of the Python package, based on the session of the C interface. Used by one thread at a time.
+/// Map class of the Python package, based on a session of the C interface. One thread at a time may use an
+/// object.
 class PythonMap {
  public:
-  /// Input of the map as Python objects.
+  /// Layers of the map as Python objects.
   struct Layers {
     pybind11::object heights, classes, rocks, keep_out;  ///< arrays of equal shape, or None
-    pybind11::dict costs;                                ///< name: joules per metre
+    pybind11::dict costs;  ///< cost layers: name of the layer, and array of additional costs [J/m]
   };
+  /// Rover, soils and placement of the map.
   struct Ground {
     terramech::Rover rover;
-    pybind11::object soils;  ///< a name or Soil, or a dict of class numbers to names or Soils
-    costmap::TravelPolicy policy{};
-    double resolution_m = 1.0;
-    maps::Point south_west{};
-    int threads = 1;
+    pybind11::object soils;          ///< name of a soil or a Soil; or dict from class number to name or Soil
+    costmap::TravelPolicy policy{};  ///< safety policy and weights of the cost function
+    double resolution_m = 1.0;       ///< side length of a cell, > 0
+    maps::Point south_west{};        ///< south-western corner of the map
+    int threads = 1;                 ///< number of threads, >= 1
   };
   PythonMap(const Layers& layers, const Ground& ground);
   explicit PythonMap(costmap::TraversabilityMap map) : session_(std::make_shared<Session>(std::move(map))) {}
-  /// Reads a map file.
+  /// Reads a map file; `threads` is the number of threads, >= 1.
   static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
 
   const costmap::TraversabilityMap& map() const noexcept { return session_->map; }
 
-  /// Updates the map in a window; heights may be None.
+  /// Updates the layers in a window with the south-western corner `south_west`; heights may be None.
   void patch(const Layers& layers, maps::Point south_west);
-  /// Adds telemetry, as columns or as the path of a file. Returns the number of rows used.
+  /// Adds wheel telemetry to the map. `telemetry` contains columns or is the path of a file. Returns the
+  /// number of rows used.
   std::size_t learn(const pybind11::object& telemetry);
-  /// Re-evaluates all rows since the map was made or read (DriveIntake::settle()).
+  /// Evaluates all telemetry rows again that were added since the map was created or read
+  /// (DriveIntake::settle()).
   void settle();
+  /// Writes a map file.
   void save(const std::string& path) const;
-  /// Writes the route as GeoJSON, as `talus plan` does.
+  /// Writes the route in the GeoJSON format of `talus plan`.
   void writeRoute(const Route& route, const std::string& path) const;
+  /// Plans a route; `progress` may be None (see inBackground()).
   Route plan(const PlannerSettings& settings, const PlanRequest& request, const pybind11::object& progress);
+  /// Returns the map with its window moved by a number of tiles (64 x 64 cells) in x and y.
   PythonMap moved(maps::Cell tiles) const;
 
  private:

@@ -4,7 +4,8 @@
 
 namespace talus::planner {
 
-/// Adds its lifetime in seconds to a sum, which must outlive the object.
+/// Timer that adds the time between its construction and its destruction [s] to a sum. The sum must outlive
+/// the timer.
 class AddedTime {
  public:
   explicit AddedTime(double& sum_s) noexcept : sum_s_(sum_s) {}

@@ -9,14 +9,14 @@
 
 namespace talus::planner {
 
-/// TravelCost::costPerMetre() for a fixed heading, for loops over many cells. Bit-identical to the original.
-/// Holds pointers into the TravelCost, which must outlive the object.
+/// Cost per metre for a fixed heading, for loops over many cells. The values are bit-identical to those of
+/// TravelCost::costPerMetre(). The TravelCost must outlive the object.
 class HeadingCost {
  public:
   HeadingCost(const costmap::TravelCost& cost, costmap::Direction heading) noexcept
       : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
 
-  /// From the heading's unit vector times CellCode::kStep.
+  /// (x, y) is the unit vector of the heading times CellCode::kStep.
   HeadingCost(const costmap::TravelCost& cost, double x, double y) noexcept
       : curves_(cost.curves().data()),
         curve_count_(cost.curves().size()),
@@ -25,7 +25,7 @@ class HeadingCost {
         x_(x),
         y_(y) {}
 
-  /// Returns the cost per horizontal metre [J/m]; infinite if not permitted.
+  /// Returns the cost per horizontal metre [J/m] on a cell; infinite if the cell does not permit the heading.
   float operator()(costmap::CellCode cell) const noexcept {
     if (cell.curve() >= curve_count_) return kBlocked;
     const double along = cell.stepsX() * x_ + cell.stepsY() * y_;
@@ -40,7 +40,7 @@ class HeadingCost {
   const costmap::TravelCurve* curves_;
   std::size_t curve_count_;
   double max_along_, max_across_;
-  double x_, y_;  // unit vector times the gradient step
+  double x_, y_;  // unit vector of the heading times CellCode::kStep
 };
 
 }  // namespace talus::planner

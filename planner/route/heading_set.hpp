@@ -11,53 +11,59 @@
 
 namespace talus::planner {
 
-/// A closed interval of headings, counter-clockwise.
+/// Closed interval of headings, from `from_rad` counter-clockwise over `width_rad`.
 struct HeadingArc {
-  double from_rad = 0.0;   ///< counter-clockwise from x, [0, 2 pi)
-  double width_rad = 0.0;  ///< [0, 2 pi]
+  double from_rad = 0.0;   ///< first heading, counter-clockwise from x (east), [0, 2 pi)
+  double width_rad = 0.0;  ///< width of the interval, [0, 2 pi]
 };
 
-/// A set of headings: closed, disjoint arcs in order of their beginnings.
+/// Set of headings, stored as closed, disjoint arcs (intervals of headings) in order of their first headings.
 class HeadingSet {
  public:
   HeadingSet() = default;
-  /// Arcs in any order, which may overlap, each in the ranges of HeadingArc.
+  /// `arcs` may have any order and may overlap; each arc must be in the ranges of HeadingArc.
   explicit HeadingSet(std::vector<HeadingArc> arcs);
-  /// A copy with its arcs in memory of the resource, which must outlive the copy.
+  /// Copies a set; the memory of the copy is allocated from `memory`, which must outlive the copy.
   HeadingSet(const HeadingSet& other, std::pmr::memory_resource* memory) : arcs_(other.arcs_, memory) {}
 
   const std::pmr::vector<HeadingArc>& arcs() const noexcept { return arcs_; }
   bool empty() const noexcept { return arcs_.empty(); }
+  /// Returns true if the set contains every heading.
   bool all() const noexcept { return arcs_.size() == 1 && arcs_[0].width_rad >= kTurn; }
 
-  /// Widest gap between arcs: its width, and the end of the arc clockwise of it. Combinations of headings of
-  /// the set yield every direction if the gap is narrower than half a turn; otherwise the directions from
-  /// `end + gap` counter-clockwise to `end`. The set must not be empty.
+  /// Widest gap between two arcs of a set: its width, and the last heading of the arc clockwise of the gap. A
+  /// rover that alternates between headings of the set can move in every direction if the gap is narrower
+  /// than pi. Otherwise it can move in the directions from `end_rad + width_rad` counter-clockwise to
+  /// `end_rad`.
   struct Gap {
     double end_rad;
     double width_rad;
   };
+  /// Returns the widest gap. The set must not be empty.
   Gap widestGap() const noexcept;
 
-  /// Intersection of two sets.
+  /// Returns the intersection of this set and `other`.
   HeadingSet shared(const HeadingSet& other) const;
 
-  /// Returns the heading of the set nearest to `heading_rad`, at least `inside_rad` from the ends of its arc,
-  /// or in the middle of a narrower arc. The set must not be empty.
+  /// Returns the heading of the set that is nearest to `heading_rad` and at least `inside_rad` inside the
+  /// ends of its arc. In an arc narrower than 2 inside_rad, the middle of the arc is used. The set must not
+  /// be empty.
   double nearest(double heading_rad, double inside_rad) const noexcept;
 
-  /// The opposite headings.
+  /// Returns the set of the opposite headings.
   HeadingSet reversed() const;
 
+  /// Full turn [rad].
   static constexpr double kTurn = 6.283185307179586;
 
  private:
   std::pmr::vector<HeadingArc> arcs_;
 };
 
-/// Cache of allowedHeadings() by cell code. Cells of curve index `free`, if given, permit every heading.
-/// Large maps have millions of codes; their sets are allocated in an arena, which is freed at once. Not
-/// thread-safe; the TravelCost must outlive the object.
+/// Cache of allowedHeadings() by cell code (gradient and cost-curve index of a cell). Cells with the
+/// cost-curve index `free`, if given, permit every heading. Large maps have millions of different codes;
+/// therefore the sets are allocated in an arena, which is released as a whole. Not thread-safe; the
+/// TravelCost must outlive the object.
 class HeadingSets {
  public:
   explicit HeadingSets(const costmap::TravelCost& cost, std::optional<std::uint8_t> free = {})
@@ -69,6 +75,7 @@ class HeadingSets {
         recent_(kRecent) {}
   HeadingSets(const HeadingSets&) = delete;
   HeadingSets& operator=(const HeadingSets&) = delete;
+  /// Returns the allowed headings of a cell with the given code.
   const HeadingSet& of(costmap::CellCode cell) {
     if (cell.curve() < gentle_.size() &&
         cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() < gentle_[cell.curve()])
@@ -80,18 +87,18 @@ class HeadingSets {
     return set;
   }
 
-  /// Gradients along, and magnitudes of gradients across, at which the cost of a curve may become finite or
-  /// infinite.
+  /// Gradients at which the cost of a cost curve may change between finite and infinite: signed gradients
+  /// along the heading, and magnitudes of gradients across the heading.
   struct Limits {
     Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve);
     std::vector<double> along, across;
-    /// All headings are permitted on cells below this gradient; 0: on no cell.
+    /// Gradient below which a cell permits all headings; 0: no such gradient.
     double gentle;
   };
 
  private:
-  // Cell code and heading set of a recent request, because neighbouring cells are requested repeatedly. Sets
-  // in sets_ keep their address.
+  // Cell code and heading set of a recent call of of(), because neighbouring cells have equal codes. Sets in
+  // sets_ keep their address.
   struct Recent {
     std::uint32_t bits = 0;
     const HeadingSet* set = nullptr;
@@ -105,17 +112,18 @@ class HeadingSets {
   const costmap::TravelCost& cost_;
   std::optional<std::uint8_t> free_;
   std::pmr::monotonic_buffer_resource arena_;
-  Sets& sets_;  // allocated in the arena and never destroyed: destruction delayed a stopped plan by 0.5 s
+  Sets& sets_;  // in the arena, never destroyed: destruction delayed a stopped plan by 0.5 s
   std::vector<std::optional<Limits>> limits_;
-  std::vector<double> gentle_;  // squared Limits::gentle of each curve; 0 until computed
+  std::vector<double> gentle_;  // squared Limits::gentle of each cost curve; 0 until computed
   const HeadingSet all_{{{0.0, HeadingSet::kTurn}}};
   std::vector<Recent> recent_;
 };
 
-/// Headings for which the drive cost of a cell is finite. Between two adjacent headings at which the gradient
-/// along or across passes a node of the cost table, the cost is either finite or infinite; one evaluation
-/// between each pair and one at each heading are sufficient. Arcs are widened by 1e-7 rad, so that rounding
-/// excludes no permitted heading.
+/// Returns the headings for which the cost of a cell is finite. When the heading turns, the gradients along
+/// and across the heading pass nodes of the cost table. Between two consecutive such headings the cost is
+/// either finite everywhere or infinite everywhere. Therefore one evaluation between each pair and one at
+/// each heading are sufficient. Arcs are widened by 1e-7 rad, so that rounding excludes no permitted heading.
+/// `limits` are the gradients of the cost curve of the cell.
 HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell);
 HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell,
                            const HeadingSets::Limits& limits);

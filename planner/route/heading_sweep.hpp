@@ -6,13 +6,13 @@
 
 namespace talus::planner {
 
-/// Smaller angle between two headings, (-pi, pi]; left > 0.
+/// Returns the signed smaller angle from heading `from` to heading `to`, (-pi, pi]; left > 0.
 inline double turnBetween_rad(costmap::Direction from, costmap::Direction to) noexcept {
   return std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
 }
 
-/// Returns true if `holds` is true at headings between two headings, on the smaller angle, in steps of at
-/// most `apart_rad` > 0; both ends are excluded.
+/// Returns true if `holds`(heading) is true at all sampled headings between two headings, on the side of the
+/// smaller angle. The samples are at most `apart_rad` > 0 apart; `from` and `to` themselves are excluded.
 template <typename Holds>
 bool holdsBetween(costmap::Direction from, costmap::Direction to, double apart_rad, Holds holds) {
   const double turn_rad = turnBetween_rad(from, to);

@@ -2,7 +2,7 @@
 
 namespace talus::planner {
 
-/// Selects one of two implementations of a loop with bit-identical results. The scalar version is for
+/// Choice between two implementations of a loop with bit-identical results. The scalar implementation is for
 /// machines without AVX2 and for tests.
 enum class Kernels { Best, Scalar };
 

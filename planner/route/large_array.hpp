@@ -12,17 +12,19 @@
 
 namespace talus::planner {
 
+/// Deleter that releases memory with std::free().
 struct FreeMemory {
   void operator()(void* memory) const noexcept { std::free(memory); }
 };
 
-/// An uninitialised array of trivial values: each page is first touched by the thread that fills it.
+/// Array of values of trivial type that are not initialised. Each memory page is first accessed by the thread
+/// that fills it.
 template <typename T>
 using LargeArray = std::unique_ptr<T[], FreeMemory>;
 
-/// Allocates an array of `count` values. Large arrays request huge pages: first access and release of 4 KiB
-/// pages would take longer than the computation of a map's edge costs, and a cancelled plan waits for the
-/// release. Throws std::bad_alloc.
+/// Allocates an array of `count` values. Large arrays request huge pages. With pages of 4 KiB, first access
+/// and release would take longer than the computation of the edge costs of a map, and a cancelled plan would
+/// wait for the release. Throws std::bad_alloc.
 template <typename T>
 LargeArray<T> makeLargeArray(std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -33,7 +35,7 @@ LargeArray<T> makeLargeArray(std::size_t count) {
   LargeArray<T> array(static_cast<T*>(std::aligned_alloc(unit, bytes)));
   if (!array) throw std::bad_alloc();
 #if defined(__linux__)
-  if (large) madvise(array.get(), bytes, MADV_HUGEPAGE);  // falls back to small pages
+  if (large) madvise(array.get(), bytes, MADV_HUGEPAGE);  // without huge pages, small pages are used
 #endif
   return array;
 }
