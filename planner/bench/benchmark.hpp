@@ -16,20 +16,21 @@ namespace talus::planner {
 
 struct SlipWorld;
 
-/// One planning problem of a benchmark suite.
+/// Case of a benchmark suite: one planning problem. Points are map coordinates [m].
 struct BenchmarkCase {
   std::string name;
   std::shared_ptr<const costmap::CostGrid> map;
   maps::Point start;
   maps::Point goal;
-  double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< optimal cost [J] if known, else NaN
-  Kinematics kinematics{};                                      ///< kinematics for planners of drives
-  std::shared_ptr<const SlipWorld> world{};  ///< world in which routes are driven; null: routes are not
-                                             ///< driven
-  std::string group{};                       ///< cases of one group are scored together
+  double optimum_J = std::numeric_limits<double>::quiet_NaN();  ///< optimal cost [J]; NaN if not known
+  /// Constraints on the motion, for planners of drives (routes with a turning radius).
+  Kinematics kinematics{};
+  /// Slip world in which routes are driven; null: routes are not driven.
+  std::shared_ptr<const SlipWorld> world{};
+  std::string group{};  ///< name of the group; cases of one group are scored together
 };
 
-/// A cost and the time at which it was reached.
+/// Cost of a route [J], and the planning time [s] after which it was reached.
 struct CostAtTime {
   double seconds = 0.0;
   double cost_J = 0.0;
@@ -41,62 +42,65 @@ struct BenchmarkRun {
   std::size_t case_index = 0;
   std::uint64_t seed = 1;
   RouteStatus status = RouteStatus::NoneFound;
-  bool crashed = false;    ///< the process ended without an answer
-  bool breached = false;   ///< the independent check found a violation along the route
+  bool crashed = false;    ///< the planner process ended without a result
+  bool breached = false;   ///< the route check (violations()) found a violation along the route
   double seconds = 0.0;    ///< planning time (wall clock)
   double megabytes = 0.0;  ///< peak memory of the process
   double cost_J = std::numeric_limits<double>::infinity();
   double lower_bound_J = 0.0;
   double length_m = 0.0;
-  int turns = 0;
-  int cusps = 0;                     ///< drives only: changes between forward and reverse
-  int turns_in_place = 0;            ///< drives only
-  double max_curvature_1_m = 0.0;    ///< drives only
-  double clearance_cells = 0.0;      ///< from the route to the nearest cell without a drive curve, at most 10
-  bool reached = false;              ///< worlds only: the rover reached the goal
-  double drive_s = 0.0;              ///< worlds only: duration of the drive
-  double max_slip = 0.0;             ///< worlds only: largest slip on the drive
-  std::vector<CostAtTime> progress;  ///< decreasing costs, none below the route's cost; empty without a route
+  int turns = 0;                   ///< number of turns of the polyline
+  int cusps = 0;                   ///< drives only: number of changes between forward and reverse
+  int turns_in_place = 0;          ///< drives only: number of turns in place
+  double max_curvature_1_m = 0.0;  ///< drives only: largest magnitude of curvature [1/m]
+  /// Distance from the route to the nearest cell without a cost curve, at most 10 [cells].
+  double clearance_cells = 0.0;
+  bool reached = false;   ///< slip worlds only: the rover reached the goal
+  double drive_s = 0.0;   ///< slip worlds only: duration of the drive
+  double max_slip = 0.0;  ///< slip worlds only: largest slip of the drive [-]
+  /// Decreasing costs, none below the cost of the route; empty without a route.
+  std::vector<CostAtTime> progress;
 };
 
 /// Cases, planners and limits of a benchmark.
 struct BenchmarkPlan {
   std::vector<BenchmarkCase> cases;
-  std::vector<std::string> planners;             ///< names of plannerNames() and of plugins
-  std::map<std::string, std::string> plugins{};  ///< shared library of each plugin, by name
-  int seeds = 1;                                 ///< runs per case and planner, with seeds 1 to `seeds`
-  double time_limit_s = 1.0;                     ///< per run
-  std::string began = "1970-01-01 00:00:00";     ///< start time for the logs, UTC
+  std::vector<std::string> planners;             ///< names of plannerNames() and of `plugins`
+  std::map<std::string, std::string> plugins{};  ///< path of the shared library of each plugin, by name
+  int seeds = 1;              ///< number of runs per case and planner, with seeds 1 to `seeds`
+  double time_limit_s = 1.0;  ///< time limit of a run
+  std::string began = "1970-01-01 00:00:00";  ///< start time of the benchmark for the logs, UTC
 };
 
-/// One run of a benchmark.
+/// Job of a benchmark: planner, case and seed of one run.
 struct BenchmarkJob {
   std::string planner;
   std::size_t case_index = 0;
   std::uint64_t seed = 1;
 };
 
-/// All runs of a benchmark, ordered by planner, case and seed.
+/// Returns all jobs of a benchmark, ordered by planner, case and seed.
 std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan);
 
-/// Executes one run in a process of its own, so that a crash, an abort or an endless run is a result and does
-/// not end the benchmark. Must be called while the program has no other threads. Returns the result as bytes
-/// for benchmarkRun() on this machine or another machine of the same kind; empty if the process ended without
-/// an answer or a stop was requested. Throws std::runtime_error if no process can be created.
+/// Executes one job in a separate process, so that a crash, an abort or an endless loop is recorded as a
+/// result and does not end the benchmark. The function must be called while the program has no other threads.
+/// Returns the result as bytes, which benchmarkRun() can convert on this machine or on another machine of the
+/// same kind. The bytes are empty if the process ended without a result or a stop was requested. Throws
+/// std::runtime_error if no process can be created.
 std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job,
                         const ProgressMonitor& watch = {});
 
-/// Converts the bytes returned by runIsolated() to a run.
+/// Converts the bytes that runIsolated() returned for `job` to the result of a run.
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
 
-/// Executes all jobs one after another; returns fewer runs when stopped.
+/// Executes all jobs one after another. After a stop, returns only the runs that ended before.
 std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const ProgressMonitor& watch = {});
 
-/// Returns true if the run ended with a route without violations. Costs of other runs are meaningless.
+/// Returns true if the run ended with a route without violations. The costs of other runs are meaningless.
 bool stands(const BenchmarkRun& run) noexcept;
 
-/// Best known cost of a case [J]: the optimum if known, else the lowest cost of all runs with stands();
-/// infinite if there is none.
+/// Returns the best known cost of a case [J]: the optimum if it is known, otherwise the lowest cost of all
+/// runs of the case for which stands() is true; infinite if there is no such run.
 double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index);
 
 }  // namespace talus::planner

@@ -7,35 +7,36 @@
 
 namespace talus::planner {
 
-/// Lower bound of the drive cost of a cell: a metre in direction d costs at least level + tilt * (gradient
-/// along d).
+/// Lower bound of the cost per metre on a cell, for every heading: level_J_per_m + tilt_J_per_m * (gradient
+/// of the ground along the heading).
 struct CostLowerBound {
-  double level_J_per_m = 0.0;  ///< >= 0
-  double tilt_J_per_m = 0.0;   ///< per unit gradient (rise over run)
+  double level_J_per_m = 0.0;  ///< lower bound on level ground, >= 0
+  double tilt_J_per_m = 0.0;   ///< increase of the lower bound per unit of gradient (rise over run)
 };
 
-/// Straight lines below each drive curve: level + tilt * gradient never exceeds the curve for gradients up to
-/// a given steepness. The tilt is the slope of the curve at level ground, halved until the line is positive
-/// for every heading. Only row 0 of a curve (no gradient across) is used: costs never decrease from row to
-/// row (TravelCurve), so a bound of row 0 bounds all rows.
+/// Lower bounds of cost curves by straight lines: level + tilt * gradient is at most the cost for gradients
+/// up to a given steepness. The tilt is the derivative of the cost curve at level ground, halved until the
+/// line is positive for every heading. Only row 0 of a cost curve (no gradient across the heading) is used.
+/// Because costs never decrease from row to row (TravelCurve), a bound of row 0 is a bound of all rows.
 class CostLowerBounds {
  public:
   explicit CostLowerBounds(const costmap::TravelCost& cost);
 
-  /// Returns a lower bound of the cost of an allowed cell that is valid for every heading.
+  /// Returns a lower bound of the cost on a cell that allows some heading. The bound is valid for every
+  /// heading.
   CostLowerBound of(costmap::CellCode cell) const noexcept;
 
-  /// Returns the highest lower bound with tilt_J_per_m = 0.
+  /// Returns the highest lower bound with tilt_J_per_m = 0, that is, one value for all headings.
   CostLowerBound level(costmap::CellCode cell) const noexcept;
 
-  /// Returns the number of drive curves.
+  /// Returns the number of cost curves.
   std::size_t curves() const noexcept { return lines_.size(); }
 
  private:
   static constexpr int kReach = costmap::TravelCurve::kBins / 2;
   static int reachOf(costmap::CellCode cell) noexcept;
 
-  std::vector<std::array<CostLowerBound, kReach + 1>> lines_;  // by curve, then by steepness in bins
+  std::vector<std::array<CostLowerBound, kReach + 1>> lines_;  // by cost curve, then by steepness in bins
   std::vector<std::array<double, kReach + 1>> levels_;
 };
 

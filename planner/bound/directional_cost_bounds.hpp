@@ -7,37 +7,38 @@
 
 namespace talus::planner {
 
-/// Lower bounds of the cost per metre along 64 headings of a cell. A function of position that falls along
-/// each of these headings by no more than the heading's limit falls in every direction no faster than the
-/// drive cost.
+/// Lower bounds of the cost per metre along 64 headings of a cell, here called the limits. If a function of
+/// position decreases along each of these headings by at most the limit of the heading, then it decreases in
+/// every direction by at most the cost.
 ///
-/// Why the bound also applies between the headings (ours, not from the literature). The gauge is linear
-/// between the limits c_i and c_(i+1) of neighbouring headings and must stay below the drive cost. Between
-/// two directions at which the gradient along or across passes a node of the cost table, cost - gauge is f =
-/// A + h1 + h2, a constant and harmonics of first and second order of the angle, so f'' = A - f - 3 h2. Over
-/// a piece of width w, f lies below its chord by at most w^2 / 8 times the largest f''. For each piece, the
-/// limits of both adjacent headings are lowered by the largest violation. Finally the limits are made convex:
-/// a limit above the value implied by two others is lowered to that value.
+/// Proof for directions between the headings (ours, not from the literature). The gauge is the function of
+/// direction that is linear between the limits c_i and c_(i+1) of neighbouring headings; it must be at most
+/// the cost. Between two directions at which the gradient along or across passes a node of the cost table, f
+/// = cost - gauge is A + h1 + h2: a constant and harmonics of first and second order of the angle. Therefore
+/// f'' = A - f - 3 h2. Over a piece of width w, f lies below its chord by at most w^2 / 8 times the largest
+/// f''. For each piece, the limits of both adjacent headings are reduced by the largest violation. Finally
+/// the limits are made convex: a limit above the value that follows from two other limits is reduced to that
+/// value.
 ///
 /// Not thread-safe.
 class DirectionalCostBounds {
  public:
   static constexpr int kHeadings = 64;
-  using Limits = std::array<float, kHeadings>;  ///< joules per metre, > 0, counter-clockwise from east
+  using Limits = std::array<float, kHeadings>;  ///< limits [J/m], > 0, counter-clockwise from east
 
-  /// The TravelCost must outlive the DirectionalCostBounds.
+  /// `cost` must outlive the object.
   explicit DirectionalCostBounds(const costmap::TravelCost& cost) : cost_(cost) {}
 
-  /// Computes the limits of a cell. Returns false if no heading is allowed.
+  /// Computes the limits of a cell. Returns false if the cell allows no heading.
   bool of(costmap::CellCode cell, Limits& limits);
 
-  /// Unit vector of heading k, k = 0 to kHeadings.
+  /// Returns the unit vector of heading k, 0 <= k <= kHeadings.
   static costmap::Direction heading(int k) noexcept;
 
  private:
-  // Interval of directions, relative to the steepest ascent, in which the gradients along and across pass no
-  // node of the table. A metre towards (x, y) costs level + x_J x + y_J |y| + both_J x |y|; infinite if
-  // refused.
+  // Interval of directions, relative to the steepest ascent, in which the gradients along and across the
+  // heading pass no node of the cost table. A metre towards the unit vector (x, y) costs level_J + x_J x +
+  // y_J |y| + both_J x |y|; the values are infinite if the directions are not allowed.
   struct Piece {
     costmap::Direction from, to;
     double level_J, x_J = 0.0, y_J = 0.0, both_J = 0.0;
@@ -57,8 +58,8 @@ class DirectionalCostBounds {
   Gauge lackOf(const Gauge& gauge, const costmap::Direction& climb) const;
 
   const costmap::TravelCost& cost_;
-  std::vector<costmap::Direction> nodes_;  // a quarter turn, from the steepest ascent
-  std::vector<Piece> pieces_;              // half a turn
+  std::vector<costmap::Direction> nodes_;  // directions within a quarter turn from the steepest ascent
+  std::vector<Piece> pieces_;              // pieces of half a turn
 };
 
 }  // namespace talus::planner

@@ -11,24 +11,28 @@
 
 namespace talus::planner {
 
-/// Lower bound of the cost of every route to a goal, of any shape and heading. Maps of up to kSmall cells use
-/// the larger of a SubSolution's bound and the bound of a uniform map; larger maps use the field over
-/// admissibleEdges(), which is cached for one map and goal. straightBoundOver_J() is used if higher.
+/// Computes a lower bound of the cost of every route to a goal, of any shape and heading. On maps of up to
+/// kSmall cells the bound is the larger of the bound of a SubSolution and the bound of a uniform map that is
+/// nowhere more expensive. On larger maps the bound is the cost-to-go field over admissibleEdges(), which is
+/// kept for one map and goal. If straightBoundOver_J() is higher, this value is used.
 class LowerBound {
  public:
-  /// Returns the bound [J], from 0 to known_J. The straight-line bound is returned if it is within a share
-  /// kEven of known_J. A stopped SubSolution or field contributes 0.
+  /// Returns the lower bound [J] for routes from `places.from` to within `goal_tolerance_m` of `places.to`.
+  /// `known_J` is the cost of a known route; the result is between 0 and known_J. If the relative difference
+  /// of the straight-line bound from known_J is at most kEven, the straight-line bound is returned. A
+  /// SubSolution or a field that a stop ended contributes 0.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                     double goal_tolerance_m, const StopCheck& stop = {},
                     double known_J = std::numeric_limits<double>::infinity());
 
-  /// Near-optimal route over all headings from the latest SubSolution, as a start for refinement. Empty if no
-  /// SubSolution was computed.
+  /// Returns the near-optimal route over all headings from the latest SubSolution, as initial route of a
+  /// refinement; empty if no SubSolution was computed.
   const Polyline& way() const noexcept { return way_; }
 
+  /// Relative difference to the cost of the known route up to which the straight-line bound suffices.
   static constexpr double kEven = 1e-4;
-  static constexpr std::size_t kSmall = 250'000;  ///< largest number of cells for a SubSolution, which takes
-                                                  ///< about 15 microseconds a cell
+  /// Largest number of cells for a SubSolution, which takes about 15 us per cell.
+  static constexpr std::size_t kSmall = 250'000;
 
  private:
   double overEdges_J(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,

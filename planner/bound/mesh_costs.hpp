@@ -12,21 +12,27 @@
 
 namespace talus::planner {
 
-/// Heading costs of the map's cells, computed on first request. Each cell with an allowed heading has a slot
-/// index, by which other data of the cell are stored, too. Not thread-safe.
+/// Costs by heading of the cells of a map (TriangleCosts), computed at the first request. Each cell that
+/// allows some heading has a slot number; other data of the cell are also stored by this number. Not
+/// thread-safe.
 class MeshCosts {
  public:
   explicit MeshCosts(std::shared_ptr<const costmap::CostGrid> map);
 
+  /// Slot number of a cell without a slot.
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const CellMesh& mesh() const noexcept { return mesh_; }
-  /// Slot of a cell; kNone outside the map and for cells without an allowed heading.
+  /// Returns the slot of a cell, which is created if necessary; kNone outside the map and for cells that
+  /// allow no heading.
   std::uint32_t slotOf(maps::Cell cell);
-  /// Slot of a cell if slotOf() was called for the cell before; otherwise kNone.
+  /// Returns the slot of a cell if slotOf() was called for the cell before; otherwise kNone.
   std::uint32_t knownSlotOf(maps::Cell cell) const noexcept;
+  /// Returns the costs of the cell with a slot.
   const TriangleCosts& of(std::uint32_t slot) const noexcept { return prices_[slots_[slot].prices]; }
+  /// Returns the cell with a slot.
   maps::Cell cellOf(std::uint32_t slot) const noexcept { return slots_[slot].cell; }
+  /// Returns the number of slots.
   std::size_t slots() const noexcept { return slots_.size(); }
 
  private:
@@ -34,7 +40,7 @@ class MeshCosts {
     std::uint32_t prices;
     maps::Cell cell;
   };
-  // Most recent code of a hash value and its costs. Neighbouring cells often have the same code.
+  // Most recent cell code with a given hash value, and its costs. Neighbouring cells often have equal codes.
   struct Recent {
     std::uint32_t bits = 0, prices = kNone;
   };
@@ -44,10 +50,10 @@ class MeshCosts {
   std::shared_ptr<const costmap::CostGrid> map_;
   CellMesh mesh_;
   DirectionalCostBounds limits_;
-  std::vector<std::uint32_t> slot_of_;  // by cell
+  std::vector<std::uint32_t> slot_of_;  // slot by cell index
   std::vector<Slot> slots_;
   std::vector<TriangleCosts> prices_;
-  std::vector<Recent> recent_;  // by hash
+  std::vector<Recent> recent_;  // by hash value of the cell code
 };
 
 }  // namespace talus::planner

@@ -10,53 +10,66 @@
 
 namespace talus::planner {
 
-/// Computes the highest function over the nodes of a CellMesh, linear on each triangle, whose fall from each
-/// node to the opposite side (or from each side to the opposite node) is at most the cost of the motion.
-/// Label-correcting, because costs depend on the heading, with the update of Tsitsiklis 1995
-/// [tsitsiklis_1995]. Not thread-safe.
+/// Search for the highest function over the nodes of a CellMesh that is linear on each triangle and satisfies
+/// the cost limits. Along each motion between a node and the opposite side of a triangle the function
+/// decreases by at most the cost of the motion. The direction of the motions is given by Options::way. The
+/// search is label-correcting (a node may be expanded several times), because costs depend on the heading,
+/// with the update of Tsitsiklis 1995 [tsitsiklis_1995]. Not thread-safe.
 class MeshSearch {
  public:
   using Way = TriangleCosts::Way;
 
   struct Options {
+    /// Direction of the motions: from a node to the opposite side, or from the side to the node.
     Way way = Way::FromNode;
     double cheapest_J;  ///< lower bound of the cost per metre on the whole map, > 0
-    maps::Point other;  ///< the other end of the routes: start or goal
-    double most_J;      ///< nodes on no route of at most this cost are not expanded [J]
+    maps::Point other;  ///< the other end of the routes: the goal of a search from the start, and vice versa
+    double most_J;      ///< cost limit [J]: nodes that lie on no route of at most this cost are not expanded
   };
 
   MeshSearch(MeshCosts& prices, const Options& options);
 
   static constexpr float kFar = 1e30F;  ///< value of a node that was not reached
+  /// Queue key that means "no limit".
   static constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 
+  /// Returns the value of a node [J].
   float at(std::uint32_t node) const noexcept { return values_[node]; }
+  /// Returns true if the node was expanded.
   bool expanded(std::uint32_t node) const noexcept { return expanded_[node] < kFar; }
-  /// Sets the value [J] of queue key 0. Nodes with lower values are expanded in any order.
+  /// Sets the value [J] that has the queue key 0. Nodes with lower values are expanded in any order.
   void startAt(double base_J) noexcept { base_J_ = base_J; }
-  /// Lowers a node to `value`. Returns false, without a change, if the reduction is below 1e-3 queue units.
+  /// Reduces the value of a node to `value` [J]. Returns false, without a change, if the reduction is below
+  /// 1e-3 queue units.
   bool lower(std::uint32_t node, float value);
 
-  /// Searches up to the key `end`, or until `quota` nodes have been taken in total. Returns false when
-  /// stopped.
+  /// Expands nodes up to the queue key `end`, or until `quota` nodes have been expanded in total. Returns
+  /// false if a stop ended the search.
   bool run(std::uint64_t end, std::size_t quota, const StopCheck& stop);
+  /// Returns true if no node is queued.
   bool done() const noexcept { return queue_.queued() == 0; }
+  /// Returns the number of expansions.
   std::size_t taken() const noexcept { return taken_; }
-  std::uint64_t front() const noexcept { return front_; }  ///< highest key reached
+  std::uint64_t front() const noexcept { return front_; }  ///< returns the highest queue key reached
 
-  /// Largest allowed difference of two nodes of a triangle: first - second, first - middle, second - first,
-  /// second - middle, middle - first, middle - second.
+  /// Caps of a triangle: the largest allowed difference of the values of two of its nodes (first corner,
+  /// second corner, centre = middle), in the order first - second, first - middle, second - first, second -
+  /// middle, middle - first, middle - second.
   using Caps = std::array<float, 6>;
+  /// Returns the position in Caps of the difference `node` - `above`.
   static constexpr std::size_t capOf(std::size_t node, std::size_t above) noexcept {
     return 2 * node + (above < node ? above : above - 1);
   }
-  /// Adds caps for the two other nodes of a triangle relative to node `above`.
+  /// Adds caps for the two other nodes of a triangle relative to the node `above`. `slot` is the slot of the
+  /// cell.
   void cap(std::uint32_t slot, std::size_t triangle, std::size_t above, const TriangleCosts::Rise& rise);
-  /// Lowers the nodes of a triangle to its costs and caps. Returns true if any node was lowered.
+  /// Reduces the values of the nodes of a triangle to the limits given by its costs and caps. Returns true if
+  /// a value was reduced.
   bool relax(std::uint32_t slot, std::size_t triangle);
 
-  /// Slots whose values changed since the previous call.
+  /// Returns the slots of the cells whose values changed since the previous call.
   std::vector<std::uint32_t> takeChanged();
+  /// Marks the cell with a slot as changed.
   void change(std::uint32_t slot);
 
  private:

@@ -12,47 +12,54 @@
 
 namespace talus::planner {
 
-/// Subsolution of the Hamilton-Jacobi equation of the drive cost: a function over the nodes of a CellMesh,
+/// Subsolution of the Hamilton-Jacobi equation of the cost function: a function over the nodes of a CellMesh,
 /// linear on each triangle, that approximates the cost to the goal from below. Along every heading the
-/// function changes per metre by at most the DirectionalCostBounds of the cell. No route between two places,
-/// of any shape, then costs less than the difference of the function's values. provenBy() verifies the
-/// resulting bound.
+/// function changes per metre by at most the DirectionalCostBounds of the cell. Therefore no route between
+/// two points, of any shape, costs less than the difference of the values of the function at both points.
+/// provenBy() verifies the resulting bound.
 ///
 /// Method (ours, not from the literature). A search from the goal gives each node the lowest value that the
 /// adjacent triangles allow, over the headings from the node to the opposite side. At some nodes the function
 /// rises towards two sides at once: around the goal, around corners of obstacles and beside corridors of low
-/// cost. There, headings from a side to the opposite node fall by more than their cost. The end values of
-/// such a side are capped relative to the opposite node (a lower cap of one end permits a higher cap of the
-/// other), and the affected nodes are searched again. Of the admissible pairs of caps, the pair closest to
-/// the values of a search from the start is taken, because that search respects the same limits. Caps are
-/// added behind the front after every kBand nodes, so that the search ahead starts from valid values.
+/// cost. There, along headings from a side to the opposite node, the function decreases by more than the
+/// cost. The end values of such a side are capped relative to the opposite node (a lower cap of one end
+/// permits a higher cap of the other end), and the affected nodes are searched again. Of the admissible pairs
+/// of caps, the pair closest to the values of a search from the start is used, because that search satisfies
+/// the same limits. Caps are added behind the front of the search after every kBand nodes, so that the search
+/// continues from valid values.
 class SubSolution {
  public:
+  /// Input of the search.
   struct Parts {
     std::shared_ptr<const costmap::CostGrid> map;
+    /// Start and goal of the routes [m].
     Segment places;
-    double goal_tolerance_m = 0.0;
-    double known_J;     ///< cost of a known route: costlier routes are ignored; infinite if none is known
-    double cheapest_J;  ///< lower bound of the cost per metre on the whole map, > 0
+    double goal_tolerance_m = 0.0;  ///< permitted distance of the end of a route from the goal [m]
+    /// Cost of a known route [J]; more expensive routes are ignored; infinite if none is known.
+    double known_J;
+    double cheapest_J;  ///< lower bound of the cost per metre on the whole map [J/m], > 0
   };
 
   /// Runs the search.
   SubSolution(const Parts& parts, const StopCheck& stop);
 
-  /// False when stopped.
+  /// Returns false if a stop ended the search.
   bool complete() const noexcept { return complete_; }
 
   static constexpr float kFar = MeshSearch::kFar;  ///< value of a node that was not reached
 
   const CellMesh& mesh() const noexcept { return prices_.mesh(); }
+  /// Returns the value of the function at a node [J].
   float at(std::uint32_t node) const noexcept { return to_goal_.at(node); }
-  /// True for an expanded node. The solution consists of the triangles with an inner node.
+  /// Returns true for an inner node, that is, a node that the search expanded. The solution consists of the
+  /// triangles with at least one inner node.
   bool inner(std::uint32_t node) const noexcept { return to_goal_.expanded(node); }
-  /// Returns the cost lower bounds by heading of a cell; null for cells not searched and cells without an
-  /// allowed heading.
+  /// Returns the lower bounds of the costs by heading of a cell; null for cells that were not searched and
+  /// for cells that allow no heading.
   const TriangleCosts* pricesOf(maps::Cell cell) const noexcept;
 
-  /// Near-optimal route from start to goal over all headings, without turn costs; see meshRoute().
+  /// Returns the near-optimal route from start to goal over all headings, without costs of turns
+  /// (meshRoute()).
   Polyline way() const { return meshRoute(MotionCost(parts_.map), from_start_, mesh(), parts_.places); }
 
  private:

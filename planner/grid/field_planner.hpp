@@ -12,29 +12,30 @@
 
 namespace talus::planner {
 
-/// Plans with the complete cost-to-go field of the goal and any-angle refinement of the grid route under the
-/// exact cost. If the eight grid headings do not connect start and goal, arbitrary headings are tried:
-/// NoRoute is proven (Reach), NoneFound is not.
+/// Planner that computes the complete cost-to-go field of the goal (minimum cost from every cell) and refines
+/// the grid route to a polyline with arbitrary headings under the exact cost. If the eight headings of the
+/// grid do not connect start and goal, the planner tries arbitrary headings. The status NoRoute is then
+/// proven (Reach); the status NoneFound is not.
 ///
-/// If Problem::prove is set and a gap to the lower bound remains, further candidates are refined and the
-/// cheapest route is returned: routes through other corridors (otherCorridors) on maps of up to
-/// kCorridorCells, the cheapest route in 32 headings (manyHeadingsRoute) on maps of up to kManyHeadingsCells,
-/// and, for gaps above kLarge, the cheapest route over points of cells (pointRoute) on maps of up to
-/// kPointCells.
+/// If Problem::prove is set and the cost differs from the lower bound, further candidates are refined, and
+/// the cheapest route is returned. The candidates are routes through other corridors (otherCorridors) on maps
+/// of up to kCorridorCells, the cheapest route in 32 headings (manyHeadingsRoute) on maps of up to
+/// kManyHeadingsCells, and, for gaps above kLarge, the cheapest route over points of cells (pointRoute) on
+/// maps of up to kPointCells.
 ///
-/// Intermediate results for a map and a goal are cached: another start to the same goal needs only a descent
-/// of the field and the refinement. Deterministic for any number of threads, unless a time limit ends the
-/// search. Not thread-safe: use one object per thread; objects may share a map.
+/// Intermediate results for a map and a goal are kept: for another start to the same goal, only the path
+/// along the field and the refinement are computed. Deterministic for any number of threads, unless a time
+/// limit ends the search. Not thread-safe: use one object per thread; the objects may share a map.
 class FieldPlanner {
  public:
   explicit FieldPlanner(const RefineOptions& refine = {}) : refine_(refine) {}
 
-  /// Returns a route through all via points in order, or the reason why there is none. Throws
+  /// Returns a route through all via points in order, or a plan with the reason why there is no route. Throws
   /// std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
  private:
-  // Section between two required places.
+  // Section of the route between two stops (start, via points, goal).
   struct Stage {
     maps::Point from;
     maps::Point to;
@@ -63,17 +64,17 @@ class FieldPlanner {
   static constexpr std::size_t kPointCells = 250'000;           // largest map searched over points of cells
   static constexpr double kProven = 1e-3;  // smallest relative gap for which other corridors are searched
   static constexpr double kLarge = 0.05;   // smallest relative gap for which points of cells are searched
-  // Cost limit of the point search as a multiple of the best route's cost; the search does not settle
-  // vertices.
+  // Cost limit of the search over points of cells, as a multiple of the cost of the best route. It exceeds 1
+  // because the vertices found by the search are not yet moved to their best positions.
   static constexpr double kSettled = 1.05;
 
   Refiner refine_;
   LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
-  std::shared_ptr<const costmap::CostGrid> field_map_;  // map version of the field
+  std::shared_ptr<const costmap::CostGrid> field_map_;  // map version for which the field was computed
   std::vector<FieldGoal> field_goals_;
-  std::shared_ptr<const costmap::CostGrid> headings_map_;  // map of headings_
+  std::shared_ptr<const costmap::CostGrid> headings_map_;  // map version of headings_
   std::unique_ptr<HeadingSets> headings_;
   maps::Point field_goal_;
   double field_tolerance_m_ = 0.0;

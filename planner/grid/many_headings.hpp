@@ -6,11 +6,12 @@
 
 namespace talus::planner {
 
-/// Cheapest route between two places from cell centre to cell centre in 32 headings, at most 18.4 degrees
-/// apart. If cross-slope driving has a cost, eight headings miss corridors that need another heading. The
-/// route is meant to be refined. Dijkstra's algorithm with the exact cost of each leg; turn costs are not
-/// included. Routes of cost `most_J` [J] or more are not followed. Empty if no cheaper route exists, or when
-/// stopped.
+/// Returns the cheapest route from `places.from` to `places.to`, or to within `tolerance_m` of it. The legs
+/// lead from cell centre to cell centre in 32 headings, at most 18.4 degrees apart. If driving across a slope
+/// has a cost, a search in eight headings misses corridors that require another heading. The route is meant
+/// to be refined. The method is Dijkstra's algorithm with the exact cost of each leg; costs of turns are not
+/// included. Routes that cost `most_J` [J] or more are not searched. The result is empty if there is no
+/// cheaper route, or after a stop.
 Polyline manyHeadingsRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
                            const StopCheck& stop = {});
 

@@ -9,12 +9,12 @@
 
 namespace talus::planner {
 
-/// Index of a missing node.
+/// Node index that means "no node".
 inline constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 
-/// Polyline between two places over the nodes of a search, ending at node `last`. before(node) is the
-/// predecessor of a node, kNoNode at the start; place(node) is its position. Consecutive equal places are
-/// merged.
+/// Returns the polyline from `ends.from` over the nodes of a search to `ends.to`; `last` is the last node.
+/// before(node) returns the predecessor of a node, kNoNode for the first node; place(node) returns its
+/// position. Consecutive equal positions are merged.
 template <typename Before, typename Place>
 Polyline nodeRoute(const Segment& ends, std::uint32_t last, Before before, Place place) {
   Polyline points{ends.to};

@@ -6,13 +6,15 @@
 
 namespace talus::planner {
 
-/// Cheapest route between two places over fixed points of cells: 7 points on each side, and 9 points inside
-/// cells that refuse some heading, so that a route can tack there. Maps of more than 20,000 cells use 3 and 1
-/// points; maps of up to 1,000 cells use 15 and 25, as do maps of up to 5,000 cells if no route was found. A
-/// leg crosses one cell or a section of a cell at its exact cost. The cost of a turn at a point depends on
-/// the cheapest leg that reaches the point. Finds corridors that grids of few headings miss, especially where
-/// cells allow few headings; the route is meant to be refined. A* search with a straight-line lower bound;
-/// routes of cost `most_J` [J] or more are not followed. Empty if no cheaper route exists, or when stopped.
+/// Returns the cheapest route from `places.from` to `places.to`, or to within `tolerance_m` of it, over fixed
+/// points of cells: 7 points on each side, and 9 points inside each cell that does not allow some heading, so
+/// that a route can tack (alternate between two headings) there. Maps of more than 20,000 cells have 3 and 1
+/// points; maps of up to 1,000 cells have 15 and 25. Maps of up to 5,000 cells also have 15 and 25 points if
+/// the first search found no route. A leg crosses one cell or a part of one cell at its exact cost. The cost
+/// of a turn at a point is that of the cheapest leg to this point. The search finds corridors that grids with
+/// few headings miss, especially where cells allow few headings; the route is meant to be refined. The method
+/// is A* with a straight-line lower bound. Routes that cost `most_J` [J] or more are not searched. The result
+/// is empty if there is no cheaper route, or after a stop.
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
                     const StopCheck& stop = {});
 

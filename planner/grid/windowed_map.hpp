@@ -16,43 +16,45 @@
 
 namespace talus::planner {
 
-/// Box of cells in map coordinates [m], with sides on cell borders.
+/// Rectangle in map coordinates [m] with sides on cell borders.
 struct MapBox {
   maps::Point low;   ///< south-western corner
   maps::Point high;  ///< north-eastern corner
 };
 
-/// Map that does not fit in memory: an overview of the whole map, and full-resolution tiles around a route,
-/// built box by box. Memory grows with the length of the route, not with the map. Not thread-safe.
+/// Map that does not fit in memory: an overview of the whole map, and tiles (64 x 64 cells) of full
+/// resolution around routes, which are computed box by box. Memory grows with the length of the routes, not
+/// with the size of the map. Not thread-safe.
 class WindowedMap {
  public:
-  /// Grid, overview and source of the full-resolution cells.
+  /// Grid, overview and source of the cells of full resolution.
   struct Parts {
     maps::Grid grid;                                    ///< grid of the whole map at full resolution
-    std::shared_ptr<const costmap::CostGrid> overview;  ///< the whole map in larger cells
-    /// Builds the cells of a box at full resolution; empty if the box contains no data. Called from one
-    /// thread.
+    std::shared_ptr<const costmap::CostGrid> overview;  ///< cost map of the whole map in larger cells
+    /// Function that returns the map of a box at full resolution; empty if the box contains no data. It is
+    /// called from one thread.
     std::function<std::optional<costmap::TraversabilityMap>(const MapBox&)> build;
   };
 
   /// Throws std::invalid_argument if `overview` or `build` is missing.
   explicit WindowedMap(Parts parts);
 
-  /// Overview of the whole map.
+  /// Returns the overview of the whole map.
   const std::shared_ptr<const costmap::CostGrid>& overview() const noexcept { return parts_.overview; }
 
-  /// Map with the tiles within a margin [cells] of a line and all tiles built before; other tiles are
-  /// unknown. The tiles are identical to those of a map built as a whole. Ends early when stopped. Throws
-  /// std::invalid_argument if the built map does not cover exactly the cells of the box.
+  /// Returns a cost map with the tiles within `margin_cells` of a line and with all tiles computed before;
+  /// other tiles are unknown. The tiles are identical to those of a map that is computed as a whole. The
+  /// computation ends early after a stop. Throws std::invalid_argument if the map that `build` returns does
+  /// not cover exactly the cells of its box.
   std::shared_ptr<const costmap::CostGrid> around(const std::vector<maps::Point>& line, double margin_cells,
                                                   const ProgressMonitor& watch = {});
 
-  /// Elevation [m] on tiles that were built; empty elsewhere.
+  /// Returns the elevation [m] on tiles that were computed; empty elsewhere.
   std::optional<double> elevation_m(maps::Point point) const;
 
-  /// Grid of the whole map.
+  /// Returns the grid of the whole map.
   const maps::Grid& grid() const noexcept { return parts_.grid; }
-  /// Returns the number of cells built at full resolution so far, counted in whole tiles.
+  /// Returns the number of cells computed at full resolution so far, in whole tiles.
   std::size_t cellsBuilt() const noexcept;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace talus::planner {
 
-/// Plans a route on a map that does not fit in memory: the overview's route is the guide, and each leg is
-/// planned on the tiles beside the guide. Sets problem.map to the map of the last leg.
+/// Plans a route on a map that does not fit in memory. The route on the overview is the guide, and each leg
+/// is planned on the tiles near the guide. Replaces problem.map by the map of the last leg.
 Plan planInWindows(Problem& problem, WindowedMap& map);
 
 }  // namespace talus::planner

@@ -8,36 +8,38 @@
 
 namespace talus::planner {
 
-/// Motions tried from every pose, computed once per heading: straight, arcs at two curvatures (1 / r and 1 /
-/// (3 r), r the turning radius), the same in reverse if allowed, and turns in place if r = 0. Headings are
-/// `offset_rad` + k 2 pi / headings; every motion ends at one of these headings.
+/// Motions that a search tries from every pose, computed once per heading: straight, arcs with the curvatures
+/// 1 / r and 1 / (3 r), where r is the turning radius, the same motions in reverse if permitted, and turns in
+/// place if r = 0. The discrete headings are `offset_rad` + k 2 pi / headings; every motion ends at one of
+/// them.
 class MotionSet {
  public:
   struct Options {
-    int headings = 72;
-    double step_cells = 1.5;  ///< length of a motion
-    double offset_rad = 0.0;  ///< heading of index 0
+    int headings = 72;        ///< number of discrete headings
+    double step_cells = 1.5;  ///< length of a motion in cells
+    double offset_rad = 0.0;  ///< heading with index 0
   };
 
-  /// Stretch of a motion, priced by the cell at its centre.
+  /// Section of a motion. Its cost is that of the cell at its centre.
   struct Stretch {
-    double dx_m, dy_m;  ///< centre relative to the pose
-    double length_m;
-    HeadingCost cost;
+    double dx_m, dy_m;  ///< position of the centre relative to the pose
+    double length_m;    ///< length of the section
+    HeadingCost cost;   ///< cost per metre for the heading of the section
   };
 
-  /// Motion from one heading.
+  /// Motion that begins at one discrete heading.
   struct Motion {
     PosePath::Leg leg;
-    double dx_m = 0.0, dy_m = 0.0;  ///< end relative to the pose
+    double dx_m = 0.0, dy_m = 0.0;  ///< position of the end relative to the pose
     int heading = 0;                ///< index of the heading at the end
-    int direction = 0;              ///< +1 forward, -1 reverse, 0 in place
-    double turn_rad = 0.0;          ///< sum of all changes of heading, >= 0
+    int direction = 0;              ///< +1 forward, -1 in reverse, 0 turn in place
+    double turn_rad = 0.0;          ///< sum of the magnitudes of all changes of heading, >= 0
     std::vector<Stretch> stretches{};
   };
 
   MotionSet(const costmap::CostGrid& map, const Kinematics& kinematics, const Options& options);
 
+  /// Returns the motions that begin at the heading with an index.
   const std::vector<Motion>& from(int heading) const noexcept {
     return motions_[static_cast<std::size_t>(heading)];
   }
@@ -45,11 +47,12 @@ class MotionSet {
   double heading_rad(int heading) const noexcept { return options_.offset_rad + heading * bin_rad_; }
   int headings() const noexcept { return options_.headings; }
 
-  /// Relative effort of all motions from one heading: 1 for small turning radii, larger for longer motions.
+  /// Returns the relative computing effort of all motions from one heading: 1 for small turning radii, more
+  /// for longer motions.
   std::uint64_t work() const noexcept;
 
-  /// Approximate cost [J] of a motion from a place, from the cells at its stretches' centres. Infinite if a
-  /// stretch is not allowed or leaves the map.
+  /// Returns the approximate cost [J] of a motion from a point, with the costs of the cells at the centres of
+  /// its sections. Infinite if a section is not allowed or leaves the map.
   double quickCost(const Motion& motion, maps::Point from) const noexcept;
 
  private:

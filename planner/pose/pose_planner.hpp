@@ -10,24 +10,24 @@
 
 namespace talus::planner {
 
-/// Plans drives that respect the problem's kinematics, through all via points in order. Each leg is the
-/// cheaper of a HybridSearch and a curve fitted to FieldPlanner's route, and starts with the heading at which
-/// the previous leg ended. The search data of the last map and goal are cached. Not thread-safe: use one
-/// object per thread.
+/// Planner of drives (routes of arcs and turns in place) that satisfy Problem::kinematics, through all via
+/// points in order. Each leg is the cheaper of the drive of a HybridSearch and a curve fitted to the route of
+/// FieldPlanner. A leg starts with the heading at which the previous leg ended. Search data of the latest map
+/// and goal are kept. Not thread-safe: use one object per thread.
 class PosePlanner {
  public:
-  static constexpr std::string_view kName = "hybrid";          ///< in plannerNames()
-  static constexpr std::string_view kSampling = "RRTstarSE2";  ///< in plannerNames(): kName, then improved by
-                                                               ///< RRT*
+  static constexpr std::string_view kName = "hybrid";  ///< name in plannerNames()
+  /// Name in plannerNames(): the drive of kName, then improved by RRT*.
+  static constexpr std::string_view kSampling = "RRTstarSE2";
 
   explicit PosePlanner(const HybridOptions& options = {}) : search_(options) {}
 
-  /// Enables improvement of each leg by improvedBySampling().
+  /// Enables the improvement of each leg by improvedBySampling().
   void sample(const PoseSamplingSettings& settings) { sampling_ = settings; }
 
-  /// Returns a drive, or the reason why there is none. With a goal tolerance, the drive ends at the goal or
-  /// at the end of the any-angle route, whichever is cheaper. Throws std::invalid_argument if the problem has
-  /// no map or the turning radius is out of range.
+  /// Returns a drive, or a plan with the reason why there is no drive. With a goal tolerance, the drive ends
+  /// at the goal or at the end of the any-angle route of FieldPlanner, whichever is cheaper. Throws
+  /// std::invalid_argument if the problem has no map or the turning radius is out of range.
   Plan plan(const Problem& problem);
 
  private:

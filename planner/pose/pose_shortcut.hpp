@@ -5,16 +5,19 @@
 
 namespace talus::planner {
 
+/// Parameters of shortened().
 struct ShortenOptions {
-  double joint_m = 1.0;           ///< spacing of joints in the first round, > 0; later rounds are finer
-  double cheapest_J_per_m = 0.0;  ///< lower bound of the cost per metre; excludes curves before their exact
-                                  ///< cost is computed
-  StopCheck stop{};               ///< a stop keeps the rest of the drive as it is
+  /// Spacing of joints (possible ends of curves) along the drive in the first round, > 0; smaller in later
+  /// rounds.
+  double joint_m = 1.0;
+  /// Lower bound of the cost per metre, which excludes curves before their exact cost is computed.
+  double cheapest_J_per_m = 0.0;
+  StopCheck stop{};  ///< after a stop, the rest of the drive remains as it is
 };
 
-/// Replaces stretches of a drive by the direct curve between their ends if the curve is cheaper under the
-/// exact cost. Dynamic programming over joints along the drive, repeated while the cost decreases. The result
-/// never costs more than `path`.
+/// Replaces sections of a drive by the direct curve between their ends if this curve has a lower exact cost.
+/// The method is dynamic programming over joints along the drive, repeated while the cost decreases. The
+/// result never costs more than `path`.
 PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options);
 
 }  // namespace talus::planner

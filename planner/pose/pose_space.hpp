@@ -8,15 +8,16 @@
 
 namespace talus::planner {
 
-/// OMPL state space of position and heading over a map, connected by the rover's shortest curves:
-/// Reeds-Shepp, Dubins, or turns in place. The distance is the length of the curve; a turn in place adds
-/// half a cell per radian. OMPL 1.5.2's own Dubins space aborts the process for long paths (dubins.hpp).
-/// Immutable except for OMPL's setup.
+/// OMPL state space of position and heading over a map. Two states are connected by the shortest path of the
+/// rover: Reeds-Shepp, Dubins, or turns in place. The distance is the length of the path; a turn in place
+/// adds half a cell per radian. The Dubins space of OMPL 1.5.2 is not used, because it aborts the process for
+/// long paths (dubins.hpp). Immutable except for the setup by OMPL.
 class PoseSpace : public ompl::base::SE2StateSpace {
  public:
-  /// Keeps a reference to the cost.
+  /// `cost` must outlive the object.
   explicit PoseSpace(const PoseCost& cost);
 
+  /// Converts between states and poses.
   static Pose pose(const ompl::base::State* state) noexcept;
   static void setPose(ompl::base::State* state, const Pose& pose) noexcept;
 

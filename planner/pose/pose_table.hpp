@@ -7,15 +7,17 @@
 
 namespace talus::planner {
 
-/// Lowest cost found at every cell and heading of a lattice. The headings of a cell are contiguous, because a
-/// search reads neighbouring headings. A cell that was not reached needs four bytes.
+/// Table of the lowest cost found at every cell and discrete heading. The headings of a cell are contiguous
+/// in memory (a block), because a search reads neighbouring headings. A cell that was not reached needs four
+/// bytes.
 class PoseTable {
  public:
   PoseTable(std::size_t cells, std::size_t headings) : block_(cells, 0), headings_(headings) {
     costs_.resize(headings);  // block 0 belongs to no cell
   }
 
-  /// Infinite until set. The reference is valid until the next call.
+  /// Returns the cost at a cell index and heading index; infinite until set. The reference is valid until the
+  /// next call.
   float& at(std::size_t cell, std::size_t heading) {
     std::uint32_t& block = block_[cell];
     if (block == 0) {
@@ -26,7 +28,7 @@ class PoseTable {
   }
 
  private:
-  std::vector<std::uint32_t> block_;  // block of each cell; 0: none yet
+  std::vector<std::uint32_t> block_;  // index of the block of each cell; 0: no block
   std::size_t headings_;
   std::vector<float> costs_;
 };

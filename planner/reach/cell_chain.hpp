@@ -12,39 +12,41 @@
 
 namespace talus::planner {
 
-/// Distance in sides of a cell by which a constructed drive stays inside the permitted limits.
+/// Margins of a constructed drive, in units of the cell side length.
 struct ChainMargins {
-  double slack = -1e-6;  ///< margin of cones; negative values narrow them
-  double apart = 1e-5;   ///< distance of crossings from corners
+  double slack = -1e-6;  ///< margin by which cones of directions are widened; negative values narrow them
+  double apart = 1e-5;   ///< smallest distance of crossings of cell sides from cell corners
 };
 
-/// A cell on the drive, its entry side (-1: the drive begins there), and the headings permitted in the cell.
+/// Link of a chain of cells: a cell, the side through which the drive enters the cell (-1: the drive starts
+/// in the cell), and the headings permitted in the cell.
 struct ChainLink {
   maps::Cell cell;
   int side = -1;
   HeadingSet headings{};
-  bool everywhere = false;  ///< true if alternating headings can produce every direction
+  /// True if the drive can move in every direction by alternating between permitted headings.
+  bool everywhere = false;
 };
 
-/// Drive along a chain of cells.
+/// Result of laidChain(): a drive along a chain of cells.
 struct LaidChain {
-  Polyline points{};       ///< empty if none was found
-  std::size_t failed = 0;  ///< in this case: the first link that could not be driven
+  Polyline points{};       ///< vertices of the drive; empty if no drive was found
+  std::size_t failed = 0;  ///< if no drive was found: index of the first link that could not be crossed
 };
 
-/// Constructs a drive through cells of which each shares a side with the next cell. The drive leads from a
-/// place in the first cell to a place in the last cell, or to the nearest reachable place in the last cell
-/// within a tolerance. The drive is valid under MotionCost.
+/// Constructs a drive along a chain of cells, each of which shares a side with the next cell. The drive leads
+/// from `places.from` in the first cell to `places.to` in the last cell, or to the nearest reachable point of
+/// the last cell within `tolerance_m` of `places.to`. The drive is allowed by MotionCost.
 ///
-/// Method (ours). A forward pass computes the range of each side that is reachable with headings inside all
-/// cones. Narrower cones leave more freedom to cross a side with a heading permitted in both cells. A
-/// backward pass from the goal chooses on each side a point from which the next point is reachable, in the
-/// middle of the admissible range.
+/// Method (ours). A forward pass computes the range of each side that is reachable with directions inside the
+/// cones of all cells (HeadingCone). Narrower cones leave more freedom to cross a side with a heading
+/// permitted in both cells. A backward pass from the goal selects on each side a point from which the next
+/// point is reachable, in the middle of the admissible range.
 LaidChain laidChain(const MotionCost& cost, const std::vector<ChainLink>& chain, const Segment& places,
                     double tolerance_m, const ChainMargins& margins = {});
 
-/// Returns the place of the cell nearest to `places.to` that is reachable, with headings of `cone`, from the
-/// segment between the two places `from`. Returns nothing if the place is farther than `tolerance_m` from
+/// Returns the point of `cell` nearest to `places.to` that is reachable, with directions in `cone`, from the
+/// segment between the two points `from`. Returns nullopt if this point is farther than `tolerance_m` from
 /// `places.to`; with tolerance 0, only `places.to` itself is accepted. `slack` [cell sides] widens the cone;
 /// a negative value narrows the cone.
 std::optional<InCell> nearestReached(const maps::Grid& grid, maps::Cell cell, const HeadingCone& cone,

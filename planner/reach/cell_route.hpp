@@ -11,38 +11,41 @@
 
 namespace talus::planner {
 
-/// Limits of cellRoute(). Both are independent of run time, so that results do not depend on the machine.
+/// Limits of cellRoute(). They do not depend on the computing time; therefore results do not depend on the
+/// machine.
 struct CellRouteLimits {
-  /// Largest number of expanded entries into cells, about 2 us each.
+  /// Largest number of expanded nodes (ranges of cell sides reached by a path), about 2 us each.
   std::size_t ways = 4'000'000;
-  /// Cells that a path may enter; all cells if empty. Excluding cells from which the goal is out of reach
-  /// saves work.
+  /// Returns true for a cell that a path may enter; empty: all cells. The search is faster without the cells
+  /// from which the goal cannot be reached.
   std::function<bool(maps::Cell)> may_enter{};
 };
 
 /// Result of cellRoute().
 struct CellRoute {
-  Polyline points{};          ///< empty if no route was found
-  bool out_of_reach = false;  ///< true if proven that no route exists with any headings
+  Polyline points{};          ///< vertices of the route; empty if no route was found
+  bool out_of_reach = false;  ///< true if it is proven that no route exists on any headings
   std::size_t cells = 0;      ///< if out_of_reach: number of cells reachable from the start
   maps::Point last{};         ///< if out_of_reach: centre of the reachable cell nearest to the goal
-  std::size_t ways = 0;       ///< number of expanded entries
+  std::size_t ways = 0;       ///< number of expanded nodes
   bool all_ways = false;      ///< false if a limit or a stop ended the search
 };
 
-/// Finds a route with arbitrary headings between two places, or proves that none exists. Used on maps whose
-/// only routes are not on the eight grid headings, and where Reach, which stores one range per side, is
-/// undecided. Returns the straight line if permitted. Otherwise the route passes from cell to cell, crosses
-/// each side with a heading permitted in both cells, and inside a cell alternates between the permitted
-/// headings on both sides of the required direction. The route is not optimal and must be refined.
+/// Finds a route with arbitrary headings from `places.from` to `places.to`, or to within `tolerance_m` of it,
+/// or proves that no route exists. It is used on maps on which the eight headings of the grid give no route,
+/// and where Reach is undecided because Reach stores one range per cell side. Returns the straight line if it
+/// is allowed. Otherwise the route leads from cell to cell. It crosses each side with a heading permitted in
+/// both cells; inside a cell it alternates between the permitted headings on both sides of the required
+/// direction. The route is not optimal and must be refined.
 ///
-/// Method (ours). Dijkstra's algorithm over the sides of cells: a node is a range of a side reached by one
-/// path; ranges reached before are removed, so that each range is expanded once. laidChain() constructs the
-/// drive through the cells that lead to the goal. If the construction fails, the blocking cell is restricted
-/// to single arcs of headings, and excluded if the construction fails again. If no path leads to the goal,
-/// the search is repeated with complete cones and closed sides, and with corners, which a drive may pass on a
-/// heading permitted in all cells around. If this search does not reach the goal either, no route exists.
-/// Ranges below 1e-9 of a side are treated as rounding in this search.
+/// Method (ours). Dijkstra's algorithm over the sides of cells. A node is a range of a side that one path
+/// reaches; parts that other paths reached before are removed, so that each part is expanded once.
+/// laidChain() constructs the drive through the cells that lead to the goal. If the construction fails at a
+/// cell, this cell is restricted to single arcs of headings; if the construction fails again, the cell is
+/// excluded. If no path leads to the goal, the search is repeated with complete cones of directions and
+/// closed sides, and with corners, which a drive may pass on a heading permitted in all cells at the corner.
+/// If this search does not reach the goal either, no route exists. This search treats ranges below 1e-9 of a
+/// side as rounding errors.
 CellRoute cellRoute(const MotionCost& cost, HeadingSets& headings, const Segment& places, double tolerance_m,
                     const CellRouteLimits& limits = {}, const StopCheck& stop = {});
 

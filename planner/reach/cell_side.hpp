@@ -12,18 +12,18 @@
 
 namespace talus::planner {
 
-/// Sides of a cell. Positions on a side run from 0 to 1, northwards or eastwards, and are therefore equal in
-/// both adjacent cells.
+/// Sides of a cell. A position on a side is a number from 0 to 1, northwards or eastwards, and is therefore
+/// the same number in both adjacent cells.
 struct Side {
   enum : int { West, East, South, North };
 };
 
-/// The side as seen from the adjacent cell.
+/// Returns the same side as a side of the adjacent cell: west for east, south for north, and vice versa.
 constexpr int otherSide(int side) noexcept {
   return side ^ 1;
 }
 
-/// The adjacent cell across a side.
+/// Returns the cell adjacent to `cell` across a side.
 constexpr maps::Cell beyond(maps::Cell cell, int side) noexcept {
   constexpr std::array<int, 4> kColumns{-1, 1, 0, 0}, kRows{0, 0, -1, 1};
   return {cell.column + kColumns[static_cast<std::size_t>(side)],
@@ -37,7 +37,7 @@ constexpr double outwards_rad(int side) noexcept {
   return kHeadings[static_cast<std::size_t>(side)];
 }
 
-/// A place in a cell, in cell sides from the south-west corner of the cell.
+/// Point in a cell, in units of the cell side length from the south-west corner of the cell.
 struct InCell {
   double x = 0.0;
   double y = 0.0;
@@ -53,17 +53,18 @@ constexpr InCell operator*(double s, InCell a) noexcept {
   return {s * a.x, s * a.y};
 }
 
-/// Converts between map coordinates and places in a cell.
+/// Converts a map position to a point in a cell.
 inline InCell inCell(const maps::Grid& grid, maps::Cell cell, maps::Point p) noexcept {
   return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
           (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
 }
+/// Converts a point in a cell to map coordinates.
 inline maps::Point onMap(const maps::Grid& grid, maps::Cell cell, InCell p) noexcept {
   return {grid.south_west.x_m + (cell.column + p.x) * grid.resolution_m,
           grid.south_west.y_m + (cell.row + p.y) * grid.resolution_m};
 }
 
-/// Returns the place at position `at`, 0 to 1, on a side.
+/// Returns the point at the position `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
   return side == Side::West    ? InCell{0.0, at}
          : side == Side::East  ? InCell{1.0, at}
@@ -71,31 +72,33 @@ constexpr InCell onSide(int side, double at) noexcept {
                                : InCell{at, 1.0};
 }
 
-/// A closed range of positions on a side; empty if from > to.
+/// Closed range of positions on a side; empty if from > to.
 struct SideRange {
   double from = 2.0;
   double to = -1.0;
 
   bool empty() const noexcept { return from > to; }
+  /// Returns true if this range contains `other`.
   bool holds(const SideRange& other) const noexcept {
     return other.empty() || (from <= other.from && other.to <= to);
   }
+  /// Returns the smallest range that contains both ranges.
   SideRange hull(const SideRange& other) const noexcept {
     return {std::min(from, other.from), std::max(to, other.to)};
   }
 };
 
-/// Returns true if headings of the set can be combined to every direction on ground of one kind. The set must
-/// not be empty.
+/// Returns true if a drive that alternates between headings of the set can move in every direction on uniform
+/// ground. The set must not be empty.
 inline bool leadsEverywhere(const HeadingSet& headings) noexcept {
   return headings.all() || 0.5 * HeadingSet::kTurn - headings.widestGap().width_rad > 0.0;
 }
 
-/// Directions in which a drive that alternates between headings of a set can move on ground of one kind: all
-/// directions, or a cone of at most half a turn. The set must not be empty.
+/// Directions in which a drive that alternates between headings of a set can move on uniform ground: all
+/// directions, or a cone (sector) of at most pi. The set must not be empty.
 class HeadingCone {
  public:
-  /// `cut`, 0 to 0.5, is the share of the cone's width removed at each end.
+  /// `cut`, 0 to 0.5, is the share of the width of the cone that is removed at each end.
   explicit HeadingCone(const HeadingSet& headings, double cut = 0.0) noexcept {
     const auto [last, gap] = headings.widestGap();
     spare_rad_ = 0.5 * HeadingSet::kTurn - gap;
@@ -106,28 +109,30 @@ class HeadingCone {
     ends_rad_ = {begin, end};
   }
 
-  /// First and last heading of the cone, counter-clockwise; meaningless if everywhere().
+  /// Returns the first and the last direction of the cone, counter-clockwise; meaningless if everywhere().
   const std::array<double, 2>& ends_rad() const noexcept { return ends_rad_; }
 
+  /// Returns true if the cone contains all directions.
   bool everywhere() const noexcept { return everywhere_; }
 
-  /// Half a turn minus the widest gap between headings [rad]. A value little above 0 requires many turns to
-  /// reach every place.
+  /// Returns pi minus the widest gap between headings [rad]. If the value is little above 0, a drive needs
+  /// many turns to reach every point of the cell.
   double spare_rad() const noexcept { return spare_rad_; }
 
-  /// Range of a side that is reachable from the segment between two places of the cell. `slack` widens the
-  /// cone [sides].
+  /// Returns the range of a side that is reachable from the segment between the points a and b of the cell.
+  /// `slack` [cell sides] widens the cone.
   SideRange reached(InCell a, InCell b, int side, double slack) const noexcept {
     return clipped(side, slack, {least(left_of_begin_, a, b), least(right_of_end_, a, b)}, 1.0);
   }
 
-  /// Range of a side from which a place of the cell is reachable.
+  /// Returns the range of a side from which the point `place` of the cell is reachable.
   SideRange reaching(InCell place, int side, double slack) const noexcept {
     return clipped(side, slack, {-dot(left_of_begin_, place), -dot(right_of_end_, place)}, -1.0);
   }
 
-  /// Polygon of the cell that is reachable from the segment between two places of the cell, limited to places
-  /// at least `inside` [sides] away from the border: corners in order, no corners if empty.
+  /// Returns the polygon of the points of the cell that are reachable from the segment between a and b and at
+  /// least `inside` [cell sides] away from the border. The result contains the corners in order; it is empty
+  /// if there are no such points.
   std::vector<InCell> reachedPart(InCell a, InCell b, double slack, double inside) const {
     const double far = 1.0 - inside;
     std::vector<InCell> part{{inside, inside}, {far, inside}, {far, far}, {inside, far}};
@@ -146,7 +151,7 @@ class HeadingCone {
     return part;
   }
 
-  /// Returns true if `to` is reachable from the segment from a to b.
+  /// Returns true if `to` is reachable from the segment between a and b.
   bool joins(InCell a, InCell b, InCell to, double slack) const noexcept {
     return everywhere_ || (dot(left_of_begin_, to) >= least(left_of_begin_, a, b) - slack &&
                            dot(right_of_end_, to) >= least(right_of_end_, a, b) - slack);

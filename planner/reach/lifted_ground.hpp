@@ -12,36 +12,37 @@
 
 namespace talus::planner {
 
-/// A map without one of its constraints, to determine which constraint blocks a route. Completely refused
-/// cells are assigned to
-///   Pitch    ground steeper than permitted in any heading, including the bends at its edges (StepEdges::Kind::Slope),
-///            and headings refused by the limit along the heading, as far as the soil holds at the limit
-///   Roll     headings refused by the limit across the heading and, if the route leads across the slope
-///            (slopesAcross()), also the ground of Pitch
-///   Soil     refused by soil, motors and policy within both limits, where the rover does not tip
-///   Rim      the clearance from the rim of the map
-///   Slope    refused by Pitch, Roll or Soil
+/// A cost map without one of its constraints, to determine which constraint blocks a route. A cell is called
+/// closed if the rover may not enter it on any heading. The constraints remove:
+///   Pitch    cells steeper than permitted on any heading, including the changes of slope at their edges
+///            (StepEdges::Kind::Slope), and headings beyond the limit along the heading. Beyond this limit
+///            the soil is assumed to hold up to the sum of the limit and the drawbar-pull margin there.
+///   Roll     headings beyond the limit across the heading and, if the route leads across the slope
+///            (slopesAcross()), also the cells of Pitch
+///   Soil     headings that soil, motors or policy do not allow within both limits, where the rover does
+///            not tip
+///   Rim      the clearance from the edge of the map
+///   Slope    Pitch, Roll and Soil together
 ///   Hazard   rocks, keep-out areas, impassable classes, steps, rough ground, and the clearance around them
 ///   Unknown  unobserved ground and the clearance around it
-/// A sheer step and the tilt of the plane fitted over the step are one constraint: without it a cell has the
-/// gradient of the surrounding ground (StepEdges::settled()), and remains refused if that gradient is steeper
-/// than permitted in any heading. Without the limit along the heading, the soil is assumed to hold as far as
-/// its pull exceeds the slope's demand at the limit. Freed cells have the ground of the nearest cell that is
-/// not completely refused, on their own slope. Ours.
+/// A sheer step and the tilt of the plane that is fitted over the step are removed together. The cell then
+/// has the gradient of the surrounding ground (StepEdges::settled()), and remains closed if this gradient is
+/// steeper than permitted on any heading. An opened cell has the ground of the nearest cell that is not
+/// closed, on its own slope. Ours.
 class LiftedGround {
  public:
-  /// Without `hazards` every completely refused cell is assigned to Hazard. `across`: the blocked route leads
-  /// across slopes rather than up or down (slopesAcross()).
+  /// `hazards` gives the hazards of closed cells; if empty, every closed cell is attributed to Hazard.
+  /// `across` is true if the blocked route leads across slopes rather than up or down (slopesAcross()).
   LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards, bool across = false);
 
-  /// Map without the constraint; null if the constraint refuses no cell and no heading. For Hazard only cells
-  /// of the given kinds, and their clearance, are freed.
+  /// Returns the map without a constraint; null if the constraint closes no cell and excludes no heading. For
+  /// Hazard only cells that the hazards `kinds` alone close, and their clearance, are opened.
   std::shared_ptr<const costmap::CostGrid> without(Constraint constraint,
                                                    costmap::Hazard kinds = kSolid) const;
-  /// Map without Slope and Hazard::Step; null if no cell is refused because of a step.
+  /// Returns the map without Slope and Hazard::Step; null if no cell is closed because of a step.
   std::shared_ptr<const costmap::CostGrid> withoutSlopesAndSteps() const;
 
-  /// The hazards of Constraint::Hazard.
+  /// Hazards that belong to Constraint::Hazard.
   static constexpr costmap::Hazard kSolid = costmap::Hazard::KeepOut | costmap::Hazard::Obstacle |
                                             costmap::Hazard::Rocks | costmap::Hazard::Step |
                                             costmap::Hazard::Roughness;
@@ -59,13 +60,13 @@ class LiftedGround {
   const costmap::CostGrid& map_;
   bool across_;
   std::vector<Kind> kinds_;
-  std::vector<costmap::Hazard> solid_;  // hazards of kSolid, of the cell or of the cell that requires the
-                                        // clearance
-  std::vector<std::uint8_t> ground_;    // index of the nearest open cell
+  // Hazards of kSolid, of the cell or of the cell that requires the clearance.
+  std::vector<costmap::Hazard> solid_;
+  std::vector<std::uint8_t> ground_;  // cost-curve index of the nearest cell that is not closed
   std::optional<StepEdges> edges_;
 };
 
-/// Returns true if the ground between two places slopes more across the connecting line than along it.
+/// Returns true if the ground between both ends of `line` slopes more across the line than along it.
 bool slopesAcross(const costmap::CostGrid& map, const Segment& line);
 
 }  // namespace talus::planner

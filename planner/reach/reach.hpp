@@ -13,43 +13,48 @@
 
 namespace talus::planner {
 
-/// Cells that can be entered by a drive from a place, or from which a drive can reach the place, for any
-/// headings and turns. The set is never too small: a cell outside the set is proven to be unreachable.
+/// Reachable set: the cells that a drive from a start can enter, or the cells from which a drive can reach a
+/// goal, with any headings and turns. The set is never too small: a cell outside the set is proven to be
+/// unreachable.
 ///
-/// Method (ours). Inside a cell a drive can move from a place in all directions that are combinations of the
-/// permitted headings (HeadingCone). The drive crosses a side only with a heading permitted in both cells, in
-/// the range that the cone reaches from the entry ranges. The ranges of a side are stored as one hull, which
-/// is replaced by the complete side after kGrowths growths; growth below 1e-9 of a side is rounding. A drive
-/// over a corner also passes the corner of an adjacent cell with the same heading, and a drive along a side
-/// belongs to both cells, because MotionCost checks all these cells. Work and memory are proportional to the
-/// number of reached cells.
+/// Method (ours). Inside a cell a drive can move from a point in all directions that are combinations of the
+/// permitted headings (HeadingCone). The drive crosses a side only with a heading permitted in both cells,
+/// within the range that the cone reaches from the ranges of entry. All ranges of a side are stored as one
+/// hull. The hull is replaced by the complete side after kGrowths extensions; extensions below 1e-9 of a side
+/// are treated as rounding errors. A drive through a corner also touches the other cells at this corner with
+/// the same heading, and a drive along a side belongs to both cells, because MotionCost checks all these
+/// cells. Time and memory are proportional to the number of reached cells.
 class Reach {
  public:
+  /// Direction of the search: from a start, or to a goal.
   enum class Sense { From, To };
 
-  /// Computes the cells reachable from a place inside the map, or the cells from which the place or the
-  /// tolerance around it can be reached. With `other`, of the opposite sense over the same cells or fewer,
-  /// the computation ends as soon as a common cell connects both.
+  /// Computes the cells reachable from `place`, or the cells from which `place` or a point within
+  /// `tolerance_m` of it can be reached. `place` must lie inside the map. `other`, if given, is a reachable
+  /// set of the opposite sense over the same cells or a part of them; the computation then ends as soon as a
+  /// common cell connects both places.
   Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
         double tolerance_m = 0.0, const StopCheck& stop = {}, const Reach* other = nullptr);
 
-  /// Returns true if a drive may enter the cell.
+  /// Returns true if the set contains the cell.
   bool holds(maps::Cell cell) const noexcept {
     return map_.grid().contains(cell) && seen_[map_.grid().index(cell)] != 0;
   }
 
-  /// Returns true if a drive may come within the tolerance of a place.
+  /// Returns true if the set contains a point within `tolerance_m` of `place`.
   bool reaches(maps::Point place, double tolerance_m);
 
+  /// Returns the number of cells of the set.
   std::size_t cells() const noexcept { return cells_; }
-  /// True if a drive from one place to the place of `other` exists, through a common cell in which every
-  /// direction is drivable.
+  /// Returns true if a drive exists between the places of this set and of `other`, through a common cell in
+  /// which a drive can move in every direction.
   bool joined() const noexcept { return joined_; }
-  /// False after a stop; the set then proves nothing.
+  /// Returns false if a stop ended the computation; the set then proves nothing.
   bool complete() const noexcept { return complete_; }
 
  private:
-  // Entries into a cell with a cone: ranges by side, and the place at which the drive began.
+  // Entries into a cell whose permitted directions are a cone: ranges by side, and the point at which the
+  // drive begins.
   struct Entries {
     std::array<SideRange, 4> sides{};
     bool has_place = false;

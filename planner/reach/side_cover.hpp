@@ -7,12 +7,12 @@
 
 namespace talus::planner {
 
-/// Union of the reached ranges of one side of a cell.
+/// Union of the ranges of one side of a cell that were reached so far, called the covered part.
 class SideCover {
  public:
-  /// Returns the parts of a range that are longer than `least` [sides, >= 0] and not yet covered, and covers
-  /// them. Shorter parts are not covered, so that several short extensions are returned once their total
-  /// exceeds `least`.
+  /// Returns the parts of `range` that are longer than `least` [cell sides, >= 0] and not covered yet, and
+  /// adds them to the covered part. Shorter parts are not added; therefore several short parts are returned
+  /// once their total length exceeds `least`.
   std::vector<SideRange> added(const SideRange& range, double least) {
     std::vector<SideRange> fresh;
     double at = range.from;

@@ -9,35 +9,37 @@
 
 namespace talus::planner {
 
-/// Parameters of the refinement; distances in cells.
+/// Parameters of the refinement. Distances are in cells. Stations are points at equal spacing along the
+/// route.
 struct RefineOptions {
-  double short_cut_cells = 8.0;  ///< spacing of the ends of short cuts along the route
-  double coarsest_cells = 16.0;  ///< spacing of the stations in the first round; halved from round to round
+  double short_cut_cells = 8.0;  ///< spacing, along the route, of the possible ends of short cuts
+  double coarsest_cells = 16.0;  ///< spacing of the stations in the first round, halved in each further round
   double finest_cells = 8.0;     ///< smallest spacing of the stations
-  ShiftOptions shift{};          ///< positions beside the stations
-  CorridorOptions corridor{};    ///< search over cell edges near the shifted route
-  int slides = 12;               ///< rounds of moving turns along cell edges
+  ShiftOptions shift{};          ///< positions on both sides of the stations
+  CorridorOptions corridor{};    ///< search over points of cell edges near the shifted route
+  int slides = 12;               ///< number of rounds in which turns are moved along cell edges
 };
 
-/// Refines routes to fewer and better turns. The result never costs more than the given route, keeps its
-/// first and last point, and consists of allowed motions only.
+/// Refinement of routes to fewer and better turns. The result never costs more than the given route, has the
+/// same first and last point, and consists of allowed motions only.
 ///
-/// First, stretches are replaced by straight motions where cheaper. Then, from coarse to fine, positions
-/// beside stations along the route are chosen. Then the cheapest path over points of the cell edges near the
-/// route is searched, and its turns are slid along the edges. Each step uses dynamic programming or
-/// Dijkstra's algorithm with exact costs (MotionCost). After the short cuts, the stretches between marks on
-/// the route (cutAtMarks) are refined separately, on several threads. Results are cached by stretch and
-/// ground, so a partly changed route is refined only where it changed. The result depends neither on the
-/// threads nor on the cache. Ours, not from the literature.
+/// First, sections of the route are replaced by straight motions where these are cheaper. Then, from coarse
+/// to fine, the stations are moved sideways. Then the cheapest path over points of the cell edges near the
+/// route is computed, and its turns are moved along the edges. Each step uses dynamic programming or
+/// Dijkstra's algorithm with exact costs (MotionCost). After the short cuts, the sections between marks on
+/// the route (cutAtMarks) are refined separately, on several threads. Results are kept for each section and
+/// the ground near it; therefore a route that changed in part is refined only there. The result depends
+/// neither on the number of threads nor on the kept results. Ours, not from the literature.
 class Refiner {
  public:
   explicit Refiner(const RefineOptions& options = {}) : options_(options) {}
 
-  /// Refines an allowed route. When stopped, returns the best route so far.
+  /// Refines a route, which must be allowed. After a stop, returns the best route so far.
   Polyline operator()(const MotionCost& cost, Polyline route, int threads = 1, const StopCheck& stop = {});
 
-  /// Discards cached results that depend on the ground between two opposite corners.
+  /// Discards kept results that depend on the ground in the rectangle with the opposite corners `corners`.
   void forget(const Segment& corners) { memo_.forget(corners); }
+  /// Discards all kept results.
   void clear() { memo_.clear(); }
 
  private:
@@ -49,7 +51,7 @@ class Refiner {
   RefinementCache memo_;
 };
 
-/// Refines one route without a cache.
+/// Refines one route without kept results.
 Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options = {},
                  const StopCheck& stop = {});
 

@@ -10,21 +10,24 @@
 
 namespace talus::planner {
 
+/// Parameters of the search.
 struct CorridorOptions {
-  int reach_cells = 4;      ///< largest distance of the search from the given path
-  int points_per_edge = 3;  ///< number of crossing points of a cell's edge
+  int reach_cells = 4;      ///< largest distance of the path from the given polyline [cells]
+  int points_per_edge = 3;  ///< number of points per cell edge at which the path may cross the edge
   Kernels kernels = Kernels::Best;
 };
 
-/// Searches the cheapest path between the ends of a polyline that stays near the polyline and crosses cell
-/// edges at a few fixed points, with Dijkstra's algorithm over these points. The path leaves a point only
-/// into the other cell, so paths that turn back at an edge are not considered, and every turn is allowed by
-/// both adjacent cells. Immutable and safe to share between threads; the MotionCost must outlive the object.
+/// Search of the cheapest path between the ends of a polyline that stays near the polyline and crosses cell
+/// edges at a few fixed points. The method is Dijkstra's algorithm over these points. From a point on an edge
+/// the path leads only into the other cell; therefore paths that turn back at an edge are not searched, and
+/// both adjacent cells allow every turn. Immutable and safe to share between threads; the MotionCost must
+/// outlive the object.
 class CorridorSearch {
  public:
   explicit CorridorSearch(const MotionCost& cost, const CorridorOptions& options = {});
 
-  /// Empty if no path costs less than `below_J`. The polyline must lie inside the map.
+  /// Returns the cheapest path near the polyline `along`, which must lie inside the map; empty if no path
+  /// costs less than `below_J` [J].
   EdgePath operator()(const std::vector<maps::Point>& along, double below_J) const;
 
  private:
@@ -34,7 +37,7 @@ class CorridorSearch {
   CostRange range_;
 };
 
-/// Runs a single search.
+/// Runs a single search with a temporary CorridorSearch.
 EdgePath searchCorridor(const MotionCost& cost, const std::vector<maps::Point>& along, double below_J,
                         const CorridorOptions& options = {});
 

@@ -5,10 +5,11 @@
 
 namespace talus::planner {
 
-/// Cheapest route through some of the points in order, including turn costs; first and last point are kept.
-/// Dynamic programming over pairs of points up to 8 apart. A turn that the given route does not have must
-/// pass allowed headings only. Of routes of equal cost, the route with fewer points is returned. Never costs
-/// more than the given route; returns the given route if no other is allowed. Ours, not from the literature.
+/// Returns the cheapest route through some of the vertices of `route` in order, including costs of turns. The
+/// first and last vertex remain. The method is dynamic programming over pairs of vertices up to 8 apart. At a
+/// turn that `route` does not have, the rover must be allowed on all headings that it passes. Of routes of
+/// equal cost, the route with fewer vertices is returned. The result never costs more than `route`; it is
+/// `route` itself if no other route is allowed. Ours, not from the literature.
 Polyline withFewerTurns(const MotionCost& cost, const Polyline& route);
 
 }  // namespace talus::planner

@@ -5,10 +5,11 @@
 
 namespace talus::planner {
 
-/// Merges zigzags: within a stretch, all legs to the left of the straight line between its ends become one
-/// leg and all other legs another, in the cheaper order, if allowed and cheaper including turns. From long
-/// stretches to short ones, repeated until the cost no longer decreases or six rounds are done; first and
-/// last point are kept. Ours, not from the literature.
+/// Merges zigzags of a route. In a section of the route, all legs to the left of the straight line between
+/// the ends of the section become one leg, and all other legs become another leg, in the cheaper order. The
+/// replacement is made if it is allowed and cheaper, including costs of turns. Sections are processed from
+/// long to short, and this is repeated until the cost no longer decreases, at most six times. The first and
+/// last vertex remain. Ours, not from the literature.
 Polyline withLongerTacks(const MotionCost& cost, Polyline route);
 
 }  // namespace talus::planner

@@ -10,21 +10,24 @@
 
 namespace talus::planner {
 
-/// Cache of refined windows of a route, so that an identical window on unchanged ground is not refined again.
-/// Results of the last two rounds are kept. Thread-safe except for newRound(), forget() and clear().
+/// Cache of refined windows (sections) of routes, so that an identical window on unchanged ground is not
+/// refined again. Results used in the last two rounds remain; a round is the refinement of one route.
+/// Thread-safe except for newRound(), forget() and clear().
 class RefinementCache {
  public:
+  /// Returns the stored result for a window; empty if there is none.
   std::optional<Polyline> find(const Polyline& window);
 
-  /// Stores a result that depends on the ground within reach_m of the window's bounding box.
+  /// Stores the result for a window. The result depends on the ground within `reach_m` of the bounding box of
+  /// the window.
   void keep(const Polyline& window, const Polyline& result, double reach_m);
 
-  /// Removes results that depend on the ground between two opposite corners.
+  /// Removes results that depend on the ground in the rectangle with the opposite corners `corners`.
   void forget(const Segment& corners);
 
   void clear() { known_.clear(); }
 
-  /// Begins a new route: removes entries not used since the previous call.
+  /// Begins the refinement of another route: removes entries that were not used since the previous call.
   void newRound();
 
  private:

@@ -7,27 +7,31 @@
 
 namespace talus::planner {
 
-/// Division of a route into windows.
+/// Parameters for the division of a route into windows (consecutive sections).
 struct WindowCut {
   double length_m = 0.0;   ///< length of a window
-  double overlap_m = 0.0;  ///< to each side of a joint of two windows, refined once more
-  double reach_m = 0.0;    ///< largest distance from a window's bounding box of the ground used by the work
+  double overlap_m = 0.0;  ///< length, on both sides of a joint of two windows, that is refined again
+  /// Distance from the bounding box of a window up to which ground affects the result of the work.
+  double reach_m = 0.0;
 };
 
-/// Returns a path between the same ends; must be a function of the window and the ground only.
+/// Function that returns a path with the same ends as its argument. The result must depend only on the
+/// argument and the ground.
 using WindowWork = std::function<Polyline(const Polyline&)>;
 
-/// Applies `work` to the windows of a route, then to the surroundings of the joints, with `threads` threads;
-/// the result does not depend on their number. Windows in the cache are not processed again. Windows not
-/// started when stopped are left unchanged.
+/// Applies `work` to the windows of a route, then to the surroundings of the joints between windows, with
+/// `threads` threads; the result does not depend on their number. Windows whose results are in `memo` are not
+/// processed again. After a stop, windows that were not started remain unchanged.
 Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, RefinementCache& memo,
                    int threads = 1, const StopCheck& stop = {});
 
-/// byWindows() for windows already cut, each beginning at the end of the previous one.
+/// Performs byWindows() for windows that are already cut; each window begins at the end of the previous
+/// window.
 Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
                      RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
 
-/// Second step of overWindows(): joins processed windows, each beginning at the end of the previous one.
+/// Performs the second step of overWindows(): processes the surroundings of the joints and joins the windows.
+/// Each window begins at the end of the previous window.
 Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
                      RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
 

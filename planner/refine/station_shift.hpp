@@ -6,16 +6,18 @@
 
 namespace talus::planner {
 
-/// Number and spacing of the positions to which a station of a route may move sideways.
+/// Number and spacing of the candidate positions beside a station (point at equal spacing along a route).
 struct ShiftOptions {
-  int candidates = 8;  ///< positions to each side; their spacing is the stations' spacing divided by
-                       ///< `candidates`
-  int swing = 3;       ///< largest sideways change [steps] between consecutive stations
+  /// Number of positions on each side of a station; their spacing is the station spacing / `candidates`.
+  int candidates = 8;
+  /// Largest difference of sideways positions between consecutive stations, in candidate spacings.
+  int swing = 3;
 };
 
-/// Shifts the route sideways once: stations are set piece_m apart along the route, with candidate positions
-/// on both sides, and dynamic programming selects a position at every station. Between two stations the
-/// present path may be kept. Ours, not from the literature. Returns the route unchanged when stopped.
+/// Shifts a route sideways once. Stations are placed `piece_m` apart along the route, with candidate
+/// positions on both sides, and dynamic programming selects a position at every station. Between two stations
+/// the present path may also be kept. Ours, not from the literature. After a stop, the route is returned
+/// unchanged.
 Polyline shifted(const MotionCost& cost, const Polyline& route, double piece_m,
                  const ShiftOptions& options = {}, const StopCheck& stop = {});
 

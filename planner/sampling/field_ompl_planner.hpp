@@ -8,10 +8,11 @@
 
 namespace talus::planner {
 
-/// FieldPlanner as an OMPL planner over states of MapSpace, for SimpleSetup, ompl::tools::Benchmark and
-/// similar tools. Uses the first start state and the goal (a single state; its threshold is the goal
-/// tolerance), and adds one exact solution path with its cost. Further start states are ignored; other goal
-/// types return UNRECOGNIZED_GOAL_TYPE. The field of a goal is cached until clear().
+/// Adapter that offers FieldPlanner as a planner of OMPL over states of MapSpace, for SimpleSetup,
+/// ompl::tools::Benchmark and similar tools. It uses the first start state and the goal (a single state,
+/// whose threshold is the goal tolerance), and adds one solution path with its exact cost. Further start
+/// states are ignored; for other types of goals it returns UNRECOGNIZED_GOAL_TYPE. The cost-to-go field of a
+/// goal is kept until clear().
 class FieldOmplPlanner : public ompl::base::Planner {
  public:
   FieldOmplPlanner(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const costmap::CostGrid> map,

@@ -7,8 +7,8 @@
 
 namespace talus::planner {
 
-/// The map plane as an OMPL state space: R^2 in map coordinates [m], bounded by the map's edges, with a
-/// projection of 16 x 16 cells (OMPL's default projection aborts in R^2).
+/// OMPL state space of the map plane: R^2 in map coordinates [m], bounded by the edges of the map. The
+/// projection has squares of 16 x 16 cells (the default projection of OMPL aborts in R^2).
 class MapSpace : public ompl::base::RealVectorStateSpace {
  public:
   explicit MapSpace(const maps::Grid& grid);
@@ -21,7 +21,7 @@ class MapSpace : public ompl::base::RealVectorStateSpace {
     return {values[0], values[1]};
   }
 
-  /// Sets a state of this space to a place.
+  /// Sets a state of this space to a map position.
   static void setPlace(ompl::base::State* state, maps::Point place) noexcept {
     double* values = state->as<StateType>()->values;
     values[0] = place.x_m;

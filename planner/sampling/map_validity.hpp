@@ -9,7 +9,7 @@
 
 namespace talus::planner {
 
-/// A state is valid if its cell allows some heading. For states of MapSpace.
+/// Validity of states of MapSpace: a state is valid if its cell allows some heading.
 class MapValidityChecker : public ompl::base::StateValidityChecker {
  public:
   MapValidityChecker(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const MeteredCost> cost);
@@ -20,15 +20,16 @@ class MapValidityChecker : public ompl::base::StateValidityChecker {
   std::shared_ptr<const MeteredCost> cost_;
 };
 
-/// A straight motion is valid if every crossed cell allows its heading; the reverse motion may differ. Exact:
-/// the motion is not sampled. For states of MapSpace.
+/// Validity of straight motions between states of MapSpace: a motion is valid if every crossed cell allows
+/// its heading. The validity of the reverse motion may differ. The check is exact; the motion is not sampled.
 class MapMotionValidator : public ompl::base::MotionValidator {
  public:
   MapMotionValidator(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const MeteredCost> cost);
 
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to) const override;
 
-  /// Finds the last valid state by bisection, to 1/256 of the motion.
+  /// Checks the motion and stores in `last_valid` its last valid state, found by bisection to 1/256 of the
+  /// motion.
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to,
                    std::pair<ompl::base::State*, double>& last_valid) const override;
 

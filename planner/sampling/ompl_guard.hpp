@@ -5,8 +5,8 @@
 
 namespace talus::planner {
 
-/// Suppresses OMPL's log output while at least one object exists in any thread; then restores the host's
-/// handler.
+/// Guard that suppresses the log output of OMPL while at least one guard exists in any thread. The last guard
+/// restores the log handler of the program.
 class QuietOmpl {
  public:
   QuietOmpl();
@@ -15,8 +15,8 @@ class QuietOmpl {
   QuietOmpl& operator=(const QuietOmpl&) = delete;
 };
 
-/// Runs `make` with OMPL's process-wide seed generator set to `seed`, exclusive of other callers of this
-/// function. Objects created by `make` get the same random numbers regardless of previous runs.
+/// Calls `make` with the process-wide seed generator of OMPL set to `seed`. Calls of this function exclude
+/// each other. Objects that `make` creates get the same random numbers, regardless of previous runs.
 void withOmplSeed(std::uint64_t seed, const std::function<void()>& make);
 
 }  // namespace talus::planner

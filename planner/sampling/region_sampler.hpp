@@ -11,15 +11,15 @@
 
 namespace talus::planner {
 
-/// Random places of an ImprovableRegion with its own seed; if the region's hand_out_route is set, the known
-/// route's points come first.
+/// Source of random points of an ImprovableRegion with a seed of its own. If hand_out_route of the region is
+/// true, the source first returns the points of the known route.
 class RegionSource {
  public:
   RegionSource(std::shared_ptr<const ImprovableRegion> region, std::uint64_t seed)
       : region_(std::move(region)), engine_(seed) {}
 
-  /// Sets `place` to the next place. Returns false if no place with a lower bound of at most max_cost_J was
-  /// found.
+  /// Sets `place` to the next point. Returns false if no point was found for which the lower bound of a route
+  /// through it is at most `max_cost_J`.
   bool next(double max_cost_J, maps::Point& place);
 
   const ImprovableRegion& region() const noexcept { return *region_; }
@@ -31,8 +31,8 @@ class RegionSource {
   std::size_t handed_out_ = 0;
 };
 
-/// Samples MapSpace inside an ImprovableRegion with its own seed, for planners that use OMPL's uniform
-/// samples.
+/// Sampler of states of MapSpace inside an ImprovableRegion, with a seed of its own, for planners that use
+/// the uniform samples of OMPL.
 class RegionSampler : public ompl::base::StateSampler {
  public:
   RegionSampler(const ompl::base::StateSpace* space, std::shared_ptr<const ImprovableRegion> region,
@@ -46,11 +46,11 @@ class RegionSampler : public ompl::base::StateSampler {
   RegionSource source_;
 };
 
-/// Samples MapSpace inside an ImprovableRegion for planners that request samples below a cost. The reported
-/// measure is the map's area, an upper bound.
+/// Sampler of states of MapSpace inside an ImprovableRegion, for planners that request samples below a given
+/// cost. The reported measure of the region is the area of the map, which is an upper bound.
 class RegionInformedSampler : public ompl::base::InformedSampler {
  public:
-  /// Arguments of OMPL's allocation call, the region and the seed.
+  /// Arguments of the allocation call of OMPL, the region and the seed.
   struct Parts {
     ompl::base::ProblemDefinitionPtr problem;
     unsigned int max_calls = 100;

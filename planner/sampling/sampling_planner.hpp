@@ -7,15 +7,15 @@
 
 namespace talus::planner {
 
-/// Provides an initial route for a problem without via points; a status other than Found means that none is
-/// known.
+/// Function that returns an initial route for a problem without via points. A status other than Found means
+/// that no initial route is known.
 using InitialPathProvider = std::function<Plan(const Problem& leg)>;
 
-/// Plans with OMPL's sampling planners under the exact cost, leg by leg through the via points. Never returns
-/// a costlier route than the initial route of `scout`, nor a route with a motion that is not allowed. Without
-/// a time limit, equal problems and seeds give identical results; with a time limit, the result depends on
-/// the machine. If `scout` is empty, planners start without a route. Throws std::invalid_argument for an
-/// unknown planner or a setting out of range.
+/// Plans with the sampling planners of OMPL under the exact cost, leg by leg through the via points. `scout`
+/// gives the initial route of each leg; if `scout` is empty, the planners start without a route. The result
+/// is never more expensive than the initial route, and contains only allowed motions. Without a time limit,
+/// equal problems and seeds give identical results; with a time limit, the result depends on the machine.
+/// Throws std::invalid_argument for an unknown planner or a setting out of range.
 Plan planBySampling(const Problem& problem, const SamplingSettings& settings,
                     const InitialPathProvider& scout = {});
 

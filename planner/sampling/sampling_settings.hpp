@@ -8,27 +8,28 @@
 
 namespace talus::planner {
 
-/// Settings of OMPL's planners. The defaults performed best on maps of 1000 x 1000 cells.
+/// Settings of the planners of OMPL. The default values performed best on maps of 1000 x 1000 cells.
 struct SamplingSettings {
-  std::string planner = "RRTstar";  ///< a name of plannerNames() except "field"
-  /// Limit on the work [evaluated cell lengths], > 0, equal on every machine; applies only to problems
-  /// without a time limit.
+  std::string planner = "RRTstar";  ///< name of plannerNames() except "field"
+  /// Work limit [evaluated cell lengths], > 0, the same on every machine; applies only to problems without a
+  /// time limit.
   std::uint64_t work = 4'000'000;
-  double range_cells = 40.0;  ///< longest motion added to a tree, > 0
-  bool cold = false;          ///< true: no initial route; false: starts from the field planner's route
-  std::map<std::string, std::string> parameters{};  ///< parameters of OMPL's planner, in its own units
-  std::function<void(double)> better{};             ///< called with each lower cost of the present leg [J]
+  double range_cells = 40.0;  ///< length of the longest motion that is added to a tree [cells], > 0
+  /// true: no initial route; false: the planner starts from the route of the field planner.
+  bool cold = false;
+  std::map<std::string, std::string> parameters{};  ///< parameters of the OMPL planner, in the units of OMPL
+  std::function<void(double)> better{};  ///< called with the cost [J] of each improvement of the present leg
 };
 
-/// Parses "NAME", "NAME:cold", "NAME:range=20:cold": a planner of plannerNames() and its settings. Throws
-/// std::invalid_argument for an unknown name, for cold or a parameter of a planner that is not OMPL's, for an
-/// unknown parameter and for an invalid value.
+/// Parses a planner name of plannerNames() with optional settings, such as "NAME", "NAME:cold" or
+/// "NAME:range=20:cold". Throws std::invalid_argument for an unknown name, for "cold" or a parameter of a
+/// planner that is not of OMPL, for an unknown parameter and for an invalid value.
 SamplingSettings samplingSettings(const std::string& words);
 
-/// All planner names, and OMPL's planners with ":cold".
+/// Returns all planner names, and the names of the OMPL planners followed by ":cold".
 std::vector<std::string> warmAndCold();
 
-/// The text from which samplingSettings() gives these settings.
+/// Returns the text that samplingSettings() parses to these settings.
 std::string wordsOf(const SamplingSettings& settings);
 
 }  // namespace talus::planner

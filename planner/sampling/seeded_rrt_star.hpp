@@ -8,15 +8,15 @@
 
 namespace talus::planner {
 
-/// RRT* [karaman_frazzoli_2011] whose tree initially contains a known route, so that all samples improve an
-/// existing solution. For states of MapSpace.
+/// RRT* [karaman_frazzoli_2011] with a tree that initially contains a known route, so that all samples
+/// improve an existing solution. For states of MapSpace.
 class SeededRRTstar : public ompl::geometric::RRTstar {
  public:
-  /// Additions to RRT*.
+  /// Parameters in addition to those of RRT*.
   struct Seed {
-    std::vector<maps::Point> route;  ///< start to goal; empty: plain RRT*
-    double spacing_m = 1.0;          ///< the route's legs are divided to this length, > 0
-    bool informed = false;           ///< sample only where the best cost can be improved [gammell_2014]
+    std::vector<maps::Point> route;  ///< known route from start to goal; empty: RRT* without a known route
+    double spacing_m = 1.0;  ///< length of the parts into which the legs of the route are divided, > 0
+    bool informed = false;   ///< true: sample only where the best cost can be reduced [gammell_2014]
   };
 
   SeededRRTstar(const ompl::base::SpaceInformationPtr& space, Seed seed);

@@ -10,15 +10,16 @@
 
 namespace talus::planner {
 
-/// Cost [J] of a motion that is not allowed. Finite, because OMPL's sums and comparisons fail with
-/// infinities. Exceeds the cost of any real route; sums with this cost keep a resolution of about 0.1 J.
+/// Cost [J] of a motion that is not allowed. The value is finite, because sums and comparisons of OMPL fail
+/// with infinite values. It exceeds the cost of any real route; sums with this value have a resolution of
+/// about 0.1 J.
 inline constexpr double kBlockedMotionCost_J = 1e15;
 
-/// The drive cost (MotionCost) as an OMPL optimization objective: minimises joules. Not symmetric, because
-/// ascent and descent differ. For states of MapSpace.
+/// Optimisation objective of OMPL that minimises the cost of a route [J] (MotionCost). It is not symmetric,
+/// because ascent and descent differ. For states of MapSpace.
 class TravelObjective : public ompl::base::OptimizationObjective {
  public:
-  /// Cost function, sampled region and seed of the objective.
+  /// Parts of the objective: the cost function, the region in which samples are drawn, and a seed.
   struct Parts {
     std::shared_ptr<const MeteredCost> cost;
     std::shared_ptr<const ImprovableRegion> region;
@@ -29,17 +30,17 @@ class TravelObjective : public ompl::base::OptimizationObjective {
 
   bool isSymmetric() const override { return false; }
 
-  /// Zero: only motions have a cost.
+  /// Returns 0, because only motions have a cost.
   ompl::base::Cost stateCost(const ompl::base::State* state) const override;
 
-  /// Exact cost [J]; kBlockedMotionCost_J if the motion is not allowed.
+  /// Returns the exact cost of a motion [J]; kBlockedMotionCost_J if the motion is not allowed.
   ompl::base::Cost motionCost(const ompl::base::State* from, const ompl::base::State* to) const override;
 
-  /// Admissible lower bound of the cheapest path between the states [J].
+  /// Returns an admissible lower bound of the cost of the cheapest path between two states [J].
   ompl::base::Cost motionCostHeuristic(const ompl::base::State* from,
                                        const ompl::base::State* to) const override;
 
-  /// Sampler of the region through which a route better than the best known one can pass.
+  /// Returns a sampler of the region through which a route cheaper than the best known route can lead.
   ompl::base::InformedSamplerPtr allocInformedStateSampler(const ompl::base::ProblemDefinitionPtr& problem,
                                                            unsigned int max_calls) const override;
 
