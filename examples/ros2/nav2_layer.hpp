@@ -17,8 +17,9 @@ namespace talus_ros2 {
 /// Costmap layer of Nav2 with the traversability of a Talus map. The layer writes the maximum of the existing
 /// cost and its own cost of a cell. Its own cost is lethal if no heading is allowed, 252 (the highest cost of
 /// a cell without obstacle) if some headings are not allowed, otherwise a value that increases with the cost
-/// of the most expensive heading. Cells outside the Talus map are unchanged. The costmap calls the layer in
-/// one thread; the subscription may run in another thread.
+/// of the most expensive heading. An unobserved cell is lethal or without information, as set by a parameter.
+/// Cells outside the Talus map are unchanged. The costmap calls the layer in one thread; the subscription may
+/// run in another thread.
 class Nav2Layer : public nav2_costmap_2d::Layer {
  public:
   ~Nav2Layer() override;

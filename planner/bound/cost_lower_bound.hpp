@@ -15,9 +15,10 @@ struct CostLowerBound {
 };
 
 /// Lower bounds of cost curves by straight lines: level + tilt * gradient is at most the cost for gradients
-/// up to a given steepness. The tilt is the derivative of the cost curve at level ground, halved until the
-/// line is positive for every heading. Only row 0 of a cost curve (no gradient across the heading) is used.
-/// Because costs never decrease from row to row (TravelCurve), a bound of row 0 is a bound of all rows.
+/// up to a given steepness. A cost curve (costmap::TravelCurve) is the cost per metre on one kind of ground
+/// over the gradients along the heading (bins) and across it (rows). The tilt is the derivative of the cost
+/// curve at level ground, halved until the line is positive for every heading. Only row 0 (no gradient
+/// across) is used. Because costs never decrease from row to row, a bound of row 0 is a bound of all rows.
 class CostLowerBounds {
  public:
   explicit CostLowerBounds(const costmap::TravelCost& cost);

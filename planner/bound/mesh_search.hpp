@@ -61,7 +61,7 @@ class MeshSearch {
     return 2 * node + (above < node ? above : above - 1);
   }
   /// Adds caps for the two other nodes of a triangle relative to the node `above`. `slot` is the slot of the
-  /// cell.
+  /// cell in MeshCosts.
   void cap(std::uint32_t slot, std::size_t triangle, std::size_t above, const TriangleCosts::Rise& rise);
   /// Reduces the values of the nodes of a triangle to the limits given by its costs and caps. Returns true if
   /// a value was reduced.

@@ -9,7 +9,8 @@
 namespace talus::planner {
 
 /// Returns a lower bound [J] of the cost of any motion from `places.from` to within `tolerance_m` of
-/// `places.to`: the distance times the lowest cost per metre of all cost curves. The function reads no cell.
+/// `places.to`: the distance times the lowest cost per metre of all cost curves (kinds of ground). The
+/// function reads no cell.
 double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
 
 /// Returns a lower bound [J] from the lowest cost per metre of the reachable cells. `known_J` is the cost of

@@ -23,7 +23,8 @@ struct CellJudgement {
 };
 
 /// Computes the summaries of cells for the cost function of a map. The allowed headings are exact
-/// (allowedHeadings()) and are kept by cell code (gradient and cost-curve index of a cell). Not thread-safe.
+/// (allowedHeadings()) and are kept by cell code, which contains the gradient of a cell and the index of its
+/// cost curve (cost per metre on one kind of ground). Not thread-safe.
 class CellJudge {
  public:
   /// Throws std::invalid_argument if the cost is null.

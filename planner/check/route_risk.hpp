@@ -15,8 +15,8 @@ struct RouteRiskOptions {
   /// Probability that too weak soil over one correlation length immobilises the rover, [0, 1]; the hazard per
   /// metre uses the same value.
   double entrapment = 1.0;
-  /// Cell size, >= 0. Soil is uniform within a cell; therefore the correlation between two stretches of the
-  /// route is computed for a distance of at least this size.
+  /// Cell size of the map, >= 0. Soil is uniform within a cell; therefore the correlation between two parts
+  /// of the route is computed for a distance of at least this size.
   double cell_m = 0.0;
   double tail = 0.05;      ///< share of the worst worlds over which RouteRisk::cvar is the mean, (0, 1]
   int worlds = 4000;       ///< number of simulated worlds (random draws of the soil), > 0
@@ -34,24 +34,25 @@ struct RouteRisk {
   /// beta + u on the route (riskAlong()), in standard deviations of DP/W; < 0: too weak on average in those
   /// worlds.
   double cvar = 0.0;
-  double worst_x_m = 0.0;  ///< position at which the reserve is smallest in most worlds
+  double worst_x_m = 0.0;  ///< position that most often, over all worlds, has the smallest reserve
   double worst_y_m = 0.0;
 };
 
 /// Returns the probability of immobilisation from the start to each vertex.
 ///
-/// A stretch between two vertices is too weak if its reserve beta + u < 0. The reliability index beta follows
-/// from the hazard per metre of the stretch. The deviate u is Gaussian with variance 1. It is the sum of a
-/// component shared by all ground of the terrain class (RouteVertex::shared_variance_share) and a process
-/// along the route. The process has the correlation exp(-d / correlation_length) over a distance d within a
-/// class, and is independent across changes of the class. A world with too weak soil over a length T
-/// immobilises the rover with probability 1 - (1 - entrapment)^(T / correlation_length). Each world is drawn
-/// under the condition that a selected stretch is too weak. A stretch is selected in proportion to its
-/// expected length of too weak soil, and the world is weighted by the inverse of the total too weak length in
-/// it. The estimate is unbiased and has the same relative accuracy for 1e-9 and 0.1 (importance sampling of a
-/// union of events, adler_blanchet_liu_2012). Deterministic. Throws std::invalid_argument if an option is out
-/// of range. The result is empty if `watch` was stopped before all worlds of a long route were simulated;
-/// four million stretches (about 0.25 s) are always simulated.
+/// A stretch is the part of the route between two consecutive vertices. It is too weak if its reserve beta +
+/// u < 0. The reliability index beta follows from the hazard per metre of the stretch. The deviate u is
+/// Gaussian with variance 1. It is the sum of a component shared by all ground of the terrain class
+/// (RouteVertex::shared_variance_share) and a process along the route. The process has the correlation exp(-d
+/// / correlation_length) over a distance d within a class, and is independent across changes of the class. A
+/// world with too weak soil over a length T immobilises the rover with probability 1 - (1 - entrapment)^(T /
+/// correlation_length). Each world is drawn under the condition that a selected stretch is too weak. A
+/// stretch is selected in proportion to its expected length of too weak soil, and the world is weighted by
+/// the inverse of the total too weak length in it. The estimate is unbiased and has the same relative
+/// accuracy for 1e-9 and 0.1 (importance sampling of a union of events, adler_blanchet_liu_2012).
+/// Deterministic. Throws std::invalid_argument if an option is out of range. The result is empty if `watch`
+/// was stopped before all worlds of a long route were simulated; four million stretches (about 0.25 s) are
+/// always simulated.
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
                               const ProgressMonitor& watch = {});
 

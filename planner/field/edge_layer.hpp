@@ -27,7 +27,7 @@ class EdgeLayer {
   EdgeLayer(std::shared_ptr<const costmap::CostGrid> map, const EdgeUnits& units, int threads = 1,
             const StopCheck& stop = {}, Kernels kernels = Kernels::Best);
 
-  /// Size of the grid of points of a layer whose points are not the cells of the map.
+  /// Size of a grid of points other than the cells of the map, for a layer without step costs.
   struct Unfilled {
     int width;
     int height;

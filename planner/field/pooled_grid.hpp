@@ -9,11 +9,11 @@
 namespace talus::planner {
 
 /// Returns a coarse map for the search of a rough route. Each coarse cell represents factor x factor cells of
-/// `map`, factor >= 2. The coarse cell has the mean gradient and the most frequent cost curve of its cells,
-/// sampled at every fourth cell. A surcharge on the cost curve makes the mean cost over all headings equal to
-/// the mean cost of the traversable cells divided by their share. The coarse cell is blocked if less than a
-/// third of the samples are traversable. The coarse costs are not bounds of the true costs. Returns null
-/// after a stop.
+/// `map`, factor >= 2. The coarse cell has the mean gradient and the most frequent cost curve (kind of
+/// ground) of its cells, sampled at every fourth cell. A surcharge on the cost curve makes the mean cost over
+/// all headings equal to the mean cost of the traversable cells divided by their share. The coarse cell is
+/// blocked if less than a third of the samples are traversable. The coarse costs are not bounds of the true
+/// costs. Returns null after a stop.
 std::shared_ptr<const costmap::CostGrid> pooled(const costmap::CostGrid& map, int factor, int threads = 1,
                                                 const StopCheck& stop = {});
 

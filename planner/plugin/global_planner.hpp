@@ -83,7 +83,8 @@ struct PlanRequest {
   /// Function that returns the hazard for which the rover may not enter a cell on any heading, used to
   /// describe an obstruction: TraversabilityMap::surface().hazards() of the map used for planning.
   planner::HazardsOf hazards{};
-  bool prove = false;  ///< true: also compute an improved lower bound and search other corridors; slow
+  /// true: also compute an improved lower bound and search routes on other sides of obstacles; slow.
+  bool prove = false;
   /// Limit of the immobilisation risk; empty: risk enters only through its weight in the cost.
   std::optional<RiskLimit> risk_limit{};
   /// Receives the progress and requests a stop. After a stop plan() returns the status Cancelled, or the best

@@ -7,7 +7,7 @@
 
 namespace talus::planner {
 
-/// Parameters of the improvement of a drive by RRT*.
+/// Parameters of the improvement of a drive (route of arcs and turns in place) by RRT*.
 struct PoseSamplingSettings {
   std::uint64_t seed = 1;
   /// Work limit [evaluated cell lengths], > 0, the same on every machine; only without a time limit.

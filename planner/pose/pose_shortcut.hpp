@@ -15,9 +15,9 @@ struct ShortenOptions {
   StopCheck stop{};  ///< after a stop, the rest of the drive remains as it is
 };
 
-/// Replaces sections of a drive by the direct curve between their ends if this curve has a lower exact cost.
-/// The method is dynamic programming over joints along the drive, repeated while the cost decreases. The
-/// result never costs more than `path`.
+/// Replaces sections of a drive (route of arcs and turns in place) by the direct curve between their ends if
+/// this curve has a lower exact cost. The method is dynamic programming over joints along the drive, repeated
+/// while the cost decreases. The result never costs more than `path`.
 PosePath shortened(const PosePath& path, const PoseCost& cost, const ShortenOptions& options);
 
 }  // namespace talus::planner

@@ -22,8 +22,8 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
 /// Function that returns true if `map` connects start and goal.
 using OpensOn = std::function<bool(const costmap::CostGrid& map)>;
 
-/// Tests which constraint causes the obstruction `found`, whose two sets are known, and stores it in `found`.
-/// After a stop, or on maps with more than kTriedCells cells, no constraint is tested.
+/// Tests which constraint causes the obstruction `found`, and stores it in `found`. The two sets of cells of
+/// `found` must be known. After a stop, or on maps with more than kTriedCells cells, no constraint is tested.
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop = {});
 

@@ -60,10 +60,11 @@ class HeadingSet {
   std::pmr::vector<HeadingArc> arcs_;
 };
 
-/// Cache of allowedHeadings() by cell code (gradient and cost-curve index of a cell). Cells with the
-/// cost-curve index `free`, if given, permit every heading. Large maps have millions of different codes;
-/// therefore the sets are allocated in an arena, which is released as a whole. Not thread-safe; the
-/// TravelCost must outlive the object.
+/// Cache of allowedHeadings() by cell code. A cell code contains the gradient of a cell and the index of its
+/// cost curve (costmap::TravelCurve: cost per metre on one kind of ground over the gradients along and across
+/// the heading). Cells with the cost-curve index `free`, if given, permit every heading. Large maps have
+/// millions of different codes; therefore the sets are allocated in an arena, which is released as a whole.
+/// Not thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
  public:
   explicit HeadingSets(const costmap::TravelCost& cost, std::optional<std::uint8_t> free = {})

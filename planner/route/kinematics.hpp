@@ -24,12 +24,13 @@ struct Kinematics {
   double turning_radius_m = 0.0;  ///< smallest radius of an arc, 0.001 to 1000; 0: the rover turns in place
   bool may_reverse = true;  ///< true: paths of Reeds and Shepp; false: paths of Dubins, without reversing
   TurnCosts turns{};        ///< costs of one radian on ground without an entry in `turns_by_curve`
-  std::vector<TurnCosts> turns_by_curve{};  ///< costs of one radian by CellCode::curve()
-  TurnCost cusp{};                          ///< cost of a change between forward and reverse
+  /// Costs of one radian by kind of ground, indexed by CellCode::curve().
+  std::vector<TurnCosts> turns_by_curve{};
+  TurnCost cusp{};  ///< cost of a change between forward and reverse
   TurnCost stop{};  ///< cost of one turn in place beside its angle: stop, steer the wheels, restart
 
-  /// Returns the costs of one radian of turning on a cell with the cost-curve index `curve`
-  /// (CellCode::curve()).
+  /// Returns the costs of one radian of turning on a cell with CellCode::curve() = `curve`, the index of the
+  /// cost curve of its ground.
   const TurnCosts& turnsOn(std::uint8_t curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
@@ -37,7 +38,7 @@ struct Kinematics {
 
 /// Returns the kinematics of the rover of `model`, with the turning costs of `cost`. A change between forward
 /// and reverse takes the time in which the rover drives one wheel radius. A stop for a turn in place takes 20
-/// s (ours), which prevents drives with a turn at every cell. Throws std::invalid_argument for an Ackermann
+/// s (ours), so that planned routes do not turn at every cell. Throws std::invalid_argument for an Ackermann
 /// rover without a turning radius.
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost);
 

@@ -130,8 +130,9 @@ struct RouteSummary {
   double gap = 0.0;  ///< proven optimality gap cost / lower_bound - 1 [-]
   /// Time [s] for PlanRequest::prove: improved lower bound and search of other corridors.
   double proof_s = 0.0;
-  std::string planner;                ///< name of the planner
-  std::optional<RouteShape> drive{};  ///< manoeuvres of the route; empty if the planner has no turning radius
+  std::string planner;  ///< name of the planner
+  /// Manoeuvres of a drive; empty for a polyline without arcs and turns in place.
+  std::optional<RouteShape> drive{};
 };
 
 /// Result of planning with all data for reports and controllers.
