@@ -26,7 +26,7 @@ struct FieldGoal {
 /// the result is exact and does not depend on the order of computation. Not thread-safe.
 class CostToGo {
  public:
-  /// Value of a cell from which no goal can be reached.
+  /// Value of a cell from which no goal can be reached, or that the computation has not reached yet.
   static constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
   /// Goal by its padded index (index in PaddedGrid), and the remaining cost at the goal in units.

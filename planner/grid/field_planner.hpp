@@ -15,7 +15,7 @@ namespace talus::planner {
 /// Planner that computes the complete cost-to-go field of the goal (minimum cost from every cell) and refines
 /// the grid route to a polyline with arbitrary headings under the exact cost. If the eight headings of the
 /// grid do not connect start and goal, the planner tries arbitrary headings. The status NoRoute is then
-/// proven (Reach); the status NoneFound is not.
+/// proven (Reach); the status NoneFound is no proof.
 ///
 /// If Problem::prove is set and the cost differs from the lower bound, further candidates are refined, and
 /// the cheapest route is returned. The candidates are routes through other corridors (otherCorridors) on maps

@@ -33,7 +33,7 @@ class EdgeCrossings {
 
   EdgeCrossings(const costmap::TravelCost& cost, int points, Kernels kernels = Kernels::Best);
 
-  /// Returns the number of points per side.
+  /// Returns the number of points on each side.
   int points() const noexcept { return points_; }
 
   /// Returns the number of motions from one point: those to all points of the other three sides.
