@@ -290,7 +290,9 @@ SlopeHold CrossSlope::hold(const Gradient& gradient) const noexcept {
   SlopeHold out = holdInRow(row.whole, gradient.along);
   if (row.share > 0.0F)
     out = mixed(out, holdInRow(row.whole + 1, gradient.along), static_cast<double>(row.share));
-  out.slip_angle_rad = std::copysign(out.slip_angle_rad, gradient.across);
+  // Across rising ground to the left the wheels point left of the direction of travel.
+  const double angle_rad = std::abs(out.slip_angle_rad);
+  out.slip_angle_rad = gradient.across > 0.0 ? 0.0 - angle_rad : angle_rad;
   return out;
 }
 

@@ -165,8 +165,9 @@ struct GroundCost {
 /// Slip angle, side force and stability margin of a rover on a slope, on the soil of the terrain class.
 /// Values are NaN on a slope without an equilibrium.
 struct SlopeHold {
-  /// Slip angle: angle from the direction of travel to the wheel planes, left positive. It is positive where
-  /// the ground rises to the left; terramech::SlopeState::slip_angle_rad has the opposite sign.
+  /// Slip angle: angle from the wheel planes to the direction of travel, left positive, as in
+  /// terramech::SlopeState. It is negative where the ground rises to the left, because the wheels are turned
+  /// uphill.
   double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
   /// Greatest side force over load |F|/N of a wheel [-].
   double side_force_over_load = std::numeric_limits<double>::quiet_NaN();

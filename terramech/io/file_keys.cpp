@@ -75,7 +75,7 @@ std::span<const FileKey> telemetryKeys() {
       {"roll_rad", "of the body, -1.5 to 1.5"},
       {"slope_rad", "of the ground along the heading, positive uphill, -1.5 to 1.5"},
       {"slip", "1 - v/(r omega) driven, -1 to 1"},
-      {"slip_angle_rad", "between the wheel's plane and its motion, -1.6 to 1.6"},
+      {"slip_angle_rad", "from the wheel's plane to the direction of travel, left positive, -1.6 to 1.6"},
       {"speed_mps", "of the wheel's centre"},
       {"rim_speed_mps", "radius times rotation rate"},
       {"load_N", "normal to the ground, above 0"},

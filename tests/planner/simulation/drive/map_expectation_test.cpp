@@ -30,11 +30,15 @@ costmap::CellCode slope(double dz_dx, double dz_dy) {
 TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
   const costmap::TraversabilityMap map = levelMap();
   const terramech::SlopeEquilibrium plane(testSand(), testRover());
-  for (const double across : {0.0, 0.1, 0.2}) {
+  for (const double across : {-0.2, 0.0, 0.1, 0.2}) {
     const WheelExpectation said =
         MapExpectation(map, slope(0.0, across)).ofWheel({20.5, 20.5}, {20.0, 20.5}, {1.0, 0.0});
     const auto want = plane.at({0.0, across});
     EXPECT_NEAR(said.slip_angle_rad, std::abs(want.slip_angle_rad), 0.03) << across;
+    // Property: the cost grid, and with it the route file, has the sign of telemetry.
+    EXPECT_NEAR(map.published()->cost().hold(slope(0.0, across), {1.0, 0.0}).slip_angle_rad,
+                want.slip_angle_rad, 0.03)
+        << across;
     EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: at least the required slip
     EXPECT_GT(said.sinkage_over_radius, 0.0);
   }
