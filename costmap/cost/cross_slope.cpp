@@ -255,8 +255,7 @@ CrossSlope CrossSlope::harder(const CrossSlope& a, const CrossSlope& b) {
   return both;
 }
 
-// Reason why the nearer of the two adjacent table nodes has no equilibrium. If it has one, the reason of the
-// other node; if both have one, Pull (row 0) or SideForce.
+// Reason why the nearer, or else the other, table node has no equilibrium; Pull or SideForce if both have one.
 Refusal CrossSlope::reasonAt(int row, int bin) const noexcept {
   const Refusal lacks = row == 0 ? Refusal::Pull : Refusal::SideForce;
   if (held_.empty()) return lacks;
@@ -290,9 +289,7 @@ SlopeHold CrossSlope::hold(const Gradient& gradient) const noexcept {
   SlopeHold out = holdInRow(row.whole, gradient.along);
   if (row.share > 0.0F)
     out = mixed(out, holdInRow(row.whole + 1, gradient.along), static_cast<double>(row.share));
-  // Across rising ground to the left the wheels point left of the direction of travel.
-  const double angle_rad = std::abs(out.slip_angle_rad);
-  out.slip_angle_rad = gradient.across > 0.0 ? 0.0 - angle_rad : angle_rad;
+  out.slip_angle_rad = std::copysign(out.slip_angle_rad, 0.0 - gradient.across);
   return out;
 }
 

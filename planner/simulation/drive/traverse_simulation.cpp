@@ -63,7 +63,7 @@ class Drive {
     if (!cause.empty())
       result_.cause = std::move(cause);
     else if (outcome == Outcome::Immobilised || outcome == Outcome::Slid)
-      result_.cause = causeOfLoss({map_, world_, last_step_, seen_, estimatedPlace(), why_it_stopped_});
+      result_.cause = causeOfLoss({map_, world_, last_step_, seen_, estimated(), why_it_stopped_});
     recordEvent(std::string(name(outcome)));
     return std::move(result_);
   }
@@ -77,7 +77,7 @@ class Drive {
   bool plan() {
     const MotionCost cost(map_.published());
     for (;;) {
-      while (options_.senses && !cost.allowed(estimatedPlace()))
+      while (options_.senses && !cost.allowed(estimated()))
         if (!leaveOneStep(0.0)) return false;
       if (const RouteStatus status = planFromHere();
           status != RouteStatus::NoRoute && status != RouteStatus::NoneFound)
@@ -92,7 +92,7 @@ class Drive {
   RouteStatus planFromHere() {
     Problem problem;
     problem.map = map_.published();
-    problem.start = estimatedPlace();
+    problem.start = estimated();
     problem.goal = options_.goal;
     problem.goal_tolerance_m = options_.goal_tolerance_m;
     problem.prove = false;
@@ -107,17 +107,17 @@ class Drive {
   }
 
   // Estimated position of the rover.
-  maps::Point estimatedPlace() const { return sensors_.estimatedPlace(here_); }
+  maps::Point estimated() const { return sensors_.estimatedPlace(here_); }
 
   FollowEnd follow() {
     while (next_ < route_.size()) {
-      const double left = distance_m(estimatedPlace(), route_[next_]);
+      const double left = distance_m(estimated(), route_[next_]);
       if (left < 1e-9) {
         ++next_;
         continue;
       }
       if (options_.watch.stopped()) return FollowEnd::Replan;
-      const Direction heading = directionTo(estimatedPlace(), route_[next_]);
+      const Direction heading = directionTo(estimated(), route_[next_]);
       if (tipped(heading)) return FollowEnd::Tipped;
       const auto end = lookAndStep(heading, std::min(left, options_.step_m));
       if (end) return *end;
@@ -165,7 +165,7 @@ class Drive {
 
   void report(const TrueWorld::Step& step, const Direction& heading, double length_m) const {
     if (!options_.on_step) return;
-    const costmap::TravelState state = MapExpectation(map_, ground()).at(estimatedPlace(), heading);
+    const costmap::TravelState state = MapExpectation(map_, ground()).at(estimated(), heading);
     const double slope = gradient(heading);
     options_.on_step(
         {.time_s = result_.time_s,
@@ -200,7 +200,7 @@ class Drive {
     const MapExpectation map(map_, ground());
     std::vector<WheelExpectation> of_wheels;
     for (const TrueWorld::SimulatedWheel& wheel : step.wheels)
-      of_wheels.push_back(map.ofWheel(sensors_.estimatedPlace(wheel.place), estimatedPlace(), heading));
+      of_wheels.push_back(map.ofWheel(sensors_.estimatedPlace(wheel.place), estimated(), heading));
     return of_wheels;
   }
 
@@ -230,7 +230,7 @@ class Drive {
   }
 
   void advance(const TrueWorld::Step& step, const Direction& heading, double length_m) {
-    const bool there = length_m >= distance_m(estimatedPlace(), route_[next_]) - 1e-9;
+    const bool there = length_m >= distance_m(estimated(), route_[next_]) - 1e-9;
     dug_m_ = 0.0;
     downhill_ = false;
     spend(step, length_m, gradient(heading));
@@ -291,8 +291,7 @@ class Drive {
     const auto& model = map_.model();
     const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
-      const auto cell =
-          map_.grid().cellAt({estimatedPlace().x_m + x * reach_m, estimatedPlace().y_m + y * reach_m});
+      const auto cell = map_.grid().cellAt({estimated().x_m + x * reach_m, estimated().y_m + y * reach_m});
       const auto ground = cell ? map_.ground(*cell) : std::nullopt;
       if (!ground) continue;
       const int index = map_.surface().classIndex(*cell);
@@ -331,10 +330,10 @@ class Drive {
     const double outline_m = 0.5 * std::hypot(map_.model().rover().wheelbase_m, map_.model().rover().track_m);
     for (std::size_t w = 0; w < stopped.wheels.size(); ++w) {
       if (w >= 2 && !check.sank[w]) continue;
-      const maps::Point& wheel = stopped.wheels[w].place;
-      const double room_m = distance_m(wheel, here_) - outline_m;
+      const maps::Point& at = stopped.wheels[w].place;
+      const double room_m = distance_m(at, here_) - outline_m;
       if (room_m > 0.0)
-        map_.refuse(sensors_.estimatedPlace(wheel), std::min(options_.keep_out_radius_m, room_m));
+        map_.refuse(sensors_.estimatedPlace(at), std::min(options_.keep_out_radius_m, room_m));
     }
     map_.publish();
     if (options_.on_learned) options_.on_learned(result_.time_s);
@@ -356,7 +355,7 @@ class Drive {
 
   bool routeTurnedDear() {
     const MotionCost cost(map_.published());
-    double left_J = cost({estimatedPlace(), route_[std::min(next_, route_.size() - 1)]});
+    double left_J = cost({estimated(), route_[std::min(next_, route_.size() - 1)]});
     for (std::size_t i = next_; i + 1 < route_.size(); ++i) left_J += cost({route_[i], route_[i + 1]});
     const bool dear = !(left_J <= kDearer * planned_J_);
     planned_J_ = std::min(planned_J_, left_J);
