@@ -18,8 +18,7 @@ using costmap::Direction;
 
 // The route is replanned if the cost of its remainder exceeds this multiple of its cost when planned.
 constexpr double kDearer = 1.3;
-// Depth that a wheel digs on the spot per metre of rim travel (ours: Spirit sank to the hub within some
-// metres).
+// Depth that a wheel digs on the spot per metre of rim travel (ours; Spirit sank to the hub in some metres).
 constexpr double kDugPerMetre = 0.05;
 
 Direction directionTo(const maps::Point& from, const maps::Point& to) {
