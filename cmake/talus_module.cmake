@@ -55,7 +55,7 @@ endfunction()
 
 # talus_module(NAME PUBLIC ... SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
 # Defines the library target talus::NAME of a module, and the component NAME of the installed package. Public
-# headers, i.e. the entry header and all headers that it includes, are a verified file set installed under
+# headers, i.e. the umbrella header and all headers that it includes, are a verified file set installed under
 # include/talus; other headers are internal and not installed. Paths are relative to the calling module.
 function(talus_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;SOURCES;DEPENDS;PRIVATE_DEPENDS")

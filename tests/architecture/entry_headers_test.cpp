@@ -1,4 +1,4 @@
-// Examples and installed consumers include entry headers only, as a program that embeds Talus does.
+// Examples and installed consumers include umbrella headers only, as a program that embeds Talus does.
 #include <map>
 #include <regex>
 #include <set>

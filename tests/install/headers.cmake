@@ -1,5 +1,5 @@
 cmake_policy(VERSION 3.25)
-# The installed headers are the entry headers, what planner plugins include, and what these include: nothing inner is
+# The installed headers are the umbrella headers, what planner plugins include, and what these include: nothing inner is
 # installed, and no public header includes one.
 set(include ${PREFIX}/include)
 # A link would lead into the tree that it was built from.
@@ -35,7 +35,7 @@ endwhile()
 file(GLOB_RECURSE installed RELATIVE ${include} ${include}/talus/*.hpp)
 foreach(header ${installed})
   if(NOT header IN_LIST public)
-    message(SEND_ERROR "${header} is installed, but no entry header includes it")
+    message(SEND_ERROR "${header} is installed, but no umbrella header includes it")
   endif()
 endforeach()
 list(LENGTH installed count)
