@@ -18,8 +18,8 @@ struct ReproduceOptions {
   int soils = 500;
 };
 
-/// Registers the subcommand `reproduce` with the function `run` that executes it. addReproduce() of
-/// commands.hpp starts the program talus-reproduce, and that program passes its own function.
+/// Registers the subcommand `reproduce` and the function `run` that executes it. The program talus-reproduce
+/// passes its own `run`; in the program talus, `run` starts talus-reproduce.
 void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOptions&, Context&));
 
 }  // namespace talus::cli

@@ -114,7 +114,7 @@ struct SceneOptions {
 /// Returns the scene of an elevation map, with elevation and slope.
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options);
 
-/// Returns the scene of a traversability map, which has also categories, drawbar pull with its standard
+/// Returns the scene of a traversability map: elevation, slope, categories, drawbar pull with its standard
 /// deviation, and sinkage.
 Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options);
 

@@ -9,9 +9,9 @@
 
 namespace talus::cli {
 
-/// Returns a table of proposed test runs as CSV: one row per slip with the conditions, empty columns for the
-/// measured channels of the result, and name, predictions and standard deviations (predicted_K_*) of each
-/// cause K. A cause is a possible explanation of the residual.
+/// Returns a table of proposed test runs as CSV, one row per slip. Its columns are the conditions of the run;
+/// empty columns for the channels to be measured; and, for each possible cause K of the residual, the name of
+/// the cause, the predictions and their standard deviations (predicted_K_*).
 std::string proposalTable(const std::vector<terramech::ProposedRun>& runs,
                           const terramech::TraceResult& result);
 

@@ -79,8 +79,8 @@ struct WheelObservation {
   Estimate sinkage;
   double demand = 0.0;       ///< DP/W that the slope requires [-]
   double from_torque = 0.0;  ///< DP/W from torque and sinkage [-]; NaN: not measured
-  /// Standard deviation of `pull` by errors that are common to all readings, such as the error of the slip,
-  /// and that more readings do not reduce; >= 0 [-]. NaN: unknown, `pull` may then only lower an estimate.
+  /// Standard deviation of `pull` due to errors common to all readings, for example of the slip; more readings
+  /// do not reduce these errors; >= 0 [-]. NaN: unknown, and `pull` may only lower an estimate.
   double shared_std = 0.0;
   /// Thrust of the terrain class at the measured slip over its thrust at the reference slip [-].
   double share = 1.0;

@@ -81,7 +81,8 @@ class SensorWatch {
   std::vector<std::string> findings() const;
 
  private:
-  // One sensor of a wheel: number of rows, of changes of the value, and of consecutive equal values.
+  // One sensor of a wheel: number of rows, number of changes of the value, and length of the present run of
+  // equal values.
   struct Channel {
     std::size_t rows = 0, changes = 0, equal = 0;
   };

@@ -47,7 +47,7 @@ class CostToGo {
   /// earlier.
   bool settleAll(const StopCheck& stop = {});
 
-  /// Updates the field after an update of the edge layer for the cells of the box `changed`. The result
+  /// Updates the field after the edge layer was updated for the cells of the box `changed`. The result
   /// equals that of a new computation. Cells that are nearer to the goal than all cells of the box keep their
   /// values; the other cells are settled again when needed. For a single start, PatchedField needs less time.
   void repair(CellBox changed);

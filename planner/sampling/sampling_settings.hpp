@@ -11,8 +11,8 @@ namespace talus::planner {
 /// Settings of the planners of OMPL. The default values performed best on maps of 1000 x 1000 cells.
 struct SamplingSettings {
   std::string planner = "RRTstar";  ///< name of plannerNames() except "field"
-  /// Work limit [evaluated cell lengths], > 0, the same on every machine; applies only to problems without a
-  /// time limit.
+  /// Limit of the total length of all evaluated motions [cell sides], > 0. It gives the same result on every
+  /// machine and applies only to problems without a time limit.
   std::uint64_t work = 4'000'000;
   double range_cells = 40.0;  ///< length of the longest motion that is added to a tree [cells], > 0
   /// true: no initial route; false: the planner starts from the route of the field planner.

@@ -22,8 +22,8 @@ struct WheelCondition {
   std::optional<double> slip = {};  ///< driven slip, [-1, 1]; empty: the steering criterion is not applied
 };
 
-/// Limits between the traversability categories. A criterion without limits is not applied. One level down
-/// means: safe becomes marginal, and marginal becomes dangerous.
+/// Limits between the traversability categories. A criterion without limits is not applied. A category that
+/// moves one level down changes from safe to marginal, or from marginal to dangerous.
 struct CategoryThresholds {
   double dp_low = 0.0;       ///< DP/W below this limit is dangerous
   double dp_high = 0.0;      ///< DP/W above this limit is safe; DP/W in [dp_low, dp_high] is marginal

@@ -54,8 +54,8 @@ class ShearModulusGrid {
   std::size_t samples() const { return count_; }
 
  private:
-  // 17 values have a ratio of 1.28 between neighbours. With the parabola, a finer grid takes longer and is no
-  // more accurate.
+  // Adjacent values of K have the ratio 1.28. The minimum is interpolated by a parabola, so that a finer grid
+  // takes longer without being more accurate.
   static constexpr std::size_t kValues = 17;
 
   /// Sums for one value of K.

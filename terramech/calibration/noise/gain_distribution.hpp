@@ -20,7 +20,7 @@ struct Contender {
 /// products.
 inline constexpr int kProfiled = 12;
 
-/// Gain of every contender on the measured table, and greatest gains on tables drawn from the null model (the
+/// Gain of every contender (candidate effect of this round) on the measured table, and greatest gains on tables drawn from the null model (the
 /// current model without contenders).
 struct GainDistribution {
   std::vector<double> gain;      ///< gain of each contender, in their order

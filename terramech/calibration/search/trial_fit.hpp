@@ -36,7 +36,8 @@ class TrialFit {
   /// Returns the model of fit(), with the present contact solutions as initial values.
   RefinedModel fitted(const RefinedModel& model, int iterations) const;
 
-  /// Returns another model linearised on the rows, as null model of gainDistribution().
+  /// Linearises a model, which may differ from the present one, about its predictions for the rows. The result
+  /// is a null model for gainDistribution().
   NullModel standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
                      SolvedContacts& solved) const;
 
