@@ -17,6 +17,7 @@ struct SensorPrior {
   double bias, log_scale;
 };
 constexpr SensorPrior kAny{0.1, 0.45}, kSound{0.03, 0.05};
+constexpr double kCompressing = 0.1;  // prior probability of a sensor that compresses large slips
 
 constexpr double kModelError = 0.02, kSlipNoise = 0.015, kGradientNoise = 0.01;
 constexpr double kMostVariance = 1.0;  // greatest variance of a slip, where the curve is flat
@@ -29,6 +30,15 @@ constexpr int kDepartures = 73;
 constexpr double kMostBias = 0.25, kMostLogScale = 1.6;
 constexpr double kLeastDeparture = -6.0, kMostDeparture = 3.0;  // in units of mean_std
 
+// Slip sensor without offset: linear if `knee` is 0, otherwise compressing above the knee (Eq. 3).
+struct Sensor {
+  double scale = 1.0, knee = 0.0;
+  double read(double slip) const noexcept {
+    if (knee == 0.0) return scale * slip;
+    return std::min(slip, knee) + scale * std::max(slip - knee, 0.0);
+  }
+};
+
 constexpr int kSlips = 291;
 constexpr double kLeastSlip = -0.5, kSlipStep = 0.005;
 
@@ -40,6 +50,18 @@ double logScaleAt(std::size_t i) noexcept {
 }
 double slipAt(double i) noexcept {
   return kLeastSlip + kSlipStep * i;
+}
+
+std::vector<Sensor> linearSensors() {
+  std::vector<Sensor> all;
+  for (std::size_t i = 0; i < kScales; ++i) all.push_back({.scale = std::exp(logScaleAt(i))});
+  return all;
+}
+std::vector<Sensor> compressingSensors() {
+  std::vector<Sensor> all;
+  for (const double knee : {0.1, 0.2, 0.3})
+    for (const double scale : {0.25, 0.5}) all.push_back({scale, knee});
+  return all;
 }
 
 }  // namespace
@@ -82,14 +104,19 @@ struct SlipFit::OfClass {
     double weight = 0.0, gradient = 0.0, slip = 0.0, scatter = 0.0;
     std::array<double, kVariations.size()> variance{};  // of the slip (Eq. 2)
   };
-  // Sums of the posterior over departure and variation, for one pair of bias and scale.
+  // Sums of the likelihood, times the prior of the departure, over departure and variation.
   struct Sums {
     double weight = 0.0, first = 0.0, second = 0.0;
   };
-  // For a given departure, variation and scale, the log-likelihood is -(a b^2 - 2 f b + q)/2 in the bias b.
+  // Sums for each pair of bias and sensor, relative to exp(greatest).
+  struct Table {
+    std::vector<Sums> sums;
+    double greatest = -std::numeric_limits<double>::infinity();
+  };
+  // For a given departure, variation and sensor, the log-likelihood is -(a b^2 - 2 f b + q)/2 in the bias b.
   struct Parabola {
     double departure, a, f, q;
-    std::size_t scale;
+    std::size_t sensor;
     double at(double bias) const { return -0.5 * (a * bias * bias - 2.0 * f * bias + q); }
     double greatest() const { return at(std::clamp(f / std::max(a, 1e-12), -kMostBias, kMostBias)); }
   };
@@ -100,8 +127,9 @@ struct SlipFit::OfClass {
   std::vector<Reading> readings{};
 
   void add(const GroundModel& model, int rutted, int wheels, Reading reading);
-  std::vector<Parabola> parabolas(const std::vector<double>& departures) const;
-  std::vector<Sums> sums(const std::vector<double>& departures) const;
+  std::vector<Parabola> parabolas(const std::vector<double>& departures,
+                                  const std::vector<Sensor>& sensors) const;
+  Table table(const std::vector<double>& departures, const std::vector<Sensor>& sensors) const;
 };
 
 void SlipFit::OfClass::add(const GroundModel& model, int rutted, int wheels, Reading reading) {
@@ -121,7 +149,7 @@ void SlipFit::OfClass::add(const GroundModel& model, int rutted, int wheels, Rea
 }
 
 std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
-    const std::vector<double>& departures) const {
+    const std::vector<double>& departures, const std::vector<Sensor>& sensors) const {
   std::vector<Parabola> all;
   std::vector<double> slips(readings.size());
   for (const double departure : departures) {
@@ -130,12 +158,11 @@ std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
       slips[k] = readings[k].curve->slipOn(readings[k].gradient, departure, from[readings[k].curve]);
     const double of_prior = departure * departure / (mean_std * mean_std);
     for (std::size_t t = 0; t < kVariations.size(); ++t)
-      for (std::size_t s = 0; s < kScales; ++s) {
-        const double scale = std::exp(logScaleAt(s));
+      for (std::size_t s = 0; s < sensors.size(); ++s) {
         Parabola p{departure, 0.0, 0.0, of_prior, s};
         for (std::size_t k = 0; k < readings.size(); ++k) {
           const Reading& reading = readings[k];
-          const double w = reading.weight / reading.variance[t], r = reading.slip - scale * slips[k];
+          const double w = reading.weight / reading.variance[t], r = reading.slip - sensors[s].read(slips[k]);
           p.a += w;
           p.f += w * r;
           p.q += w * (r * r + reading.scatter) + reading.weight * std::log(reading.variance[t]);
@@ -146,18 +173,18 @@ std::vector<SlipFit::OfClass::Parabola> SlipFit::OfClass::parabolas(
   return all;
 }
 
-std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<double>& departures) const {
+SlipFit::OfClass::Table SlipFit::OfClass::table(const std::vector<double>& departures,
+                                                const std::vector<Sensor>& sensors) const {
   constexpr double kNothing = 40.0;  // terms below the greatest log-likelihood by more are ignored
-  const std::vector<Parabola> all = parabolas(departures);
-  double greatest = -std::numeric_limits<double>::infinity();
-  for (const Parabola& p : all) greatest = std::max(greatest, p.greatest());
-  std::vector<Sums> out(kBiases * kScales);
+  const std::vector<Parabola> all = parabolas(departures, sensors);
+  Table out{.sums = std::vector<Sums>(kBiases * sensors.size())};
+  for (const Parabola& p : all) out.greatest = std::max(out.greatest, p.greatest());
   for (const Parabola& p : all) {
-    if (p.greatest() < greatest - kNothing) continue;
+    if (p.greatest() < out.greatest - kNothing) continue;
     for (std::size_t b = 0; b < kBiases; ++b) {
-      const double log = p.at(biasAt(b)) - greatest;
+      const double log = p.at(biasAt(b)) - out.greatest;
       if (log < -kNothing) continue;
-      Sums& sums = out[b * kScales + p.scale];
+      Sums& sums = out.sums[b * sensors.size() + p.sensor];
       const double w = std::exp(log);
       sums.weight += w;
       sums.first += w * p.departure;
@@ -169,20 +196,31 @@ std::vector<SlipFit::OfClass::Sums> SlipFit::OfClass::sums(const std::vector<dou
 
 namespace {
 
-// Posterior weight of each pair of bias and scale, from the prior and all classes; the sum is 1.
-template <typename Sums>
-std::vector<double> weighed(const std::vector<std::vector<Sums>>& of_classes, const SensorPrior& prior) {
-  std::vector<double> weights(kBiases * kScales);
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const double b = biasAt(i / kScales) / prior.bias, s = logScaleAt(i % kScales) / prior.log_scale;
-    weights[i] = -0.5 * (b * b + s * s);
-    for (const auto& sums : of_classes) weights[i] += std::log(std::max(sums[i].weight, 1e-300));
+// Posterior of the pairs of bias and sensor, from the prior and all classes.
+struct SensorPosterior {
+  std::vector<double> weights{};  // the sum is 1
+  double log_evidence = 0.0;      // logarithm of the likelihood's mean over the prior
+};
+template <typename Table>
+SensorPosterior weighed(const std::vector<Table>& of_classes, const std::vector<Sensor>& sensors,
+                        const SensorPrior& prior) {
+  SensorPosterior out{.weights = std::vector<double>(kBiases * sensors.size())};
+  double of_prior = 0.0;
+  for (std::size_t i = 0; i < out.weights.size(); ++i) {
+    const Sensor& sensor = sensors[i % sensors.size()];
+    const double b = biasAt(i / sensors.size()) / prior.bias;
+    const double s = sensor.knee == 0.0 ? std::log(sensor.scale) / prior.log_scale : 0.0;
+    out.weights[i] = -0.5 * (b * b + s * s);
+    of_prior += std::exp(out.weights[i]);
+    for (const Table& table : of_classes) out.weights[i] += std::log(std::max(table.sums[i].weight, 1e-300));
   }
-  const double greatest = *std::ranges::max_element(weights);
+  const double greatest = *std::ranges::max_element(out.weights);
   double all = 0.0;
-  for (double& w : weights) all += w = std::exp(w - greatest);
-  for (double& w : weights) w /= all;
-  return weights;
+  for (double& w : out.weights) all += w = std::exp(w - greatest);
+  for (double& w : out.weights) w /= all;
+  out.log_evidence = greatest + std::log(all / of_prior);
+  for (const Table& table : of_classes) out.log_evidence += table.greatest;
+  return out;
 }
 
 // Mean and standard deviation of the departure.
@@ -268,24 +306,31 @@ std::shared_ptr<const SlipPosterior> SlipFit::fitted(
     if (OfClass one = ofClass(static_cast<int>(c), excess); !one.readings.empty())
       driven.push_back(std::move(one));
   if (driven.empty()) return out;
-  std::vector<std::vector<OfClass::Sums>> anywhere, there;
-  for (const OfClass& one : driven) anywhere.push_back(one.sums(departuresTo(one.mean_std)));
-  const std::vector<double> any = weighed(anywhere, kAny), sound = weighed(anywhere, kSound);
+  const std::vector<Sensor> linear = linearSensors(), compressing = compressingSensors();
+  std::vector<OfClass::Table> anywhere, compressed, there;
+  for (const OfClass& one : driven) {
+    anywhere.push_back(one.table(departuresTo(one.mean_std), linear));
+    compressed.push_back(one.table(departuresTo(one.mean_std), compressing));
+  }
+  const SensorPosterior any = weighed(anywhere, linear, kAny), sound = weighed(anywhere, linear, kSound);
+  const double odds = std::exp(any.log_evidence - weighed(compressed, compressing, kAny).log_evidence) *
+                      (1.0 - kCompressing) / kCompressing;
+  out->compressing = 1.0 / (1.0 + odds);
   for (std::size_t k = 0; k < driven.size(); ++k) {
     const std::size_t c = driven[k].index;
-    const Estimate found = out->learned[c] = departureBy(any, anywhere[k]);
-    out->if_sound[c] = departureBy(sound, anywhere[k]);
+    const Estimate found = out->learned[c] = departureBy(any.weights, anywhere[k].sums);
+    out->if_sound[c] = departureBy(sound.weights, anywhere[k].sums);
     const double left = 1.0 / (found.std * found.std) - 1.0 / (driven[k].mean_std * driven[k].mean_std);
     out->departure[c].value = found.value;
     if (left > 0.0) out->departure[c].std = 1.0 / std::sqrt(left);
     out->caution[c] = std::clamp(found.value, 0.0, found.std);
-    there.push_back(driven[k].sums({found.value}));
+    there.push_back(driven[k].table({found.value}, linear));
   }
-  const std::vector<double> sensor = weighed(there, kAny);
+  const SensorPosterior sensor = weighed(there, linear, kAny);
   out->slip_bias = out->slip_scale = 0.0;
-  for (std::size_t i = 0; i < sensor.size(); ++i) {
-    out->slip_bias += sensor[i] * biasAt(i / kScales);
-    out->slip_scale += sensor[i] * std::exp(logScaleAt(i % kScales));
+  for (std::size_t i = 0; i < sensor.weights.size(); ++i) {
+    out->slip_bias += sensor.weights[i] * biasAt(i / kScales);
+    out->slip_scale += sensor.weights[i] * linear[i % kScales].scale;
   }
   return out;
 }

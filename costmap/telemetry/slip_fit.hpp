@@ -17,6 +17,8 @@ namespace talus::costmap {
 struct SlipPosterior {
   double slip_bias = 0.0;   ///< b: offset of the sensor, i.e. its reading at zero slip [-]
   double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
+  /// Posterior probability of a sensor that compresses large slips (Eq. 3) [-].
+  double compressing = 0.0;
   /// By class index: mean departure d of drawbar pull over load DP/W at the reference slip from the class,
   /// with its standard deviation by the likelihood alone; infinite if the drive gives no information [-].
   std::vector<Estimate> departure;
@@ -46,6 +48,12 @@ struct SlipPosterior {
 /// likelihood alone, 1/c^2 = 1/v - 1/mean_std^2 with v the posterior variance, because the class already
 /// contains the prior. A square with sides of 2/3 of the correlation length counts as one reading,
 /// independent of the number of passes (all numbers ours).
+///
+/// A sensor that compresses large slips makes the ground of steep slopes appear strong. It reads
+///   b + min(i, k) + s max(i - k, 0) + e                                                 (3)
+/// with a knee k of 0.1, 0.2 or 0.3 and s of 0.25 or 0.5, each with the same prior probability, together 0.1.
+/// The posterior probability of these sensors (B16) compares the mean of the likelihood over their prior with
+/// the mean over the prior of Eq. 2.
 class SlipFit {
  public:
   explicit SlipFit(const GroundModel& model) : model_(model) {}

@@ -12,6 +12,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestStdShare =
     2.0;  // limit, in units of the class's mean_std: a drive with a greater standard deviation raises no
           // estimate (ours)
+constexpr double kMostCompressing =
+    0.5;  // a drive whose sensor compresses large slips with a greater probability raises no estimate (ours)
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
 constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 constexpr double kSlipOfResistance =
@@ -236,8 +238,10 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
                                   const DriveVerdict& verdict) const {
   const std::string run = rows.run(moment.rows.front());
   const std::size_t wheels = moment.readings.size();
-  if (!verdict.proof || !(verdict.drive || fitted_) || verdict.without_torque || proof_.displaced(run) ||
-      sound.read.size() != wheels || verdict.proof->wheels(run) != wheels ||
+  const SlipPosterior* drive = verdict.drive ? verdict.drive.get() : fitted_.get();
+  if (!drive || drive->compressing > kMostCompressing) return false;
+  if (!verdict.proof || verdict.without_torque || proof_.displaced(run) || sound.read.size() != wheels ||
+      verdict.proof->wheels(run) != wheels ||
       (wheels != 1 && wheels != static_cast<std::size_t>(map_.model().rover().wheel_count)))
     return false;
   if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
@@ -249,8 +253,10 @@ bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& momen
 std::string TelemetryProcessor::whyNoneRaises() const {
   if (watch_.clockWentBack() || watch_.biased() || others_ == read_) return {};
   const SensorProof::FailedTest failedTest = proof_.failedTest();
-  return failedTest != SensorProof::FailedTest::Nothing
-             ? SensorProof::text(failedTest)
+  if (failedTest != SensorProof::FailedTest::Nothing) return SensorProof::text(failedTest);
+  return fitted()->compressing > kMostCompressing
+             ? "large slips are smaller than the slopes and the small slips imply; check the slip of each "
+               "wheel"
              : "no moment has sound rows of all wheels of the rover, or of "
                "the only one of the file; give them all, and time_s";
 }

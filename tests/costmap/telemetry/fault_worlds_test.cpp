@@ -114,16 +114,16 @@ struct Read {
   double time_s, x_m, y_m, slope_rad, slip;
 };
 
-const char* const kFaults[] = {"none",        "offset",    "scale",        "step",
-                               "stuck",       "of_class",  "delay",        "pose_jump",
-                               "pose_offset", "time_step", "slope_offset", "slope_scale",
-                               "all_stuck",   "divided",   "uphill",       "one_wheel"};
+const char* const kFaults[] = {"none",         "offset",      "scale",      "step",        "stuck",
+                               "of_class",     "delay",       "pose_jump",  "pose_offset", "time_step",
+                               "slope_offset", "slope_scale", "all_stuck",  "divided",     "uphill",
+                               "one_wheel",    "compressed",  "less_uphill"};
 
 // Applies a sensor fault to the telemetry of a drive.
 void spoil(const std::string& fault, std::vector<Read>& drive, World& world, const Pull& of_class) {
   const std::vector<Read> sound = drive;
   const double amount = world.uniform(-0.2, 0.2), scale = world.uniform(0.4, 1.3),
-               steeper = world.uniform(0.5, 2.0);
+               steeper = world.uniform(0.5, 2.0), knee = std::abs(amount) + 0.1;
   const auto from = static_cast<std::size_t>(world.uniform(0.1, 0.9) * static_cast<double>(drive.size()));
   const auto late = static_cast<std::size_t>(world.uniform(1.0, 12.0));
   for (std::size_t i = 0; i < drive.size(); ++i) {
@@ -140,6 +140,8 @@ void spoil(const std::string& fault, std::vector<Read>& drive, World& world, con
     if (fault == "all_stuck") read.slip = 0.1 + 0.5 * amount;
     if (fault == "divided") read.slip *= 0.01;
     if (fault == "uphill" && read.slope_rad > 0.0) read.slip *= 0.5 * scale;
+    if (fault == "compressed") read.slip -= (1.0 - 0.5 * scale) * std::max(read.slip - knee, 0.0);
+    if (fault == "less_uphill") read.slip -= std::max(steeper * read.slope_rad, 0.0);
     read.slip = std::clamp(read.slip, -1.0, 1.0);
   }
 }
