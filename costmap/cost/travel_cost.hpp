@@ -179,7 +179,7 @@ struct SlopeHold {
 /// Correlation of the soil uncertainty between places of a route, and the consequence of insufficient drawbar
 /// pull.
 struct SoilUncertainty {
-  /// Correlation length of the soil; 0: unknown, every metre is taken as independent.
+  /// Correlation length of the soil; 0: unknown, the metres of a route count as independent.
   double correlation_length_m = 0.0;
   /// Probability that a place with insufficient drawbar pull immobilises the rover [-].
   double entrapment = 1.0;

@@ -52,8 +52,8 @@ struct Danger {
   std::string reason;  ///< reason of the violation, or "the soil may give less drawbar pull than required"
 };
 
-/// Run-time monitor for a path from any source. Returns violations(), and every cell in which the soil gives
-/// less drawbar pull than required with a probability above `quantile`, 0 < quantile < 1. The probability is
+/// Run-time monitor for a path from any source. Returns violations(), and every cell whose soil provides less
+/// drawbar pull than required with a probability above `quantile`, 0 < quantile < 1. The probability is
 /// that of the cost function (TravelState::weak), for the weakest ground on which a wheel may stand. Cells
 /// without a table of drive states (tests) are checked by violations() only. The result is empty for a
 /// drivable route. Throws std::invalid_argument if the quantile is out of range or a point is not finite.

@@ -27,7 +27,7 @@ enum class SoilKnowledge {
 inline constexpr std::array kBeliefs{SoilKnowledge::Geometry, SoilKnowledge::AlongOnly, SoilKnowledge::Prior,
                                      SoilKnowledge::OnLine, SoilKnowledge::PerfectKnowledge};
 
-/// Returns the name in function calls and JSON: "geometry", "along-only", "prior", "online", "clairvoyant"
+/// Returns the name in function calls and JSON: "geometry", "along-only", "prior", "online", `"clairvoyant"`
 /// (PerfectKnowledge).
 std::string_view name(SoilKnowledge belief) noexcept;
 

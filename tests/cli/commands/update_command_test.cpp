@@ -120,7 +120,7 @@ TEST(UpdateCommand, MissingJournalDrivesAreReported) {
   site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
   EXPECT_EQ(site.warnings.find("lacks"), std::string::npos);
   site.run({"update", "a.ot", "u.csv", "-o", "b.ot", "--journal", "other.db", "--json"});
-  EXPECT_NE(site.warnings.find("the journal lacks 1 drive that the map holds"), std::string::npos)
+  EXPECT_NE(site.warnings.find("the journal lacks 1 drive that the map contains"), std::string::npos)
       << site.warnings;
   site.run({"update", "a.ot", "u.csv", "-o", "b.ot", "--journal", "e.db", "--json"});
   EXPECT_EQ(site.warnings.find("lacks"), std::string::npos);
