@@ -59,7 +59,7 @@ void readFit(const YamlFields& root, RefinedModel& model) {
       f.refuse("index", "names a parameter of `fitted` a second time",
                "remove it, and its row of the covariance");
   }
-  model.covariance = root.numbers("covariance");
+  model.covariance = root.numbers("covariance", true);
   if (model.covariance.size() != model.fitted.size() * model.fitted.size())
     root.refuse("covariance",
                 "covariance has " + std::to_string(model.covariance.size()) + " numbers, must have " +

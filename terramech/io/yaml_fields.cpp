@@ -14,6 +14,7 @@
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/unit.hpp>
+#include <talus/terramech/io/utf8_text.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {
@@ -71,29 +72,6 @@ std::string kindOf(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list";
   return node.IsNull() ? "empty" : "'" + shortened(node.Scalar()) + "'";
-}
-
-/// Returns the length of the UTF-8 character at the start of a text; 0 for a NUL or invalid bytes.
-std::size_t letterBytes(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return first == 0 ? 0 : 1;
-  const std::size_t bytes = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (bytes == 0 || text.size() < bytes) return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if ((byte(i) & 0xC0U) != 0x80) return 0;
-  const bool overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
-  const bool no_letter = (first == 0xED && byte(1) > 0x9F) || (first == 0xF4 && byte(1) > 0x8F);
-  return overlong || no_letter ? 0 : bytes;
-}
-
-bool isText(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t bytes = letterBytes(text);
-    if (bytes == 0) return false;
-    text.remove_prefix(bytes);
-  }
-  return true;
 }
 
 /// Returns a text value of the file. Throws InputError if it is empty or not UTF-8.
@@ -195,7 +173,8 @@ std::optional<Found> findValue(const State& state, const std::string& name) {
 }
 
 template <class State>
-double toNumber(const State& state, const std::string& name, const YAML::Node& value, double factor) {
+double toNumber(const State& state, const std::string& name, const YAML::Node& value, double factor,
+                bool is_product = false) {
   double number = 0.0;
   const std::string where = state.where(value.Mark().line);
   if (!value.IsScalar()) fail(where, name + " is " + kindOf(value), "give one number");
@@ -209,8 +188,10 @@ double toNumber(const State& state, const std::string& name, const YAML::Node& v
   if (!isDecimal(text))
     fail(where, name + " = " + value.Scalar() + ", must be decimal, without leading zeros",
          "to YAML 1.1 it is octal");
-  if (!plausible(number * factor))
-    fail(where, name + " = " + value.Scalar() + ", " + kPlausible, "check its unit");
+  const double size = std::abs(number * factor);
+  if (!plausible(is_product ? std::sqrt(size) : size))
+    fail(where, name + (is_product ? ", root of " : " = ") + value.Scalar() + ", " + kPlausible,
+         "check its unit");
   return number * factor;
 }
 
@@ -296,12 +277,13 @@ std::string YamlFields::word(const std::string& name, const std::string& fallbac
   return has(name) ? word(name) : fallback;
 }
 
-std::vector<double> YamlFields::numbers(const std::string& name) const {
+std::vector<double> YamlFields::numbers(const std::string& name, bool are_products) const {
   const auto found = findValue(*state_, name);
   if (!found) return {};
   if (!found->value.IsSequence()) refuse(name, name + " is " + kindOf(found->value), "write a list [a, b]");
   std::vector<double> values;
-  for (const auto& item : found->value) values.push_back(toNumber(*state_, name, item, found->factor));
+  for (const auto& item : found->value)
+    values.push_back(toNumber(*state_, name, item, found->factor, are_products));
   return values;
 }
 

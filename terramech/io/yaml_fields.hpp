@@ -54,7 +54,9 @@ class YamlFields {
   bool flag(const std::string& name, bool fallback) const;
   std::string word(const std::string& name) const;
   std::string word(const std::string& name, const std::string& fallback) const;
-  std::vector<double> numbers(const std::string& name) const;  ///< list of numbers; empty if absent
+  /// Returns the numbers of a list; empty if the name is absent. Products of two parameters, such as
+  /// covariances, may have magnitudes of 1e-30 to 1e30.
+  std::vector<double> numbers(const std::string& name, bool are_products = false) const;
 
   /// Returns the texts of a list, or a single text. A list inside the list becomes one text with commas
   /// between its items. Returns an empty vector if the name is absent.

@@ -55,6 +55,14 @@ TEST(ModelFile, NumbersBelowTheFileMinimumAreWrittenAsZero) {
   EXPECT_EQ(back.covariance, (std::vector<double>{0.0, 0.0, 0.0, 0.04}));
 }
 
+// Property: the variance of a modulus of 1e9 Pa/m is read back.
+TEST(ModelFile, VarianceOfALargeModulusIsReadBack) {
+  RefinedModel model = refined();
+  model.fitted = {{0, 0}, {1, 0}};
+  model.covariance = {4.9e17, 0.0, 0.0, 0.04};
+  EXPECT_EQ(loadModel(written("large.yaml", modelText(model))).model.covariance, model.covariance);
+}
+
 TEST(ModelFile, RoundTripIsExact) {
   const auto path = written("model.yaml", modelText(refined()));
   const RefinedModel back = loadModel(path).model;
