@@ -122,7 +122,8 @@ TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
   const Ran again =
       runTalus({"update", "a.ot", "copy.csv", "-o", "b.ot", "--journal", "e.db"}, site.folder.path());
   EXPECT_EQ(again.code, 0);
-  EXPECT_THAT(again.err, testing::HasSubstr("all rows of this drive are in the map already; no row is added"));
+  EXPECT_THAT(again.err,
+              testing::HasSubstr("all rows of this drive are in the map already; no row is added"));
   EXPECT_EQ(site.content("a.ot"), site.content("b.ot"));
   EXPECT_EQ(site.replay("e.db", "c.ot")["rows_used"], 60);
 }

@@ -63,7 +63,8 @@ TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
       TelemetryReading reading = level(slip, kNone);
       reading.pass = pass;
       const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
-      EXPECT_NEAR(watch.bound(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05, 1e-12);
+      EXPECT_NEAR(watch.bound(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05,
+                  1e-12);
     }
   EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).gradient,
             model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);

@@ -20,7 +20,8 @@ std::vector<std::string> columns(const TracedEffect& effect) {
 
 /// A world in which dust reduces the pull, with a second column correlated with dust.
 blind::World tied() {
-  const blind::World world = blind::makeWorld({.seed = 8, .effects = 1, .library = false, .unresolvable = "tied"});
+  const blind::World world =
+      blind::makeWorld({.seed = 8, .effects = 1, .library = false, .unresolvable = "tied"});
   EXPECT_EQ(world.hidden[0].kind, "form:pull_dust_saturating");
   return world;
 }
