@@ -18,6 +18,7 @@ struct SensorPrior {
 };
 constexpr SensorPrior kAny{0.1, 0.45}, kSound{0.03, 0.05};
 constexpr double kCompressing = 0.1;  // prior probability of a sensor that compresses large slips
+constexpr double kExcluded = 0.05;    // such a sensor is excluded below this posterior probability
 
 constexpr double kModelError = 0.02, kSlipNoise = 0.015, kGradientNoise = 0.01;
 constexpr double kMostVariance = 1.0;  // greatest variance of a slip, where the curve is flat
@@ -313,8 +314,8 @@ std::shared_ptr<const SlipPosterior> SlipFit::fitted(
     compressed.push_back(one.table(departuresTo(one.mean_std), compressing));
   }
   const SensorPosterior any = weighed(anywhere, linear, kAny), sound = weighed(anywhere, linear, kSound);
-  const double odds = std::exp(any.log_evidence - weighed(compressed, compressing, kAny).log_evidence) *
-                      (1.0 - kCompressing) / kCompressing;
+  const SensorPosterior bent = weighed(compressed, compressing, kAny);
+  const double odds = std::exp(any.log_evidence - bent.log_evidence) * (1.0 - kCompressing) / kCompressing;
   out->compressing = 1.0 / (1.0 + odds);
   for (std::size_t k = 0; k < driven.size(); ++k) {
     const std::size_t c = driven[k].index;
@@ -324,6 +325,11 @@ std::shared_ptr<const SlipPosterior> SlipFit::fitted(
     out->departure[c].value = found.value;
     if (left > 0.0) out->departure[c].std = 1.0 / std::sqrt(left);
     out->caution[c] = std::clamp(found.value, 0.0, found.std);
+    if (out->compressing > kExcluded) {
+      const Estimate other = departureBy(bent.weights, compressed[k].sums);
+      const double least = std::max(other.value - other.std, 0.0);
+      out->caution[c] = std::max(out->caution[c], std::max(found.value, 0.0) - least);
+    }
     there.push_back(driven[k].table({found.value}, linear));
   }
   const SensorPosterior sensor = weighed(there, linear, kAny);

@@ -27,7 +27,8 @@ struct SlipPosterior {
   /// [-].
   std::vector<Estimate> learned, if_sound;
   /// By class index: amount >= 0 that is subtracted from the departure for decisions. For ground stronger
-  /// than its class, it is one posterior standard deviation, at most the departure [-].
+  /// than its class, it is one posterior standard deviation, at most the departure [-]. If `compressing` is
+  /// above 0.05, a decision uses at most the departure for compressing sensors less its standard deviation.
   std::vector<double> caution;
 };
 

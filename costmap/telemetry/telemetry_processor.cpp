@@ -13,7 +13,7 @@ constexpr double kLargestStdShare =
     2.0;  // limit, in units of the class's mean_std: a drive with a greater standard deviation raises no
           // estimate (ours)
 constexpr double kMostCompressing =
-    0.5;  // a drive whose sensor compresses large slips with a greater probability raises no estimate (ours)
+    0.9;  // a drive whose sensor compresses large slips with a greater probability raises no estimate (ours)
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
 constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 constexpr double kSlipOfResistance =
