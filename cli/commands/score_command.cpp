@@ -16,6 +16,7 @@
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/route_json.hpp>
 
@@ -70,6 +71,8 @@ void bind(CLI::App& command, ScoreOptions& options) {
 std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
                                              const costmap::TraversabilityMap& map) {
   auto all = planner::violations(*map.published(), points);
+  for (auto& violation : planner::violationsAtEnds(*map.published(), planner::endPoses(points)))
+    all.push_back(std::move(violation));
   if (const auto chassis = chassisOf(kind, map))
     for (auto& violation : chassis->violations(points)) all.push_back(std::move(violation));
   return all;

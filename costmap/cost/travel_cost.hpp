@@ -197,6 +197,11 @@ class TravelCost {
     double max_across = 0.36;  ///< greatest gradient across the heading, tan(max roll)
     /// Geometry for the tipping limit; null: the rover never tips.
     std::shared_ptr<const terramech::RoverStance> stance{};
+    /// Dimensions of the rover in the map plane; zeros: not known.
+    struct Outline {
+      double wheelbase_m = 0.0, track_m = 0.0;  ///< distances of the outermost wheels
+      double width_m = 0.0;                     ///< width over the wheels
+    } outline{};
   };
 
   /// Makes the cost function from cost curves in the order of their indices, at most 254. Throws

@@ -374,7 +374,6 @@ GroundCost GroundModel::ground(int class_index, int other_class, const GroundBel
   return ground;
 }
 
-// Turns on ground of a class with the given state on level ground.
 TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
   const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
   const terramech::Rover& rover = parts_.rover;
@@ -390,11 +389,12 @@ TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
 }
 
 TravelCost::Limits GroundModel::limits() const {
-  TravelCost::Limits limits{.max_along = std::tan(parts_.rover.max_pitch_rad),
-                            .max_across = std::tan(parts_.rover.max_roll_rad)};
-  if (parts_.rover.centre_of_mass_height_m > 0.0)
-    limits.stance = std::make_shared<const terramech::RoverStance>(parts_.rover);
-  return limits;
+  const terramech::Rover& rover = parts_.rover;
+  const bool tips = rover.centre_of_mass_height_m > 0.0;
+  return {.max_along = std::tan(rover.max_pitch_rad),
+          .max_across = std::tan(rover.max_roll_rad),
+          .stance = tips ? std::make_shared<const terramech::RoverStance>(rover) : nullptr,
+          .outline = {rover.wheelbase_m, rover.track_m, rover.track_m + rover.wheel.width_m}};
 }
 
 }  // namespace talus::costmap

@@ -178,7 +178,7 @@ class GroundModel {
     double low, high;
   };
   Edges edges(double gradient) const noexcept;
-  TurnCosts turns(int class_index, const TravelState& flat) const;
+  TurnCosts turns(int class_index, const TravelState& flat) const;  // `flat`: state on level ground
   double criticalSinkage() const noexcept;
   Estimate demand(int class_index, const Estimate& pull, double gradient) const noexcept;
   static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;

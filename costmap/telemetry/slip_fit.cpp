@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include <talus/costmap/telemetry/slip_fit.hpp>
@@ -12,11 +13,12 @@ namespace {
 constexpr double kGradientStep = 0.01;  // width of a bin of gradients
 constexpr double kIntegralScale = 2.0 / 3.0;
 
-// Standard deviations of the prior of the sensor.
+// Prior of the sensor: standard deviations of offset and logarithm of the scale, and probability of a scale
+// whose logarithm is uniform over the grid.
 struct SensorPrior {
-  double bias, log_scale;
+  double bias, log_scale, any_scale;
 };
-constexpr SensorPrior kAny{0.1, 0.45}, kSound{0.03, 0.05};
+constexpr SensorPrior kAny{0.1, 0.45, 0.1}, kSound{0.03, 0.05, 0.0};
 constexpr double kCompressing = 0.1;  // prior probability of a sensor that compresses large slips
 constexpr double kExcluded = 0.05;    // such a sensor is excluded below this posterior probability
 
@@ -26,9 +28,9 @@ constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
 constexpr std::array<double, 5> kVariations{0.0, 0.35, 0.7, 1.0, 1.4};
 
 // Grid of the posterior.
-constexpr std::size_t kBiases = 101, kScales = 33;
+constexpr std::size_t kBiases = 101, kScales = 41;
 constexpr int kDepartures = 73;
-constexpr double kMostBias = 0.25, kMostLogScale = 1.6;
+constexpr double kMostBias = 0.25, kMostLogScale = 2.3;
 constexpr double kLeastDeparture = -6.0, kMostDeparture = 3.0;  // in units of mean_std
 
 // Slip sensor without offset: linear if `knee` is 0, otherwise compressing above the knee (Eq. 3).
@@ -197,6 +199,16 @@ SlipFit::OfClass::Table SlipFit::OfClass::table(const std::vector<double>& depar
 
 namespace {
 
+// Logarithm of the prior of a linear sensor's scale, up to a constant; 0 for a compressing sensor. The scale 1
+// at the end of the grid has half the weight (trapezoidal rule).
+double logOfScale(const Sensor& sensor, const SensorPrior& prior) {
+  if (sensor.knee != 0.0) return 0.0;
+  const double s = std::log(sensor.scale) / prior.log_scale;
+  const double uniform = std::sqrt(0.5 * std::numbers::pi) * prior.log_scale / kMostLogScale;
+  const double density = (1.0 - prior.any_scale) * std::exp(-0.5 * s * s) + prior.any_scale * uniform;
+  return std::log(sensor.scale < 1.0 ? density : 0.5 * density);
+}
+
 // Posterior of the pairs of bias and sensor, from the prior and all classes.
 struct SensorPosterior {
   std::vector<double> weights{};  // the sum is 1
@@ -210,8 +222,7 @@ SensorPosterior weighed(const std::vector<Table>& of_classes, const std::vector<
   for (std::size_t i = 0; i < out.weights.size(); ++i) {
     const Sensor& sensor = sensors[i % sensors.size()];
     const double b = biasAt(i / sensors.size()) / prior.bias;
-    const double s = sensor.knee == 0.0 ? std::log(sensor.scale) / prior.log_scale : 0.0;
-    out.weights[i] = -0.5 * (b * b + s * s);
+    out.weights[i] = -0.5 * b * b + logOfScale(sensor, prior);
     of_prior += std::exp(out.weights[i]);
     for (const Table& table : of_classes) out.weights[i] += std::log(std::max(table.sums[i].weight, 1e-300));
   }

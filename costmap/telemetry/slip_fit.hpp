@@ -16,7 +16,7 @@ namespace talus::costmap {
 /// Joint posterior of the slip sensor and of the ground of each terrain class, from the slips of one drive.
 struct SlipPosterior {
   double slip_bias = 0.0;   ///< b: offset of the sensor, i.e. its reading at zero slip [-]
-  double slip_scale = 1.0;  ///< s: scale of the sensor, 0.2 to 1 [-]
+  double slip_scale = 1.0;  ///< s: scale of the sensor, 0.1 to 1 [-]
   /// Posterior probability of a sensor that compresses large slips (Eq. 3) [-].
   double compressing = 0.0;
   /// By class index: mean departure d of drawbar pull over load DP/W at the reference slip from the class,
@@ -42,7 +42,7 @@ struct SlipPosterior {
 /// the errors of model, slip and slope. Offset b, scale s and departure d have different effects on slip over
 /// slope: b adds a constant, s is proportional to slip, and d has the greatest effect where the slope
 /// requires most of the thrust. Priors: d normal with the class's mean_std; b normal, 0.1; -ln s half normal,
-/// 0.45; t uniform over five values. The scale is limited to 1, because a scale above 1 and weaker soil with
+/// 0.45, or with probability 0.1 uniform up to 2.3; t uniform over five values. The scale is limited to 1, because a scale above 1 and weaker soil with
 /// a greater shear modulus have the same effect on slip; the ground of such a drive counts as weak. The
 /// estimate of d is its posterior mean. The estimates of b and s are the means at these departures, so that
 /// slips corrected by both are consistent with the ground. The standard deviation c of d is computed from the

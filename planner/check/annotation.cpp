@@ -10,6 +10,7 @@
 #include <talus/maps/terrain/elevation_map.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/heading_sweep.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -318,11 +319,25 @@ void setRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& 
   for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
 }
 
-std::string refusalText(const Violation& violation, const std::string& planner) {
+std::string text(maps::Point point) {
   std::array<char, 64> place{};
-  std::snprintf(place.data(), place.size(), "%.2f,%.2f", violation.place.x_m, violation.place.y_m);
-  return "no route: the check refuses the one that '" + planner + "' found at " + place.data() + ": " +
-         violation.reason + "; please report it";
+  std::snprintf(place.data(), place.size(), "%.2f,%.2f", point.x_m, point.y_m);
+  return place.data();
+}
+
+std::string refusalText(const Violation& violation, const std::string& planner) {
+  return "no route: the check refuses the one that '" + planner + "' found at " + text(violation.place) +
+         ": " + violation.reason + "; please report it";
+}
+
+// Reason and remedy for an end at which a wheel would stand on ground to avoid.
+std::string endText(const Violation& violation, const costmap::CostGrid& map) {
+  const auto& outline = map.cost().limits().outline;
+  std::array<char, 32> reach{};
+  std::snprintf(reach.data(), reach.size(), "%.2f", 0.5 * std::hypot(outline.wheelbase_m, outline.track_m));
+  return "no route: " + violation.reason + " at the end " + text(violation.place) +
+         " of the route found; choose a place more than " + reach.data() +
+         " m away from such ground and from the border";
 }
 
 }  // namespace
@@ -363,10 +378,15 @@ Route checkedRoute(const Plan& plan, const AnnotationInput& input) {
   const bool drives = !plan.drive.legs.empty();
   auto found = drives ? violationsOfChords(input.map, plan.points) : violations(input.map, plan.points);
   if (found.empty() && drives) found = violations(input.map, plan.drive, input.kinematics.turning_radius_m);
-  if (found.empty()) return route;
   Route none;
   none.summary.planner = input.planner;
-  none.reason = refusalText(found.front(), input.planner);
+  if (!found.empty()) {
+    none.reason = refusalText(found.front(), input.planner);
+  } else {
+    const auto at_ends = violationsAtEnds(input.map, drives ? endPoses(plan.drive) : endPoses(plan.points));
+    if (at_ends.empty()) return route;
+    none.reason = endText(at_ends.front(), input.map);
+  }
   none.refused = std::make_shared<const Route>(std::move(route));
   return none;
 }

@@ -36,8 +36,9 @@ struct AnnotationInput {
 /// those of the plan.
 Route annotated(const Plan& plan, const AnnotationInput& input);
 
-/// Returns the annotated() route if the plan is not Found or has no violations(). Otherwise returns a route
-/// with status NoneFound, the first violation as reason, and the annotated route in Route::refused.
+/// Returns the annotated() route if the plan is not Found or has neither violations() nor violationsAtEnds().
+/// Otherwise returns a route with status NoneFound, the first violation as reason, and the annotated route in
+/// Route::refused.
 Route checkedRoute(const Plan& plan, const AnnotationInput& input);
 
 /// Returns the optimality gap cost / lower_bound - 1: 0 if both are 0, infinite if only the lower bound is 0.

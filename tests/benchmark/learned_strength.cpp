@@ -113,6 +113,7 @@ int main() {
       {"- 0.1", [](double slip, double) { return slip - 0.1; }},
       {"x 0.8", [](double slip, double) { return 0.8 * slip; }},
       {"x 0.5", [](double slip, double) { return 0.5 * slip; }},
+      {"x 0.3", [](double slip, double) { return 0.3 * slip; }},
       {"+ 0.1", [](double slip, double) { return slip + 0.1; }},
       {"of the class", [](double, double of_class) { return of_class; }}};
   std::printf(

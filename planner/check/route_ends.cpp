@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include <talus/planner/check/route_ends.hpp>
+
+namespace talus::planner {
+namespace {
+
+using maps::Point;
+
+// True if the cell of a place, or a cell closer to it than `near_m`, may be entered in some heading. Around
+// the map is a ring of cells: a place outside of the map is in the nearest of them.
+bool mayStand(const costmap::CostGrid& map, Point place, double near_m) {
+  const maps::Grid& grid = map.grid();
+  const auto cellOf = [&grid](double along_m, int count) {
+    return static_cast<int>(std::clamp(std::floor(along_m / grid.resolution_m), -1.0, 1.0 * count));
+  };
+  const maps::Cell at{cellOf(place.x_m - grid.south_west.x_m, grid.width),
+                      cellOf(place.y_m - grid.south_west.y_m, grid.height)};
+  const int reach = static_cast<int>(std::ceil(near_m / grid.resolution_m));
+  for (int row = std::max(at.row - reach, 0); row <= std::min(at.row + reach, grid.height - 1); ++row)
+    for (int column = std::max(at.column - reach, 0); column <= std::min(at.column + reach, grid.width - 1);
+         ++column) {
+      const double gap =
+          std::hypot(std::max(std::abs(column - at.column) - 1, 0), std::max(std::abs(row - at.row) - 1, 0));
+      const bool near = gap * grid.resolution_m < near_m;
+      if (near && map.at({column, row}).curve() < map.cost().curves().size()) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+std::vector<Pose> endPoses(const std::vector<Point>& route) {
+  std::vector<Pose> legs;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    const double east_m = route[i].x_m - route[i - 1].x_m, north_m = route[i].y_m - route[i - 1].y_m;
+    if (east_m != 0.0 || north_m != 0.0) legs.push_back({route[i - 1], std::atan2(north_m, east_m)});
+  }
+  if (legs.empty()) return {};
+  return {legs.front(), {route.back(), legs.back().heading_rad}};
+}
+
+std::vector<Pose> endPoses(const PosePath& drive) {
+  Pose pose = drive.start;
+  for (const PosePath::Leg& leg : drive.legs) pose = after(pose, leg);
+  return {drive.start, pose};
+}
+
+std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends) {
+  const auto& outline = map.cost().limits().outline;
+  std::vector<Violation> found;
+  if (!(outline.width_m > 0.0)) return found;
+  for (const Pose& end : ends) {
+    const double c = std::cos(end.heading_rad), s = std::sin(end.heading_rad);
+    for (const auto& [axle, side] : {std::pair{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
+      const double ahead_m = 0.5 * axle * outline.wheelbase_m, left_m = 0.5 * side * outline.track_m;
+      const Point wheel{end.place.x_m + ahead_m * c - left_m * s, end.place.y_m + ahead_m * s + left_m * c};
+      if (mayStand(map, wheel, 0.5 * outline.width_m)) continue;
+      found.push_back({end.place, map.grid().cellAt(wheel) ? "a wheel would stand on ground to avoid"
+                                                           : "a wheel would stand outside the map"});
+      break;
+    }
+  }
+  return found;
+}
+
+}  // namespace talus::planner

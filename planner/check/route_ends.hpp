@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/route/pose_path.hpp>
+
+/// Check of the outermost wheels of a rover at the ends of a route. Along a route the wheels stay within the
+/// half width that the map keeps free of hazards; at an end, those of the first and last axle stand up to
+/// hypot(wheelbase, track)/2 from the end.
+namespace talus::planner {
+
+/// Returns the poses at the start and the goal of a polyline, with the headings of its first and last leg;
+/// empty for a polyline without length.
+std::vector<Pose> endPoses(const std::vector<maps::Point>& route);
+/// Returns the first and the last pose of a drive.
+std::vector<Pose> endPoses(const PosePath& drive);
+
+/// Returns a violation for each of the poses at which an outermost wheel would stand on ground that the whole
+/// width of the rover must avoid, or outside a map whose border the rover must avoid. A cell is such ground
+/// if it and all cells closer to it than half the width of the rover are refused in every heading. Empty for
+/// a cost function without the outline of the rover (TravelCost::Limits::outline).
+std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends);
+
+}  // namespace talus::planner

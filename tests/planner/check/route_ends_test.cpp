@@ -1,0 +1,107 @@
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <site_fixture.hpp>
+
+#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/route_ends.hpp>
+#include <talus/planner/route/problem.hpp>
+
+namespace talus::planner {
+namespace route_ends_test {
+
+using costmap::Hazard;
+using maps::Point;
+using ::testing::HasSubstr;
+
+constexpr double kCell_m = 0.2;
+constexpr int kSide = 40;
+
+costmap::MapLayers layers(std::mt19937& random, int obstacles) {
+  costmap::MapLayers out;
+  const maps::Grid grid{
+      .width = kSide, .height = kSide, .resolution_m = kCell_m, .south_west = {100.0, 50.0}};
+  out.elevation.elevation_m = maps::Raster<float>(grid, 0.0F);
+  out.classes = maps::Raster<std::uint8_t>(grid, 1);
+  out.keep_out = maps::Raster<std::uint8_t>(grid, 0);
+  std::uniform_int_distribution<int> place(0, kSide - 1);
+  for (int k = 0; k < obstacles; ++k) out.keep_out[{place(random), place(random)}] = 1;
+  return out;
+}
+
+// Places of the four outermost wheels.
+std::vector<Point> wheels(const Pose& pose) {
+  const terramech::Rover rover = costmap::testRover();
+  std::vector<Point> out;
+  const double reach_m = std::hypot(rover.wheelbase_m, rover.track_m) / 2.0,
+               angle_rad = std::atan2(rover.track_m, rover.wheelbase_m);
+  for (const double from_axis :
+       {angle_rad, -angle_rad, std::numbers::pi - angle_rad, std::numbers::pi + angle_rad})
+    out.push_back({pose.place.x_m + reach_m * std::cos(pose.heading_rad + from_axis),
+                   pose.place.y_m + reach_m * std::sin(pose.heading_rad + from_axis)});
+  return out;
+}
+
+// Brute force: a pose has a violation if a wheel stands on a cell with a hazard that the rover must avoid, or
+// outside the map; it has none if each wheel stands on a cell that the rover may enter, and seldom one if no
+// wheel stands on a hazard (in a gap narrower than the rover).
+TEST(RouteEnds, WheelsStandOnTheMapAndOnNoHazard) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0), heading(-4.0, 4.0);
+  int refused = 0, allowed = 0, without_hazard = 0;
+  for (int world = 0; world < 20; ++world) {
+    const costmap::TraversabilityMap map(layers(random, 8), costmap::testGround(), {});
+    const auto& grid = map.grid();
+    const auto cost = map.published();
+    const auto open = [&](maps::Cell cell) { return cost->at(cell).curve() < cost->cost().curves().size(); };
+    for (int k = 0; k < 500; ++k) {
+      const Pose pose{{100.0 + kSide * kCell_m * share(random), 50.0 + kSide * kCell_m * share(random)},
+                      heading(random)};
+      if (!open(*grid.cellAt(pose.place))) continue;
+      bool on_hazard = false, on_open = true;
+      for (const Point& wheel : wheels(pose)) {
+        const auto cell = grid.cellAt(wheel);
+        on_hazard |= !cell || has(map.surface().hazards(*cell), costmap::kKeptClearOf);
+        on_open &= cell && open(*cell);
+      }
+      const bool found = !violationsAtEnds(*cost, {pose}).empty();
+      EXPECT_TRUE(found || !on_hazard) << pose.place.x_m << "," << pose.place.y_m << " " << pose.heading_rad;
+      EXPECT_TRUE(!found || !on_open) << pose.place.x_m << "," << pose.place.y_m << " " << pose.heading_rad;
+      ++(found ? refused : allowed);
+      without_hazard += found && !on_hazard ? 1 : 0;
+    }
+  }
+  EXPECT_GT(refused, 200);
+  EXPECT_LT(without_hazard, refused / 20);
+  EXPECT_GT(allowed, 3000);
+}
+
+TEST(RouteEnds, RouteThatEndsWithAWheelOffTheMapIsRefused) {
+  std::mt19937 random(7);
+  const costmap::TraversabilityMap map(layers(random, 0), costmap::testGround(), {});
+  // The heading 3 east, 4 north points one wheel to the north, 0.5 m from the centre; the border is at 58 m.
+  Plan plan{.status = RouteStatus::Found, .points = {{102.2, 55.18}, {104.0, 57.58}}, .cost_J = 1.0};
+  const Route route = checkedRoute(plan, {.map = *map.published(), .planner = "talus"});
+  EXPECT_EQ(route.status, RouteStatus::NoneFound);
+  EXPECT_THAT(route.reason, HasSubstr("a wheel would stand outside the map at the end 104.00,57.58"));
+  EXPECT_THAT(route.reason, HasSubstr("more than 0.50 m away"));
+  ASSERT_TRUE(route.refused);
+  plan.points = {{102.2, 55.08}, {104.0, 57.48}};
+  EXPECT_EQ(checkedRoute(plan, {.map = *map.published(), .planner = "talus"}).status, RouteStatus::Found);
+}
+
+TEST(RouteEnds, EndsOfADriveAreItsFirstAndLastPose) {
+  const PosePath drive{.start = {{1.0, 2.0}, 0.0}, .legs = {{.arc = {2.0, 0.0}}, {.turn_rad = 0.5}}};
+  const auto ends = endPoses(drive);
+  ASSERT_EQ(ends.size(), 2U);
+  EXPECT_EQ(ends[0].heading_rad, 0.0);
+  EXPECT_NEAR(ends[1].place.x_m, 3.0, 1e-12);
+  EXPECT_NEAR(ends[1].heading_rad, 0.5, 1e-12);
+}
+
+}  // namespace route_ends_test
+}  // namespace talus::planner
