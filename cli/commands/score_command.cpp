@@ -71,7 +71,8 @@ void bind(CLI::App& command, ScoreOptions& options) {
 std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
                                              const costmap::TraversabilityMap& map) {
   auto all = planner::violations(*map.published(), points);
-  for (auto& violation : planner::violationsAtEnds(*map.published(), planner::endPoses(points)))
+  for (auto& violation : planner::violationsAtEnds(*map.published(), planner::endPoses(points),
+                                                   [&map](maps::Cell c) { return map.surface().hazards(c); }))
     all.push_back(std::move(violation));
   if (const auto chassis = chassisOf(kind, map))
     for (auto& violation : chassis->violations(points)) all.push_back(std::move(violation));

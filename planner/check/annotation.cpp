@@ -383,7 +383,8 @@ Route checkedRoute(const Plan& plan, const AnnotationInput& input) {
   if (!found.empty()) {
     none.reason = refusalText(found.front(), input.planner);
   } else {
-    const auto at_ends = violationsAtEnds(input.map, drives ? endPoses(plan.drive) : endPoses(plan.points));
+    const auto at_ends =
+        violationsAtEnds(input.map, drives ? endPoses(plan.drive) : endPoses(plan.points), input.hazards);
     if (at_ends.empty()) return route;
     none.reason = endText(at_ends.front(), input.map);
   }

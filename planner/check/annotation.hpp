@@ -21,6 +21,7 @@ struct AnnotationInput {
   std::function<std::optional<double>(maps::Point)> elevation_m = nullptr;
   std::string planner = {};    ///< name of the planner for the summary
   Kinematics kinematics = {};  ///< costs of turning, for drives with arcs
+  HazardsOf hazards = {};      ///< as in Problem::hazards, for the wheels at the ends of the route
   ProgressMonitor watch = {};  ///< requests a stop, after which the risk of a long route is not simulated
 };
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 #include <utility>
 
+#include <talus/costmap/surface/hazards.hpp>
 #include <talus/planner/check/route_ends.hpp>
 
 namespace talus::planner {
@@ -10,25 +12,40 @@ namespace {
 
 using maps::Point;
 
-// True if the cell of a place, or a cell closer to it than `near_m`, may be entered in some heading. Around
-// the map is a ring of cells: a place outside of the map is in the nearest of them.
-bool mayStand(const costmap::CostGrid& map, Point place, double near_m) {
+bool refused(const costmap::CostGrid& map, maps::Cell cell) {
+  return map.at(cell).curve() >= map.cost().curves().size();
+}
+
+// True if the border of the map near a place outside of the map is refused, as it is unless unknown ground is
+// permitted: all cells closer than half the width of the rover to the nearest cell of a ring around the map.
+bool borderRefused(const costmap::CostGrid& map, Point place, double half_width_m) {
   const maps::Grid& grid = map.grid();
   const auto cellOf = [&grid](double along_m, int count) {
     return static_cast<int>(std::clamp(std::floor(along_m / grid.resolution_m), -1.0, 1.0 * count));
   };
   const maps::Cell at{cellOf(place.x_m - grid.south_west.x_m, grid.width),
                       cellOf(place.y_m - grid.south_west.y_m, grid.height)};
-  const int reach = static_cast<int>(std::ceil(near_m / grid.resolution_m));
+  const int reach = static_cast<int>(std::ceil(half_width_m / grid.resolution_m));
   for (int row = std::max(at.row - reach, 0); row <= std::min(at.row + reach, grid.height - 1); ++row)
     for (int column = std::max(at.column - reach, 0); column <= std::min(at.column + reach, grid.width - 1);
          ++column) {
       const double gap =
           std::hypot(std::max(std::abs(column - at.column) - 1, 0), std::max(std::abs(row - at.row) - 1, 0));
-      const bool near = gap * grid.resolution_m < near_m;
-      if (near && map.at({column, row}).curve() < map.cost().curves().size()) return true;
+      if (gap * grid.resolution_m < half_width_m && !refused(map, {column, row})) return false;
     }
-  return false;
+  return true;
+}
+
+// Reason why a wheel may not stand at a place; empty if it may.
+std::string whyNot(const costmap::CostGrid& map, Point wheel, const HazardsOf& hazards) {
+  const auto cell = map.grid().cellAt(wheel);
+  if (!cell)
+    return borderRefused(map, wheel, 0.5 * map.cost().limits().outline.width_m)
+               ? "a wheel would stand outside the map"
+               : "";
+  const bool avoided = hazards ? has(hazards(*cell), costmap::kKeptClearOf)
+                               : map.at(*cell).curve() == costmap::CellCode::kUnknown;
+  return avoided && refused(map, *cell) ? "a wheel would stand on ground to avoid" : "";
 }
 
 }  // namespace
@@ -49,7 +66,8 @@ std::vector<Pose> endPoses(const PosePath& drive) {
   return {drive.start, pose};
 }
 
-std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends) {
+std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends,
+                                        const HazardsOf& hazards) {
   const auto& outline = map.cost().limits().outline;
   std::vector<Violation> found;
   if (!(outline.width_m > 0.0)) return found;
@@ -57,10 +75,10 @@ std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std:
     const double c = std::cos(end.heading_rad), s = std::sin(end.heading_rad);
     for (const auto& [axle, side] : {std::pair{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
       const double ahead_m = 0.5 * axle * outline.wheelbase_m, left_m = 0.5 * side * outline.track_m;
-      const Point wheel{end.place.x_m + ahead_m * c - left_m * s, end.place.y_m + ahead_m * s + left_m * c};
-      if (mayStand(map, wheel, 0.5 * outline.width_m)) continue;
-      found.push_back({end.place, map.grid().cellAt(wheel) ? "a wheel would stand on ground to avoid"
-                                                           : "a wheel would stand outside the map"});
+      std::string reason = whyNot(
+          map, {end.place.x_m + ahead_m * c - left_m * s, end.place.y_m + ahead_m * s + left_m * c}, hazards);
+      if (reason.empty()) continue;
+      found.push_back({end.place, std::move(reason)});
       break;
     }
   }

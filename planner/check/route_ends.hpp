@@ -16,10 +16,11 @@ std::vector<Pose> endPoses(const std::vector<maps::Point>& route);
 /// Returns the first and the last pose of a drive.
 std::vector<Pose> endPoses(const PosePath& drive);
 
-/// Returns a violation for each of the poses at which an outermost wheel would stand on ground that the whole
-/// width of the rover must avoid, or outside a map whose border the rover must avoid. A cell is such ground
-/// if it and all cells closer to it than half the width of the rover are refused in every heading. Empty for
-/// a cost function without the outline of the rover (TravelCost::Limits::outline).
-std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends);
+/// Returns a violation for each of the poses at which an outermost wheel would stand outside a map whose
+/// border the rover must avoid, or on a refused cell with one of the hazards kKeptClearOf by `hazards`
+/// (without the function: on an unobserved cell). Empty for a cost function without the outline of the rover
+/// (TravelCost::Limits::outline).
+std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends,
+                                        const HazardsOf& hazards = {});
 
 }  // namespace talus::planner

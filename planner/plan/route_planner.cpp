@@ -76,9 +76,11 @@ Plan RoutePlanner::search(const Problem& problem, const PlanRequest& request) {
 
 Route RoutePlanner::plan(const MapPointer& map, const PlanRequest& request, const PlannerSettings& settings) {
   const Problem problem = checkedProblem(map, request, settings);
-  return checkedRoute(
-      search(problem, request),
-      {.map = *map, .planner = name(), .kinematics = problem.kinematics, .watch = problem.watch});
+  return checkedRoute(search(problem, request), {.map = *map,
+                                                 .planner = name(),
+                                                 .kinematics = problem.kinematics,
+                                                 .hazards = problem.hazards,
+                                                 .watch = problem.watch});
 }
 
 std::vector<ParetoRoute> RoutePlanner::paretoRoutes(const MapPointer& map, PlanRequest request,
