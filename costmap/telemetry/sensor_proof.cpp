@@ -16,6 +16,8 @@ constexpr double kPerGradient = 0.5;         // least slope of measured gradient
 constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's slopes against the map's
 constexpr double kSlopeBias = 0.03;          // greatest mean difference of the rover's slopes and the map's
 constexpr double kSlopeScaleCertain = 2.0;   // standard errors above kSlopeScale
+constexpr double kWheelScale = 0.25;         // greatest difference of a wheel's scale of slip from 1
+constexpr double kWheelScaleCertain = 3.0;   // standard errors above kWheelScale
 constexpr double kTorqueBias = 0.08;         // greatest mean difference of one wheel's torque pull
 constexpr double kJump_m = 1.5;              // three standard deviations of a good position
 constexpr double kFirstStep_m = 3.0;         // greatest first step, before the speed is known
@@ -73,6 +75,7 @@ void SensorProof::take(const Row& row) {
   run.slope.add(row.map_gradient, row.measured_gradient);
   slopes_.add(row.map_gradient, row.measured_gradient);
   wheel.slip.add(row.measured_gradient, r.slip);
+  wheel_scales_[row.wheel].add(row.mean_slip, r.slip);
   wheel.torque.add(row.measured_gradient, row.torque_pull);
   wheel.mobilised_rows += row.share >= kMobilised ? 1 : 0;
   takeLevel(wheel, row);
@@ -115,6 +118,13 @@ bool SensorProof::slopeScaled(const Run& run) const noexcept {
   return scaled(run.slope.whole()) || scaled(slopes_);
 }
 
+bool SensorProof::slipScaled(const std::string& wheel) const noexcept {
+  const auto scales = wheel_scales_.find(wheel);
+  if (scales == wheel_scales_.end()) return false;
+  const Estimate scale = scales->second.slope();
+  return std::abs(scale.value - 1.0) - kWheelScaleCertain * scale.std > kWheelScale;
+}
+
 SensorProof::FailedTest SensorProof::failedTest(const std::string& run, const std::string& wheel) const {
   const Run* r = find(run);
   const Wheel* w = r ? find(*r, wheel) : nullptr;
@@ -127,6 +137,7 @@ SensorProof::FailedTest SensorProof::failedTest(const std::string& run, const st
   if (std::abs(slope.meanDifference()) > kSlopeBias) return FailedTest::SlopeBias;
   if (slopeScaled(*r)) return FailedTest::SlopeScale;
   if (!follows(w->slip, kSlipPerGradient)) return FailedTest::Slip;
+  if (slipScaled(wheel)) return FailedTest::WheelScale;
   if (w->level_rows < kLevelRows) return FailedTest::LevelRows;
   const auto steps = level_steps_.find(wheel);
   return steps != level_steps_.end() && steps->second.step() != 0.0 ? FailedTest::SlipStep
@@ -163,6 +174,9 @@ const char* SensorProof::text(FailedTest failedTest) noexcept {
              "finer elevation map";
     case FailedTest::Slip:
       return "slip does not follow the slope; check the slip of each wheel";
+    case FailedTest::WheelScale:
+      return "slips of the wheels of one moment are not proportional to each other; check the slip of each "
+             "wheel";
     case FailedTest::LevelRows:
       return "fewer than 6 rows half a metre apart on level ground; include level ground";
     case FailedTest::SlipStep:

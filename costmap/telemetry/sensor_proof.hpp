@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,7 +18,9 @@ namespace talus::costmap {
 /// limits ours).
 ///
 /// Slip: the slip increases with the slope. At least 6 rows are on level ground, and the slip there has no
-/// step, because the slip on either side of a step may be wrong.
+/// step, because the slip on either side of a step may be wrong. The slips of the wheels of one moment are
+/// proportional: the regression of the slip of a wheel on the mean slip of all wheels has a slope within 0.25
+/// of 1, by three standard errors, because the wheels of a rover share its speed.
 ///
 /// Slope: the measured slope increases with the map's slope at the rover's position and differs from it by at
 /// most 0.03 on average. Its scale against the map's slope exceeds 1.15 by at most two standard errors.
@@ -39,6 +42,8 @@ class SensorProof {
     double torque_pull = 0.0;        ///< drawbar pull over load from torque and sinkage [-]
     /// Thrust of the class at the measured slip over its thrust at the reference slip [-].
     double share = 0.0;
+    /// Mean slip of all wheels at this time [-]; NaN: one wheel.
+    double mean_slip = std::numeric_limits<double>::quiet_NaN();
     bool danger = false;  ///< true if the row indicates danger: it is then used for the position only
   };
 
@@ -52,7 +57,7 @@ class SensorProof {
   }
   /// Tests of the verification, in their order; Nothing means that no test fails. Pose: position; SlopeRows:
   /// number of rows with a slope; Slopes: variation of the slopes; Slope, SlopeBias, SlopeScale: measured
-  /// slope; Slip: slip over slope; LevelRows, SlipStep: slip on level ground.
+  /// slope; Slip: slip over slope; WheelScale: slips of the wheels; LevelRows, SlipStep: slip on level ground.
   enum class FailedTest : std::uint8_t {
     Nothing,
     Pose,
@@ -62,6 +67,7 @@ class SensorProof {
     SlopeBias,
     SlopeScale,
     Slip,
+    WheelScale,
     LevelRows,
     SlipStep
   };
@@ -97,6 +103,7 @@ class SensorProof {
   };
 
   bool slopeScaled(const Run& run) const noexcept;
+  bool slipScaled(const std::string& wheel) const noexcept;
   static void follow(Run& run, const Wheel& wheel, const TelemetryReading& reading);
   void takeLevel(Wheel& wheel, const Row& row);
   const Run* find(const std::string& run) const;
@@ -104,8 +111,10 @@ class SensorProof {
 
   std::map<std::string, Run> runs_;
   Response slopes_;  // regression over all runs, which share one slope sensor
-  // detectors by wheel over all runs, because the runs share the slip sensor of the wheel
+  // by wheel over all runs, which share the slip sensor of the wheel: detectors of steps, and regressions of
+  // the slip on the mean slip of all wheels
   std::map<std::string, StepWatch> level_steps_;
+  std::map<std::string, Response> wheel_scales_;
 };
 
 }  // namespace talus::costmap

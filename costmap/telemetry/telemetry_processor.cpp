@@ -214,6 +214,9 @@ void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                                const std::vector<std::optional<WheelObservation>>& seen) {
   fit(rows, sound);
   SlipOfClasses of_classes{*this, sound.read};
+  double mean_slip = sound.read.size() > 1 ? 0.0 : kNone;
+  for (const ClassReading& read : sound.read)
+    mean_slip += read.reading.slip / static_cast<double>(sound.read.size());
   for (std::size_t i = 0; i < sound.read.size(); ++i) {
     const std::size_t row = sound.row[i];
     const double gradient = rows.measuredGradient(row);
@@ -225,6 +228,7 @@ void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
                  .class_slip = of_classes.on(gradient),
                  .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
                  .share = seen[i] ? seen[i]->share : 0.0,
+                 .mean_slip = mean_slip,
                  .danger = sound.danger[i]});
   }
 }

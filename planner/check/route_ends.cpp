@@ -61,9 +61,24 @@ std::vector<Pose> endPoses(const std::vector<Point>& route) {
 }
 
 std::vector<Pose> endPoses(const PosePath& drive) {
+  constexpr double kApart_rad = 0.1;
+  std::vector<Pose> found{drive.start};
   Pose pose = drive.start;
-  for (const PosePath::Leg& leg : drive.legs) pose = after(pose, leg);
-  return {drive.start, pose};
+  bool moved = false;
+  std::size_t at_start = 0;  // number of poses before the first arc
+  for (const PosePath::Leg& leg : drive.legs) {
+    const int parts = static_cast<int>(std::ceil(std::abs(leg.turn_rad) / kApart_rad));
+    for (int k = 1; k < parts; ++k)
+      found.push_back({pose.place, pose.heading_rad + leg.turn_rad * k / parts});
+    pose = after(pose, leg);
+    if (leg.turn_rad == 0.0) {
+      if (!moved) at_start = found.size();
+      found.resize(at_start);
+      moved = true;
+    }
+    found.push_back(pose);
+  }
+  return found;
 }
 
 std::vector<Violation> violationsAtEnds(const costmap::CostGrid& map, const std::vector<Pose>& ends,

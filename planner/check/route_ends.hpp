@@ -13,7 +13,8 @@ namespace talus::planner {
 /// Returns the poses at the start and the goal of a polyline, with the headings of its first and last leg;
 /// empty for a polyline without length.
 std::vector<Pose> endPoses(const std::vector<maps::Point>& route);
-/// Returns the first and the last pose of a drive.
+/// Returns the poses of a drive at its start and at its goal, including the headings of turns in place there,
+/// at most 0.1 rad apart.
 std::vector<Pose> endPoses(const PosePath& drive);
 
 /// Returns a violation for each of the poses at which an outermost wheel would stand outside a map whose

@@ -60,6 +60,13 @@ std::function<void(Drive&)> ofAll(Change change) {
   };
 }
 
+std::function<void(Drive&)> ofWheels(const std::string& wheels, double scale) {
+  return [=](Drive& d) {
+    for (std::size_t i = 0; i < d.rows.size(); ++i)
+      if (wheels.find(d.wheel[i]) != std::string::npos) d.rows[i][kSlip] *= scale;
+  };
+}
+
 std::function<void(Drive&)> without(const char* wheel, std::size_t from) {
   return [=](Drive& d) {
     Drive kept;
@@ -86,6 +93,8 @@ const std::vector<RoverFault>& faults() {
                                            })},
       {"one_slip_biased",
        ofWheel("w2", [](Row& r, std::size_t) { r[kSlip] = std::max(r[kSlip] - 0.2, -1.0); })},
+      {"half_of_the_slips_too_small", ofWheels("w0 w2 w4", 0.3)},
+      {"most_slips_too_small", ofWheels("w0 w1 w2 w4", 0.3)},
       {"all_slips_biased", ofAll([](Row& r, std::size_t) { r[kSlip] = std::max(r[kSlip] - 0.1, -1.0); })},
       {"all_slips_stuck",
        ofAll([](Row& r, std::size_t i) { r[kSlip] = 0.04 + 1e-3 * static_cast<double>(i % 5); })},

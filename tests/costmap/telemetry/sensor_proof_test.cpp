@@ -62,6 +62,9 @@ TEST(SensorProof, ReportsTheFirstFailedTest) {
   EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.8; }), FailedTest::SlopeScale);
   EXPECT_EQ(lackOf([](Row& r, int) { r.measured_gradient *= 1.4; }), FailedTest::SlopeScale);
   EXPECT_EQ(lackOf([](Row& r, int) { r.reading.slip = 0.05; }), FailedTest::Slip);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 0.6; }), FailedTest::WheelScale);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 1.5; }), FailedTest::WheelScale);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 1.2; }), FailedTest::Nothing);
   EXPECT_EQ(lackOf([&](Row& r, int) { r.class_slip = kSilent; }), FailedTest::LevelRows);
   const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
   EXPECT_EQ(proofOf({}, 400).failedTest(), FailedTest::Nothing);

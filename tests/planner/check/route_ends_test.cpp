@@ -104,13 +104,23 @@ TEST(RouteEnds, RouteThatEndsWithAWheelOffTheMapIsRefused) {
   EXPECT_EQ(checkedRoute(plan, {.map = *map.published(), .planner = "talus"}).status, RouteStatus::Found);
 }
 
-TEST(RouteEnds, EndsOfADriveAreItsFirstAndLastPose) {
-  const PosePath drive{.start = {{1.0, 2.0}, 0.0}, .legs = {{.arc = {2.0, 0.0}}, {.turn_rad = 0.5}}};
+TEST(RouteEnds, EndsOfADriveIncludeItsTurnsInPlaceThere) {
+  const PosePath drive{.start = {{1.0, 2.0}, 0.0},
+                       .legs = {{.turn_rad = 0.25},
+                                {.arc = {2.0, 0.0}},
+                                {.turn_rad = 1.0},
+                                {.arc = {1.0, 0.5}},
+                                {.arc = {1.0, 0.0}},
+                                {.turn_rad = -0.15}}};
   const auto ends = endPoses(drive);
-  ASSERT_EQ(ends.size(), 2U);
-  EXPECT_EQ(ends[0].heading_rad, 0.0);
-  EXPECT_NEAR(ends[1].place.x_m, 3.0, 1e-12);
-  EXPECT_NEAR(ends[1].heading_rad, 0.5, 1e-12);
+  // Three poses of the first turn after the start, and the arrival with one pose within the last turn.
+  std::vector<double> headings_rad;
+  for (const Pose& pose : ends) headings_rad.push_back(pose.heading_rad);
+  ASSERT_THAT(headings_rad, ::testing::Pointwise(::testing::DoubleNear(1e-12),
+                                                 {0.0, 0.25 / 3, 0.5 / 3, 0.25, 1.75, 1.675, 1.6}));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(ends[i].place.x_m, 1.0);
+  for (std::size_t i = 5; i < 7; ++i) EXPECT_EQ(ends[i].place.x_m, ends[4].place.x_m);
+  EXPECT_GT(ends[4].place.x_m, 2.0);
 }
 
 }  // namespace route_ends_test
