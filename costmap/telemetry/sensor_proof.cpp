@@ -17,7 +17,8 @@ constexpr double kSlopeScale = 1.15;         // greatest scale of the rover's sl
 constexpr double kSlopeBias = 0.03;          // greatest mean difference of the rover's slopes and the map's
 constexpr double kSlopeScaleCertain = 2.0;   // standard errors above kSlopeScale
 constexpr double kWheelScale = 0.25;         // greatest difference of a wheel's scale of slip from 1
-constexpr double kWheelScaleCertain = 3.0;   // standard errors above kWheelScale
+constexpr double kWheelSpread = 0.2;         // greatest increase of the wheels' deviations with the slip
+constexpr double kWheelScaleCertain = 3.0;   // standard errors above kWheelScale and kWheelSpread
 constexpr double kTorqueBias = 0.08;         // greatest mean difference of one wheel's torque pull
 constexpr double kJump_m = 1.5;              // three standard deviations of a good position
 constexpr double kFirstStep_m = 3.0;         // greatest first step, before the speed is known
@@ -76,6 +77,7 @@ void SensorProof::take(const Row& row) {
   slopes_.add(row.map_gradient, row.measured_gradient);
   wheel.slip.add(row.measured_gradient, r.slip);
   wheel_scales_[row.wheel].add(row.mean_slip, r.slip);
+  wheel_spread_.add(std::abs(row.mean_slip), std::abs(r.slip - row.mean_slip));
   wheel.torque.add(row.measured_gradient, row.torque_pull);
   wheel.mobilised_rows += row.share >= kMobilised ? 1 : 0;
   takeLevel(wheel, row);
@@ -119,6 +121,8 @@ bool SensorProof::slopeScaled(const Run& run) const noexcept {
 }
 
 bool SensorProof::slipScaled(const std::string& wheel) const noexcept {
+  const Estimate spread = wheel_spread_.slope();
+  if (spread.value - kWheelScaleCertain * spread.std > kWheelSpread) return true;
   const auto scales = wheel_scales_.find(wheel);
   if (scales == wheel_scales_.end()) return false;
   const Estimate scale = scales->second.slope();

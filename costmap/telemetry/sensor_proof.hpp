@@ -20,7 +20,9 @@ namespace talus::costmap {
 /// Slip: the slip increases with the slope. At least 6 rows are on level ground, and the slip there has no
 /// step, because the slip on either side of a step may be wrong. The slips of the wheels of one moment are
 /// proportional: the regression of the slip of a wheel on the mean slip of all wheels has a slope within 0.25
-/// of 1, by three standard errors, because the wheels of a rover share its speed.
+/// of 1, by three standard errors, because the wheels of a rover share its speed. The deviation of a wheel from
+/// that mean does not increase with the mean by more than 0.2 times, with the same certainty, so that a fault
+/// that changes from wheel to wheel is found as well.
 ///
 /// Slope: the measured slope increases with the map's slope at the rover's position and differs from it by at
 /// most 0.03 on average. Its scale against the map's slope exceeds 1.15 by at most two standard errors.
@@ -115,6 +117,7 @@ class SensorProof {
   // the slip on the mean slip of all wheels
   std::map<std::string, StepWatch> level_steps_;
   std::map<std::string, Response> wheel_scales_;
+  Response wheel_spread_;  // deviation of a wheel's slip from the mean of all, over the size of that mean
 };
 
 }  // namespace talus::costmap

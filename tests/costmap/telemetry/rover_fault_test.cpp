@@ -95,6 +95,8 @@ const std::vector<RoverFault>& faults() {
        ofWheel("w2", [](Row& r, std::size_t) { r[kSlip] = std::max(r[kSlip] - 0.2, -1.0); })},
       {"half_of_the_slips_too_small", ofWheels("w0 w2 w4", 0.3)},
       {"most_slips_too_small", ofWheels("w0 w1 w2 w4", 0.3)},
+      {"half_of_the_slips_too_small_in_turns",
+       ofAll([](Row& r, std::size_t i) { r[kSlip] *= (i % 2 + i / 120) % 2 == 0 ? 0.3 : 1.0; })},
       {"all_slips_biased", ofAll([](Row& r, std::size_t) { r[kSlip] = std::max(r[kSlip] - 0.1, -1.0); })},
       {"all_slips_stuck",
        ofAll([](Row& r, std::size_t i) { r[kSlip] = 0.04 + 1e-3 * static_cast<double>(i % 5); })},

@@ -64,7 +64,10 @@ TEST(SensorProof, ReportsTheFirstFailedTest) {
   EXPECT_EQ(lackOf([](Row& r, int) { r.reading.slip = 0.05; }), FailedTest::Slip);
   EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 0.6; }), FailedTest::WheelScale);
   EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 1.5; }), FailedTest::WheelScale);
-  EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 1.2; }), FailedTest::Nothing);
+  EXPECT_EQ(lackOf([](Row& r, int) { r.mean_slip = r.reading.slip / 1.1; }), FailedTest::Nothing);
+  // The scale of the wheel changes every ten rows and is 1 on average.
+  EXPECT_EQ(lackOf([](Row& r, int i) { r.mean_slip = r.reading.slip * (i / 10 % 2 == 0 ? 1.5 : 0.6); }),
+            FailedTest::WheelScale);
   EXPECT_EQ(lackOf([&](Row& r, int) { r.class_slip = kSilent; }), FailedTest::LevelRows);
   const auto step = [](Row& r, int i) { r.reading.slip -= i < 200 ? 0.0 : 0.1; };
   EXPECT_EQ(proofOf({}, 400).failedTest(), FailedTest::Nothing);
