@@ -11,6 +11,7 @@
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_ends.hpp>
+#include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -102,6 +103,21 @@ TEST(RouteEnds, RouteThatEndsWithAWheelOffTheMapIsRefused) {
   ASSERT_TRUE(route.refused);
   plan.points = {{102.2, 55.08}, {104.0, 57.48}};
   EXPECT_EQ(checkedRoute(plan, {.map = *map.published(), .planner = "talus"}).status, RouteStatus::Found);
+}
+
+// End to end: the straight route arrives with a wheel on a keep-out cell, 0.5 m from the goal.
+TEST(RouteEnds, PlannedRouteEndsWithNoWheelOnAKeepOutArea) {
+  std::mt19937 random(7);
+  costmap::MapLayers one = layers(random, 0);
+  for (const bool kept_out : {false, true}) {
+    one.keep_out[{20, 22}] = kept_out ? 1 : 0;
+    const costmap::TraversabilityMap map(one, costmap::testGround(), {});
+    PlanRequest request{.start = {102.25, 51.59}, .goal = {104.05, 53.99}};
+    request.hazards = [&map](maps::Cell cell) { return map.surface().hazards(cell); };
+    const Route route = planRoute(map.published(), request);
+    EXPECT_EQ(route.status, kept_out ? RouteStatus::NoneFound : RouteStatus::Found) << route.reason;
+    EXPECT_THAT(route.reason, HasSubstr(kept_out ? "on ground to avoid at the end 104.05,53.99" : ""));
+  }
 }
 
 TEST(RouteEnds, EndsOfADriveIncludeItsTurnsInPlaceThere) {
