@@ -1,15 +1,16 @@
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <csignal>
 #include <cstring>
-#include <fstream>
 #include <mutex>
+#include <random>
 #include <set>
+#include <string>
 #include <system_error>
 
+#include <ext/stdio_filebuf.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <talus/common/input_error.hpp>
@@ -24,43 +25,6 @@ namespace fs = std::filesystem;
   throw InputError({.where = path.string(), .reason = reason, .remedy = remedy});
 }
 
-void checkFolder(const fs::path& path) {
-  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
-  std::error_code error;
-  if (!fs::is_directory(folder, error))
-    refuse(path, "folder " + folder.string() + " does not exist", "make it first");
-  if (::access(folder.c_str(), W_OK) != 0)
-    refuse(path, "cannot write into " + folder.string() + ": " + std::strerror(errno),
-           "check its permissions, or name another folder");
-}
-
-bool isGone(std::string_view process) noexcept {
-  pid_t number = 0;
-  const char* end = process.data() + process.size();
-  return std::from_chars(process.data(), end, number).ec == std::errc{} && number > 0 &&
-         ::kill(number, 0) != 0 && errno == ESRCH;
-}
-
-// Removes temporary files of `path` whose process no longer exists.
-void clearLeftovers(const fs::path& path) {
-  const std::string stem = "." + path.stem().string() + ".";
-  std::error_code ignored;
-  for (const auto& entry :
-       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(stem) && entry.path().extension() == path.extension() &&
-        isGone(std::string_view(name).substr(stem.size())))
-      fs::remove(entry.path(), ignored);
-  }
-}
-
-// Path in `folder` that is unique among processes and calls: .STEM.PID-COUNT.EXTENSION.
-fs::path besideName(const fs::path& folder, const fs::path& path) {
-  static std::atomic<unsigned> count = 0;
-  return folder / ("." + path.stem().string() + "." + std::to_string(::getpid()) + "-" +
-                   std::to_string(count++) + path.extension().string());
-}
-
 // Uncommitted temporary files of this process, for removeUnfinishedFiles().
 struct Unfinished {
   std::mutex mutex;
@@ -72,103 +36,129 @@ Unfinished& unfinished() {
   return all;
 }
 
-/// A file descriptor that is closed by its destructor.
-class Descriptor {
- public:
-  Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC)) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
+// Creates a file of a new name in the folder, with the permissions of a new file. Returns its descriptor, or
+// -1 with errno set.
+int create(const fs::path& folder, fs::path& name) {
+  std::random_device random;
+  const std::lock_guard lock(unfinished().mutex);
+  for (;;) {
+    name = folder / (".talus-" + std::to_string(random()));
+    const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) unfinished().paths.insert(name);
+    if (file >= 0 || errno != EEXIST) return file;
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int operator*() const noexcept { return number_; }
+}
 
- private:
-  int number_;
-};
+void discard(const fs::path& temporary) noexcept {
+  const std::lock_guard lock(unfinished().mutex);
+  if (unfinished().paths.erase(temporary) > 0) ::unlink(temporary.c_str());
+}
 
-// Copies the bytes of `from` to `to`. Returns false with errno set on failure.
-bool copied(const fs::path& from, const fs::path& to) {
-  // O_NONBLOCK makes the open of a FIFO without a reader fail at once instead of blocking.
-  const Descriptor out(to, O_WRONLY | O_NONBLOCK);
-  if (*out < 0) return false;
-  ::fcntl(*out, F_SETFL, 0);
-  std::ifstream in(from, std::ios::binary);
-  std::array<char, 65536> piece{};
-  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
-    for (std::string_view left(piece.data(), static_cast<std::size_t>(in.gcount())); !left.empty();) {
-      const ssize_t written = ::write(*out, left.data(), left.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      left.remove_prefix(static_cast<std::size_t>(written));
-    }
-  return true;
+// Number of this process' open descriptor that a name such as /dev/stdout denotes; -1 for another name.
+int descriptorOf(const fs::path& path) {
+  std::error_code error;
+  for (const fs::path& name : {path, fs::read_symlink(path, error)}) {
+    int number = -1;
+    const std::string digits = name.filename().string();
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), number).ec == std::errc{} &&
+        fs::equivalent(name.parent_path(), "/proc/self/fd", error))
+      return number;
+  }
+  return -1;
 }
 
 }  // namespace
 
+// Buffer of a descriptor that remembers the first failed write.
+class OutputFile::Content : public __gnu_cxx::stdio_filebuf<char> {
+ public:
+  Content(fs::path path, int descriptor, std::ios::openmode mode)
+      : stdio_filebuf(descriptor, mode | std::ios::binary), path_(std::move(path)) {}
+
+  // Throws InputError if an operation failed, now or before; `success` is the result of this one.
+  void require(bool success) {
+    if (!success && error_ == 0) error_ = errno;
+    if (error_ != 0)
+      refuse(path_, std::string("cannot be written: ") + std::strerror(error_),
+             "check the folder, its permissions and free space");
+  }
+
+ protected:
+  int_type overflow(int_type c) override {
+    require(true);
+    const int_type written = stdio_filebuf::overflow(c);
+    require(written != traits_type::eof());
+    return written;
+  }
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    require(true);
+    require(stdio_filebuf::xsputn(text, size) == size);
+    return size;
+  }
+
+ private:
+  fs::path path_;
+  int error_ = 0;
+};
+
 OutputFile::OutputFile(const fs::path& path) : path_(path) {
   if (path.empty() || path.filename().empty()) refuse(path, "is not a file name", "name a file to write");
   std::error_code error;
-  if (fs::is_symlink(path, error) && fs::exists(path, error)) path_ = fs::canonical(path, error);
   const fs::file_status status = fs::status(path_, error);
   if (status.type() == fs::file_type::none)
     refuse(path, "cannot be written: " + error.message(), "name a file to write");
   if (fs::is_directory(status)) refuse(path, "is a directory", "name a file to write");
-  in_place_ = fs::exists(status) && !fs::is_regular_file(status);
-  if (!in_place_) {
-    checkFolder(path_);
-    clearLeftovers(path_);
-  }
-  temporary_ = besideName(in_place_ ? fs::temp_directory_path() : path_.parent_path(), path_);
-  const std::lock_guard lock(unfinished().mutex);
-  unfinished().paths.insert(temporary_);
+  in_place_ = fs::exists(status) && (!fs::is_regular_file(status) || descriptorOf(path) >= 0);
+  if (!in_place_ && fs::is_symlink(path, error) && fs::exists(status)) path_ = fs::canonical(path, error);
+  const fs::path beside = path_.has_parent_path() ? path_.parent_path() : ".";
+  const fs::path folder = in_place_ ? fs::temp_directory_path() : beside;
+  const int file = create(folder, temporary_);
+  if (file < 0 && (errno == ENOENT || errno == ENOTDIR))
+    refuse(path, "folder " + folder.string() + " does not exist", "make it first");
+  if (file < 0)
+    refuse(path, "cannot write into " + folder.string() + ": " + std::strerror(errno),
+           "check its permissions, or name another folder");
+  if (in_place_) discard(temporary_);  // the descriptor keeps the content
+  content_ = std::make_unique<Content>(path_, file, std::ios::in | std::ios::out);
+  stream_.rdbuf(content_.get());
+  stream_.exceptions(std::ios::badbit | std::ios::failbit);
 }
 
 OutputFile::~OutputFile() {
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  discard(temporary_);
+}
+
+void OutputFile::write(std::string_view content) {
+  stream_.write(content.data(), static_cast<std::streamsize>(content.size()));
+  sync();
+}
+
+void OutputFile::sync() {
+  stream_.flush();
+  content_->require(::fsync(content_->fd()) == 0);
+}
+
+void OutputFile::commit() {
+  sync();
+  if (in_place_) return copyToTarget();
+  struct stat before {};
+  if (::stat(path_.c_str(), &before) == 0) ::fchmod(content_->fd(), before.st_mode);
+  content_->require(::rename(temporary_.c_str(), path_.c_str()) == 0);
   const std::lock_guard lock(unfinished().mutex);
   unfinished().paths.erase(temporary_);
 }
 
-void OutputFile::commit() {
-  if (in_place_) {
-    if (!copied(temporary_, path_)) fail(std::strerror(errno));
-    return;
-  }
-  sync();
-  std::error_code error;
-  const fs::file_status before = fs::status(path_, error);
-  if (fs::exists(before)) fs::permissions(temporary_, before.permissions(), error);
-  fs::rename(temporary_, path_, error);
-  if (error) fail(error.message());
-}
-
-void OutputFile::write(std::string_view content) {
-  std::ofstream stream(temporary_, std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (!stream) fail(std::strerror(errno));
-  sync();
-}
-
-void OutputFile::sync() const {
-  const Descriptor file(temporary_, O_RDONLY);
-  if (*file < 0 || ::fsync(*file) != 0) fail(std::strerror(errno));
-}
-
-void OutputFile::fail(const std::string& reason) const {
-  refuse(path_, "cannot be written: " + reason, "check the folder, its permissions and free space");
-}
-
-void OutputFile::failToGrow(const std::string& reason) const {
-  const std::string block(65536, '\0');
-  const Descriptor file(temporary_, O_WRONLY | O_APPEND);
-  // On a full disk, the first write may still succeed in part; a second write is therefore tested.
-  const bool grows = *file < 0 || (::write(*file, block.data(), block.size()) >= 0 &&
-                                   ::write(*file, block.data(), block.size()) >= 0);
-  fail(grows ? reason : std::strerror(errno));
+void OutputFile::copyToTarget() {
+  // O_NONBLOCK makes the open of a FIFO without a reader fail at once instead of blocking.
+  const int number = descriptorOf(path_);
+  const int target = number >= 0 ? ::dup(number) : ::open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  content_->require(target >= 0);
+  if (number < 0) ::fcntl(target, F_SETFL, 0);
+  Content out(path_, target, std::ios::out);
+  std::array<char, 65536> piece{};
+  content_->pubseekpos(0);
+  while (const auto size = content_->sgetn(piece.data(), piece.size())) out.sputn(piece.data(), size);
+  out.pubsync();
 }
 
 void writeFile(const fs::path& path, std::string_view content) {

@@ -88,7 +88,7 @@ bool makeFolder(const std::string& folder) {
   const bool made = std::filesystem::create_directories(folder, error);
   if (error)
     throw InputError({folder, "cannot be created: " + error.message(), "name another folder with -o"});
-  OutputFile(std::filesystem::path(folder) / "table.txt").temporary();
+  const OutputFile can_be_written(std::filesystem::path(folder) / "table.txt");
   return made;
 }
 

@@ -1,5 +1,4 @@
 // talus costmap DEM -o MAP.ot: builds a traversability map and writes it to files.
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -49,13 +48,10 @@ void bind(CLI::App& command, CostmapOptions& options) {
 
 void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
   OutputFile file(path);
-  std::ofstream stream(file.temporary(), std::ios::binary);
   costmap::PlaceBeliefs beliefs(map);
   const auto tree = costmap::colorTree({map.elevation().elevation_m, map.surface().keys()},
                                        [&](maps::Cell cell) { return beliefs.at(cell); });
-  tree->write(stream);
-  stream.close();
-  if (!stream) file.failToGrow("the stream failed");
+  tree->write(file.stream());
   file.commit();
 }
 

@@ -1,8 +1,5 @@
 // talus update MAP.ot T.csv -o MAP2.ot: adds the telemetry of a drive to a map.
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -240,10 +237,8 @@ int run(const UpdateOptions& options, Context& context) {
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  std::fstream stream(output.temporary(), std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
-  costmap::writeMap(map, stream);
-  stream.close();
-  if (!stream) output.fail(std::strerror(errno));
+  costmap::writeMap(map, output.stream());
+  output.sync();
   if (transaction) transaction->commit();
   output.commit();
   printReport(report, between(before, snapshotOf(map)), context);

@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <optional>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -126,7 +124,6 @@ class Writer {
  public:
   Writer(const std::filesystem::path& path, const std::vector<std::string>& header)
       : file_(path), header_(header), results_(std::size(kResults) - (hasSlipAngle(header) ? 0 : 1)) {
-    out_.open(file_.temporary(), std::ios::binary);
     writeKept(header);
     for (std::size_t k = 0; k < results_; ++k) out_ << ',' << kResults[k];
     out_ << '\n';
@@ -141,11 +138,7 @@ class Writer {
     out_ << '\n';
   }
 
-  void commit() {
-    out_.close();
-    if (!out_) file_.fail(std::strerror(errno));
-    file_.commit();
-  }
+  void commit() { file_.commit(); }
 
  private:
   void writeKept(const std::vector<std::string>& fields) {
@@ -161,7 +154,7 @@ class Writer {
   OutputFile file_;
   std::vector<std::string> header_;
   std::size_t results_;
-  std::ofstream out_;
+  std::ostream& out_ = file_.stream();
 };
 
 std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -294,18 +293,14 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
     trailer.section("COST", bytes.data(), bytes.size());
   }
   // The checksum is computed by reading back, because the octree writer updates its header at the end.
-  stream.flush();
-  const End end{.checksum = checksumOf(stream, sizeOf(stream))};
+  const End end{.checksum = checksumOf(stream, static_cast<std::uint64_t>(stream.tellp()))};
   stream.seekp(0, std::ios::end);
   stream.write(reinterpret_cast<const char*>(&end), sizeof end);
 }
 
 void writeMap(const TraversabilityMap& map, const std::string& path) {
   OutputFile file(path);
-  std::fstream stream(file.temporary(), std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
-  writeMap(map, stream);
-  stream.close();
-  if (!stream) file.fail(std::strerror(errno));
+  writeMap(map, file.stream());
   file.commit();
 }
 

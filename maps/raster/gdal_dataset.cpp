@@ -2,9 +2,9 @@
 #include <iterator>
 #include <mutex>
 #include <new>
-#include <string_view>
 #include <utility>
 
+#include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogr_srs_api.h>
 
@@ -146,6 +146,19 @@ Dataset memoryRaster(int width, int height, int type) {
   Dataset dataset(driver.Create("", width, height, 1, static_cast<GDALDataType>(type), nullptr));
   if (!dataset) throw std::bad_alloc();
   return dataset;
+}
+
+MemoryFile::MemoryFile(const std::string& extension)
+    : name("/vsimem/talus/" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "." + extension) {}
+
+MemoryFile::~MemoryFile() {
+  VSIUnlink(name.c_str());
+}
+
+std::string_view MemoryFile::bytes() const {
+  vsi_l_offset size = 0;
+  const GByte* data = VSIGetMemFileBuffer(name.c_str(), &size, FALSE);
+  return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : size};
 }
 
 }  // namespace talus::maps

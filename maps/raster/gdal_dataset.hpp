@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <talus/maps/raster/gdal_errors.hpp>
@@ -46,6 +47,20 @@ void limitPixelCache(std::int64_t bytes);
 /// Returns the GDAL driver with this name. @throws InputError if GDAL lacks the driver, for example because
 /// of GDAL_SKIP
 GDALDriver& driverNamed(const char* name);
+
+/// An in-memory file that GDAL writes, removed by the destructor. GDAL may lose an error of the disk; the bytes
+/// are therefore written by OutputFile.
+struct MemoryFile {
+  std::string name;  ///< path for GDAL
+
+  explicit MemoryFile(const std::string& extension);
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile();
+
+  /// Returns the content, valid until the file changes.
+  std::string_view bytes() const;
+};
 
 /// Returns an empty in-memory raster with one band of the given GDALDataType (default 6: 32-bit float).
 /// @throws std::bad_alloc

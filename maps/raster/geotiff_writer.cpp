@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
@@ -52,38 +53,23 @@ CPLErr writeBand(GDALRasterBand& band, const Raster<T>& values, GDALDataType typ
                        static_cast<GSpacing>(sizeof(T)), line, nullptr);
 }
 
-// Throws InputError. Without a PROJ database no CRS can be written; the remedy then names PROJ instead of the
-// folder.
-[[noreturn]] void fail(const OutputFile& file, const std::string& path, const GdalErrors& errors) {
+// Throws InputError. Without a PROJ database no CRS can be written; the remedy then names PROJ.
+[[noreturn]] void fail(const GeoTiff& file, const GdalErrors& errors) {
   const std::string reason = errors.last();
-  if (reason.starts_with("PROJ"))
-    throw InputError({path, "cannot be written: " + reason,
-                      "PROJ lacks its data: correct or unset PROJ_LIB and PROJ_DATA"});
-  file.failToGrow(reason);
+  throw InputError({file.path, "cannot be written: " + reason,
+                    reason.starts_with("PROJ")
+                        ? "PROJ lacks its data: correct or unset PROJ_LIB and PROJ_DATA"
+                        : "write fewer cells"});
 }
 
-// Closes the file, which flushes all data: write errors may appear only here.
-void finish(Dataset dataset, OutputFile& file, const std::string& path, const GdalErrors& errors) {
+// Closes the dataset, which completes its file in memory, and writes the file.
+void finish(const GeoTiff& file, Dataset dataset, const MemoryFile& memory, const GdalErrors& errors) {
   dataset->FlushCache();
   dataset.reset();
-  if (errors.any()) fail(file, path, errors);
-  file.sync();
+  if (errors.any()) fail(file, errors);
+  if (file.into != nullptr) return file.into->write(memory.bytes());
+  writeFile(file.path, memory.bytes());
 }
-
-// The output file of the caller, or a file that this object opens and commits.
-class Target {
- public:
-  explicit Target(const GeoTiff& file) : file_(file.into != nullptr ? *file.into : own_.emplace(file.path)) {}
-
-  OutputFile& operator*() { return file_; }
-  void commit() {
-    if (own_) own_->commit();
-  }
-
- private:
-  std::optional<OutputFile> own_{};
-  OutputFile& file_;
-};
 
 void describe(GDALRasterBand& band, const std::vector<NamedClass>& classes) {
   GDALColorTable colours;
@@ -148,39 +134,35 @@ void writeGeoTiff(const GeoTiff& file, const std::vector<Layer>& layers) {
   checkGrids(layers);
   const Grid& grid = layers.front().values.grid();
   const GdalErrors errors;
-  Target target(file);
-  OutputFile& output = *target;
-  Dataset dataset = create(output.temporary(), grid, {.bands = static_cast<int>(layers.size())});
-  if (!dataset) output.failToGrow(errors.last());
+  const MemoryFile memory("tif");
+  Dataset dataset = create(memory.name, grid, {.bands = static_cast<int>(layers.size())});
+  if (!dataset) fail(file, errors);
   place(*dataset, grid, file.georeference);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(i) + 1);
     band.SetDescription(layers[i].name.c_str());
     if (!layers[i].unit.empty()) band.SetUnitType(layers[i].unit.c_str());
     band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) output.failToGrow(errors.last());
+    if (writeBand(band, layers[i].values, GDT_Float32) != CE_None) fail(file, errors);
   }
-  finish(std::move(dataset), output, file.path, errors);
-  target.commit();
+  finish(file, std::move(dataset), memory, errors);
 }
 
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes) {
   if (values.empty()) throw std::invalid_argument("GeoTIFF: layer '" + name + "' is empty");
   const GdalErrors errors;
-  Target target(file);
-  OutputFile& output = *target;
-  Dataset dataset = create(output.temporary(), values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
-  if (!dataset) output.failToGrow(errors.last());
+  const MemoryFile memory("tif");
+  Dataset dataset = create(memory.name, values.grid(), {.type = GDT_Byte, .predictor = "PREDICTOR=2"});
+  if (!dataset) fail(file, errors);
   place(*dataset, values.grid(), file.georeference);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   band.SetDescription(name.c_str());
   if (nodata) band.SetNoDataValue(*nodata);
   if (!classes.empty()) describe(band, classes);
-  if (writeBand(band, values, GDT_Byte) != CE_None) output.failToGrow(errors.last());
-  if (!classes.empty() && !addOverviews(*dataset, values)) output.failToGrow(errors.last());
-  finish(std::move(dataset), output, file.path, errors);
-  target.commit();
+  if (writeBand(band, values, GDT_Byte) != CE_None) fail(file, errors);
+  if (!classes.empty() && !addOverviews(*dataset, values)) fail(file, errors);
+  finish(file, std::move(dataset), memory, errors);
 }
 
 }  // namespace talus::maps

@@ -4,7 +4,6 @@
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -21,23 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kDocument = "DOCUMENT";
 constexpr const char* kDomain = "TALUS";  // metadata domain; programs list only the default domain
-
-// An in-memory file, removed by the destructor.
-struct MemoryFile {
-  std::string name;
-
-  explicit MemoryFile(const std::string& driver)
-      : name("/vsimem/talus/" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "." + driver) {}
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile() { VSIUnlink(name.c_str()); }
-
-  std::string bytes() const {
-    vsi_l_offset size = 0;
-    const GByte* data = VSIGetMemFileBuffer(name.c_str(), &size, FALSE);
-    return data == nullptr ? "" : std::string(reinterpret_cast<const char*>(data), size);
-  }
-};
 
 OGRFieldType fieldTypeOf(const Json& value) {
   if (value.is_string()) return OFTString;
@@ -147,7 +129,7 @@ std::string vectorFile(const std::string& driver, const ElevationMap& map,
     if (file && !document.empty()) file->SetMetadataItem(kDocument, document.c_str(), kDomain);
   }
   if (errors.any()) throw InputError({path, "GDAL cannot write it: " + errors.last(), "write GeoJSON"});
-  return memory.bytes();
+  return std::string(memory.bytes());
 }
 
 StoredDocument storedDocument(const std::string& path) {

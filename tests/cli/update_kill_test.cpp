@@ -128,21 +128,6 @@ TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
   EXPECT_EQ(site.replay("e.db", "c.ot")["rows_used"], 60);
 }
 
-// An update removes temporary files of a killed update, but not those of a running process.
-TEST(UpdateCommand, TemporaryFilesOfAKilledUpdateAreRemoved) {
-  const Site site;
-  const pid_t child = ::fork();
-  if (child == 0) ::_exit(0);
-  ::waitpid(child, nullptr, 0);  // the process has ended, so its id is not in use
-  const std::string left = fmt::format(".out.{}-0.ot", child), live = fmt::format(".out.{}-7.ot", ::getpid()),
-                    other = fmt::format(".other.{}-0.ot", child);
-  for (const std::string& name : {left, live, other}) site.folder.write(name, "half a map");
-  ASSERT_EQ(runTalus({"update", "map.ot", "t.csv", "-o", "out.ot"}, site.folder.path()).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(site.folder / left));
-  EXPECT_TRUE(std::filesystem::exists(site.folder / live));
-  EXPECT_TRUE(std::filesystem::exists(site.folder / other));
-}
-
 // Two updates in sequence, each starting from the map of the update before, equal one replay of both drives.
 TEST(UpdateCommand, SequentialUpdatesEqualOneReplay) {
   const Site site;

@@ -1,9 +1,12 @@
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,6 +20,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 class Folder {
  public:
@@ -66,9 +70,9 @@ TEST(OutputFile, CommitReplacesTheFileAtomically) {
 TEST(OutputFile, UncommittedFileIsRemoved) {
   const Folder folder;
   {
-    const OutputFile file(folder / "a.png");
-    EXPECT_EQ(file.temporary().extension(), ".png");
-    std::ofstream(file.temporary()) << "half";
+    OutputFile file(folder / "a.png");
+    file.write("half");
+    EXPECT_EQ(folder.names().size(), 1U);
   }
   EXPECT_THAT(folder.names(), IsEmpty());
 }
@@ -104,10 +108,53 @@ TEST(OutputFile, PermissionsAreKept) {
 TEST(OutputFile, UnfinishedFilesAreRemovedOnRequest) {
   const Folder folder;
   writeFile(folder / "whole", "x");
-  const OutputFile half(folder / "half");
-  std::ofstream(half.temporary()) << "x";
+  OutputFile half(folder / "half");
+  half.write("x");
   removeUnfinishedFiles();
   EXPECT_THAT(folder.names(), ElementsAre("whole"));
+}
+
+// Regression: a hidden file of the user whose name held a number was removed as the leftover of a process.
+TEST(OutputFile, FilesOfOthersAreKept) {
+  const Folder folder;
+  for (const char* name : {".map.2026-11-27.ot", ".map.999999-0.ot", ".talus-1"}) folder.write(name, "other");
+  writeFile(folder / "map.ot", "new");
+  EXPECT_THAT(folder.names(),
+              UnorderedElementsAre(".map.2026-11-27.ot", ".map.999999-0.ot", ".talus-1", "map.ot"));
+}
+
+// Regression: a map of which one write failed replaced its predecessor, because the state of the stream was
+// cleared between two sections. The limit of the file size fails like a full disk, and is lifted again.
+TEST(OutputFile, FailedWriteRemains) {
+  const Folder folder;
+  folder.write("a", "old");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  {
+    OutputFile file(folder / "a");
+    const rlimit small{.rlim_cur = 1024, .rlim_max = before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(file.stream() << std::string(100000, 'x'), InputError);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    file.stream().clear();
+    EXPECT_THROW(file.stream() << std::string(100000, 'x'), InputError);
+    file.stream().clear();
+    EXPECT_THROW(file.commit(), InputError);
+  }
+  EXPECT_EQ(fileContent(folder / "a"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("a"));
+}
+
+// A name such as /dev/stdout denotes an open file, whose content before stays.
+TEST(OutputFile, DescriptorReceivesTheBytes) {
+  const Folder folder;
+  folder.write("log", "before ");
+  const int log = ::open((folder / "log").c_str(), O_WRONLY | O_APPEND);
+  ASSERT_GE(log, 0);
+  writeFile("/dev/fd/" + std::to_string(log), "route");
+  ::close(log);
+  EXPECT_EQ(fileContent(folder / "log"), "before route");
 }
 
 TEST(OutputFile, NameAboveTheLengthLimitIsRejected) {
