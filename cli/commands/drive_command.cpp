@@ -1,5 +1,6 @@
 // talus drive DEM --truth TRUTH.yaml: simulates a traverse over soils that are unknown to the planner.
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -208,7 +209,8 @@ int run(const DriveCommandOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   Ground ground = readGround(options.ground, context);
-  ground.files.push_back(options.truth);
+  ground.files.push_back(
+      {std::filesystem::path(options.truth).filename().string(), options.truth, "", "truth"});
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {

@@ -1,8 +1,8 @@
 // talus plan DEM --start P --goal P: plans a route.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 
@@ -13,6 +13,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/pareto_chart.hpp>
 #include <talus/cli/draw/picture.hpp>
@@ -26,6 +27,7 @@
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/provenance.hpp>
+#include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/route_writer.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/vector/place_reader.hpp>
@@ -324,20 +326,27 @@ int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const C
   return code;
 }
 
-// Mission files may come from other sources: without --force, their outputs overwrite only existing routes.
-void checkMissionOutput(const PlanOptions& options, const PlanOptions& asked, bool force) {
-  if (force) return;
-  const GroundOptions& ground = options.ground;
-  std::vector<std::string> inputs{asked.ground.dem.path, ground.dem.path,    ground.rover,
-                                  ground.soil,           ground.model,       ground.soils,
-                                  ground.layers.terrain, ground.layers.rocks};
-  inputs.insert(inputs.end(), ground.layers.keep_out.begin(), ground.layers.keep_out.end());
-  for (const std::string& layer : ground.layers.costs) inputs.push_back(layerNamed(layer).second);
+// Returns true if the file is a route that was planned for this mission, as it is or as it was before a change.
+bool isRouteOf(const std::string& mission, const std::string& path) {
+  try {
+    const auto inputs = readRoute(path).inputs;
+    return std::ranges::any_of(inputs, [&](const planner::RouteInput& input) {
+      std::error_code error;
+      return input.role == "mission" && (std::filesystem::equivalent(input.path, mission, error) ||
+                                         input.sha256 == sha256OfFile(mission));
+    });
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Mission files may come from other sources: without --force, their outputs overwrite only their own routes.
+void checkMissionOutput(const PlanOptions& options) {
+  std::vector<std::string> inputs;
+  for (const planner::RouteInput& input : filesOf(options.ground)) inputs.push_back(input.path);
   checkOutput(options.output, inputs);
-  std::string start(200, '\0');
-  std::ifstream file(options.output, std::ios::binary);
-  if (file && (file.read(start.data(), 200), start.find("\"Feature") == start.npos))
-    throw InputError({options.output, "exists, is named by the mission alone and is no route",
+  if (std::filesystem::exists(options.output) && !isRouteOf(options.ground.mission, options.output))
+    throw InputError({options.output, "exists, is named by the mission alone and is no route of this mission",
                       "name it with -o, or pass --force"});
 }
 
@@ -345,7 +354,7 @@ int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
   if (isMission(options.ground.dem.path)) {
     readMission(options);
-    if (asked.output.empty() && !options.output.empty()) checkMissionOutput(options, asked, context.force);
+    if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
   }
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
   requirePlaces(options);

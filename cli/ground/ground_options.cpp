@@ -154,16 +154,6 @@ auto blamingFiles(const GroundOptions& options, Make make) {
   }
 }
 
-std::vector<std::string> filesOf(const GroundOptions& options) {
-  std::vector<std::string> files{options.dem.path};
-  for (const std::string& path : {options.map_file, options.layers.terrain, options.layers.rocks,
-                                  options.soils, options.soil, options.model, options.rover})
-    if (std::ifstream(path).good()) files.push_back(path);
-  files.insert(files.end(), options.layers.keep_out.begin(), options.layers.keep_out.end());
-  for (const std::string& given : options.layers.costs) files.push_back(layerNamed(given).second);
-  return files;
-}
-
 // Returns true if no elevation map is given in addition to the built map.
 bool isBuiltAlone(const GroundOptions& options, const std::string& path) {
   return options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path);
@@ -342,6 +332,27 @@ void addGroundChoices(CLI::App& command, GroundOptions& options) {
       ->check(notNegative());
   groupOptions(command, "Soil and rover");
   addPolicy(command, options.policy);
+}
+
+std::vector<planner::RouteInput> filesOf(const GroundOptions& options) {
+  std::vector<planner::RouteInput> files;
+  const auto add = [&](const std::string& path, const char* role) {
+    files.push_back({std::filesystem::path(path).filename().string(), path, "", role});
+  };
+  add(options.dem.path, "elevation");
+  const LayerOptions& layers = options.layers;
+  for (const auto& [path, role] : {std::pair{options.map_file, "map"},
+                                   {layers.terrain, "terrain classes"},
+                                   {layers.rocks, "rocks"},
+                                   {options.soils, "soils"},
+                                   {options.soil, "soil"},
+                                   {options.model, "model"},
+                                   {options.rover, "rover"},
+                                   {options.mission, "mission"}})
+    if (std::ifstream(path).good()) add(path, role);
+  for (const std::string& path : layers.keep_out) add(path, "keep-out");
+  for (const std::string& given : layers.costs) add(layerNamed(given).second, "cost layer");
+  return files;
 }
 
 Ground readGround(const GroundOptions& options, const Context& context) {

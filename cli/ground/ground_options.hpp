@@ -5,6 +5,7 @@
 
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace CLI {
 class App;
@@ -22,8 +23,9 @@ struct GroundOptions {
   std::string soils;     ///< YAML file that assigns a soil to each terrain-class number
   /// Library name or YAML file of the soil for ground without a class; empty: default of the body.
   std::string soil;
-  std::string model;  ///< refined model from `talus trace` for ground without a class, instead of `soil`
-  std::string rover;  ///< library name or YAML file of the rover; empty: default of the body
+  std::string model;      ///< refined model from `talus trace` for ground without a class, instead of `soil`
+  std::string rover;      ///< library name or YAML file of the rover; empty: default of the body
+  std::string mission{};  ///< mission file that stated options of the call; empty: none
   double footprint_m = 0.0;  ///< radius of the disc for slope fits; 0: derived from the rover
   costmap::TravelPolicy policy;
 };
@@ -38,12 +40,15 @@ void addGroundChoices(CLI::App& command, GroundOptions& options);
 /// A traversability map, with its files and computing times.
 struct Ground {
   costmap::TraversabilityMap map;
-  std::vector<std::string> files;  ///< files that were read, for the provenance
+  std::vector<planner::RouteInput> files;  ///< result of filesOf(), for the provenance
   /// Time for reading the files.
   double load_s = 0.0;
   /// Time for building the map.
   double build_s = 0.0;
 };
+
+/// Returns the files that the options name, without SHA-256; the first is the map.
+std::vector<planner::RouteInput> filesOf(const GroundOptions& options);
 
 /// Returns the default soil and the default rover for the body of the map.
 std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map);

@@ -157,7 +157,8 @@ bool isMission(const std::string& path) {
 }
 
 void readMission(PlanOptions& options) {
-  const std::filesystem::path path = options.ground.dem.path;
+  options.ground.mission = options.ground.dem.path;
+  const std::filesystem::path path = options.ground.mission;
   const std::filesystem::path folder = path.parent_path();
   const YamlFields fields = YamlFields::file(path.string());
   fields.only(namesOf(missionKeys()));

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -79,15 +78,14 @@ std::vector<std::pair<std::string, std::string>> provenanceOf(const ordered_json
 }
 
 planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
-  planner::RouteOrigin origin{.files = {},
+  planner::RouteOrigin origin{.files = ground.files,
                               .seed = context.seed,
                               .rover = ground.map.model().rover().name,
                               .soils = {},
                               .command = callText(context.argv)};
   for (const costmap::GroundClass& one : ground.map.model().parts().classes)
     origin.soils.push_back(one.soil.name);
-  for (const std::string& path : ground.files)
-    origin.files.push_back({std::filesystem::path(path).filename().string(), path, sha256OfFile(path)});
+  for (planner::RouteInput& file : origin.files) file.sha256 = sha256OfFile(file.path);
   return origin;
 }
 

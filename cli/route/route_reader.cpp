@@ -213,12 +213,12 @@ json member(const json& object, const char* key) {
 std::vector<planner::RouteInput> inputsOf(const json& properties) {
   std::vector<planner::RouteInput> inputs;
   for (const json& file : member(member(properties, "inputs"), "files")) {
-    const json name = member(file, "file");
-    const json sha256 = member(file, "sha256");
-    if (!name.is_string() || !sha256.is_string()) continue;
-    const json path = member(file, "path");
-    inputs.push_back({name.get<std::string>(), path.is_string() ? path.get<std::string>() : "",
-                      sha256.get<std::string>()});
+    const auto text = [&](const char* key) {
+      const json value = member(file, key);
+      return value.is_string() ? value.get<std::string>() : "";
+    };
+    if (text("file").empty() || text("sha256").empty()) continue;
+    inputs.push_back({text("file"), text("path"), text("sha256"), text("role")});
   }
   return inputs;
 }

@@ -73,8 +73,10 @@ Json obstructionJson(const Obstruction& why) {
 
 Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
-  for (const RouteInput& input : origin.files)
+  for (const RouteInput& input : origin.files) {
     files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
+    if (!input.role.empty()) files.back()["role"] = input.role;
+  }
   Json made{{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
   if (!origin.rover.empty()) made["rover"] = origin.rover;
   if (!origin.soils.empty()) made["soils"] = origin.soils;

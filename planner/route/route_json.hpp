@@ -16,6 +16,7 @@ struct RouteInput {
   std::string file;      ///< file name without folder
   std::string path{};    ///< path given to the planner, relative to its working folder; empty: unknown
   std::string sha256{};  ///< SHA-256 of the file content, hexadecimal
+  std::string role{};    ///< what the file states: "elevation", "rover", "mission", ...; empty: unknown
 };
 
 /// Data with which a route can be computed again.

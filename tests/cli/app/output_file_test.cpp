@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <utility>
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <talus/cli/app/output_file.hpp>
@@ -152,6 +151,8 @@ TEST(CheckOutput, MissionOutputIsProtected) {
   other.write("far", "x");
   fs::create_symlink(other / "far", files.folder() / "link");
   ASSERT_EQ(::mkfifo((files.folder() / "pipe").c_str(), 0600), 0);
+  files.folder().write("keep_out.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+    "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[[1, 1], [2, 1], [2, 2], [1, 1]]]}}]})");
   std::vector<BadCall> calls;
   for (const auto& [output, says] :
        std::vector<std::pair<std::string, std::string>>{{"good.asc", "also an input"},
@@ -159,6 +160,7 @@ TEST(CheckOutput, MissionOutputIsProtected) {
                                                         {"link", "link to another"},
                                                         {"pipe", "a FIFO"},
                                                         {"/dev/null", "is a device"},
+                                                        {"keep_out.geojson", "is no route of this mission"},
                                                         {"folder", "is no route"},
                                                         {"none/r.json", "none"}}) {
     const std::string name = "m" + std::to_string(calls.size()) + ".yaml";
@@ -175,38 +177,34 @@ TEST(CheckOutput, MissionOutputIsProtected) {
   expectRefused(files, calls);
 }
 
-// Limits the file size of this process: a write beyond the limit fails as on a full disk.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-TEST(CheckOutput, FullDiskIsReportedAndTheOldFileKept) {
+// Property: a mission replaces the route that was planned for it, also after the mission was changed, and no route
+// of another mission or of no mission.
+TEST(CheckOutput, MissionReplacesItsOwnRouteOnly) {
   const BadFiles files;
-  std::string cases =
-      "cohesion_Pa,friction_angle_rad,sinkage_exponent,sinkage_modulus,shear_modulus_m,c1,c2,wheel_radius_m,"
-      "wheel_width_m,load_N,slip\n";
-  for (int row = 0; row < 2000; ++row) cases += "500,0.6,1,820000,0.02,0.3,0,0.15,0.15,50,0.3\n";
-  files.folder().write("cases.csv", cases);
-  files.folder().write("old.csv", "old");
-  files.folder().write("mission.yaml",
-                       "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
-                       "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: route.geojson\n");
-  const SmallDisk disk(1024);
-  expectRefused(files, {{{"wheel", "--cases", "cases.csv", "-o", "new.csv"}, 2, "new.csv: cannot be written"},
-                        {{"wheel", "--cases", "cases.csv", "-o", "old.csv"}, 2, "old.csv: cannot be written"},
-                        {{"plan", "mission.yaml"}, 2, "route.geojson: cannot be written"}});
-  EXPECT_EQ(fileContent(files.folder() / "old.csv"), "old");
+  const auto mission = [&](const std::string& name, const std::string& goal, const std::string& output) {
+    files.folder().write(name,
+                         "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
+                         "rover: sojourner\nstart: [5, 5]\ngoal: [" +
+                             goal + "]\noutput: " + output + "\n");
+    return name;
+  };
+  const auto plan = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"plan", "--quiet", "--no-proof"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, files.folder().path()).code;
+  };
+  const std::string route = "r.geojson";
+  EXPECT_EQ(plan({mission("m.yaml", "9, 9", route)}), 0);
+  const std::string first = fileContent(files.folder() / route);
+  EXPECT_EQ(plan({mission("m.yaml", "9, 12", route)}), 0);
+  EXPECT_NE(fileContent(files.folder() / route), first);
+  EXPECT_EQ(plan({mission("other.yaml", "9, 9", route)}), 2);
+  EXPECT_EQ(plan({"other.yaml", "-o", route}), 0);
+  EXPECT_EQ(plan({"m.yaml"}), 2);
+  EXPECT_EQ(plan({"good.asc", "--resolution", "1", "--ignore-crs", "--start", "5,5", "--goal", "9,9", "-o",
+                  "s.geojson"}),
+            0);
+  EXPECT_EQ(plan({mission("m.yaml", "9, 9", "s.geojson")}), 2);
 }
 
 }  // namespace output_file_test

@@ -54,7 +54,7 @@ TEST(GroundOptions, GroundHasTheGivenSoilAndRover) {
   EXPECT_EQ(ground.map.model().rover().name, "fido");
   ASSERT_EQ(ground.map.model().parts().classes.size(), 1U);
   EXPECT_EQ(ground.map.surface().footprintRadius_m(), 1.5);
-  EXPECT_EQ(ground.files.front(), dem);
+  EXPECT_EQ(ground.files.front().path, dem);
   // Property: a built map is recognised as such as the DEM argument and as --map.
   const std::string built = folder / "map.ot";
   costmap::writeMap(ground.map, built);
