@@ -23,16 +23,44 @@ class Bar {
     if (percent == shown_) return;
     shown_ = percent;
     if (percent == 100) return erase();
-    printError(fmt::format("\r{} [{:<30}] {:3d} %", what_,
-                           std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent));
+    draw(fmt::format("\r{} [{:<30}] {:3d} %", what_,
+                     std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent));
   }
 
  private:
-  static void erase() { printError("\r\033[K"); }
+  static void draw(const std::string& text) { std::fputs(text.c_str(), stderr); }
+  static void erase() { draw("\r\033[K"); }
 
   std::string what_;
   int shown_ = -1;
 };
+
+// Returns true for what a terminal does not show but obeys: control characters except line break and tabulator,
+// and the marks that turn the direction of writing.
+bool isObeyed(char32_t c) {
+  return (c < 0x20 && c != '\n' && c != '\t') || (c >= 0x7F && c < 0xA0) || c == 0x61C ||
+         (c >= 0x200E && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+}
+
+// Returns the text with blanks in place of what a terminal obeys. A byte that is not valid UTF-8 becomes
+// U+FFFD, as in JSON.
+std::string shown(std::string_view text) {
+  const auto valid = nlohmann::json::parse(jsonText(std::string(text))).get<std::string>();
+  std::string clean;
+  for (std::size_t i = 0, size = 0; i < valid.size(); i += size) {
+    const auto first = static_cast<unsigned char>(valid[i]);
+    size = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    char32_t c = size == 1 ? first : first & (0xFFU >> (size + 1));
+    for (std::size_t k = 1; k < size; ++k) c = c << 6 | (static_cast<unsigned char>(valid[i + k]) & 0x3FU);
+    clean.append(isObeyed(c) ? " " : valid.substr(i, size));
+  }
+  return clean;
+}
+
+void send(std::string_view text, std::FILE* stream) {
+  const std::string clean = shown(text);
+  std::fwrite(clean.data(), 1, clean.size(), stream);
+}
 
 }  // namespace
 
@@ -55,29 +83,23 @@ std::string jsonText(const nlohmann::ordered_json& value, int indent) {
 }
 
 void printJson(const nlohmann::ordered_json& value) {
-  print(jsonText(value, 2) + "\n");
+  print(value.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 void print(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  send(text, stdout);
 }
 
 void printError(std::string_view text) noexcept {
-  std::fwrite(text.data(), 1, text.size(), stderr);
+  send(text, stderr);
   std::fflush(stderr);
 }
 
 std::string oneLine(std::string_view text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
   std::string line;
-  for (const char c : text) {
-    if (c == '\n')
-      line += "; ";
-    else
-      line += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
-  }
-  // A byte that is not valid UTF-8 becomes U+FFFD, as in JSON.
-  return nlohmann::json::parse(jsonText(line)).get<std::string>();
+  for (const char c : text) line += c == '\n' ? "; " : c == '\t' ? " " : std::string(1, c);
+  return line;
 }
 
 }  // namespace talus::cli

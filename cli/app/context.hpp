@@ -58,17 +58,18 @@ struct Context {
 /// infinity become null; each byte that is not valid UTF-8 (possible in file names) becomes U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& value, int indent = -1);
 
-/// Prints a result as indented JSON to stdout; NaN and infinity become null.
+/// Prints a result as indented JSON to stdout, in ASCII; NaN and infinity become null.
 void printJson(const nlohmann::ordered_json& value);
 
-/// Prints a result as plain text to stdout.
+/// Prints a result as plain text to stdout. Here and in printError(), through which all texts pass, what a
+/// terminal would obey (escape sequences, marks of the direction of writing) becomes a blank, and an invalid
+/// UTF-8 byte U+FFFD.
 void print(std::string_view text);
 
 /// Prints a text to stderr. If stderr is closed, the text is lost and no error is reported.
 void printError(std::string_view text) noexcept;
 
-/// Returns a text on one line: line breaks become "; ", other control characters become blanks, and invalid
-/// UTF-8 bytes become U+FFFD.
+/// Returns a text on one line: line breaks become "; ", and tabulators blanks.
 std::string oneLine(std::string_view text);
 
 }  // namespace talus::cli

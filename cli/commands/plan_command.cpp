@@ -146,7 +146,7 @@ int refuse(const Route& route, const Context& context) {
     json["reason"] = route.reason;
     printJson(json);
   }
-  fmt::print(stderr, "talus: {}\n", oneLine(route.reason));
+  printError(fmt::format("talus: {}\n", oneLine(route.reason)));
   return exitOf(route.status);
 }
 
@@ -263,8 +263,7 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
     print(goalText(options, route) + planText(route, seconds));
   }
   if (!route.interrupted) return Exit::kDone;
-  fmt::print(stderr,
-             "talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");
+  printError("talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");
   return Exit::kCancelled;
 }
 
@@ -303,8 +302,8 @@ int drawPareto(const PlanOptions& options, const Planned& planned, planner::Rout
   const auto front = planner.paretoRoutes(planned.ground.map.published(), planned.request,
                                           settingsOf(options, context), kParetoSteps);
   if (context.stop.stop_requested()) {
-    fmt::print(stderr, "talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
-               oneLine(options.pareto));
+    printError(fmt::format("talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
+                           oneLine(options.pareto)));
     letEnd(context);
     return Exit::kCancelled;
   }

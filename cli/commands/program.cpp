@@ -5,11 +5,11 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <new>
 #include <optional>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -220,7 +220,9 @@ int parseAndRun(CLI::App& app, const Context& context, std::vector<std::string> 
     app.parse(std::move(reversed_words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return parseFailure(app, error);
-    return app.exit(error);
+    std::ostringstream help;
+    app.exit(error, help, help);
+    print(help.str());
   }
   return context.exit_code;
 }
@@ -249,7 +251,7 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
   }
   if (code != Exit::kDone && interrupt.requested()) return fail(interrupt.code(), "cancelled");
   errno = 0;
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !!std::cout.flush();
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (written) return code;
   // After an earlier failed write, another write sets errno to the reason.
   const bool stated = errno != 0 || ::write(STDOUT_FILENO, "\n", 1) < 0;
