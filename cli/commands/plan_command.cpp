@@ -15,7 +15,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
-#include <talus/cli/draw/pareto_chart.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/reach_scene.hpp>
 #include <talus/cli/draw/route_summary.hpp>
@@ -42,9 +41,6 @@ namespace {
 
 using planner::Route;
 using planner::RouteStatus;
-
-// Number of prices of time, and of risk, for the Pareto set.
-constexpr int kParetoSteps = 6;
 
 // plan_s includes proof_s.
 struct Timing {
@@ -269,11 +265,10 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
 
 void refuseInWindows(const PlanOptions& options) {
   const bool other = options.planner != "field" || !options.plugin.empty() || options.max_risk > 0.0 ||
-                     !options.pareto.empty() || !options.pairs.empty() || !options.drive.chassis.empty() ||
-                     options.goals.size() > 1;
+                     !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
   if (!other) return;
   throw InputError({options.ground.dem.path,
-                    "is too large to be combined with --planner, --plugin, --pairs, --risk, --pareto, "
+                    "is too large to be combined with --planner, --plugin, --pairs, --risk, "
                     "--chassis or several goals",
                     "read a part with --window, or the whole with --whole-field"});
 }
@@ -297,20 +292,6 @@ void letEnd(const Context& context) {
   if (context.answers_stop) *context.answers_stop = false;
 }
 
-int drawPareto(const PlanOptions& options, const Planned& planned, planner::RoutePlanner& planner,
-               const Context& context) {
-  const auto front = planner.paretoRoutes(planned.ground.map.published(), planned.request,
-                                          settingsOf(options, context), kParetoSteps);
-  if (context.stop.stop_requested()) {
-    printError(fmt::format("talus: {} is not written: the Pareto set was cancelled; the route is whole\n",
-                           oneLine(options.pareto)));
-    letEnd(context);
-    return Exit::kCancelled;
-  }
-  saveParetoChart(options.pareto, front);
-  return Exit::kDone;
-}
-
 int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const Context& context) {
   Ground ground = readGround(options.ground, context);
   PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
@@ -321,7 +302,6 @@ int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const C
   if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
   const int code = finish(options, route, context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
-  if (code == Exit::kDone && !options.pareto.empty()) return drawPareto(options, route, planner, context);
   return code;
 }
 

@@ -41,7 +41,6 @@ struct PlanOptions {
   /// True if the whole map is searched at full resolution, not a corridor around a coarse route.
   bool whole_field = false;
   bool no_proof = false;      ///< true if no improved lower bound and no alternative corridors are computed
-  std::string pareto;         ///< file for the chart of the Pareto front; empty: no chart
   double time_limit_s = 0.0;  ///< time limit of planning; 0: no limit
   std::string output;
   std::string html;  ///< file for an HTML page; empty: no page

@@ -18,8 +18,6 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
   addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
-  addOutput(command, "--pareto", options.pareto, "plot of the Pareto set of energy, time and risk to write")
-      ->type_name("FILE.png|FILE.svg|FILE.html");
   groupOptions(command, "Output");
 }
 
@@ -78,17 +76,17 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
 void requirePlaces(const PlanOptions& options) {
   if (!options.pairs.empty()) {
     if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
-        !options.png.empty() || !options.pareto.empty() || options.max_risk > 0.0 ||
-        !options.drive.chassis.empty() || !options.plugin.empty())
+        !options.png.empty() || options.max_risk > 0.0 || !options.drive.chassis.empty() ||
+        !options.plugin.empty())
       throw InputError({"--pairs " + options.pairs,
-                        "cannot be combined with --start, --goal, --via, --html, --png, --pareto, --risk, "
+                        "cannot be combined with --start, --goal, --via, --html, --png, --risk, "
                         "--chassis or --plugin",
                         "remove them, or plan the routes one by one"});
     return;
   }
-  if (!options.plugin.empty() && (options.max_risk > 0.0 || !options.pareto.empty()))
-    throw InputError({"--plugin " + options.plugin, "cannot be combined with --risk or --pareto",
-                      "remove them, or plan with a planner of the program"});
+  if (!options.plugin.empty() && options.max_risk > 0.0)
+    throw InputError({"--plugin " + options.plugin, "cannot be combined with --risk",
+                      "remove one of them, or plan with a planner of the program"});
   if (options.start.empty()) throw InputError({"talus plan", "no start", "pass --start x,y"});
   if (options.goals.empty()) throw InputError({"talus plan", "no goal", "pass --goal x,y"});
 }

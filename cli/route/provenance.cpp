@@ -30,8 +30,8 @@ bool decidesNothing(std::string_view word) {
 }
 
 bool namesOutput(std::string_view word) {
-  constexpr std::array<std::string_view, 7> kOptions{"-o",       "--output",  "--html",     "--png",
-                                                     "--pareto", "--threads", "--telemetry"};
+  constexpr std::array<std::string_view, 6> kOptions{"-o",    "--output",  "--html",
+                                                     "--png", "--threads", "--telemetry"};
   return std::find(kOptions.begin(), kOptions.end(), word) != kOptions.end();
 }
 

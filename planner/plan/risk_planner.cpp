@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <talus/common/progress_monitor.hpp>
+#include <talus/costmap/cost/cost_weights.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -19,11 +20,10 @@ constexpr double kHighestPrice_J = 1e13;
 constexpr int kHalvings = 8;
 constexpr double kTime_s = 2.0;  // for all prices without a time limit
 
-Plan planUnder(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
-               const costmap::CostWeights& weights) {
+Plan planUnder(const Problem& problem, NamedPlanner& planner, const costmap::CostWeights& weights) {
   Problem weighed = problem;
   weighed.map = costmap::reweighted(*problem.map, weights);
-  Plan plan = planner(weighed);
+  Plan plan = planner.plan(weighed);
   if (plan.status == RouteStatus::Found) plan.cost_J = MotionCost(problem.map).along(plan.points);
   return plan;
 }
@@ -73,10 +73,9 @@ class RiskBoundedSearch {
       asked.prove = prove;
       asked.time_limit_s = any_ ? left_s : std::max(left_s, problem_.time_limit_s);
       any_ = true;
-      const auto plan = [this](const Problem& problem) { return planner_.plan(problem); };
-      kept =
-          taken(planUnder(asked, plan, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J})).value_or(false) ||
-          kept;
+      kept = taken(planUnder(asked, planner_, {.energy = 1.0, .time_W = 1.0, .risk_J = price_J}))
+                 .value_or(false) ||
+             kept;
     }
     return kept;
   }
@@ -132,28 +131,7 @@ class RiskBoundedSearch {
   std::optional<Plan> uncertain_;  // within the limit by the first estimate only
 };
 
-bool dominates(const RouteDemand& a, const RouteDemand& b) {
-  return a.energy_J <= b.energy_J && a.time_s <= b.time_s && a.risk <= b.risk &&
-         (a.energy_J < b.energy_J || a.time_s < b.time_s || a.risk < b.risk);
-}
-
-bool same(const RouteDemand& a, const RouteDemand& b) {
-  return a.energy_J == b.energy_J && a.time_s == b.time_s && a.risk == b.risk;
-}
-
-void keep(std::vector<ParetoRoute>& front, ParetoRoute route) {
-  for (const ParetoRoute& other : front)
-    if (dominates(other.demand, route.demand) || same(other.demand, route.demand)) return;
-  std::erase_if(front, [&](const ParetoRoute& other) { return dominates(route.demand, other.demand); });
-  front.push_back(std::move(route));
-}
-
 }  // namespace
-
-RouteDemand demandOf(const costmap::CostGrid& map, const Plan& plan) {
-  const Route route = annotated(plan, {.map = map, .planner = {}});
-  return {.energy_J = route.summary.energy_J, .time_s = route.summary.time_s, .risk = riskOf(route)};
-}
 
 RouteRiskOptions riskOptions(const costmap::CostGrid& map, const RiskLimit& limit, std::uint64_t seed) {
   RouteRiskOptions options = riskOptions(map);
@@ -182,32 +160,6 @@ Plan planWithinRisk(const Problem& problem, NamedPlanner& planner, double max_ri
     problem.watch.report((i + 1.0) / kHalvings);
   }
   return search.result(own.lower_bound_J);
-}
-
-std::vector<ParetoRoute> paretoSet(const Problem& problem, const std::function<Plan(const Problem&)>& planner,
-                                   int steps) {
-  if (steps < 2)
-    throw std::invalid_argument("paretoSet: steps = " + std::to_string(steps) + ", must be >= 2");
-  const auto price = [steps](int i, double low, double high) {
-    return i == 0 ? 0.0 : low * std::pow(high / low, (i - 1.0) / std::max(1, steps - 2));
-  };
-  std::vector<ParetoRoute> front;
-  for (int t = 0; t < steps; ++t)
-    for (int r = 0; r < steps; ++r) {
-      const costmap::CostWeights weights{
-          .energy = 1.0, .time_W = price(t, 1.0, 1e4), .risk_J = price(r, 1e2, 1e10)};
-      Plan plan = planUnder(problem, planner, weights);
-      if (problem.watch.stopped()) return {};
-      if (plan.status != RouteStatus::Found && plan.status != RouteStatus::TimedOut &&
-          plan.status != RouteStatus::NoneFound)
-        return {};
-      if (plan.status != RouteStatus::Found) continue;  // time limit of this plan, or no sample
-      const RouteDemand demand = demandOf(*problem.map, plan);
-      keep(front, {.plan = std::move(plan), .demand = demand, .weights = weights});
-      problem.watch.report((t * steps + r + 1.0) / (steps * steps));
-    }
-  std::ranges::sort(front, {}, [](const ParetoRoute& route) { return route.demand.energy_J; });
-  return front;
 }
 
 }  // namespace talus::planner

@@ -83,12 +83,4 @@ Route RoutePlanner::plan(const MapPointer& map, const PlanRequest& request, cons
                                                  .watch = problem.watch});
 }
 
-std::vector<ParetoRoute> RoutePlanner::paretoRoutes(const MapPointer& map, PlanRequest request,
-                                                    const PlannerSettings& settings, int steps) {
-  request.risk_limit.reset();
-  return paretoSet(
-      checkedProblem(map, request, settings), [&](const Problem& asked) { return search(asked, request); },
-      steps);
-}
-
 }  // namespace talus::planner

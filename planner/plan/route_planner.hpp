@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
@@ -34,11 +33,6 @@ class RoutePlanner {
   /// Plans a route in the same way as planRoute(), except that `settings.planner` is ignored.
   Route plan(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request,
              const PlannerSettings& settings);
-
-  /// Returns paretoSet() of the request with `steps` values each for the weights of time and risk. The risk
-  /// limit of the request is ignored; the chassis of the request is taken into account.
-  std::vector<ParetoRoute> paretoRoutes(const std::shared_ptr<const costmap::CostGrid>& map,
-                                        PlanRequest request, const PlannerSettings& settings, int steps);
 
  private:
   Problem checkedProblem(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request,

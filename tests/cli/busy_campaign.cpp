@@ -60,8 +60,9 @@ int busyRuns(int ancestor) {
   return busy;
 }
 
-template <typename Ready>
-int interruptedWhen(const std::string& line, const Ready& ready) {
+}  // namespace
+
+int interruptedWhenBusy(const std::string& line, int runs) {
   const pid_t child = fork();
   if (child == 0) {
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
@@ -69,20 +70,10 @@ int interruptedWhen(const std::string& line, const Ready& ready) {
   }
   int status = 0;
   for (bool sent = false; waitpid(child, &status, WNOHANG) == 0;) {
-    if (!sent && ready(child)) sent = kill(child, SIGINT) == 0;
+    if (!sent && busyRuns(child) >= runs) sent = kill(child, SIGINT) == 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-}  // namespace
-
-int interruptedWhenBusy(const std::string& line, int runs) {
-  return interruptedWhen(line, [runs](pid_t child) { return busyRuns(child) >= runs; });
-}
-
-int interruptedWhenWritten(const std::string& line, const std::string& file) {
-  return interruptedWhen(line, [&file](pid_t) { return std::filesystem::exists(file); });
 }
 
 }  // namespace talus::cli

@@ -8,7 +8,4 @@ namespace talus::cli {
 /// (processes) have used 0.5 s of CPU time each. Returns the exit code.
 int interruptedWhenBusy(const std::string& line, int runs);
 
-/// Runs a shell line and sends SIGINT as soon as the file exists. Returns the exit code.
-int interruptedWhenWritten(const std::string& line, const std::string& file);
-
 }  // namespace talus::cli

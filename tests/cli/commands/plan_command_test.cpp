@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "busy_campaign.hpp"
 #include "run_program.hpp"
 
 namespace talus::cli {
@@ -209,35 +208,6 @@ TEST(PlanCommand, UnsupportedWindowedPlanningIsRejected) {
                            folder.path());
   EXPECT_EQ(ran.code, 2);
   EXPECT_THAT(ran.err, HasSubstr("--whole-field"));
-}
-
-// Hills, on which the weights of time and risk change the route.
-std::string hills() {
-  constexpr int kSide = 250;
-  std::string text = "ncols 250\nnrows 250\nxllcorner 0\nyllcorner 0\ncellsize 0.5\n";
-  for (int row = 0; row < kSide; ++row) {
-    for (int column = 0; column < kSide; ++column)
-      text +=
-          std::to_string(0.6 * std::sin(0.1 * column) + 0.4 * std::cos(0.125 * row + 0.055 * column)) + " ";
-    text += "\n";
-  }
-  return text;
-}
-
-// The route file is written before the 36 routes of the Pareto set are planned; the stop request follows.
-TEST(PlanCommand, CancelledParetoSetIsNotDrawn) {
-  const Folder folder;
-  folder.write("dem.asc", hills());
-  const std::string line =
-      "cd '" + folder.path().string() + "' && exec '" + TALUS_PROGRAM +
-      "' plan dem.asc --resolution 0.5 --rover mer --soil mars_crusty --start 4,4 --goal 120,120 "
-      "--threads 1 -o r.geojson --pareto p.svg 2>err.txt >out.txt";
-  EXPECT_EQ(interruptedWhenWritten(line, folder / "r.geojson"), 130) << fileContent(folder / "err.txt");
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"dem.asc", "err.txt", "out.txt", "r.geojson"}));
-  EXPECT_THAT(fileContent(folder / "err.txt"),
-              HasSubstr("p.svg is not written: the Pareto set was cancelled"));
-  EXPECT_EQ(json::parse(fileContent(folder / "r.geojson"))["features"][0]["properties"].count("interrupted"),
-            0u);
 }
 
 }  // namespace plan_command_test

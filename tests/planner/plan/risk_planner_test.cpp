@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <stop_token>
 
-#include <refused.hpp>
-
+#include <talus/costmap/cost/cost_weights.hpp>
+#include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
@@ -44,16 +44,20 @@ Problem acrossRisk() {
   return problem;
 }
 
+double riskOf(const Problem& problem, const Plan& plan) {
+  return annotated(plan, {.map = *problem.map, .planner = {}}).vertices.back().immobilisation_risk;
+}
+
 TEST(RiskPlanner, RiskLimitIsMetAtHigherCost) {
   const Problem problem = acrossRisk();
   NamedPlanner planner;
   const Plan free = planner.plan(problem);
   ASSERT_EQ(free.status, RouteStatus::Found);
-  const double free_risk = demandOf(*problem.map, free).risk;
+  const double free_risk = riskOf(problem, free);
   EXPECT_NEAR(free_risk, 1 - std::exp(-0.30), 0.01);  // Closed form: 30 m of 1e-2 per metre
   const Plan safe = planWithinRisk(problem, planner, 0.05);
   ASSERT_EQ(safe.status, RouteStatus::Found) << safe.reason;
-  EXPECT_LE(demandOf(*problem.map, safe).risk, 0.05);
+  EXPECT_LE(riskOf(problem, safe), 0.05);
   EXPECT_GT(safe.cost_J, free.cost_J);
   EXPECT_GE(safe.cost_J, safe.lower_bound_J);
   // Property: the reported cost is the map's own cost, without the price of risk.
@@ -72,7 +76,7 @@ TEST(RiskPlanner, UnsatisfiableLimitReportsTheSafestRoute) {
   NamedPlanner planner;
   const Plan plan = planWithinRisk(problem, planner, 0.01);
   EXPECT_EQ(plan.status, RouteStatus::NoneFound);
-  const std::string safest = std::to_string(demandOf(*problem.map, planner.plan(problem)).risk);
+  const std::string safest = std::to_string(riskOf(problem, planner.plan(problem)));
   EXPECT_THAT(plan.reason, HasSubstr("the safest route found has " + safest.substr(0, 4)));
   EXPECT_THROW(planWithinRisk(problem, planner, 0.0), std::invalid_argument);
   EXPECT_THROW(planWithinRisk(problem, planner, 1.0), std::invalid_argument);
@@ -89,37 +93,16 @@ TEST(RiskPlanner, LimitAtTheRiskOfTheUnconstrainedRouteIsFeasible) {
     problem.map = withRisk(rows, {.correlation_length_m = 5.0, .entrapment = 1.0, .shared = {0.3, 0.3, 0.3}});
     NamedPlanner planner;
     const Plan own = planner.plan(problem);
-    const double risk = demandOf(*problem.map, own).risk;
+    const double risk = riskOf(problem, own);
     ASSERT_GT(risk, 0.05);
     const Plan kept = planWithinRisk(problem, planner, risk);
     ASSERT_EQ(kept.status, RouteStatus::Found) << kept.reason;
-    EXPECT_LE(demandOf(*problem.map, kept).risk, risk);
+    EXPECT_LE(riskOf(problem, kept), risk);
     const Plan less = planWithinRisk(problem, planner, 0.999 * risk);
     if (less.status == RouteStatus::Found) {
-      EXPECT_LE(demandOf(*problem.map, less).risk, 0.999 * risk);
+      EXPECT_LE(riskOf(problem, less), 0.999 * risk);
     }
   }
-}
-
-std::function<Plan(const Problem&)> planning(NamedPlanner& planner) {
-  return [&planner](const Problem& problem) { return planner.plan(problem); };
-}
-
-TEST(RiskPlanner, ParetoSetHasNoDominatedRoute) {
-  std::vector<std::string> rows(20, std::string(40, '0'));
-  for (std::size_t r = 4; r < 12; ++r) rows[r].replace(5, 30, 30, '2');
-  for (std::size_t r = 12; r < 20; ++r) rows[r].replace(5, 30, 30, '1');
-  Problem problem = acrossRisk();
-  problem.map = withRisk(rows);
-  NamedPlanner planner;
-  const auto front = paretoSet(problem, planning(planner), 9);
-  ASSERT_GE(front.size(), 3u);  // Property: each of the three grounds is best in one criterion
-  for (const ParetoRoute& a : front)
-    for (const ParetoRoute& b : front)
-      EXPECT_FALSE(a.demand.energy_J < b.demand.energy_J && a.demand.time_s < b.demand.time_s &&
-                   a.demand.risk < b.demand.risk);
-  for (std::size_t i = 1; i < front.size(); ++i)
-    EXPECT_GE(front[i].demand.energy_J, front[i - 1].demand.energy_J);
 }
 
 // Requests a stop at the n-th progress report.
@@ -131,21 +114,6 @@ Problem stoppedAt(int n, const Problem& problem, std::stop_source& source) {
                        },
                    .stop = source.get_token()};
   return stopped;
-}
-
-// Property: a stopped computation returns no set, because a partial set could not be distinguished from the
-// complete one.
-TEST(RiskPlanner, StoppedParetoSetIsEmpty) {
-  const Problem problem = acrossRisk();
-  NamedPlanner planner;
-  const std::size_t whole = paretoSet(problem, planning(planner), 3).size();
-  ASSERT_GE(whole, 2u);
-  for (const int n : {1, 2, 3, 5, 8, 13, 1000}) {
-    std::stop_source source;
-    const auto front = paretoSet(stoppedAt(n, problem, source), planning(planner), 3);
-    EXPECT_EQ(front.size(), n < 1000 ? 0u : whole) << n;
-    EXPECT_EQ(source.stop_requested(), n < 1000);
-  }
 }
 
 // Property: a stopped search makes no statement about prices that were not tried.
@@ -163,14 +131,6 @@ TEST(RiskPlanner, StoppedSearchIsReportedAsInterrupted) {
         << n << ": " << plan.reason;
   }
   EXPECT_GE(stops, 5);
-}
-
-TEST(RiskPlanner, MapWithoutDriveStatesIsRejected) {
-  Problem problem = acrossRisk();
-  problem.map = testing::drawn({"...", "..."});
-  NamedPlanner planner;
-  EXPECT_REFUSED(paretoSet(problem, planning(planner), 2), std::domain_error,
-                 "holds no energy, time and risk to weigh");
 }
 
 }  // namespace risk_planner_test

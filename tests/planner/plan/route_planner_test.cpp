@@ -55,16 +55,6 @@ TEST(RoutePlanner, PluginRejectsARiskLimit) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("risk_limit is not honoured")));
 }
 
-TEST(RoutePlanner, ParetoRoutesRespectTheChassisAndIgnoreTheRiskLimit) {
-  const costmap::TraversabilityMap map = built(kYard);
-  PlanRequest request = overTheYard();
-  request.chassis = stepped(map);
-  request.risk_limit = RiskLimit{.immobilisation = 1e-12};
-  const auto front = RoutePlanner().paretoRoutes(map.published(), request, {}, 2);
-  ASSERT_FALSE(front.empty());
-  for (const ParetoRoute& route : front) EXPECT_TRUE(request.chassis->violations(route.plan.points).empty());
-}
-
 TEST(RoutePlanner, ReplanningIsDeterministic) {
   const auto map = randomMap({.width = 60, .height = 50, .seed = 11, .blocked = 0.05});
   RoutePlanner planner;
