@@ -23,10 +23,7 @@ Plan NamedPlanner::plan(const Problem& problem) {
 
 Plan NamedPlanner::planOne(const Problem& problem) {
   if (settings_.planner == plannerNames().front()) return planField(problem);
-  if (drives()) {
-    if (name() == PosePlanner::kSampling) drive_.sample({.better = settings_.better});
-    return drive_.plan(problem);
-  }
+  if (drives()) return drive_.plan(problem);
   const auto field = [this](const Problem& leg) { return planField(leg); };
   return planBySampling(problem, settings_, settings_.cold ? InitialPathProvider() : field);
 }

@@ -12,8 +12,8 @@
 
 namespace talus::planner {
 
-/// Planner selected by name. The planners are the field planner (polylines from a cost-to-go field), planners
-/// of drives (arcs with a turning radius), and planners of OMPL, which improve the route of the field
+/// Planner selected by name. The planners are the field planner (polylines from a cost-to-go field), the
+/// planner of drives (arcs with a turning radius), and planners of OMPL, which improve the route of the field
 /// planner. The cost-to-go field of a map and a goal is kept for later plans. Not thread-safe: use one object
 /// per thread; the objects may share a map.
 class NamedPlanner {
@@ -24,14 +24,12 @@ class NamedPlanner {
   explicit NamedPlanner(const std::string& name = {});
 
   /// Returns true if the planner computes drives, that is, takes account of headings and the turning radius.
-  bool drives() const noexcept {
-    return settings_.planner == PosePlanner::kName || settings_.planner == PosePlanner::kSampling;
-  }
+  bool drives() const noexcept { return settings_.planner == PosePlanner::kName; }
 
   /// Returns the canonical name of the planner.
   const std::string& name() const noexcept { return settings_.planner; }
 
-  /// Sets a function that is called with the cost [J] of each improved route. Only sampling planners call it,
+  /// Sets a function that is called with the cost [J] of each improved route. Only planners of OMPL call it,
   /// and only for problems without via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 

@@ -141,11 +141,7 @@ PosePlan PosePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::
   PosePlan leg = search_.plan(asked);
   if (leg.status == RouteStatus::Cancelled && !known) return leg;
   if (known && (leg.status != RouteStatus::Found || along.cost_J < leg.cost_J)) leg = std::move(along);
-  if (leg.status != RouteStatus::Found || !sampling_ || asked.watch.stopped()) return leg;
-  asked.time_limit_s = time.share_s();
-  sampling_->seed = problem.seed;
-  if (sampling_->better) sampling_->better(leg.cost_J);
-  return improvedBySampling(asked, leg, *sampling_);
+  return leg;
 }
 
 PosePlan PosePlanner::drivenWithin(PoseProblem asked, const Problem& problem) {

@@ -5,7 +5,6 @@
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>
-#include <talus/planner/pose/pose_sampling.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -17,13 +16,6 @@ namespace talus::planner {
 class PosePlanner {
  public:
   static constexpr std::string_view kName = "hybrid";  ///< name in plannerNames()
-  /// Name in plannerNames(): the drive of kName, then improved by RRT*.
-  static constexpr std::string_view kSampling = "RRTstarSE2";
-
-  explicit PosePlanner(const HybridOptions& options = {}) : search_(options) {}
-
-  /// Enables the improvement of each leg by improvedBySampling().
-  void sample(const PoseSamplingSettings& settings) { sampling_ = settings; }
 
   /// Returns a drive, or a plan with the reason why there is no drive. With a goal tolerance, the drive ends
   /// at the goal or at the end of the any-angle route of FieldPlanner, whichever is cheaper. Throws
@@ -35,7 +27,6 @@ class PosePlanner {
   PosePlan drivenWithin(PoseProblem asked, const Problem& problem);
   PosePlan alongRoute(const PoseProblem& asked, const Problem& problem);
 
-  std::optional<PoseSamplingSettings> sampling_;
   HybridSearch search_;
   FieldPlanner field_;
   LowerBound bound_;

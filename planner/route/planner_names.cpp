@@ -82,8 +82,8 @@ std::string offered() {
 }  // namespace
 
 const std::vector<std::string>& plannerNames() {
-  static const std::vector<std::string> names{
-      "field", "hybrid", "RRTstarSE2", "RRTstar", "InformedRRTstar", "BITstar", "ABITstar", "SST", "FMT"};
+  static const std::vector<std::string> names{"field",   "hybrid",   "RRTstar", "InformedRRTstar",
+                                              "BITstar", "ABITstar", "SST",     "FMT"};
   return names;
 }
 

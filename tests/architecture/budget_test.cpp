@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 628},    {"terramech", 23155}, {"maps", 7472},     {"costmap", 14897},
-                           {"planner", 24972}, {"cli", 15203},       {"examples", 1703}, {"tests", 62814}};
+                           {"planner", 24536}, {"cli", 15203},       {"examples", 1703}, {"tests", 62736}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -201,8 +201,8 @@ const char* name(SiteKind kind) {
 }
 
 const std::vector<std::string>& planners() {
-  static const std::vector<std::string> names{"field",    "hybrid", "RRTstar", "InformedRRTstar", "BITstar",
-                                              "ABITstar", "SST",    "FMT",     "RRTstarSE2"};
+  static const std::vector<std::string> names{"field",   "hybrid",   "RRTstar", "InformedRRTstar",
+                                              "BITstar", "ABITstar", "SST",     "FMT"};
   return names;
 }
 
