@@ -179,19 +179,4 @@ GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept {
   return {.pull = {pull, (pull - low) / kTail}, .sinkage = {sinkage, (deep - sinkage) / kTail}};
 }
 
-GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,
-                             const maps::Point& place) {
-  const double prior = variation.pull_std * variation.pull_std;
-  double weight = 1.0, pull = 0.0, sinkage = 0.0;
-  for (const PlaceEvidence& e : evidence) {
-    const double w = sparseKernel(place, e.place, variation.correlation_length_m) * prior / e.variance;
-    weight += w;
-    pull += w * e.pull;
-    sinkage += w * e.sinkage;
-  }
-  const double left = 1.0 / std::sqrt(weight);
-  return {.pull = {pull / weight, left * variation.pull_std},
-          .sinkage = {sinkage / weight, left * variation.sinkage_std}};
-}
-
 }  // namespace talus::costmap

@@ -6,10 +6,8 @@
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/maps/grid/grid.hpp>
 
-/// Spatial inference: estimates of the ground between places with evidence. Two published methods can use the
-/// same evidence; docs/measurements/costmap.md compares both. The map uses the Gaussian process. A
-/// "departure" is the difference of a quantity from the mean (or, where stated, from the prior) of its
-/// terrain class.
+/// Spatial inference: estimates of the ground between places with evidence. A "departure" is the difference
+/// of a quantity from the mean (or, where stated, from the prior) of its terrain class.
 namespace talus::costmap {
 
 /// Number of standard deviations within which a departure counts as ordinary variation of a class [-].
@@ -134,13 +132,5 @@ std::optional<GroundBelief> lowered(const WeakPlace& place, const Variation& var
 /// of both means, and the standard deviation by which mean + 6 std is the greater of both. The order of
 /// several combinations has no effect.
 GroundBelief weaker(const GroundBelief& a, const GroundBelief& b) noexcept;
-
-/// Returns the departure at `place` by Bayesian generalised kernel inference (doherty_2019): a weighted mean
-/// of the departures y of the evidence around the place, conjugate to the prior. k is sparseKernel() of the
-/// distance.
-///   mean = sum k y w / (1 + sum k w),  variance = prior variance / (1 + sum k w),
-///   w = prior variance / measurement variance
-GroundBelief kernelInference(const std::vector<PlaceEvidence>& evidence, const Variation& variation,
-                             const maps::Point& place);
 
 }  // namespace talus::costmap

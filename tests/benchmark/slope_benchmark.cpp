@@ -1,8 +1,8 @@
 #include <benchmark/benchmark.h>
 
-#include <talus/terramech/mobility/slope_table.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
-/// Time of rover equilibria on inclined planes, and of a ground's whole table.
+/// Time of rover equilibria on inclined planes.
 namespace talus::terramech {
 namespace {
 
@@ -35,11 +35,6 @@ void slopeEquilibrium(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(slopeEquilibrium);
-
-void slopeTable(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(SlopeTable{SlopeEquilibrium{kSand, kRover}});
-}
-BENCHMARK(slopeTable)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace talus::terramech

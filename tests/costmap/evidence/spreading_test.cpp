@@ -28,14 +28,6 @@ TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
   const double k = sparseKernel(2.0, 4.0);
   // Property: a place 2 m away that is known exactly reduces the variance by the share k^2 at most.
   EXPECT_GE(GaussianProcess(many, kVariation).at({2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
-  // Kernel inference counts repeated readings as independent and underestimates the standard deviation; the
-  // map therefore uses the Gaussian process.
-  EXPECT_LT(kernelInference(many, kVariation, {2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
-}
-
-TEST(KernelInference, OnePlaceIsTheConjugateUpdate) {
-  const std::vector<PlaceEvidence> one{{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}};
-  EXPECT_NEAR(kernelInference(one, kVariation, {0, 0}).pull.value, 0.05, 1e-12);
 }
 
 }  // namespace spreading_test
