@@ -34,12 +34,12 @@ int main() {
                              .shear_modulus_m = 0.025};
   const terramech::Wheel wheel{.radius_m = 0.15, .width_m = 0.15};
 
-  terramech::LinearOffsetFit fit;
+  terramech::MohrCoulombLine line;
   for (int k = 0; k < 40; ++k) {
     const terramech::WheelOperation operation{.load_N = 60.0 + 3.0 * k, .slip = 0.2 + 0.015 * k};
-    fit.add(terramech::linearOffset(wheel, measured(soil, wheel, operation), soil.shear_modulus_m));
+    line.add(terramech::linearOffset(wheel, measured(soil, wheel, operation), soil.shear_modulus_m).pair());
     if (k % 10 != 9) continue;
-    const terramech::ShearStrength strength = fit.estimate();
+    const terramech::ShearStrength strength = line.estimate();
     std::printf("%2d samples: cohesion %5.0f Pa, friction angle %4.1f deg\n", k + 1, strength.cohesion_Pa,
                 std::atan(strength.tan_friction) / talus::kDegree);
   }

@@ -69,8 +69,6 @@ void bind(CLI::App& command, EstimateCommand& options) {
   command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
-  command.add_flag("--keep-m1", options.whole_equation,
-                   "solve the full Eq. 2.9 with the term M1 instead of Eq. 2.11 (linear-offset)");
   command.add_flag("--recursive", options.recursive,
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");

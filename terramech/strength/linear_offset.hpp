@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <talus/terramech/contact/wheel.hpp>
 #include <talus/terramech/contact/wheel_sample.hpp>
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
@@ -51,23 +49,5 @@ LinearOffsetStresses linearOffsetStresses(const Wheel& wheel, const WheelSample&
 /// Returns the drawbar pull [N] of the linear-offset stresses, in closed form (thesis Eq. 3.1 with the
 /// stresses of Eq. 2.1).
 double linearOffsetDrawbarPull_N(const Wheel& wheel, const WheelSample& sample, const ShearSoil& soil);
-
-/// Recursive least-squares fit of the complete Eq. 2.9, including M1, in constant memory.
-///
-/// The residual M1 c t + c + M3 t - M4, with t = tan(phi), is linear in (c t, c, t, -1). The 4x4 Gram matrix
-/// of (M1, 1, M3, M4) therefore contains all information of the samples. estimate() minimises the sum of
-/// squared residuals by Gauss-Newton.
-class LinearOffsetFit {
- public:
-  /// Adds the coefficients of one sample.
-  void add(const LinearOffsetCoefficients& m);
-
-  /// Returns the fitted c and tan(phi). Throws the exceptions of MohrCoulombLine::estimate().
-  ShearStrength estimate() const;
-
- private:
-  MohrCoulombLine simplified_;  // gives initial values and condition number
-  Eigen::Matrix4d gram_ = Eigen::Matrix4d::Zero();
-};
 
 }  // namespace talus::terramech

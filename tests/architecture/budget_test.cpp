@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 628},    {"terramech", 23025}, {"maps", 7472},     {"costmap", 14872},
-                           {"planner", 24536}, {"cli", 15203},       {"examples", 1703}, {"tests", 62628}};
+const Budget kBudgets[] = {{"common", 628},    {"terramech", 22920}, {"maps", 7472},     {"costmap", 14872},
+                           {"planner", 24536}, {"cli", 15201},       {"examples", 1703}, {"tests", 62581}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -22,11 +22,6 @@ void validate(const EstimateOptions& options) {
   requireOneOf(options.method, estimateMethods(), "--method");
   if (!options.shear_modulus.empty() && !statedModulus(options))
     requireOneOf(options.shear_modulus, modulusMethods(), "--shear-modulus");
-  if (options.whole_equation && options.method != "linear-offset") {
-    throw InputError({.where = "--keep-m1",
-                      .reason = "applies to linear-offset only",
-                      .remedy = "use --method linear-offset, or remove the option"});
-  }
   if (options.plate_width_m > 0.0 && options.method != "bevameter") {
     throw InputError({.where = "--plate-width",
                       .reason = "applies to plate tests only",

@@ -77,28 +77,6 @@ ShearStrength withPriors(const ShearStrength& fit, const std::vector<StrengthPri
   return priors.empty() ? fit : withPrior(fit, priors);
 }
 
-// Line of a method for a known K, in constant memory; for linear-offset with M1 if requested.
-class LineFit {
- public:
-  explicit LineFit(const EstimateOptions& options)
-      : pair_(pairOf(options.method)), whole_equation_(options.whole_equation) {}
-
-  void add(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m) {
-    if (whole_equation_) {
-      whole_.add(linearOffset(wheel, sample, shear_modulus_m));
-    } else {
-      line_.add(pair_(wheel, sample, shear_modulus_m));
-    }
-  }
-  ShearStrength estimate() const { return whole_equation_ ? whole_.estimate() : line_.estimate(); }
-
- private:
-  PairOf pair_;
-  bool whole_equation_;
-  MohrCoulombLine line_;
-  LinearOffsetFit whole_;
-};
-
 // Points to which the line is fitted.
 std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows& rows, double modulus) {
   std::vector<StressPair> points;
@@ -115,10 +93,9 @@ void fitTogether(const EstimateOptions& options, const WheelRows& rows, const st
                              : findModulus(criterionOf(options.shear_modulus), rows, watch);
   if (watch.stopped()) return;
   warnModulusUndetermined(modulus, estimate);
-  LineFit line(options);
-  for (std::size_t k = 0; k < rows.samples.size(); ++k)
-    line.add(rows.wheels[k], rows.samples[k], modulus.shear_modulus_m);
+  MohrCoulombLine line;
   estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
+  for (const StressPair& point : estimate.points) line.add(point);
   estimate.take(withPriors(line.estimate(), strengthPriors(priors)));
   estimate.shear_modulus_m = modulus.shear_modulus_m;
 }
@@ -130,19 +107,13 @@ class Recursion {
   Recursion(const EstimateOptions& options, const Wheel& wheel, const std::vector<SoilPrior>& priors)
       : known_(knownModulus(options, priors)),
         priors_(strengthPriors(priors)),
-        line_(options),
-        ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pairOf(options.method)}) {
-    if (options.whole_equation && !known_) {
-      throw InputError({.where = "--keep-m1",
-                        .reason = "--recursive requires a known K",
-                        .remedy = "pass --shear-modulus in metres"});
-    }
-  }
+        pair_(pairOf(options.method)),
+        ladder_(wheel, {.criterion = criterionOf(options.shear_modulus), .pair = pair_}) {}
 
   // Returns false if the sample gives no equation.
   bool add(const Wheel& wheel, const WheelSample& sample) {
     if (!known_) return ladder_.add(sample);
-    line_.add(wheel, sample, *known_);
+    line_.add(pair_(wheel, sample, *known_));
     return true;
   }
   ShearStrength strength() const {
@@ -155,7 +126,8 @@ class Recursion {
  private:
   std::optional<double> known_;
   std::vector<StrengthPrior> priors_;
-  LineFit line_;
+  PairOf pair_;
+  MohrCoulombLine line_;
   ShearModulusGrid ladder_;
 };
 

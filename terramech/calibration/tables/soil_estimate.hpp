@@ -27,8 +27,7 @@ struct EstimateOptions {
   std::string prior;
   std::string rover;  ///< library name or file of the rover with default wheel dimensions; may be empty
   std::string model;  ///< wong-reece: file of a refined model whose effects are applied; empty: no effects
-  bool whole_equation = false;  ///< linear-offset: include the coefficient M1 of thesis Eq. 2.9
-  bool recursive = false;       ///< process rows one by one and store the estimate after each row
+  bool recursive = false;  ///< process rows one by one and store the estimate after each row
   /// bevameter: width of all plates for a table without a width column; 0: not given.
   double plate_width_m = 0.0;
   double noise = 0.05;  ///< relative standard deviation of each reading [-]

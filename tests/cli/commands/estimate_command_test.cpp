@@ -179,21 +179,6 @@ TEST(EstimateCommand, SinglePlateYieldsOnlyItsModulus) {
   EXPECT_TRUE(result["cohesion_Pa"].is_null());
 }
 
-TEST(EstimateCommand, M1IsKeptOnRequest) {
-  // Property: the term M1 changes the cohesion by less than 500 Pa; recursive and batch results are equal.
-  const Folder folder;
-  const std::string table = folder.write("drive.csv", drive());
-  const std::vector<std::string> plain{"--method", "linear-offset", "--shear-modulus", "0.015"};
-  auto kept = plain;
-  kept.emplace_back("--keep-m1");
-  auto recursive = kept;
-  recursive.emplace_back("--recursive");
-  const double without = estimated(plain, table)["cohesion_Pa"], with = estimated(kept, table)["cohesion_Pa"];
-  EXPECT_GT(std::abs(with - without), 1.0);
-  EXPECT_LT(std::abs(with - without), 500.0);
-  EXPECT_EQ(estimated(recursive, table)["cohesion_Pa"], with);
-}
-
 TEST(EstimateCommand, ImplausibleSoilIsReported) {
   // Property: the Wong-Reece model does not describe a sinkage that triples with slip at constant load.
   const Folder folder;
@@ -257,10 +242,6 @@ TEST(EstimateCommand, ErrorsAreOneLineWithTheirExitCode) {
            {{"estimate", good, "--method", "iagnemma", "--shear-modulus", "soft"}, 2, "soft"},
            {{"estimate", good, "--method", "iagnemma", "--prior", "no_such"}, 2, "no_such"},
            {{"estimate", plates, "--method", "bevameter", "--recursive"}, 2, "--recursive"},
-           {{"estimate", good, "--method", "iagnemma", "--keep-m1"}, 2, "--keep-m1"},
-           {{"estimate", good, "--method", "linear-offset", "--keep-m1", "--recursive"},
-            2,
-            "--shear-modulus"},
            {{"estimate", plates, "--method", "bevameter", "--prior", "sand"}, 2, "no shear test"},
            {{"estimate", good, "--method", "wong-reece", "--prior", "no_such"}, 2, "no_such"},
        }) {
