@@ -15,7 +15,6 @@
 #include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
 namespace talus::cli {

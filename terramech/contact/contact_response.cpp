@@ -139,14 +139,16 @@ ForceVector scale(const Wheel& wheel) {
 
 }  // namespace
 
-ContactSoil contactSoil(const Soil& soil, double width_m) {
-  return {.cohesion_Pa = soil.cohesion_Pa,
-          .friction_angle_rad = soil.friction_angle_rad,
-          .sinkage_exponent = soil.sinkage_exponent,
-          .sinkage_modulus = sinkageModulus(soil, width_m),
-          .shear_modulus_m = soil.shear_modulus_m,
-          .c1 = soil.c1,
-          .c2 = soil.c2};
+Soil soilOf(const ContactSoil& contact) {
+  return {.name = "contact",
+          .cohesion_Pa = contact.cohesion_Pa,
+          .friction_angle_rad = contact.friction_angle_rad,
+          .sinkage_exponent = contact.sinkage_exponent,
+          .cohesive_modulus = 0.0,
+          .frictional_modulus = contact.sinkage_modulus,
+          .shear_modulus_m = contact.shear_modulus_m,
+          .c1 = contact.c1,
+          .c2 = contact.c2};
 }
 
 ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const ContactState& state) {

@@ -22,8 +22,8 @@ struct ContactSoil {
   double c2 = 0.32;  ///< increase of theta_m / theta_1 per unit slip [-]
 };
 
-/// Returns the parameters of `soil` under a wheel of width b = width_m > 0.
-ContactSoil contactSoil(const Soil& soil, double width_m);
+/// Returns the Soil with the parameters of a ContactSoil: k_c = 0, k_phi = k.
+Soil soilOf(const ContactSoil& contact);
 
 /// Sinkage and slip of a driven wheel of radius r.
 struct ContactState {

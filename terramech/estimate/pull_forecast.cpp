@@ -6,7 +6,6 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {

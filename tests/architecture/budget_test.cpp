@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 628},    {"terramech", 22920}, {"maps", 7472},     {"costmap", 14872},
-                           {"planner", 24536}, {"cli", 15201},       {"examples", 1703}, {"tests", 62581}};
+const Budget kBudgets[] = {{"common", 628},    {"terramech", 22813}, {"maps", 7472},     {"costmap", 14872},
+                           {"planner", 24536}, {"cli", 15200},       {"examples", 1703}, {"tests", 62664}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

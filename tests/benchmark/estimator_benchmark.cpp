@@ -1,9 +1,9 @@
 // Time per sample of the recursive estimators; goals: 10 us for the linear ones, 1 ms for the full one.
 // Measures adding one sample and computing the estimate.
 #include <benchmark/benchmark.h>
+#include <thesis_runs.hpp>
 
 #include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/strength/iagnemma.hpp>
 #include <talus/terramech/strength/shear_modulus_grid.hpp>
 

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <thesis_runs.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/strength/iagnemma.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 

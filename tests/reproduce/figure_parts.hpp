@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/strength/mohr_coulomb_line.hpp>
 
 #include "thesis_figures.hpp"

@@ -5,12 +5,12 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <thesis_runs.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/strength/iagnemma.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <thesis_runs.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/mobility/category.hpp>
 
 #include "thesis_figures.hpp"

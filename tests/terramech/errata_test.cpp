@@ -5,12 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include <thesis_runs.hpp>
+
 #include <talus/common/constants.hpp>
 #include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/strength/linear_offset.hpp>
 

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/contact/contact_response.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 /// The likelihood of soil_posterior.hpp by quadrature instead of linearisation, for tests.
 namespace talus::terramech {

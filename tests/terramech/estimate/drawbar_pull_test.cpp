@@ -2,9 +2,9 @@
 #include <stdexcept>
 
 #include <refused.hpp>
+#include <thesis_runs.hpp>
 
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 #include "linear_world.hpp"
 

@@ -1,9 +1,10 @@
 #include <cmath>
 #include <stop_token>
 
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/estimate/many_samples.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace many_samples_test {

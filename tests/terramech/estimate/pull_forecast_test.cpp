@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/pull_forecast.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace pull_forecast_test {

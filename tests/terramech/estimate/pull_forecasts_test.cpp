@@ -1,5 +1,6 @@
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/estimate/pull_forecasts.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace pull_forecasts_test {

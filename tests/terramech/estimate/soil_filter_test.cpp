@@ -1,7 +1,8 @@
 #include <cmath>
 
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace soil_filter_test {

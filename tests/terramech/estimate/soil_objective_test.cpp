@@ -1,7 +1,8 @@
 #include <cmath>
 
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/estimate/soil_objective.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 
 #include "exact_likelihood.hpp"
 

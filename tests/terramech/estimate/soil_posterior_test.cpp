@@ -4,10 +4,10 @@
 
 #include <Eigen/LU>
 #include <refused.hpp>
+#include <thesis_runs.hpp>
 
 #include <talus/common/constants.hpp>
 #include <talus/terramech/estimate/soil_posterior.hpp>
-#include <talus/terramech/estimate/thesis_runs.hpp>
 #include <talus/terramech/numerics/normal_distribution.hpp>
 
 #include "exact_likelihood.hpp"

@@ -1,7 +1,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <thesis_runs.hpp>
+
 #include <talus/terramech/strength/iagnemma.hpp>
 #include <talus/terramech/strength/shear_modulus_grid.hpp>
 

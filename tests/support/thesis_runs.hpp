@@ -1,13 +1,14 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
 
-#include <talus/terramech/contact/soil.hpp>
-#include <talus/terramech/contact/wheel.hpp>
 #include <talus/terramech/contact/wheel_sample.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/estimate/soil_mixture.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
 
 /// Simulated telemetry of the thesis (section 2.3): soils drawn from Table 2.1, and a wheel driven over them
 /// with the slip pattern of the thesis.
@@ -41,16 +42,33 @@ class ThesisRuns {
   explicit ThesisRuns(std::uint64_t seed) : random_(seed) {}
 
   /// Returns the next run.
-  ThesisRun next(const ThesisRunOptions& options = {});
+  ThesisRun next(const ThesisRunOptions& options = {}) {
+    static const SoilMixture classes = thesisSoils();
+    ThesisRun run;
+    run.soil_class = static_cast<int>(random_() % classes.size());
+    SoilVector y;
+    for (double& value : y) value = even();
+    run.soil = classes[static_cast<std::size_t>(run.soil_class)].at(y);
+    const Soil soil = soilOf(run.soil);
+    const auto noisy = [&](double value) { return value * (1.0 + options.noise * normalQuantile(even())); };
+    for (int k = 0; k < options.samples; ++k) {
+      const double slip = 0.2 + 0.1 * (6 - std::abs(k % 12 - 6));
+      const double load = options.load_scale * (60.0 + 40.0 * even());
+      const WheelForces f = equilibrium(soil, options.wheel, {.load_N = load, .slip = slip});
+      const WheelSample truth{load, f.torque_Nm, f.sinkage_m, slip};
+      run.truth.push_back(truth);
+      run.pull_over_load.push_back(f.drawbar_pull_N / load);
+      run.samples.push_back({noisy(load), noisy(f.torque_Nm), noisy(f.sinkage_m), noisy(slip)});
+    }
+    return run;
+  }
 
  private:
-  double even();
-  double normal();
+  // Uniform in (0, 1) from the top 53 bits, never 0. Distributions of the standard library differ between
+  // implementations.
+  double even() { return (static_cast<double>(random_() >> 11U) + 0.5) * 0x1p-53; }
 
   std::mt19937_64 random_;
 };
-
-/// Returns the Soil with the parameters of a ContactSoil: k_c = 0, k_phi = k.
-Soil soilOf(const ContactSoil& contact);
 
 }  // namespace talus::terramech

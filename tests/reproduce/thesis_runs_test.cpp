@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/terramech/estimate/thesis_runs.hpp>
+#include <thesis_runs.hpp>
 
 namespace talus::terramech {
 namespace thesis_runs_test {
