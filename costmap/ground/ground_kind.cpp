@@ -56,9 +56,4 @@ GroundBelief GroundKind::belief(const GroundBelief& prior, const GroundClass& gr
                       std::min(std / ground.pull_std, 1.0) * ground.sinkage_std}};
 }
 
-bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept {
-  return belief.pull.value <= than.pull.value && belief.pull.std >= than.pull.std &&
-         belief.sinkage.value >= than.sinkage.value;
-}
-
 }  // namespace talus::costmap

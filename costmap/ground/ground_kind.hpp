@@ -41,9 +41,4 @@ struct GroundKind {
   GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
 };
 
-/// Returns true if ground of the estimate `belief` costs at least as much as ground of the estimate `than`,
-/// at any gradient and on any class: DP/W is no greater, and its standard deviation and the sinkage are no
-/// smaller.
-bool noBetter(const GroundBelief& belief, const GroundBelief& than) noexcept;
-
 }  // namespace talus::costmap

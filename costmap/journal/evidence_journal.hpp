@@ -39,7 +39,7 @@ class EvidenceJournal {
   EvidenceJournal(const EvidenceJournal&) = delete;
   EvidenceJournal& operator=(const EvidenceJournal&) = delete;
 
-  /// Appends the rows of a drive with its identifier `drive` (driveId()), in a new transaction unless one is
+  /// Appends the rows of a drive with its identifier `drive` (DriveId), in a new transaction unless one is
   /// open. The call has no effect if the journal contains the drive. `continued` is the identifier of the
   /// drive without these rows, if the journal contains that drive. Throws InputError if the disk is full or
   /// if another process keeps the journal for more than 30 s, and std::invalid_argument for an invalid

@@ -40,7 +40,7 @@ struct DriveEntry {
 /// number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// Returns true if the id has 16 hexadecimal digits, like driveId(), or the form "source NAME" of Talus
+/// Returns true if the id has 16 hexadecimal digits, like DriveId, or the form "source NAME" of Talus
 /// 0.1.0.
 bool isDriveId(const std::string& id);
 

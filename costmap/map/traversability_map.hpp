@@ -79,7 +79,7 @@ class TraversabilityMap {
   /// Returns false if the map has no such block or terrain class.
   bool restore(const SavedBlock& saved);
 
-  /// Returns the identifiers (driveId()) of the drives whose telemetry the map contains, sorted.
+  /// Returns the identifiers (DriveId) of the drives whose telemetry the map contains, sorted.
   const std::set<std::string>& drives() const noexcept { return drives_; }
   /// Records that the map contains the drive `id`. `continued` is the identifier of the shorter drive that
   /// `id` replaces; empty: `id` replaces no drive.

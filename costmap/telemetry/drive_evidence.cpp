@@ -95,12 +95,6 @@ std::string othersFinding(std::size_t rows) {
 
 }  // namespace
 
-std::string driveId(const terramech::Telemetry& telemetry) {
-  DriveId id;
-  id.add(telemetry);
-  return id.text();
-}
-
 struct DriveIntake::State {
   TraversabilityMap& map;
   EvidenceJournal* journal;

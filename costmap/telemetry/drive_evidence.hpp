@@ -54,10 +54,6 @@ struct IntakeOptions {
   bool settles = false;
 };
 
-/// Returns the identifier of a drive: a checksum of the values that maps use, as 16 hexadecimal digits. The
-/// file name, the order of columns and other columns have no effect.
-std::string driveId(const terramech::Telemetry& telemetry);
-
 /// Adds the telemetry of one drive to a map in parts, while the telemetry is received. The state of the
 /// sensor checks is kept from one part to the next. A part must contain whole moments, i.e. the rows of all
 /// wheels at one time. The verification of a sensor takes effect from the next row on, and a bias of torque

@@ -97,10 +97,6 @@ Pose after(const Pose& from, const Arc& arc) noexcept {
           from.heading_rad + turn};
 }
 
-std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics) {
-  return ShortestCurves(kinematics)(from, to);
-}
-
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost) {
   const terramech::Rover& rover = model.rover();
   if (rover.steering == terramech::Steering::Ackermann && rover.turning_radius_m <= 0.0)

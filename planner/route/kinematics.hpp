@@ -66,7 +66,4 @@ class ShortestCurves {
   bool may_reverse_;
 };
 
-/// Returns the path of ShortestCurves for a single pair of poses.
-std::vector<Arc> shortestArcs(const Pose& from, const Pose& to, const Kinematics& kinematics);
-
 }  // namespace talus::planner

@@ -24,8 +24,6 @@ struct WheelRows {
   std::vector<RejectedRow> rejected;
   /// Returns the samples with their wheels.
   std::vector<WheelReading> readings() const;
-
-  const RejectedRow* firstRejected() const { return rejected.empty() ? nullptr : &rejected.front(); }
 };
 
 /// Options of readWheelRows().

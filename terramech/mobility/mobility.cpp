@@ -248,25 +248,4 @@ MobilityState MobilityCurve::at(double slope_rad) const noexcept {
   return state;
 }
 
-double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
-  const double load_N = wheelLoad_N(rover) * std::cos(slope_rad);
-  const auto excess = [&](double slip) {
-    return equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip}).drawbar_pull_N / load_N -
-           std::tan(slope_rad);
-  };
-  double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
-  if (low < 0.0 && excess(-1.0) > 0.0) throw std::domain_error("locked wheels slide down this slope");
-  while (excess(high) < 0.0) {
-    if (high >= 1.0)
-      throw std::domain_error("the required drawbar pull exceeds the available drawbar pull at any slip");
-    low = high;
-    high = std::min(1.0, high + 0.01);
-  }
-  for (int step = 0; step < 50; ++step) {
-    const double middle = 0.5 * (low + high);
-    (excess(middle) < 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 }  // namespace talus::terramech

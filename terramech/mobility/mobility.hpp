@@ -102,9 +102,4 @@ MobilityReference mobilityReference(const Soil& soil, const Rover& rover,
 MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
                                     const MobilityOptions& options = {});
 
-/// Returns the slip on one slope by root finding, 200 times slower than the table of MobilityCurve. Tests
-/// compare the table with this function. Throws std::domain_error for a slope outside [minSlope_rad(),
-/// maxSlope_rad()].
-double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad);
-
 }  // namespace talus::terramech

@@ -17,6 +17,11 @@ GroundBelief anyBelief(std::mt19937_64& random) {
 
 const GroundBelief kPrior{.pull = {0.137, 0.09}, .sinkage = {0.23, 0.1}};
 
+bool noBetter(const GroundBelief& belief, const GroundBelief& than) {
+  return belief.pull.value <= than.pull.value && belief.pull.std >= than.pull.std &&
+         belief.sinkage.value >= than.sinkage.value;
+}
+
 // Property: at every level the rounded estimate is no better than the exact one in any quantity, and rounds
 // to itself.
 TEST(GroundKind, RoundingIsConservativeAtEveryLevel) {

@@ -29,7 +29,7 @@ class EvidenceJournalTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-// A drive id in the format of driveId().
+// A drive id in the format of DriveId.
 std::string idOf(std::int64_t number) {
   std::string digits = std::to_string(number);
   return digits.insert(0, 16 - digits.size(), '0');

@@ -11,6 +11,12 @@
 namespace talus::costmap {
 namespace drive_id_test {
 
+std::string driveId(const terramech::Telemetry& telemetry) {
+  DriveId id;
+  id.add(telemetry);
+  return id.text();
+}
+
 // A table with every used column: two accepted rows and a rejected one between them.
 terramech::Telemetry table() {
   terramech::Telemetry out;

@@ -26,7 +26,7 @@ TEST(Kinematics, ShortestCurvesReachTheTargetAndKeepTheRadius) {
         to{{place(random), place(random)}, heading(random)};
     double length[2] = {0.0, 0.0};
     for (const bool reverse : {false, true}) {
-      const auto arcs = shortestArcs(from, to, {.turning_radius_m = 1.5, .may_reverse = reverse});
+      const auto arcs = ShortestCurves({.turning_radius_m = 1.5, .may_reverse = reverse})(from, to);
       const Pose reached = end(from, arcs);
       EXPECT_NEAR(reached.place.x_m, to.place.x_m, 1e-6);
       EXPECT_NEAR(reached.place.y_m, to.place.y_m, 1e-6);
@@ -46,14 +46,14 @@ TEST(Kinematics, ShortestCurvesReachTheTargetAndKeepTheRadius) {
 // Below a radius of a millimetre OMPL's Reeds-Shepp curves do not reach the target, and an assertion ends
 // the process.
 TEST(Kinematics, TurningRadiusHasALowerBound) {
-  const Pose from{{0.0, 0.0}, 0.3}, to{{80.0, 17.0}, -2.0};
+  const Pose from{{0.0, 0.0}, 0.3};
   for (const double bad : {0.0, 1e-15, 1e-9, 1e-4, 2000.0, std::nan("")})
-    EXPECT_THROW(shortestArcs(from, to, {.turning_radius_m = bad}), std::invalid_argument) << bad;
+    EXPECT_THROW(ShortestCurves({.turning_radius_m = bad}), std::invalid_argument) << bad;
   // Property: with the smallest radius a path across the longest map ends at its target.
   const Pose far{{130000.0, 900.0}, 2.0};
   for (const bool reverse : {false, true}) {
     const Pose reached =
-        end(from, shortestArcs(from, far, {.turning_radius_m = 1e-3, .may_reverse = reverse}));
+        end(from, ShortestCurves({.turning_radius_m = 1e-3, .may_reverse = reverse})(from, far));
     EXPECT_NEAR(reached.place.x_m, far.place.x_m, 1e-2);
     EXPECT_NEAR(reached.place.y_m, far.place.y_m, 1e-2);
   }

@@ -31,9 +31,9 @@ TEST(WheelRows, ReadsSamplesWithWheelLineAndText) {
   EXPECT_FALSE(rows.one_wheel);
   EXPECT_EQ(rows.wheel.radius_m, 0.1);
   EXPECT_EQ(rows.readings()[1].wheel.radius_m, 0.15);
-  ASSERT_NE(rows.firstRejected(), nullptr);
-  EXPECT_EQ(rows.firstRejected()->line, 3U);
-  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("sinkage_m = 0"));
+  ASSERT_FALSE(rows.rejected.empty());
+  EXPECT_EQ(rows.rejected.front().line, 3U);
+  EXPECT_THAT(rows.rejected.front().reason, HasSubstr("sinkage_m = 0"));
 }
 
 TEST(WheelRows, BrakedWheelIsUsedOnlyIfSlipIsNotRequired) {
@@ -64,8 +64,8 @@ TEST(WheelRows, WheelAtASlipAngleIsRejected) {
       read("slip_angle_rad," + kHead +
            "0.09,80,2,0.01,0.3,0.1,0.2,a\n-0.11,80,2,0.01,0.3,0.1,0.2,a\n,80,2,0.01,0.3,0.1,0.2,a\n");
   EXPECT_THAT(rows.lines, ElementsAre(2, 4));
-  ASSERT_NE(rows.firstRejected(), nullptr);
-  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
+  ASSERT_FALSE(rows.rejected.empty());
+  EXPECT_THAT(rows.rejected.front().reason, HasSubstr("slip_angle_rad = -0.11: only straight wheels"));
 }
 
 TEST(WheelRows, SideForceWithoutSlipAngleIsRejected) {
@@ -73,9 +73,9 @@ TEST(WheelRows, SideForceWithoutSlipAngleIsRejected) {
   const WheelRows rows =
       read("side_force_N,slip_angle_rad," + kHead + "12,," + row + "0,," + row + ",," + row + "12,0," + row);
   EXPECT_THAT(rows.lines, ElementsAre(3, 4, 5));
-  ASSERT_NE(rows.firstRejected(), nullptr);
-  EXPECT_EQ(rows.firstRejected()->line, 2U);
-  EXPECT_THAT(rows.firstRejected()->reason, HasSubstr("side_force_N = 12 without slip_angle_rad"));
+  ASSERT_FALSE(rows.rejected.empty());
+  EXPECT_EQ(rows.rejected.front().line, 2U);
+  EXPECT_THAT(rows.rejected.front().reason, HasSubstr("side_force_N = 12 without slip_angle_rad"));
   EXPECT_THAT(rows.words.front().values, ElementsAre("a", "a", "a"));
   EXPECT_THAT([&] { read("side_force_N," + kHead + "12," + row); },
               ThrowsMessage<InputError>(HasSubstr(":2: no usable row: side_force_N = 12 without")));

@@ -34,6 +34,25 @@ Rover rover() {
           .hotel_power_W = 8.0};
 }
 
+// Slip on one slope by bisection.
+double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
+  const double load_N = wheelLoad_N(rover) * std::cos(slope_rad);
+  const auto excess = [&](double slip) {
+    return equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip}).drawbar_pull_N / load_N -
+           std::tan(slope_rad);
+  };
+  double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
+  while (excess(high) < 0.0) {
+    low = high;
+    high = std::min(1.0, high + 0.01);
+  }
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 TEST(Mobility, SlipBalancesThePullRequiredByTheSlope) {
   const MobilityCurve curve{loam(), rover()};
   for (double slope = -0.4; slope < curve.maxSlope_rad() - 0.01; slope += 0.0317) {
