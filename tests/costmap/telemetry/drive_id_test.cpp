@@ -4,7 +4,6 @@
 
 #include <site_map.hpp>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/costmap/telemetry/drive_id.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 
