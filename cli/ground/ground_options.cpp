@@ -239,7 +239,7 @@ std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std
                                          const Context& context) {
   if (isBuiltAlone(options, path)) return std::nullopt;
   try {
-    return readMapWithFloors(options.dem, context).elevation;
+    return readMap(options.dem, context);
   } catch (const InputError& e) {
     context.warn(path + " is not compared with the elevation map: " + e.what());
     return std::nullopt;
@@ -359,7 +359,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
-  auto [dem, floors] = readMapWithFloors(options.dem, context);
+  maps::ElevationMap dem = readMap(options.dem, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
   costmap::GroundModel::Parts parts;
@@ -379,13 +379,12 @@ Ground readGround(const GroundOptions& options, const Context& context) {
          fmt::format("planes over more than {:.3g} m hide the steps and slopes that rover '{}' meets",
                      widest_m, parts.rover.name),
          "leave it out, or make it smaller"});
-  const std::size_t cells = dem.grid().size();
   costmap::MapLayers content{std::move(dem),
                              std::move(layers.classes),
                              std::move(layers.rock_abundance),
                              std::move(layers.keep_out),
                              {},
-                             costmap::Floors(std::move(floors), cells),
+                             {},
                              std::move(layers.costs)};
   warnOfUnseen(content.costs, options.policy, context);
   costmap::TraversabilityMap map = blamingFiles(options, [&] {

@@ -81,20 +81,19 @@ costmap::TraversabilityMap readBuiltMap(const std::string& path, const Context& 
 
 namespace {
 
-MapWithFloors fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
+maps::ElevationMap fromOctomap(const MapOptions& options, const std::string& type, const Context& context) {
   refuseReadOptions(options);
   if (type == "TraversabilityTree" && options.below_m)
     throw InputError({options.path, "--below selects a level of a point cloud, and this is a built map",
                       "give --below to talus costmap"});
-  if (type == "TraversabilityTree") return {readBuiltMap(options.path, context).elevation(), {}};
-  auto ground =
-      costmap::octomapGround(options.path, options.below_m.value_or(std::numeric_limits<double>::infinity()));
-  return {std::move(ground.surface), std::move(ground.floors)};
+  if (type == "TraversabilityTree") return readBuiltMap(options.path, context).elevation();
+  return costmap::octomapGround(options.path,
+                                options.below_m.value_or(std::numeric_limits<double>::infinity()));
 }
 
 }  // namespace
 
-MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context) {
+maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
   if (const auto type = costmap::octomapType(options.path)) return fromOctomap(options, *type, context);
   if (options.below_m)
     throw InputError(
@@ -106,11 +105,7 @@ MapWithFloors readMapWithFloors(const MapOptions& options, const Context& contex
   constexpr double kBytesPerCell = 40.0;
   requireMemory(kBytesPerCell * static_cast<double>(map.elevation_m.values().size()), options.path);
   for (const std::string& note : map.notes) context.warn(options.path + ": " + note);
-  return {std::move(map), {}};
-}
-
-maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
-  return readMapWithFloors(options, context).elevation;
+  return map;
 }
 
 void addLayerOptions(CLI::App& command, LayerOptions& options) {

@@ -44,13 +44,6 @@ costmap::TraversabilityMap readBuiltMap(const std::string& path, const Context& 
 /// Returns the elevation map. Decisions of the reader are printed as warnings. @throws InputError
 maps::ElevationMap readMap(const MapOptions& options, const Context& context);
 
-/// An elevation map, and the floors (ground beneath the top surface) of an OctoMap.
-struct MapWithFloors {
-  maps::ElevationMap elevation;
-  std::vector<costmap::Floor> floors;
-};
-MapWithFloors readMapWithFloors(const MapOptions& options, const Context& context);
-
 /// Files of the layers in addition to the elevation map; an empty path means no layer.
 struct LayerOptions {
   std::string terrain;  ///< raster of terrain classes

@@ -60,12 +60,11 @@ ReadingCount sinkageReading(double sinkage_over_radius, bool may_raise) noexcept
 /// Returns the bounds of a block as readings; empty if neither pull nor sinkage is bounded.
 std::vector<ReadingCount> boundReadings(const GroundBound& bound);
 
-/// Evidence of one terrain class on one level of a block, computed from the counts of its readings. The
-/// levels of a block are the top surface and the floors beneath it.
+/// Evidence of one terrain class in a block, computed from the counts of its readings.
 struct BlockEvidence {
-  static constexpr std::uint16_t kTop = 0xffff;  ///< value of `level` for the top surface
+  static constexpr std::uint16_t kTop = 0xffff;  ///< value of `level` for the surface
 
-  std::uint16_t level = kTop;       ///< kTop, or the octree height key of a floor below the top surface
+  std::uint16_t level = kTop;       ///< kTop; another value belongs to a level that no map has
   std::uint8_t terrain_class = 0;   ///< number of the terrain class
   std::uint8_t place_in_brick = 0;  ///< index of the block within its brick, set by EvidenceBricks
   std::uint32_t updated_s = 0;      ///< telemetry time of the newest reading, rounded down [s]

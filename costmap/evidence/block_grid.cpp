@@ -42,19 +42,4 @@ maps::Point BlockGrid::middleOf(maps::Cell block) const noexcept {
           grid.south_west.y_m + (block.row + half) * grid.resolution_m};
 }
 
-std::uint16_t BlockGrid::keyOf(float height_m) const noexcept {
-  return site_->keys.key({0, 0}, static_cast<double>(height_m))[2];
-}
-
-std::optional<std::uint16_t> BlockGrid::topKey(maps::Cell block) const noexcept {
-  const maps::Grid& grid = site_->grid();
-  for (int row = std::max(block.row, 0); row < std::min(block.row + side(), grid.height); ++row)
-    for (int column = std::max(block.column, 0); column < std::min(block.column + side(), grid.width);
-         ++column) {
-      const float elevation = site_->elevation.elevation_m[{column, row}];
-      if (!std::isnan(elevation)) return keyOf(elevation);
-    }
-  return std::nullopt;
-}
-
 }  // namespace talus::costmap

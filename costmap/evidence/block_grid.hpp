@@ -36,11 +36,6 @@ class BlockGrid {
   /// Returns the map coordinates of the middle of a block.
   maps::Point middleOf(maps::Cell block) const noexcept;
 
-  /// keyOf() returns the octree height key of an elevation. topKey() returns the height key of the first cell
-  /// of a block that has an elevation; nullopt if no cell of the block has an elevation.
-  std::uint16_t keyOf(float height_m) const noexcept;
-  std::optional<std::uint16_t> topKey(maps::Cell block) const noexcept;
-
  private:
   std::shared_ptr<const GroundSite> site_;
   int shift_;

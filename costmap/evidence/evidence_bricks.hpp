@@ -9,14 +9,12 @@
 
 namespace talus::costmap {
 
-/// Key of evidence: one terrain class, on one level of one block. A block is a square of cells; its levels
-/// are the top surface and the floors beneath it. Columns and rows of blocks count from the map's south-west
-/// corner.
+/// Key of evidence: one terrain class of one block. A block is a square of cells. Columns and rows of blocks
+/// count from the map's south-west corner.
 struct BlockLevel {
   int column = 0, row = 0;
-  /// BlockEvidence::kTop for the top surface, or the octree height key of a floor.
-  std::uint16_t level = BlockEvidence::kTop;
-  std::uint8_t terrain_class = 0;  ///< number of the terrain class
+  std::uint16_t level = BlockEvidence::kTop;  ///< BlockEvidence::kTop in every map
+  std::uint8_t terrain_class = 0;             ///< number of the terrain class
 };
 
 /// The evidence of a map, stored in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -48,19 +47,6 @@ int EvidenceField::blockCells() const noexcept {
   return store_->blocks.side();
 }
 
-// Level of a floor in its block: a known level within half the headroom, else a new level.
-BlockLevel EvidenceField::levelOf(maps::Cell cell, const Floor& floor) const {
-  BlockLevel out = store_->topOf(cell, 0);
-  out.level = store_->blocks.keyOf(floor.height_m);
-  const int same = std::max(1, static_cast<int>(0.5 * Floors::kHeadroom_m / site_->grid().resolution_m));
-  store_->bricks.visitLevels(out.column, out.row, [&](const BlockLevel& known, const BlockEvidence&) {
-    if (known.level != BlockEvidence::kTop &&
-        std::abs(known.level - store_->blocks.keyOf(floor.height_m)) <= same)
-      out.level = known.level;
-  });
-  return out;
-}
-
 // Contribution of a block to its class. The weight is at most the side of the block over the integral scale
 // (2/3 of the correlation length), and at most 1. The departure from the class mean is limited to
 // kOrdinary standard deviations: a block that departs more is assumed to be on another soil, which the class
@@ -97,7 +83,7 @@ std::vector<BlockContribution> EvidenceField::contributionsOf(const BlockLevel& 
                                                               const BlockEvidence& block,
                                                               int class_index) const {
   std::vector<BlockContribution> contributions;
-  if (!contributesToClass(block.level) || std::isnan(block.weak_pull)) return contributions;
+  if (std::isnan(block.weak_pull)) return contributions;
   const std::vector<ReadingCount> counts = store_->bricks.counts(where);
   const std::vector<std::uint16_t> drives = drivesOf(counts);
   const bool raises = !std::isnan(block.pull);
@@ -133,7 +119,7 @@ std::optional<float> EvidenceField::squareStrength(const IndependentPlaces::Squa
   double least = std::numeric_limits<double>::infinity();
   const int number = store_->groundClass(class_index).number;
   const auto take = [&](const BlockLevel& at, const BlockEvidence& e) {
-    if (at.terrain_class != number || !contributesToClass(at.level) || std::isnan(e.weak_pull)) return;
+    if (at.terrain_class != number || std::isnan(e.weak_pull)) return;
     driven = true;
     const double pull = static_cast<double>(e.pull) - prior, variance = static_cast<double>(e.variance);
     const bool is_known = variance <= kPlaceStd * kPlaceStd;
@@ -209,12 +195,11 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
   const maps::Grid& grid = site_->grid();
   const auto cell = grid.cellAt(observation.place);
   if (!cell) return std::nullopt;
-  const auto floor = site_->floorAt(*cell, observation.z_m);
-  const int class_index = floor ? 0 : site_->classIndex(*cell);
+  const int class_index = site_->classIndex(*cell);
   if (class_index < 0 || !(observation.estimates() || observation.here.any())) return std::nullopt;
-  const bool sure = floor || observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
+  const bool sure = observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
-  SavedBlock readings{.block = floor ? levelOf(*cell, *floor) : store_->topOf(*cell, class_index),
+  SavedBlock readings{.block = store_->topOf(*cell, class_index),
                       .updated_s = secondsOf(observation.time_s),
                       .reach = static_cast<std::uint8_t>(std::clamp(
                           std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0)),
@@ -242,8 +227,9 @@ void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) c
 }
 
 std::optional<maps::CellBox> EvidenceField::restore(const SavedBlock& saved) {
-  if (saved.block.column < 0 || saved.block.row < 0 || saved.block.column >= store_->blocks.columns() ||
-      saved.block.row >= store_->blocks.rows() || site_->model->classIndex(saved.block.terrain_class) < 0)
+  if (saved.block.level != BlockEvidence::kTop || saved.block.column < 0 || saved.block.row < 0 ||
+      saved.block.column >= store_->blocks.columns() || saved.block.row >= store_->blocks.rows() ||
+      site_->model->classIndex(saved.block.terrain_class) < 0)
     return std::nullopt;
   return count(saved.block, saved);
 }
@@ -253,36 +239,9 @@ const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
   return class_index < 0 ? nullptr : store_->bricks.find(store_->topOf(cell, class_index));
 }
 
-const BlockEvidence* EvidenceField::evidence(maps::Cell cell, const Floor& floor) const {
-  return store_->bricks.find(levelOf(cell, floor));
-}
-
 double EvidenceField::samplesOf(maps::Cell cell) const {
   const int class_index = site_->classIndex(cell);
   return class_index < 0 ? 0.0 : samples(store_->bricks.counts(store_->topOf(cell, class_index)));
-}
-
-double EvidenceField::samplesOf(maps::Cell cell, const Floor& floor) const {
-  return samples(store_->bricks.counts(levelOf(cell, floor)));
-}
-
-std::vector<EvidenceField::FloorEvidence> EvidenceField::floorEvidence() const {
-  std::vector<FloorEvidence> out;
-  std::set<const BlockEvidence*> seen;
-  const auto width = static_cast<std::uint32_t>(site_->grid().width);
-  for (const Floor& floor : site_->floors.all()) {
-    const maps::Cell cell{static_cast<int>(floor.cell % width), static_cast<int>(floor.cell / width)};
-    const BlockEvidence* known = evidence(cell, floor);
-    if (known && seen.insert(known).second) out.push_back({cell, *known});
-  }
-  return out;
-}
-
-GroundBelief EvidenceField::floorBelief(maps::Cell cell, const Floor& floor) const {
-  const maps::Cell block = store_->blocks.blockOf(cell);
-  const GroundOfClass of{0, stateOf(0)};
-  const LocalGround local = groundLevelWith(*store_, block, levelOf(cell, floor).level, of);
-  return inferredGround(*store_, local, of, store_->blocks.middleOf(block)).ground;
 }
 
 std::vector<ClassState> EvidenceField::states(Classes classes) const {

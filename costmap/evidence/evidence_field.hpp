@@ -14,7 +14,7 @@
 
 namespace talus::costmap {
 
-/// All readings of one terrain class on one level of a block, as map files store them.
+/// All readings of one terrain class in a block, as map files store them.
 struct SavedBlock {
   BlockLevel block;
   /// Telemetry time of the newest reading, rounded down [s].
@@ -28,15 +28,13 @@ struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
 
-/// Evidence of a map: wheel observations by place. Evidence is stored by block, level and terrain class. A
-/// block is a square of cells (BlockGrid), and its levels are the top surface and the floors beneath it. A
-/// Gaussian process over the class mean extends the evidence to nearby ground of the same class, and each
-/// class has a posterior.
+/// Evidence of a map: wheel observations by place. Evidence is stored by block and terrain class. A block is
+/// a square of cells (BlockGrid). A Gaussian process over the class mean extends the evidence to nearby
+/// ground of the same class, and each class has a posterior.
 ///
 /// Blocks have a side of a quarter of the correlation length, so that the work for an observation does not
-/// depend on the map's resolution. Evidence from a floor below an overhang belongs to that floor: it does not
-/// apply to the top surface, and it contributes to the first class only if the map has no class raster. The
-/// same evidence in any order gives bit-identical results. Not thread-safe while changed.
+/// depend on the map's resolution. The same evidence in any order gives bit-identical results. Not
+/// thread-safe while changed.
 ///
 /// Evidence lowers an estimate immediately: no estimate exceeds the value that any single nearby place
 /// implies, if that place is weaker than the variation of its class explains or has only unverified readings.
@@ -68,24 +66,10 @@ class EvidenceField {
   /// danger (ClassEvidence::stateInSteps()), as used for publishing.
   enum class Classes : std::uint8_t { AsKnown, InSteps };
 
-  /// Returns the evidence on the top surface of the block that contains a cell, for the cell's class; null
-  /// without evidence.
+  /// Returns the evidence of the block that contains a cell, for the cell's class; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
-  /// Returns the evidence of a floor below the top surface; null without evidence.
-  const BlockEvidence* evidence(maps::Cell cell, const Floor& floor) const;
   /// Returns the number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
   double samplesOf(maps::Cell cell) const;
-  double samplesOf(maps::Cell cell, const Floor& floor) const;
-  /// Returns the estimate for a floor, from the evidence on that floor and on ground connected with it.
-  GroundBelief floorBelief(maps::Cell cell, const Floor& floor) const;
-
-  /// Evidence of a floor below the top surface, and a cell with that floor.
-  struct FloorEvidence {
-    maps::Cell cell;
-    BlockEvidence evidence;
-  };
-  /// Returns the evidence of all floors, in a fixed order.
-  std::vector<FloorEvidence> floorEvidence() const;
 
   /// Returns the posterior of a class, not rounded.
   const ClassPosterior& posterior(int class_index) const;
@@ -113,10 +97,6 @@ class EvidenceField {
   const EvidenceStore& store() const noexcept { return *store_; }
 
  private:
-  bool contributesToClass(std::uint16_t level) const noexcept {
-    return level == BlockEvidence::kTop || site_->classes.empty();
-  }
-  BlockLevel levelOf(maps::Cell cell, const Floor& floor) const;
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
   maps::CellBox count(const BlockLevel& where, const SavedBlock& readings, Count how = Count::Add);

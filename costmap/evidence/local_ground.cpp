@@ -4,15 +4,12 @@
 
 #include <talus/costmap/evidence/evidence_store.hpp>
 #include <talus/costmap/evidence/local_ground.hpp>
-#include <talus/costmap/surface/floors.hpp>
 
 namespace talus::costmap {
 namespace {
 
 constexpr int kPatchBlocks = EvidenceReach::kPatchBlocks;
 constexpr std::size_t kMostNeighbours = 64;
-constexpr double kSteepest =
-    0.6;  // greatest gradient between places of one floor; above the drivable gradients
 
 // LocalGround while it is collected.
 struct NearbyEvidence {
@@ -126,26 +123,6 @@ LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, co
   const maps::Point low = store.blocks.middleOf(store.blocks.blockAt(patch.column, patch.row));
   const double half_m = 0.5 * (kPatchBlocks - 1) * store.blocks.side_m();
   return grounded(store, std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
-}
-
-LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
-                            const GroundOfClass& of) {
-  const int side = store.blocks.side();
-  const int reach = store.blocks.reach() * side;
-  const double resolution_m = store.site->grid().resolution_m;
-  NearbyEvidence nearby{.of = of};
-  for (int row = block.row - reach; row <= block.row + reach; row += side)
-    for (int column = block.column - reach; column <= block.column + reach; column += side) {
-      const BlockLevel there = store.topOf({column, row}, of.class_index);
-      const double away_m = resolution_m * std::hypot(column - block.column, row - block.row);
-      store.bricks.visitLevels(there.column, there.row, [&](const BlockLevel& at, const BlockEvidence& e) {
-        const auto key = e.level == BlockEvidence::kTop ? store.blocks.topKey({column, row}) : e.level;
-        const bool near =
-            key && std::abs(*key - level) * resolution_m <= 0.5 * Floors::kHeadroom_m + kSteepest * away_m;
-        if (near && e.terrain_class == store.groundClass(of.class_index).number) place(store, at, e, nearby);
-      });
-    }
-  return grounded(store, std::move(nearby), store.blocks.middleOf(block));
 }
 
 }  // namespace talus::costmap

@@ -47,9 +47,4 @@ Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
 /// `patch`.
 LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
 
-/// Returns the evidence of the class that gradients of at most 0.6 connect with one level of a block, on the
-/// top surface and on floors. The level is the octree height key of a floor.
-LocalGround groundLevelWith(const EvidenceStore& store, maps::Cell block, std::uint16_t level,
-                            const GroundOfClass& of);
-
 }  // namespace talus::costmap

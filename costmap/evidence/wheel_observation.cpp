@@ -195,7 +195,6 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   const TelemetryReading& reading = w.read.reading;
   WheelObservation out{.time_s = reading.time_s,
                        .place = reading.place,
-                       .z_m = reading.z_m,
                        .pull = {},
                        .sinkage = {},
                        .demand = w.expected.gradient + balance.departure,

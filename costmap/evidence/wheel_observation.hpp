@@ -16,12 +16,11 @@ namespace talus::costmap {
 /// Measurements of one wheel at one moment, without corrections. A quantity that was not measured is NaN.
 struct TelemetryReading {
   double time_s = 0.0;
-  maps::Point place;  ///< position of the wheel on the map [m]
-  /// Elevation of the wheel, which selects the top surface or a floor.
-  double z_m = std::numeric_limits<double>::quiet_NaN();
-  double load_N = 0.0;     ///< load on the wheel, > 0
-  double slip = 0.0;       ///< slip, -1 to 1 [-]
-  double torque_Nm = 0.0;  ///< torque of the wheel
+  maps::Point place;                                      ///< position of the wheel on the map [m]
+  double z_m = std::numeric_limits<double>::quiet_NaN();  ///< elevation of the wheel, for the journal alone
+  double load_N = 0.0;                                    ///< load on the wheel, > 0
+  double slip = 0.0;                                      ///< slip, -1 to 1 [-]
+  double torque_Nm = 0.0;                                 ///< torque of the wheel
   double sinkage_m = 0.0;
   double gradient = 0.0;  ///< gradient of the ground along the heading, rise over run [-]
   /// `across` is the gradient of the ground to the left of the heading, rise over run [-]. `slip_angle_rad`
@@ -72,8 +71,6 @@ struct ReadingNoise {
 struct WheelObservation {
   double time_s = 0.0;
   maps::Point place;
-  /// Elevation of the wheel; NaN: the wheel is on the top surface.
-  double z_m = std::numeric_limits<double>::quiet_NaN();
   Estimate pull;  ///< estimated drawbar pull over load DP/W of the ground [-]
   /// Estimated sinkage over wheel radius z/r [-]; infinite standard deviation: not measured.
   Estimate sinkage;

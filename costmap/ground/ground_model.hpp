@@ -100,7 +100,7 @@ class GroundModel {
   /// Input of the model.
   struct Parts {
     terramech::Rover rover;
-    /// Terrain classes. The first class applies to maps without a class raster, to floors, and to cells
+    /// Terrain classes. The first class applies to maps without a class raster, and to cells
     /// without a class if the policy allows unknown ground.
     std::vector<GroundClass> classes;
     /// Permissions and cost weights of the mission.

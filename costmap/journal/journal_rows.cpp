@@ -61,7 +61,6 @@ JournalRow readRow(sqlite3_stmt* row) {
                  .pass = sqlite3_column_int(row, 13)};
   out.observation = {.time_s = out.reading.time_s,
                      .place = out.reading.place,
-                     .z_m = out.reading.z_m,
                      .pull = {number(row, 14), number(row, 15)},
                      .sinkage = {number(row, 16), number(row, 17)},
                      .demand = out.reading.gradient,

@@ -157,21 +157,6 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
       {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
 }
 
-// Adds the other levels of a cell; their estimates are separate from that of the surface.
-void addFloors(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
-  for (const Floor& floor : map.surface().floors().of(map.grid().index(cell))) {
-    const CellBelief belief = map.belief(cell, floor);
-    const std::string there = "other level of this cell, below or above its surface";
-    out.causes.push_back(
-        {"floor_elevation_m", static_cast<double>(floor.height_m), kNotKnown, map.elevation().source, there});
-    out.causes.push_back({"floor_evidence_samples", static_cast<double>(belief.evidence), kNotKnown,
-                          "wheel telemetry on that level", ""});
-    out.causes.push_back({"floor_drawbar_pull_over_load", static_cast<double>(belief.pull_mean),
-                          static_cast<double>(belief.pull_std),
-                          "first soil class and telemetry on that level", ""});
-  }
-}
-
 terramech::Gradient seenBy(CellCode code, const Direction& heading) {
   return {code.dzDx() * heading.x + code.dzDy() * heading.y,
           code.dzDy() * heading.x - code.dzDx() * heading.y};
@@ -268,7 +253,6 @@ Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::op
   addLayers(map, cell, out);
   addSoil(map, cell, out);
   addDrive(map, cell, direction, out);
-  addFloors(map, cell, out);
   return out;
 }
 

@@ -51,19 +51,6 @@ maps::Raster<T> MapShift::shifted(const maps::Raster<T>& old, T unseen) const {
   return out;
 }
 
-Floors MapShift::floors(const MapSurface& surface) const {
-  std::vector<Floor> left;
-  const auto width = static_cast<std::uint32_t>(surface.grid().width);
-  for (Floor floor : surface.floors().all()) {
-    const maps::Cell to{static_cast<int>(floor.cell % width) - cells_.column,
-                        static_cast<int>(floor.cell / width) - cells_.row};
-    if (!grid_.contains(to)) continue;
-    floor.cell = static_cast<std::uint32_t>(grid_.index(to));
-    left.push_back(floor);
-  }
-  return Floors(std::move(left), grid_.size());
-}
-
 MapLayers MapShift::layers(const MapSurface& surface) const {
   constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
   const maps::ElevationMap& elevation = surface.elevation();
@@ -74,10 +61,9 @@ MapLayers MapShift::layers(const MapSurface& surface) const {
                       .notes = elevation.notes};
   layers.classes = shifted(surface.classes(), GroundSite::kNoClass);
   layers.declared = shifted(surface.declared(), Hazard::None);
-  layers.floors = floors(surface);
   for (const CostLayer& layer : surface.costLayers())
     layers.costs.push_back({layer.name, shifted(layer.added_J_per_m, kUnseen), layer.unseen_J_per_m});
-  // Floor heights are relative to the base elevation, so both maps need the same base.
+  // Octree keys are relative to the base elevation, so both maps need the same base.
   layers.base_elevation_m = surface.keys().baseElevation_m();
   return layers;
 }

@@ -25,7 +25,6 @@ class MapShift {
  private:
   template <typename T>
   maps::Raster<T> shifted(const maps::Raster<T>& old, T unseen) const;
-  Floors floors(const MapSurface& surface) const;
 
   maps::Cell cells_;
   maps::Grid grid_;  // grid of the new window

@@ -50,7 +50,6 @@ std::shared_ptr<GroundSite> siteOf(MapLayers& layers, std::shared_ptr<const Grou
                                                  .classes = std::move(layers.classes),
                                                  .keys = keys,
                                                  .model = std::move(model),
-                                                 .floors = std::move(layers.floors),
                                                  .costs = std::move(layers.costs)});
 }
 
@@ -88,8 +87,8 @@ MapSurface::MapSurface(MapLayers layers, std::shared_ptr<const GroundModel> mode
   requireGrid(layers.rock_abundance, grid(), "rock_abundance");
   requireGrid(layers.keep_out, grid(), "keep_out");
   requireGrid(declared_, grid(), "declared");
-  any_height_ = !site_->floors.empty() || std::ranges::any_of(site_->elevation.elevation_m.values(),
-                                                              [](float e) { return !std::isnan(e); });
+  any_height_ =
+      std::ranges::any_of(site_->elevation.elevation_m.values(), [](float e) { return !std::isnan(e); });
   takeHazards({.elevation_m = {},
                .rock_abundance = std::move(layers.rock_abundance),
                .classes = {},

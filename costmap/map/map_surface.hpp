@@ -22,10 +22,9 @@ struct ShapeOptions {
   int threads = 1;  ///< number of threads, >= 1; the result does not depend on this number
 };
 
-/// Surface of a map: elevation, terrain classes, floors (ground beneath the top surface), cost layers, and
-/// the hazards of each cell, including ground declared impassable. The surface is independent of evidence and
-/// cost. Concurrent const calls are safe while no thread changes the surface; only the map changes the
-/// surface.
+/// Surface of a map: elevation, terrain classes, cost layers, and the hazards of each cell, including ground
+/// declared impassable. The surface is independent of evidence and cost. Concurrent const calls are safe
+/// while no thread changes the surface; only the map changes the surface.
 class MapSurface {
  public:
   /// Makes the surface from `layers`. Hazards are computed later, by measure(). Throws std::invalid_argument
@@ -46,20 +45,10 @@ class MapSurface {
   }
   /// Returns the index of the cell's terrain class in model().parts().classes; -1 for a class without a soil.
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
-  /// Returns the class index of the ground of a cell at the elevation z_m [m]; a floor has the first class of
-  /// the model.
-  int classIndex(maps::Cell cell, double z_m) const noexcept {
-    return floorAt(cell, z_m) ? 0 : classIndex(cell);
-  }
   const std::vector<CostLayer>& costLayers() const noexcept { return site_->costs; }
 
-  /// Returns the floors, i.e. the ground beneath the top surface. The cost grid covers the top surface only.
-  const Floors& floors() const noexcept { return site_->floors; }
-  /// Returns the floor of a cell at the elevation z_m [m]; nullopt if the elevation belongs to the top
-  /// surface.
-  std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
-    return site_->floorAt(cell, z_m);
-  }
+  /// Returns the levels for the section FLOR of a map file: none.
+  Floors floors() const noexcept { return {}; }
 
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }

@@ -7,8 +7,7 @@
 
 namespace talus::costmap {
 
-/// Returns an OctoMap octree with the estimate of each cell of the map, at the cell's elevation, and of each
-/// floor (ground beneath the top surface) with evidence.
+/// Returns an OctoMap octree with the estimate of each cell of the map, at the cell's elevation.
 TraversabilityTree treeOf(const TraversabilityMap& map);
 
 /// Writes the octree of treeOf() without storing it in memory. The stream must be seekable.

@@ -47,16 +47,6 @@ CellBelief PlaceBeliefs::at(maps::Cell cell) {
   return belief;
 }
 
-CellBelief PlaceBeliefs::at(maps::Cell cell, const Floor& floor) const {
-  CellBelief belief;
-  belief.terrain_class = static_cast<std::uint8_t>(map_.model().parts().classes[0].number);
-  belief.hazards = Hazard::Unknown;
-  set(map_.evidence().floorBelief(cell, floor), belief);
-  if (const BlockEvidence* own = map_.evidence().evidence(cell, floor))
-    set(*own, map_.evidence().samplesOf(cell, floor), belief);
-  return belief;
-}
-
 std::optional<GroundBelief> PlaceBeliefs::ground(maps::Cell cell) {
   const int index = map_.surface().classIndex(cell);
   if (index < 0) return std::nullopt;
@@ -65,10 +55,6 @@ std::optional<GroundBelief> PlaceBeliefs::ground(maps::Cell cell) {
 
 CellBelief TraversabilityMap::belief(maps::Cell cell) const {
   return PlaceBeliefs(*this).at(cell);
-}
-
-CellBelief TraversabilityMap::belief(maps::Cell cell, const Floor& floor) const {
-  return PlaceBeliefs(*this).at(cell, floor);
 }
 
 std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {

@@ -5,7 +5,6 @@
 #include <talus/costmap/evidence/evidence_beliefs.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/costmap/surface/cell_belief.hpp>
-#include <talus/costmap/surface/floors.hpp>
 #include <talus/maps/grid/grid.hpp>
 
 namespace talus::costmap {
@@ -20,9 +19,6 @@ class PlaceBeliefs {
 
   /// Returns the estimate of a cell inside the map.
   CellBelief at(maps::Cell cell);
-  /// Returns the estimate of a floor (ground of a cell beneath the top surface): soil strength only, with
-  /// unknown shape (Hazard::Unknown).
-  CellBelief at(maps::Cell cell, const Floor& floor) const;
   /// Returns the estimated strength of a cell's ground, from the prior of the terrain class and the evidence;
   /// nullopt for a cell without a class.
   std::optional<GroundBelief> ground(maps::Cell cell);

@@ -56,10 +56,9 @@ class TraversabilityMap {
   /// Returns the newest published version of the cost grid.
   std::shared_ptr<const CostGrid> published() const noexcept { return costs_->published(); }
 
-  /// Returns the estimate (soil strength, category, hazards) of a cell inside the map, or of a floor of that
-  /// cell. A floor is ground beneath the top surface. PlaceBeliefs is faster for many cells.
+  /// Returns the estimate (soil strength, category, hazards) of a cell inside the map. PlaceBeliefs is faster
+  /// for many cells.
   CellBelief belief(maps::Cell cell) const;
-  CellBelief belief(maps::Cell cell, const Floor& floor) const;
   /// Returns the estimated strength of a cell's ground, from the prior of the terrain class and the evidence;
   /// nullopt for a cell without a terrain class.
   std::optional<GroundBelief> ground(maps::Cell cell) const;

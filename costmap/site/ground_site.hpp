@@ -40,8 +40,8 @@ struct MapLayers {
   maps::Raster<float> rock_abundance;
   maps::Raster<std::uint8_t> keep_out;  ///< non-zero: impassable
   maps::Raster<Hazard> declared;        ///< known hazards of each cell, e.g. from a map file
-  Floors floors;  ///< ground beneath the top surface, e.g. beneath overhangs, from a point cloud
-  std::vector<CostLayer> costs{};  ///< external costs, in addition to the costs of driving
+  Floors floors;                        ///< of a map file: empty
+  std::vector<CostLayer> costs{};       ///< external costs, in addition to the costs of driving
   /// Elevation [m] from which the octree counts heights; nullopt: middleElevation().
   std::optional<double> base_elevation_m{};
 };
@@ -74,18 +74,12 @@ struct GroundSite {
   /// Octree keys of the cells.
   SurfaceKeys keys;
   std::shared_ptr<const GroundModel> model;
-  Floors floors{};                 ///< ground beneath the top surface; the elevation is the top surface
   std::vector<CostLayer> costs{};  ///< external costs, on the grid of the elevation
 
   const maps::Grid& grid() const noexcept { return elevation.grid(); }
   /// Returns the index of a cell's terrain class in the classes of the model; -1 for a class without a soil.
   int classIndex(maps::Cell cell) const noexcept {
     return classes.empty() ? 0 : model->classIndex(classes[cell]);
-  }
-  /// Returns the floor on which a wheel at the elevation z_m [m] is; nullopt if the wheel is on the top
-  /// surface.
-  std::optional<Floor> floorAt(maps::Cell cell, double z_m) const noexcept {
-    return floors.under(grid().index(cell), z_m, static_cast<double>(elevation.elevation_m[cell]));
   }
 };
 

@@ -51,10 +51,4 @@ struct CellBelief {
   friend bool operator==(const CellBelief&, const CellBelief&) = default;
 };
 
-/// Returns true if the estimate belongs to a floor, i.e. to ground beneath the top surface: it has evidence,
-/// and its shape is unknown. The leaf of a floor represents one voxel and is never merged with other leaves.
-inline bool ofFloor(const CellBelief& belief) noexcept {
-  return belief.evidence > 0.0F && has(belief.hazards, Hazard::Unknown);
-}
-
 }  // namespace talus::costmap

@@ -163,27 +163,19 @@ Columns columnsOf(const std::vector<Leaf>& leaves, const maps::Grid& grid, const
   return columns;
 }
 
-// Returns the ground voxels, i.e. the occupied voxels with headroom, by column and upwards.
-std::vector<Floor> groundOf(const Columns& columns, double resolution_m) {
-  const double headroom = std::max(2.0, std::ceil(Floors::kHeadroom_m / resolution_m));
-  std::vector<Floor> ground;
+// Returns the height of the highest ground voxel (occupied, with headroom) at or below the ceiling of each
+// column; NaN if there is none.
+maps::Raster<float> groundOf(const Columns& columns, const maps::Grid& grid, double ceiling_m) {
+  const double headroom = std::max(2.0, std::ceil(kHeadroom_m / grid.resolution_m));
+  maps::Raster<float> ground(grid, std::numeric_limits<float>::quiet_NaN());
   for (std::size_t c = 0; c + 1 < columns.first.size(); ++c)
     for (std::uint32_t i = columns.first[c]; i < columns.first[c + 1]; ++i) {
       const double high = columns.runs[i].high;
       if (i + 1 < columns.first[c + 1] && columns.runs[i + 1].low <= high + headroom) continue;
-      ground.push_back({.cell = static_cast<std::uint32_t>(c),
-                        .height_m = static_cast<float>((high + 0.5 - kCentreKey) * resolution_m)});
+      const auto height_m = static_cast<float>((high + 0.5 - kCentreKey) * grid.resolution_m);
+      if (static_cast<double>(height_m) <= ceiling_m) ground.values()[c] = height_m;
     }
   return ground;
-}
-
-// Moves the highest ground voxel at or below the ceiling of each column to the surface; the others remain.
-maps::Raster<float> takeSurface(std::vector<Floor>& ground, const maps::Grid& grid, double ceiling_m) {
-  maps::Raster<float> surface(grid, std::numeric_limits<float>::quiet_NaN());
-  for (const Floor& floor : ground)
-    if (static_cast<double>(floor.height_m) <= ceiling_m) surface.values()[floor.cell] = floor.height_m;
-  std::erase_if(ground, [&](const Floor& floor) { return surface.values()[floor.cell] == floor.height_m; });
-  return surface;
 }
 
 std::vector<Leaf> leavesOf(std::istream& stream, const PointTreeHeader& header, const std::string& name) {
@@ -212,7 +204,7 @@ std::optional<std::string> octomapType(const std::string& path) {
   return header ? std::optional(header->type) : std::nullopt;
 }
 
-OctomapGround octomapGround(std::istream& stream, const std::string& name, double ceiling_m) {
+maps::ElevationMap octomapGround(std::istream& stream, const std::string& name, double ceiling_m) {
   const auto header = readPointTreeHeader(stream);
   if (!header || !(header->resolution_m > 0.0))
     throw InputError({name, "not an OctoMap file", "give a .bt or .ot of type OcTree or ColorOcTree"});
@@ -239,22 +231,17 @@ OctomapGround octomapGround(std::istream& stream, const std::string& name, doubl
   if (runs > static_cast<double>(kMostColumns))
     throw InputError(
         {name, "its cubes hold more than 4e8 columns of voxels", "crop it or lower its resolution"});
-  requireMemory(runs * (sizeof(Run) + sizeof(Floor)) + 8.0 * static_cast<double>(grid.size()), name);
-  std::vector<Floor> ground = groundOf(columnsOf(leaves, grid, box), grid.resolution_m);
-  maps::Raster<float> surface = takeSurface(ground, grid, ceiling_m);
-  if (maps::validFraction(surface) == 0.0)
+  requireMemory(runs * sizeof(Run) + 8.0 * static_cast<double>(grid.size()), name);
+  maps::Raster<float> ground = groundOf(columnsOf(leaves, grid, box), grid, ceiling_m);
+  if (maps::validFraction(ground) == 0.0)
     throw InputError({name, "no ground at or below " + std::to_string(ceiling_m) + " m", "increase --below"});
-  std::vector<std::string> notes{"top surface of an OctoMap, accurate to half a voxel"};
-  if (!ground.empty())
-    notes.push_back(std::to_string(ground.size()) + " cells have other levels below or above it");
-  return {.surface = {.elevation_m = std::move(surface),
-                      .georeference = {},
-                      .source = name,
-                      .notes = std::move(notes)},
-          .floors = std::move(ground)};
+  return {.elevation_m = std::move(ground),
+          .georeference = {},
+          .source = name,
+          .notes = {"top surface of an OctoMap, accurate to half a voxel"}};
 }
 
-OctomapGround octomapGround(const std::string& path, double ceiling_m) {
+maps::ElevationMap octomapGround(const std::string& path, double ceiling_m) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
   return octomapGround(stream, path, ceiling_m);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -23,27 +22,27 @@ Cube childOf(const Cube& cube, unsigned child) noexcept {
           cube.z + (child & 4U ? half : 0), cube.level - 1};
 }
 
-// Returns the position of a voxel in depth-first order (Morton code).
-std::uint64_t orderOf(unsigned x, unsigned y, unsigned z) noexcept {
-  std::uint64_t order = 0;
-  for (unsigned bit = 0; bit < kOctreeDepth; ++bit)
-    order |= std::uint64_t{(x >> bit & 1U) | (y >> bit & 1U) << 1 | (z >> bit & 1U) << 2} << (3 * bit);
-  return order;
-}
-
-// Occupancy of cubes by the surface and the floors.
+// Occupancy of cubes by the surface.
 class Cubes {
  public:
   explicit Cubes(const Surface& surface) : pyramid_(surface.elevation_m, surface.keys) {
     const octomap::OcTreeKey first = surface.keys.key({0, 0}, surface.keys.baseElevation_m());
     first_x_ = first[0];
     first_y_ = first[1];
-    for (const FloorLeaf& leaf : surface.floors)
-      floors_.emplace(orderOf(leaf.key[0], leaf.key[1], leaf.key[2]), &leaf.belief);
   }
 
   bool anything() const { return occupied(Cube{}); }
-  bool occupied(const Cube& cube) const { return holdsFloor(cube) || holdsSurface(cube); }
+  // True if a cube contains a cell of the surface. If the height range of the block extends below and above
+  // the cube, the children of the cube are checked.
+  bool occupied(const Cube& cube) const {
+    const auto range = pyramid_.range(cube.level, cube.x, cube.y);
+    const unsigned side = 1U << cube.level;
+    if (range.empty() || !range.meets(cube.z, side)) return false;
+    if (range.low >= cube.z || range.high < cube.z + side) return true;
+    for (unsigned i = 0; i < 8; ++i)
+      if (occupied(childOf(cube, i))) return true;
+    return false;
+  }
 
   std::uint8_t childrenOf(const Cube& cube) const {
     unsigned bits = 0;
@@ -54,35 +53,10 @@ class Cubes {
   maps::Cell cellOf(const Cube& voxel) const {
     return {static_cast<int>(voxel.x - first_x_), static_cast<int>(voxel.y - first_y_)};
   }
-  // Estimate of a floor voxel; null for a voxel of the surface.
-  const CellBelief* floor(const Cube& voxel) const {
-    const auto found = floors_.find(orderOf(voxel.x, voxel.y, voxel.z));
-    return found == floors_.end() ? nullptr : found->second;
-  }
 
  private:
-  bool holdsFloor(const Cube& cube) const {
-    if (floors_.empty()) return false;
-    const std::uint64_t from = orderOf(cube.x, cube.y, cube.z);
-    const auto found = floors_.lower_bound(from);
-    return found != floors_.end() && found->first - from < std::uint64_t{1} << (3 * cube.level);
-  }
-
-  // True if a cube contains a cell of the surface. If the height range of the block extends below and above
-  // the cube, the children of the cube are checked.
-  bool holdsSurface(const Cube& cube) const {
-    const auto range = pyramid_.range(cube.level, cube.x, cube.y);
-    const unsigned side = 1U << cube.level;
-    if (range.empty() || !range.meets(cube.z, side)) return false;
-    if (range.low >= cube.z || range.high < cube.z + side) return true;
-    for (unsigned i = 0; i < 8; ++i)
-      if (holdsSurface(childOf(cube, i))) return true;
-    return false;
-  }
-
   SurfacePyramid pyramid_;
   unsigned first_x_ = 0, first_y_ = 0;
-  std::map<std::uint64_t, const CellBelief*> floors_;
 };
 
 // Fills a tree depth first and prunes each cube after its children.
@@ -140,7 +114,7 @@ class TreeStreamWriter {
       if (!(open.children >> i & 1U)) continue;
       const auto leaf = walk(childOf(cube, i), &open);
       if (!leaf) continue;
-      if (ofFloor(*leaf) || (open.count > 0 && !(open.held == *leaf))) differ(open);
+      if (open.count > 0 && !(open.held == *leaf)) differ(open);
       if (open.written)
         writer_.node(*leaf, 0);
       else
@@ -178,8 +152,7 @@ TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellB
   TraversabilityTree tree(surface.keys.grid().resolution_m);
   const Cubes cubes(surface);
   const auto set = [&](TraversabilityNode& node, const Cube& voxel) {
-    const CellBelief* floor = cubes.floor(voxel);
-    node.belief() = floor ? *floor : belief(cubes.cellOf(voxel));
+    node.belief() = belief(cubes.cellOf(voxel));
   };
   Filler<TraversabilityTree, TraversabilityNode, decltype(set)> filler(tree, cubes, set);
   if (cubes.anything()) filler.fill(tree.makeRoot(), Cube{});
@@ -190,10 +163,7 @@ void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(map
                       std::ostream& stream) {
   TreeWriter writer(stream, surface.keys.grid().resolution_m);
   const Cubes cubes(surface);
-  const auto leaf = [&](const Cube& voxel) {
-    const CellBelief* floor = cubes.floor(voxel);
-    return floor ? *floor : belief(cubes.cellOf(voxel));
-  };
+  const auto leaf = [&](const Cube& voxel) { return belief(cubes.cellOf(voxel)); };
   if (cubes.anything()) TreeStreamWriter(cubes, leaf, writer).write();
   writer.finish();
 }

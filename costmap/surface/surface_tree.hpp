@@ -3,7 +3,6 @@
 #include <functional>
 #include <iosfwd>
 #include <memory>
-#include <vector>
 
 #include <octomap/ColorOcTree.h>
 
@@ -12,22 +11,15 @@
 
 namespace talus::costmap {
 
-/// A leaf of the octree for a floor, i.e. for ground beneath the top surface, with its estimate.
-struct FloorLeaf {
-  octomap::OcTreeKey key;
-  CellBelief belief;
-};
-
-/// Input of an octree: the top surface and the floors.
+/// Input of an octree.
 struct Surface {
-  const maps::Raster<float>& elevation_m;  ///< elevation of the top surface; a NaN cell has no leaf
+  const maps::Raster<float>& elevation_m;  ///< elevation of the surface; a NaN cell has no leaf
   const SurfaceKeys& keys;
-  std::vector<FloorLeaf> floors{};  ///< leaves of the floors, outside the voxels of the top surface
 };
 
-/// Returns the octree of a surface: one leaf per cell at its elevation, and one leaf per floor. The function
-/// `belief` returns the estimate of a cell. Equal neighbours are pruned (merged) during construction, so that
-/// memory depends on the number of different leaves.
+/// Returns the octree of a surface: one leaf per cell at its elevation. The function `belief` returns the
+/// estimate of a cell. Equal neighbours are pruned (merged) during construction, so that memory depends on
+/// the number of different leaves.
 TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief);
 
 /// Writes the bytes of writeTree(surfaceTree(...)) without storing the tree in memory. The stream must be
@@ -35,7 +27,7 @@ TraversabilityTree surfaceTree(const Surface& surface, const std::function<CellB
 void writeSurfaceTree(const Surface& surface, const std::function<CellBelief(maps::Cell)>& belief,
                       std::ostream& stream);
 
-/// Returns the surface, without floors, as an octree for the viewer octovis: green for safe, amber for
+/// Returns the surface as an octree for the viewer octovis: green for safe, amber for
 /// marginal, red for dangerous or refused, and grey for unknown cells.
 std::unique_ptr<octomap::ColorOcTree> colorTree(const Surface& surface,
                                                 const std::function<CellBelief(maps::Cell)>& belief);

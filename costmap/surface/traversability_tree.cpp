@@ -197,7 +197,7 @@ bool TraversabilityTree::isNodeCollapsible(const TraversabilityNode* node) const
     const TraversabilityNode* child = getNodeChild(node, i);
     if (nodeHasChildren(child)) return false;
     if (!first) first = child;
-    if (!(child->belief() == first->belief()) || ofFloor(child->belief())) return false;
+    if (!(child->belief() == first->belief())) return false;
   }
   return first != nullptr;
 }

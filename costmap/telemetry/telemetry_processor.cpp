@@ -23,7 +23,7 @@ constexpr double kLittleSlip =
 
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
-  const int index = cell ? map.surface().classIndex(*cell, reading.z_m) : -1;
+  const int index = cell ? map.surface().classIndex(*cell) : -1;
   return index < 0 ? std::nullopt : std::optional(index);
 }
 
@@ -33,8 +33,7 @@ ClassReading withoutTorque(ClassReading read) {
 }
 
 WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& here) {
-  WheelObservation out{
-      .time_s = reading.time_s, .place = reading.place, .z_m = reading.z_m, .pull = {}, .sinkage = {}};
+  WheelObservation out{.time_s = reading.time_s, .place = reading.place, .pull = {}, .sinkage = {}};
   out.pose_std_m = reading.pose_std_m;
   out.here = here;
   return boundAlone(out);

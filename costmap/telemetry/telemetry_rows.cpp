@@ -109,11 +109,10 @@ double TelemetryRows::measuredGradient(std::size_t i) const {
   return std::tan(value(slope_, i));
 }
 
-// Gradient of the top surface; NaN on a floor below the top surface.
+// Gradient of the surface.
 double TelemetryRows::mapGradient(const TelemetryReading& r, double direction_rad) const {
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || std::isnan(direction_rad) || map_.surface().floorAt(*cell, r.z_m))
-    return std::numeric_limits<double>::quiet_NaN();
+  if (!cell || std::isnan(direction_rad)) return std::numeric_limits<double>::quiet_NaN();
   const CellCode code = map_.published()->at(*cell);
   return code.dzDx() * std::cos(direction_rad) + code.dzDy() * std::sin(direction_rad);
 }
@@ -128,7 +127,7 @@ double TelemetryRows::steepestDescent(std::size_t i) const {
   const TelemetryReading r = reading(i);
   const double measured = measuredSlope(i);
   const auto cell = map_.grid().cellAt(r.place);
-  if (!cell || map_.surface().floorAt(*cell, r.z_m)) return std::fmin(measured, 0.0);
+  if (!cell) return std::fmin(measured, 0.0);
   const CellCode code = map_.published()->at(*cell);
   return std::fmin(measured, -std::hypot(code.dzDx(), code.dzDy()));
 }

@@ -37,15 +37,5 @@ TEST(BlockGrid, BlocksPartitionTheMap) {
   }
 }
 
-TEST(BlockGrid, TopKeyIsThatOfTheFirstKnownCell) {
-  std::vector<std::string> rows(16, std::string(16, '?'));
-  const auto hole = siteOf(rows, 16.0);
-  EXPECT_FALSE(BlockGrid(hole).topKey(BlockGrid(hole).blockOf({5, 5})));
-  rows[8][6] = '1';
-  const auto one = siteOf(rows, 16.0);
-  const BlockGrid blocks(one);
-  EXPECT_EQ(blocks.topKey(blocks.blockOf({6, 7})), blocks.keyOf(1000.0F));
-}
-
 }  // namespace block_grid_test
 }  // namespace talus::costmap

@@ -40,7 +40,6 @@ TEST(ObservationFault, ImpossibleObservationsNameTheField) {
                          {[](O& o) { o.place.x_m = kInf; }, "x_m = inf"},
                          {[](O& o) { o.place.y_m = std::nan(""); }, "y_m = nan"},
                          {[](O& o) { o.pose_std_m = kInf; }, "pose_std_m = inf"},
-                         {[](O& o) { o.z_m = kInf; }, "z_m"},
                          {[](O& o) { o.here.most_pull = kInf; }, "a bound"},
                          {[](O& o) { o.here.most_pull = 101.0; }, "a bound"},
                          {[](O& o) { o.here.least_sinkage = -0.1; }, "a bound"},

@@ -18,18 +18,11 @@ TEST(CellBelief, HazardSubsetsAreRepresentedExactly) {
   }
 }
 
-TEST(CellBelief, FloorRequiresUnknownHazardAndEvidence) {
-  EXPECT_TRUE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Unknown | Hazard::Near}));
-  EXPECT_FALSE(ofFloor({.evidence = 0.1F, .hazards = Hazard::Near}));
-  EXPECT_FALSE(ofFloor({.evidence = 0.0F, .hazards = Hazard::Unknown}));
-}
-
 TEST(CellBelief, DefaultBeliefIsUnknown) {
   const CellBelief none;
   EXPECT_EQ(none.category, 3);  // unknown
   EXPECT_EQ(none.confidence, 0);
   EXPECT_EQ(none.evidence, 0.0F);
-  EXPECT_FALSE(ofFloor(none));
 }
 
 }  // namespace cell_belief_test

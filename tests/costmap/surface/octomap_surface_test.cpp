@@ -28,21 +28,13 @@ void fill(Tree& tree) {
   tree.updateInnerOccupancy();
 }
 
-void expectSlopeUnderSlab(const OctomapGround& ground) {
-  const maps::ElevationMap& map = ground.surface;
+void expectSlopeUnderSlab(const maps::ElevationMap& map) {
   ASSERT_EQ(map.grid().width, 20);
   ASSERT_EQ(map.grid().height, 10);
   // Closed form: the slope of fill(); heights are voxel centres, stored as floats.
   EXPECT_NEAR(map.elevation_m[(maps::Cell{2, 3})], 1.05, 1e-6);
   EXPECT_NEAR(map.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
   EXPECT_NEAR(map.grid().centre({12, 3}).x_m, 1.25, 1e-9);
-  // Closed form: five columns of ten cells lie under the slab, the first four at one height, the fifth one
-  // step higher.
-  ASSERT_EQ(ground.floors.size(), 50U);
-  const Floors floors(ground.floors, map.grid().size());
-  ASSERT_EQ(floors.of(map.grid().index({2, 3})).size(), 1U);
-  EXPECT_NEAR(floors.of(map.grid().index({2, 3}))[0].height_m, 0.05, 1e-6);
-  EXPECT_NEAR(floors.of(map.grid().index({4, 3}))[0].height_m, 0.15, 1e-6);
 }
 
 TEST(OctomapSurface, ReadsFullBinaryAndColourTrees) {
@@ -64,17 +56,15 @@ TEST(OctomapSurface, CeilingSelectsTheGroundBelow) {
   fill(tree);
   std::stringstream stream;
   tree.writeBinaryConst(stream);
-  const OctomapGround ground = octomapGround(stream, "a.bt", 0.8);
-  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{2, 3})], 0.05, 1e-6);
-  EXPECT_NEAR(ground.surface.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
-  ASSERT_EQ(ground.floors.size(), 50U) << "the slab is the other floor now";
-  EXPECT_NEAR(ground.floors[0].height_m, 1.05, 1e-6);
+  const maps::ElevationMap ground = octomapGround(stream, "a.bt", 0.8);
+  EXPECT_NEAR(ground.elevation_m[(maps::Cell{2, 3})], 0.05, 1e-6);
+  EXPECT_NEAR(ground.elevation_m[(maps::Cell{12, 3})], 0.35, 1e-6);
   stream.seekg(0);
   EXPECT_THROW(octomapGround(stream, "a.bt", -1.0), InputError);
 }
 
 // Property: a rock of two voxels above the ground leaves no headroom, and a gap in a scan is no headroom.
-TEST(OctomapSurface, FloorRequiresFreeHeadroom) {
+TEST(OctomapSurface, GroundRequiresFreeHeadroom) {
   for (const double slab_m : {0.35, 0.55, 0.65}) {
     octomap::OcTree tree(0.1);
     tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
@@ -82,7 +72,10 @@ TEST(OctomapSurface, FloorRequiresFreeHeadroom) {
     std::stringstream stream;
     tree.write(stream);
     // Closed form: 2, 4 and 5 voxels between ground and slab are free; headroom of half a metre needs 5.
-    EXPECT_EQ(octomapGround(stream, "a.ot").floors.size(), slab_m > 0.6 ? 1U : 0U) << slab_m;
+    if (slab_m > 0.6)
+      EXPECT_NEAR((octomapGround(stream, "a.ot", 0.2).elevation_m[{0, 0}]), 0.05, 1e-6);
+    else
+      EXPECT_REFUSED(octomapGround(stream, "a.ot", 0.2), InputError, "no ground at or below");
   }
 }
 
@@ -114,11 +107,10 @@ std::string oneCube(int depth, const std::string& resolution) {
 // 0.5 - 2^15.
 TEST(OctomapSurface, LargeLeafIsASurfaceOfItsFullWidth) {
   std::istringstream stream(oneCube(6, "0.1"));
-  const OctomapGround ground = octomapGround(stream, "cube.ot");
-  EXPECT_EQ(ground.surface.grid().width, 1024);
-  EXPECT_TRUE(ground.floors.empty());
+  const maps::ElevationMap ground = octomapGround(stream, "cube.ot");
+  EXPECT_EQ(ground.grid().width, 1024);
   for (const maps::Cell cell : {maps::Cell{0, 0}, maps::Cell{511, 3}, maps::Cell{1023, 1023}})
-    EXPECT_FLOAT_EQ(ground.surface.elevation_m[cell], static_cast<float>((1023.5 - 32768.0) * 0.1));
+    EXPECT_FLOAT_EQ(ground.elevation_m[cell], static_cast<float>((1023.5 - 32768.0) * 0.1));
 }
 
 // Property: a small file that declares a huge extent is rejected before memory or time is spent.
