@@ -1,14 +1,33 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
-#include <talus/costmap/map/map_change.hpp>
 #include <talus/costmap/map/map_move.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::costmap {
 namespace {
+
+// Guard of a call that changes a map: a concurrent change throws an error instead of causing a data race.
+class MapChange {
+ public:
+  // Marks the map as changing during the lifetime of the object. Throws std::logic_error, which names the
+  // function `call`, if another thread is changing the map.
+  MapChange(std::atomic_flag& changing, const char* call) : changing_(changing) {
+    if (changing_.test_and_set(std::memory_order_acquire))
+      throw std::logic_error(std::string("TraversabilityMap: ") + call +
+                             "() while another thread changes the map; let one thread change it");
+  }
+  MapChange(const MapChange&) = delete;
+  MapChange& operator=(const MapChange&) = delete;
+  ~MapChange() { changing_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag& changing_;
+};
 
 ShapeOptions shapeOf(const TraversabilityMap::Options& options, const terramech::Rover& rover) {
   return {.footprint_radius_m = options.footprint_radius_m > 0.0

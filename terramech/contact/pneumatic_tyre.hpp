@@ -8,6 +8,14 @@
 /// p_cr, the contact pressure of a rigid wheel of the same size.
 namespace talus::terramech {
 
+/// Returns the pressure p = (k_c/b + k_phi) z^n [Pa] (Bekker, thesis Eq. A.1; bekker_1969) under a plate or
+/// wheel whose smaller dimension is b = width_m > 0, at the depth z = depth_m >= 0.
+double bekkerPressure_Pa(const Soil& soil, double width_m, double depth_m);
+
+/// Returns the depth [m] at which Bekker's pressure equals pressure_Pa >= 0, for the smaller dimension b =
+/// width_m. Throws std::domain_error if k_c/b + k_phi <= 0 and std::invalid_argument if pressure_Pa < 0.
+double bekkerDepth_m(const Soil& soil, double width_m, double pressure_Pa);
+
 /// Pneumatic tyre. Its undeflected outer radius r and its width b are those of `wheel`.
 struct Tyre {
   Wheel wheel;                ///< radius and width of the undeflected tyre; grousers are ignored

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <talus/terramech/estimate/telemetry.hpp>
-#include <talus/terramech/io/field_number.hpp>
+#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::terramech {
 

@@ -9,7 +9,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/field_number.hpp>
+#include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/table_columns.hpp>
 #include <talus/terramech/io/unit.hpp>
 

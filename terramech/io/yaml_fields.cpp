@@ -12,9 +12,9 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/unit.hpp>
-#include <talus/terramech/io/utf8_text.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {

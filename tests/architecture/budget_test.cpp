@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 628},    {"terramech", 22734}, {"maps", 7472},     {"costmap", 14530},
-                           {"planner", 24529}, {"cli", 15187},       {"examples", 1703}, {"tests", 62361}};
+const Budget kBudgets[] = {{"common", 628},    {"terramech", 22686}, {"maps", 7472},     {"costmap", 14522},
+                           {"planner", 24529}, {"cli", 15187},       {"examples", 1703}, {"tests", 62340}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

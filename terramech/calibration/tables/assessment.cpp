@@ -4,7 +4,7 @@
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
-#include <talus/terramech/estimate/pull_forecasts.hpp>
+#include <talus/terramech/estimate/pull_forecast.hpp>
 #include <talus/terramech/estimate/pull_formula.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>

@@ -1,6 +1,8 @@
+#include <charconv>
 #include <cstddef>
+#include <system_error>
 
-#include <talus/terramech/io/utf8_text.hpp>
+#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -28,6 +30,12 @@ bool isText(std::string_view text) {
     text.remove_prefix(bytes);
   }
   return true;
+}
+
+bool parseNumber(std::string_view field, double& value) noexcept {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc{} && end == field.data() + field.size();
 }
 
 }  // namespace talus::terramech

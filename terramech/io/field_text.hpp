@@ -8,4 +8,7 @@ namespace talus::terramech {
 /// any locale. Returns false if the field is not a number.
 bool parseNumber(std::string_view field, double& value) noexcept;
 
+/// Returns true if a text is valid UTF-8 without NUL characters.
+bool isText(std::string_view text);
+
 }  // namespace talus::terramech
