@@ -112,7 +112,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
     if (by_law.effects[k].empirical() || by_law.effects[k].covariate != column) continue;
     RefinedModel at_edge = by_law;
     at_edge.effects[k].knots = {low_seen, high_seen};
-    const bool allowed = !level || level->reach[k] > 0.0, better = reached > likelihood(at_edge);  // (T50)
+    const bool allowed = !level || level->reach[k] > 0.0, better = reached > likelihood(at_edge);  // (T49)
     if (allowed && better) end.reach[k] = farthest;
     const bool law = level ? allowed : better;
     end.law = end.law || law;
@@ -181,7 +181,7 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
           distance += end.rows * end.distance * end.distance;
         }
         if (excess > 0.0 && distance > 0.0)
-          (high_end ? range.above : range.below)[c] = std::sqrt(excess / distance);  // (T53)
+          (high_end ? range.above : range.below)[c] = std::sqrt(excess / distance);  // (T52)
       }
     all.push_back(range);
   }

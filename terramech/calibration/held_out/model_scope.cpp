@@ -15,7 +15,7 @@ namespace {
 bool isWorse(const EndLevel& end, const ChannelErrors& floor, std::size_t channel) {
   const double chance = normalQuantile(1.0 - TraceOptions{}.significance) * std::sqrt(2.0 / end.rows);
   const double least = std::max(end.base_rmse[channel], floor[channel]);
-  return std::pow(end.refined_rmse[channel], 2) > (1.0 + chance) * least * least;  // (T51)
+  return std::pow(end.refined_rmse[channel], 2) > (1.0 + chance) * least * least;  // (T50)
 }
 
 void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& scope) {
@@ -33,7 +33,7 @@ void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>&
     for (const EndLevel& end : ends) {
       if (isWorse(end, floor, c)) {
         reach[c] =
-            0.5 * 0.5 * (confirmed + end.distance);  // (T52) TrainedRange::share() ends at twice the reach
+            0.5 * 0.5 * (confirmed + end.distance);  // (T51) TrainedRange::share() ends at twice the reach
         break;
       }
       confirmed = end.distance;
@@ -48,7 +48,7 @@ ModelScope scopeOf(const TraceResult& result) {
   if (!hasCorrections(result)) return scope;
   scope.base = result.base;
   for (std::size_t c = 0; c < kChannels; ++c)
-    scope.kept[c] = !(result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]);  // (T49)
+    scope.kept[c] = !(result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]);  // (T48)
   std::map<std::pair<std::string, bool>, std::vector<EndLevel>> sides;
   for (const EndLevel& end : result.ends) sides[{end.column, end.high}].push_back(end);
   for (TrainedRange& range : scope.trained)
@@ -56,14 +56,6 @@ ModelScope scopeOf(const TraceResult& result) {
       if (const auto side = sides.find({range.column, high}); side != sides.end())
         setReach(high ? range.reach_above : range.reach_below, side->second, result.noise_floor);
   return scope;
-}
-
-std::optional<std::size_t> lastRefuted(const TraceResult& result) {
-  for (std::size_t k = result.effects.size(); k-- > 0;) {
-    const auto c = static_cast<std::size_t>(result.effects[k].channel);
-    if (result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]) return k;
-  }
-  return std::nullopt;
 }
 
 void keepConfirmed(HeldOut& held, const ModelScope& scope) {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include <talus/terramech/calibration/search/trace_result.hpp>
 
 /// Scope of a refined model: the channels and column ranges in which its effects (corrections of the base
@@ -19,10 +16,6 @@ ModelScope scopeOf(const TraceResult& result);
 /// at ends whose errors contradict the effects. `floor` is the rms sensor error per channel.
 void keepConfirmed(HeldOut& held, const ModelScope& scope);
 void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
-
-/// Returns the index of the last found effect whose channel has larger errors on held-out rows with the
-/// effects than without them; nullopt if no effect has such a channel.
-std::optional<std::size_t> lastRefuted(const TraceResult& result);
 
 /// Returns the predictions of the refined model within its scope, rows x kChannels. Outside the scope the
 /// predictions return to those of the base model.

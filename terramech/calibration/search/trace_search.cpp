@@ -2,13 +2,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include <talus/terramech/calibration/fit/candidate_columns.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
-#include <talus/terramech/calibration/noise/spline_basis.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
-#include <talus/terramech/numerics/natural_spline.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -23,11 +20,6 @@ bool shares(const RefinedModel& model, const Candidate& candidate) {
 
 std::string keyOf(const Effect& e) {
   return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
-}
-
-/// Key of a candidate: its column, and known form or curve.
-std::string kindOf(const Candidate& candidate) {
-  return candidate.covariate() + (candidate.empirical() ? " curve" : " form");
 }
 
 }  // namespace
@@ -155,42 +147,7 @@ bool TraceSearch::dependsOn(const RefinedModel& model, const std::string& column
   SolvedContacts solved, solved_exchanged;
   const Eigen::VectorXd moved = fit_.rows().whitening().marginal(trial.measured.array().isFinite().select(
       predictRows(model, exchanged, solved_exchanged) - predictRows(model, trial, solved), 0.0));
-  return 0.5 * moved.squaredNorm() > closeGain(options_);  // (T47)
-}
-
-std::vector<Explanation> TraceSearch::pairs() {
-  constexpr int kFirsts = 8, kPairs = 5;
-  std::vector<std::pair<double, Candidate>> promised;
-  const Screening screening = screen(0);
-  std::set<std::string> columns;
-  for (const Promise& p : screening.promises) {
-    if (static_cast<int>(columns.size()) == kFirsts || p.gain <= 0.0 || !go_on_(0.0)) break;
-    if (p.candidate.parts.size() > 1 || !columns.insert(kindOf(p.candidate)).second) continue;
-    const Explanation first = fitted(p.candidate);
-    TraceSearch beside = *this;
-    beside.fit_.setModel(fit_.fitted(withCandidate(model(), first.candidate), 3));
-    std::set<bool> seconds;  // the best curve and the best known form
-    for (const Promise& q : beside.screen(0).promises) {
-      if (seconds.size() == 2) break;
-      if (q.candidate.parts.size() > 1 || q.candidate.covariate() == p.candidate.covariate()) continue;
-      if (!seconds.insert(q.candidate.empirical()).second) continue;
-      Candidate both = first.candidate;
-      both.parts.push_back(q.candidate.parts.front());
-      both.parameters += q.candidate.parameters;
-      promised.emplace_back(first.gain + q.gain, std::move(both));
-    }
-  }
-  std::stable_sort(promised.begin(), promised.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<Explanation> ranked;
-  std::set<std::set<std::string>> tried;
-  for (const auto& [gain, pair] : promised)
-    if (static_cast<int>(ranked.size()) < kPairs &&
-        tried.insert({keyOf(pair.parts.front()), keyOf(pair.parts.back())}).second)
-      ranked.push_back(fitted(pair));
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
-  return ranked;
+  return 0.5 * moved.squaredNorm() > closeGain(options_);  // (T46)
 }
 
 void TraceSearch::settleAll() {
@@ -235,7 +192,7 @@ bool TraceSearch::differs(const RefinedModel& without) const {
   SolvedContacts solved;
   const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
       predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
-  constexpr double kShare = 0.02;  // (T46)
+  constexpr double kShare = 0.02;  // (T45)
   for (int c = 0; c < kChannels; ++c)
     if (moved(Eigen::seq(c, Eigen::last, Eigen::fix<kChannels>)).norm() >
         kShare * std::sqrt(static_cast<double>(rows.trial().rows())))
@@ -275,38 +232,6 @@ void TraceSearch::dropIdleParts(std::size_t k) {
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {
   const auto begin = model().effects.begin() + static_cast<long>(firstPart(k));
   return {begin, begin + static_cast<long>(part_count_[k])};
-}
-
-void TraceSearch::refineCurves() {
-  bool refined = false;
-  for (std::size_t k = 0; k < model().effects.size(); ++k)
-    if (model().effects[k].empirical() && model().effects[k].knots.size() >= 3) refined |= refineCurve(k);
-  if (refined) fit_.refresh();
-}
-
-/// Returns true if effect k of the model received more knots.
-bool TraceSearch::refineCurve(std::size_t k) {
-  const Trial& trial = fit_.rows().trial();
-  const Eigen::VectorXd x = covariateValues(trial, model().effects[k].covariate, fit_.rows().sinkages_m());
-  double score = fit_.scoreOf(model());
-  bool refined = false;
-  for (const int most : {9, 13}) {
-    const Effect coarse = model().effects[k];
-    const auto knots = quantileKnots(x, std::min(most, trial.rows() / 10));
-    if (knots.size() <= coarse.knots.size()) continue;
-    RefinedModel finer = model();
-    finer.effects[k].knots = knots;
-    finer.effects[k].parameters.clear();
-    const NaturalSpline curve{coarse.knots, coarse.parameters};
-    for (const double knot : knots) finer.effects[k].parameters.push_back(curve(knot));
-    finer = fit_.fitted(finer, 8);
-    const double now = fit_.scoreOf(finer);
-    if (now <= score) continue;
-    score = now;
-    fit_.setModel(finer);
-    refined = true;
-  }
-  return refined;
 }
 
 void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const {

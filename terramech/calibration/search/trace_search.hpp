@@ -49,10 +49,6 @@ class TraceSearch {
   /// rows (the first with the middle row, and so on) changes the log-likelihood by more than closeGain().
   bool dependsOn(const RefinedModel& model, const std::string& column) const;
 
-  /// Returns pairs of candidates as explanations, best gain first. The first candidate of a pair is fitted
-  /// before the second is searched.
-  std::vector<Explanation> pairs();
-
   /// Adds a candidate to the model, refits all parameters and estimates the noise again.
   void accept(const Candidate& candidate);
 
@@ -96,15 +92,11 @@ class TraceSearch {
   /// Returns the squared norm of the whitened residuals.
   double chi2() const { return fit_.rows().white().squaredNorm(); }
 
-  /// Increases the number of knots of a curve if this yields a gain.
-  void refineCurves();
-
   /// Writes the model, its errors and standard deviations to the result.
   void finish(TraceResult& result);
 
  private:
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
-  bool refineCurve(std::size_t k);
   RefinedModel withoutPart(std::size_t k, std::size_t part) const;
   /// Returns true if the predictions without an effect differ from those of the model, by the criterion of
   /// acts().

@@ -42,7 +42,7 @@ std::vector<double> closureErrors(const Trial& trial) {
     const double pull = trial.measured(row, 0), z = trial.measured(row, 1), torque = trial.measured(row, 2);
     const double entry = std::acos(std::clamp(1.0 - z, 0.0, 1.0 - 1e-9));
     const double arc = std::sin(0.25 * entry) / (0.25 * entry);
-    // (T48)
+    // (T47)
     errors.push_back(pull + std::tan(0.5 * entry) - arc * arc / std::cos(0.5 * entry) * torque);
   }
   return errors;

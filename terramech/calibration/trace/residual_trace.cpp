@@ -24,11 +24,6 @@ Channel strongest(const Explanation& e) {
   return static_cast<Channel>(most - e.by_channel.begin());
 }
 
-bool same(const Candidate& a, const Candidate& b) {
-  return a.parts.size() == b.parts.size() && a.parts.front().name == b.parts.front().name &&
-         a.covariate() == b.covariate() && a.parts.front().only_value == b.parts.front().only_value;
-}
-
 TracedEffect traced(const Explanation& chosen, double p_value) {
   return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
 }
@@ -82,17 +77,6 @@ void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
   taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
 }
 
-long curves(const std::vector<Effect>& effects) {
-  return std::count_if(effects.begin(), effects.end(), [](const Effect& e) { return e.empirical(); });
-}
-
-/// Least additional gain for the replacement of the present explanation by another: 0 for fewer curves,
-/// closeGain() for the same number of curves, and for more curves at least the gain of noise by some curve.
-double margin(const Path& path, const std::vector<Effect>& present, const std::vector<Effect>& other) {
-  const long more = curves(other) - curves(present);
-  return more < 0 ? 0.0 : more > 0 ? std::max(path.close, path.threshold) : path.close;  // (T45)
-}
-
 /// Removes, from the last on, the effects whose gain relative to the model without the effect is at most that
 /// of noise.
 void check(Path& path) {
@@ -125,53 +109,13 @@ void dropIdle(Path& path) {
   }
 }
 
-/// Finishes the result. While effects increase the held-out error of some channel, removes the last effect
-/// found in that channel.
-void finishConfirmed(Path& path, TraceResult& result, const TraceOptions& options,
-                     const std::function<bool(double)>& go_on) {
-  while (true) {
-    dropIdle(path);
-    result.effects = path.effects;
-    path.search.finish(result);
-    result.held_out = holdOut(result, options, foldsOf(result.trial));
-    const auto last = lastRefuted(result);
-    if (!last || *last < path.pinned || !go_on(0.0)) return;
-    path.search.leaveOut(*last);
-    path.search.settleAll();
-    path.effects.erase(path.effects.begin() + static_cast<long>(*last));
-  }
-}
-
-/// Re-tests each earlier effect after a new one is accepted, because both may explain the same residual. An
-/// effect is replaced if an alternative has a clearly higher score: a superfluous effect would distort the
-/// further search.
-void reconsider(Path& path) {
-  if (path.effects.size() > path.pinned + 1) check(path);
-  for (std::size_t k = path.pinned; k + 1 < path.effects.size(); ++k) {
-    TraceSearch without = path.search;
-    without.leaveOut(k);
-    auto ranked = without.fitBest(without.screen(0).promises);
-    preferSimple(ranked, path.threshold);
-    if (!accepted(ranked, 0.0)) continue;
-    const Explanation& best = ranked.front();
-    if (same(best.candidate, path.effects[k].chosen.candidate) ||
-        best.gain < path.search.gainOf(k) + margin(path, path.search.parts(k), best.candidate.parts))
-      continue;
-    const double p_value = path.effects[k].p_value;
-    path.search.leaveOut(k);
-    path.effects.erase(path.effects.begin() + static_cast<long>(k));
-    take(path, ranked, p_value);
-    return;
-  }
-}
-
 /// Searches alternative causes for each effect.
 void findRivals(const Path& path, TraceResult& result, const std::function<bool(double)>& go_on) {
   for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
     TracedEffect& effect = result.effects[k];
     const double least = path.search.gainOf(k) - path.close;
     for (RivalCause& rival : rivalsOf(path.search, k)) {
-      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);  // (T47)
+      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);  // (T46)
       result.rivals.push_back(std::move(rival));
     }
   }
@@ -200,45 +144,13 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     path.threshold = screening.threshold;
     path.noise = screening.noise;
     path.rejected = path.search.fitBest(screening.promises);
-    preferSimple(path.rejected, screening.threshold);
+    preferSimple(path.rejected, screening.threshold, path.close);
     const double least =
         0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
     if (!accepted(path.rejected, std::max(screening.threshold, least))) return;  // (T42)
     take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
     path.rejected.erase(path.rejected.begin());
-    reconsider(path);
-  }
-}
-
-/// Tests two effects in place of the one or two that were found. In place of one effect the pair must gain at
-/// least the threshold, in place of two at least margin(); with more curves, at least the sum of both.
-void reconsiderPair(Path& path) {
-  const std::size_t found = path.effects.size() - path.pinned;
-  if (found < 1 || found > 2) return;
-  TraceSearch without = path.search;
-  Candidate present;
-  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
-    for (const Effect& part : path.search.parts(k)) present.parts.push_back(part);
-    without.leaveOut(k);
-  }
-  const auto ranked = without.pairs();
-  if (!accepted(ranked, 0.0)) return;
-  const Explanation& best = ranked.front();
-  const double other = margin(path, present.parts, best.candidate.parts);
-  const double further = found == 1 ? path.threshold : 0.0;
-  const bool more_curves = curves(best.candidate.parts) > curves(present.parts);
-  if (best.gain < without.fitted(present).gain + (more_curves ? further + other : std::max(further, other)))
-    return;
-  const double p_value = path.effects.back().p_value;
-  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
-    path.search.leaveOut(k);
-    path.effects.pop_back();
-  }
-  for (const Effect& part : best.candidate.parts) {
-    Explanation one = best;
-    const EffectForm* form = findEffect(part.name);
-    one.candidate = {{part}, form ? form->family : "empirical", static_cast<int>(part.parameters.size())};
-    take(path, {one}, p_value);
+    check(path);
   }
 }
 
@@ -312,10 +224,10 @@ bool isSimpler(const Candidate& a, const Candidate& b) {
 
 }  // namespace
 
-void preferSimple(std::vector<Explanation>& ranked, double threshold) {
+void preferSimple(std::vector<Explanation>& ranked, double threshold, double close) {
   auto first = ranked.begin();
   for (auto e = ranked.begin(); e != ranked.end(); ++e)
-    if (e->gain > threshold && e->gain > ranked.front().gain - threshold &&  // (T43)
+    if (e->gain > threshold && e->gain > ranked.front().gain - close &&  // (T43)
         isSimpler(e->candidate, first->candidate))
       first = e;
   if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);
@@ -361,14 +273,14 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
   grow(path, trial, options, go_on);
-  if (trial.moment.empty() && go_on(0.0)) reconsiderPair(path);
-  if (go_on(0.0)) check(path);
-  if (go_on(0.0)) path.search.refineCurves();
+  dropIdle(path);
   result.rejected = path.rejected;
   result.first_promises = path.first;
   result.last_promises = path.last;
   result.threshold = path.threshold;
-  finishConfirmed(path, result, options, go_on);
+  result.effects = path.effects;
+  path.search.finish(result);
+  result.held_out = holdOut(result, options, foldsOf(result.trial));
   findRivals(path, result, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);

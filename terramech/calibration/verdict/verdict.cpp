@@ -21,7 +21,7 @@ double excess(const ChannelErrors& rmse, const TraceResult& result, const Channe
   const double variance = rmse[channel] * rmse[channel];
   const auto count = static_cast<double>(
       result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
-  // (T55)
+  // (T54)
   return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
 }
 
@@ -90,7 +90,7 @@ Answer answerOf(const TraceResult& result) {
     answer.floor = sensors[c];
   }
   const bool open =
-      (after > 0.0 || !result.strained.empty()) && (result.effects.empty() || after > 0.5 * before);  // (T56)
+      (after > 0.0 || !result.strained.empty()) && (result.effects.empty() || after > 0.5 * before);  // (T55)
   answer.open = after > 0.0 || !result.strained.empty();
   answer.strained = result.strained;
   answer.unstated = unstatedSensors(result.trial, result.refined.stated);
@@ -99,7 +99,7 @@ Answer answerOf(const TraceResult& result) {
                                             : Verdict::Explained;
   if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
-  // (T57)
+  // (T56)
   if (after > 0.0 && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
     answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
     answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
@@ -179,7 +179,7 @@ RefinedModel forPrediction(const TraceResult& result) {
     for (int row = 0; row < result.trial.rows(); ++row)
       unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();
     double& absolute = model.noise.absolute[static_cast<std::size_t>(c)];
-    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T58)
+    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T57)
   }
   return model;
 }

@@ -46,20 +46,6 @@ WheelState stateAt(double slip) {
   return {.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 60.0, .slip = slip};
 }
 
-TEST(ModelScope, LastEffectRefutedByHeldOutRowsIsReturned) {
-  TraceResult result = resultOf();  // the torque error is larger than that of the base
-  EXPECT_EQ(lastRefuted(result), std::nullopt);
-  for (const Channel c : {Channel::Torque, Channel::Torque, Channel::Sinkage, Channel::SideForce}) {
-    result.effects.emplace_back();
-    result.effects.back().channel = c;
-  }
-  EXPECT_EQ(lastRefuted(result), 1U);
-  result.held_out.refined_rmse[1] = 0.2;
-  EXPECT_EQ(lastRefuted(result), 2U);
-  result.held_out.base_rmse = {1.0, 1.0, 1.0, kNan};
-  EXPECT_EQ(lastRefuted(result), std::nullopt);
-}
-
 TEST(ModelScope, CorrectionShareFallsToZeroBetweenConfirmedAndRefutedSlip) {
   const ModelScope scope = scopeOf(resultOf());
   // Closed form: pull is confirmed at distance 0.1 and contradicted at 0.25; share 1 up to 0.0875, 0 from

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <set>
 
 #include <talus/terramech/calibration/search/trace_search.hpp>
 
@@ -83,19 +82,6 @@ TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
   search.trust(Estimate{.value = 0.3, .std = 1e-4});
   search.accept(torqueOffset());
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
-}
-
-TEST(TraceSearch, PairRankingSeparatesTwoSensorFaults) {
-  // Property: offsets of torque (0.8 Nm) and pull (0.05 W) are found together; no single candidate explains
-  // both.
-  TraceSearch search(sand(), makeTrial(twoFaults(madeSand()), sand()), {});
-  const auto ranked = search.pairs();
-  ASSERT_FALSE(ranked.empty());
-  std::set<Channel> channels;
-  for (const Effect& part : ranked.front().candidate.parts) channels.insert(part.channel);
-  EXPECT_EQ(channels, (std::set{Channel::Torque, Channel::DrawbarPull}));
-  for (const Promise& single : search.screen(0).promises)
-    EXPECT_GT(ranked.front().gain, single.gain + closeGain({}));
 }
 
 TEST(TraceSearch, EffectOfSizeZeroIsInactive) {
