@@ -96,8 +96,13 @@ RefinedModel withCandidate(const RefinedModel& model, const Candidate& candidate
 }
 
 Contender contenderOf(const Candidate& candidate, const ModelOnRows& at) {
-  if (!candidate.empirical()) return libraryContender(candidate, at);
   Contender c;
+  if (!candidate.empirical()) {
+    c = libraryContender(candidate, at);
+    c.log_prior = candidate.logPrior();
+    return c;
+  }
+  c.log_prior = candidate.logPrior();
   c.added.columns.resize(at.trial.rows() * kChannels, 0);
   for (const Effect& curve : candidate.parts) {
     const Eigen::MatrixXd own = curveColumns(curve, at);

@@ -337,6 +337,11 @@ void addProducts(const Trial& trial, std::vector<Candidate>& all) {
 
 }  // namespace
 
+double Candidate::logPrior() const {
+  constexpr double kStep = -0.5 * 3.0;  // (T42) ln(1/20) = -3.0 in two steps
+  return kStep * (isProduct(covariate()) ? 3.0 : empirical() ? 2.0 : family == "drift" ? 1.0 : 0.0);
+}
+
 bool isProduct(const std::string& covariate) {
   return covariate.find('*') != std::string::npos;
 }

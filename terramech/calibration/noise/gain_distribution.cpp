@@ -55,12 +55,12 @@ class Contest {
   void setTables(Eigen::Index tables) { at_run_ = likelihood_.heldOut(known_, run_, 0, tables).score(); }
 
   /// Gains on all tables with the run error of the null model.
-  Eigen::VectorXd roughGains(const RunSums& both, bool positive) const {
+  Eigen::VectorXd roughGains(const RunSums& both, const Contender& c) const {
     const HeldOutFit fit = likelihood_.heldOut(both, run_, 0, at_run_.size());
     Eigen::VectorXd gain = fit.score() - at_run_;
     for (Eigen::Index t = 0; t < gain.size(); ++t)
-      if (!allowed(fit.steps, t, positive)) gain[t] = 0.0;
-    return gain;
+      if (!allowed(fit.steps, t, c.positive)) gain[t] = 0.0;
+    return gain.array() + c.log_prior;
   }
 
   double nullScore(Eigen::Index table) const {
@@ -68,10 +68,10 @@ class Contest {
     return likelihood_.heldOut(known_, run, table, 1).score()[0];
   }
 
-  double profiledGain(const RunSums& both, bool positive, Eigen::Index table, double null_score) const {
+  double profiledGain(const RunSums& both, const Contender& c, Eigen::Index table, double null_score) const {
     const RunError run = likelihood_.profile(both, run_, table, kFurtherSteps);
     const HeldOutFit fit = likelihood_.heldOut(both, run, table, 1);
-    return allowed(fit.steps, 0, positive) ? fit.score()[0] - null_score : 0.0;  // (T35)
+    return (allowed(fit.steps, 0, c.positive) ? fit.score()[0] - null_score : 0.0) + c.log_prior;  // (T35)
   }
 
  private:
@@ -88,7 +88,8 @@ class Contest {
 /// Returns the greatest profiled gain on one table, among the kProfiled contenders with the greatest gains at
 /// the run error of the null model.
 double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
-                    const std::vector<char>& positive, const Eigen::MatrixXd& rough, Eigen::Index table) {
+                    const std::vector<Contender>& contenders, const Eigen::MatrixXd& rough,
+                    Eigen::Index table) {
   std::vector<Eigen::Index> order(sums.size());
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   const auto most = std::min<std::size_t>(order.size(), kProfiled);
@@ -98,7 +99,7 @@ double greatestGain(const Contest& contest, const std::vector<RunSums>& sums,
   double greatest = 0.0;
   for (std::size_t k = 0; k < most; ++k) {
     const auto c = static_cast<std::size_t>(order[k]);
-    greatest = std::max(greatest, contest.profiledGain(sums[c], positive[c], table, null_score));  // (T37)
+    greatest = std::max(greatest, contest.profiledGain(sums[c], contenders[c], table, null_score));  // (T37)
   }
   return greatest;
 }
@@ -137,18 +138,18 @@ GainDistribution gainDistribution(const NullModel& null, const Contenders& conte
   out.null_score = contest.nullScore(0);
   out.gain.assign(contenders.count, 0.0);
   std::vector<RunSums> sums;
-  std::vector<char> positive;
+  std::vector<Contender> each;
   Eigen::MatrixXd rough(tables.cols(), static_cast<Eigen::Index>(contenders.count));
   for (std::size_t k = 0; k < contenders.count; ++k) {
     if (!go_on(0.8 * static_cast<double>(k) / static_cast<double>(contenders.count))) return out;
-    const Contender c = contenders.at(k);
-    sums.push_back(likelihood.sums(of_known, null.known, c.added));
-    positive.push_back(c.positive);
-    rough.col(static_cast<Eigen::Index>(k)) = contest.roughGains(sums[k], c.positive);
-    out.gain[k] = contest.profiledGain(sums[k], c.positive, 0, out.null_score);
+    each.push_back(contenders.at(k));
+    sums.push_back(likelihood.sums(of_known, null.known, each[k].added));
+    each[k].added = {};
+    rough.col(static_cast<Eigen::Index>(k)) = contest.roughGains(sums[k], each[k]);
+    out.gain[k] = contest.profiledGain(sums[k], each[k], 0, out.null_score);
   }
   for (int draw = 1; draw <= draws && go_on(0.8 + 0.2 * draw / draws); ++draw)
-    out.greatest.push_back(greatestGain(contest, sums, positive, rough, draw));
+    out.greatest.push_back(greatestGain(contest, sums, each, rough, draw));
   std::sort(out.greatest.begin(), out.greatest.end());
   return out;
 }

@@ -12,6 +12,7 @@ namespace talus::terramech {
 struct Contender {
   LinearModel added;      ///< derivatives of the candidate's parameters, with their priors
   bool positive = false;  ///< true: the first parameter step must be >= 0
+  double log_prior = 0.0;  ///< logarithm of the prior probability, a part of the gain
 };
 
 /// Number of contenders for which the run error (error shared by the rows of a run) is re-estimated in a

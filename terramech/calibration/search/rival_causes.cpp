@@ -64,21 +64,30 @@ std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation>
 
 }  // namespace
 
-std::vector<RivalCause> rivalsOf(const TraceSearch& search, std::size_t k) {
+Replacements replacementsOf(const TraceSearch& search, std::size_t k) {
+  Replacements in{search, {}, {}};
+  in.without.leaveOut(k);
+  in.promises = in.without.screen(0).promises;
+  in.ranked = in.without.fitBest(in.promises);
+  return in;
+}
+
+std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own) {
   constexpr std::size_t kFits = 6;
-  const std::vector<Effect> own = search.parts(k);
-  TraceSearch without = search;
-  without.leaveOut(k);
+  // At most one curve per column, and each named form once.
+  const auto kindOf = [](const Candidate& c) { return c.empirical() ? c.covariate() : causeOf(c); };
   std::set<std::string> tried;
   std::vector<Explanation> ranked;
-  for (const Promise& p : without.screen(0).promises) {
-    if (tried.size() == kFits || p.gain <= 0.0) break;
+  for (const Explanation& e : in.ranked)
+    if ((e.candidate.parts.size() == 1 || e.candidate.empirical()) && isOther(e.candidate, own) &&
+        tried.insert(kindOf(e.candidate)).second)
+      ranked.push_back(e);
+  for (const Promise& p : in.promises) {
+    if (tried.size() >= kFits || p.gain <= 0.0) break;
     if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
-    // Fits at most one curve per column, and each named form once.
-    const std::string kind = p.candidate.empirical() ? p.candidate.covariate() : causeOf(p.candidate);
-    if (tried.insert(kind).second) ranked.push_back(without.fitted(p.candidate));
+    if (tried.insert(kindOf(p.candidate)).second) ranked.push_back(in.without.fitted(p.candidate));
   }
-  return best(without, std::move(ranked), own.front().name);
+  return best(in.without, std::move(ranked), own.front().name);
 }
 
 std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked) {

@@ -39,8 +39,11 @@ struct TraceOptions {
 /// Explanation: a fitted candidate (possible addition to a model) and its gain.
 struct Explanation {
   Candidate candidate;  ///< candidate with fitted parameters
-  /// Increase of the log-likelihood on held-out rows, including the change of the prior term of the soil [-].
+  /// Increase of the log-likelihood on held-out rows, including the change of the prior term of the soil and
+  /// the logarithm of the candidate's prior [-].
   double gain = 0.0;
+  /// Returns the gain without the candidate's prior.
+  double evidence() const { return gain - candidate.logPrior(); }
   double chi2_gain = 0.0;  ///< twice the increase of the log-likelihood on the fitted rows [-]
   std::array<double, kChannels> by_channel{};  ///< reduction of chi-squared in each channel [-]
 };

@@ -50,7 +50,9 @@ GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candi
 }
 
 std::vector<double> TraceSearch::gainsOf(const std::vector<Candidate>& candidates) {
-  return distributionOf(candidates, 0).gain;
+  std::vector<double> gains = distributionOf(candidates, 0).gain;
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= candidates[k].logPrior();
+  return gains;
 }
 
 TraceSearch::Screening TraceSearch::screen(int draws) {
@@ -76,7 +78,8 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
   return screening;
 }
 
-std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promises) {
+std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promises) const {
+  const double before = fit_.scoreOf(model());
   std::vector<Explanation> ranked;
   std::map<std::string, int> tried;
   int library = 0, empirical = 0;
@@ -85,20 +88,24 @@ std::vector<Explanation> TraceSearch::fitBest(const std::vector<Promise>& promis
     if (!go_on_(0.0)) break;
     // The linearised gain of joint forms is unreliable; joint forms are always fitted.
     if (!p.candidate.empirical() && p.candidate.parts.size() > 1) {
-      ranked.push_back(fitted(p.candidate));
+      ranked.push_back(fitted(p.candidate, before));
       continue;
     }
     if (p.gain <= 0.0 || count >= (p.candidate.empirical() ? options_.fits / 2 : options_.fits)) continue;
     if (++tried[keyOf(p.candidate.parts.front())] > 2) continue;
     ++count;
-    ranked.push_back(fitted(p.candidate));
+    ranked.push_back(fitted(p.candidate, before));
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
   return ranked;
 }
 
-Explanation TraceSearch::fitted(const Candidate& candidate) {
+Explanation TraceSearch::fitted(const Candidate& candidate) const {
+  return fitted(candidate, fit_.scoreOf(model()));
+}
+
+Explanation TraceSearch::fitted(const Candidate& candidate, double before) const {
   const CalibratedRows& rows = fit_.rows();
   SolvedContacts solved = fit_.solved();
   const Fit found = fit_.fit(withCandidate(model(), candidate),
@@ -112,19 +119,11 @@ Explanation TraceSearch::fitted(const Candidate& candidate) {
     e.candidate.parts[k] = found.model.effects[model().effects.size() + k];
   e.chi2_gain = chi2() - found.chi2 - found.prior_chi2;
   const Eigen::MatrixXd left = rows.trial().measured - predictRows(found.model, rows.trial(), solved);
-  SolvedContacts before_solved = fit_.solved();
-  const NullModel before = fit_.standing(model(), rows.residual(), before_solved),
-                  after = fit_.standing(found.model, left, solved);
-  e.gain = fittedScore(after) - fittedScore(before);  // (T35)
+  e.gain = fit_.scoreOf(found.model) - before + candidate.logPrior();  // (T35)
   const Eigen::VectorXd was = rows.whitening().marginal(rows.residual()),
                         is = rows.whitening().marginal(left);
   for (Eigen::Index i = 0; i < was.size(); ++i)
     e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
-  // With a fixed soil, a valid candidate reduces the residuals. A gain is rejected if the candidate increases
-  // the sum of squares by more than twice the gain, because the gain is then due to the error common to the
-  // rows of a run. A fitted soil changes with the candidate, so that this test does not apply.
-  if (before.soil == 0 && is.squaredNorm() - was.squaredNorm() > 2.0 * std::max(0.0, e.gain))  // (T41)
-    e.gain = std::min(0.0, e.gain);
   return e;
 }
 
@@ -155,95 +154,51 @@ void TraceSearch::settleAll() {
 }
 
 void TraceSearch::accept(const Candidate& candidate) {
-  part_count_.push_back(candidate.parts.size());
+  if (candidate.empirical())
+    units_.push_back({candidate.parts.size(), candidate.logPrior()});
+  else
+    units_.insert(units_.end(), candidate.parts.size(), {1, candidate.logPrior()});
   fit_.settle(withCandidate(model(), candidate));
 }
 
 std::size_t TraceSearch::firstPart(std::size_t k) const {
-  return std::accumulate(part_count_.begin(), part_count_.begin() + static_cast<long>(k), given_effects_);
+  return std::accumulate(units_.begin(), units_.begin() + static_cast<long>(k), given_effects_,
+                         [](std::size_t sum, const Unit& unit) { return sum + unit.parts; });
 }
 
 void TraceSearch::leaveOut(std::size_t k) {
   RefinedModel without = model();
   const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
-  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
-  part_count_.erase(part_count_.begin() + static_cast<long>(k));
+  without.effects.erase(begin, begin + static_cast<long>(units_[k].parts));
+  units_.erase(units_.begin() + static_cast<long>(k));
   fit_.setModel(fit_.fitted(without, 12));
 }
 
 double TraceSearch::gainOf(std::size_t k) const {
   TraceSearch without = *this;
   without.leaveOut(k);
-  return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model());
+  return gainOver(without, k);
 }
 
-RefinedModel TraceSearch::withoutPart(std::size_t k, std::size_t part) const {
-  RefinedModel without = model();
-  without.effects.erase(without.effects.begin() + static_cast<long>(firstPart(k) + part));
-  return without;
-}
-
-double TraceSearch::gainOfPart(std::size_t k, std::size_t part) const {
-  return fit_.scoreOf(model()) - fit_.scoreOf(fit_.fitted(withoutPart(k, part), 12));
-}
-
-bool TraceSearch::differs(const RefinedModel& without) const {
-  const CalibratedRows& rows = fit_.rows();
-  SolvedContacts solved;
-  const Eigen::VectorXd moved = rows.whitening().marginal(rows.trial().measured.array().isFinite().select(
-      predictRows(without, rows.trial(), solved) - rows.level(), 0.0));
-  constexpr double kShare = 0.02;  // (T45)
-  for (int c = 0; c < kChannels; ++c)
-    if (moved(Eigen::seq(c, Eigen::last, Eigen::fix<kChannels>)).norm() >
-        kShare * std::sqrt(static_cast<double>(rows.trial().rows())))
-      return true;
-  return false;
-}
-
-bool TraceSearch::acts(std::size_t k) const {
-  RefinedModel without = model();
-  const auto begin = without.effects.begin() + static_cast<long>(firstPart(k));
-  without.effects.erase(begin, begin + static_cast<long>(part_count_[k]));
-  return differs(without);
-}
-
-void TraceSearch::thin(std::size_t k, double least) {
-  double score = fit_.scoreOf(model());
-  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    const RefinedModel without = fit_.fitted(withoutPart(k, part), 12);
-    const double now = fit_.scoreOf(without);
-    if (now < score - least) continue;
-    score = now;
-    --part_count_[k];
-    fit_.setModel(without);
-  }
-  settleAll();
-}
-
-void TraceSearch::dropIdleParts(std::size_t k) {
-  for (std::size_t part = part_count_[k]; part-- > 0 && part_count_[k] > 1;) {
-    const RefinedModel without = withoutPart(k, part);
-    if (differs(without)) continue;
-    --part_count_[k];
-    fit_.setModel(without);
-  }
+double TraceSearch::gainOver(const TraceSearch& without, std::size_t k) const {
+  return fit_.scoreOf(model()) - without.fit_.scoreOf(without.model()) + units_[k].log_prior;
 }
 
 std::vector<Effect> TraceSearch::parts(std::size_t k) const {
   const auto begin = model().effects.begin() + static_cast<long>(firstPart(k));
-  return {begin, begin + static_cast<long>(part_count_[k])};
+  return {begin, begin + static_cast<long>(units_[k].parts)};
 }
 
 void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const {
   std::size_t at = given_effects_;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     TracedEffect& effect = effects[k];
-    if (part_count_[k] == 1) effect.channel = fit_.strongest(at);
+    if (units_[k].parts == 1) effect.channel = fit_.strongest(at);
     for (Effect& part : effect.chosen.candidate.parts) part = model().effects[at++];
     effect.parameter_std.clear();
     for (std::size_t j = 0; j < model().fitted.size(); ++j) {
       const int e = model().fitted[j].effect;
-      if (e >= static_cast<int>(at - part_count_[k]) && e < static_cast<int>(at))
+      if (e >= static_cast<int>(at - units_[k].parts) && e < static_cast<int>(at))
         effect.parameter_std.push_back(
             std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
     }

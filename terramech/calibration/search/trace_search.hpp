@@ -37,10 +37,10 @@ class TraceSearch {
 
   /// Fits the most promising candidates inside the full model. Returns the fitted candidates, best gain
   /// first.
-  std::vector<Explanation> fitBest(const std::vector<Promise>& promises);
+  std::vector<Explanation> fitBest(const std::vector<Promise>& promises) const;
 
   /// Returns a candidate fitted together with all other parameters.
-  Explanation fitted(const Candidate& candidate);
+  Explanation fitted(const Candidate& candidate) const;
 
   /// Returns the fitted model with a candidate, including the covariance of its parameters.
   RefinedModel modelWith(const Candidate& candidate) const;
@@ -49,7 +49,8 @@ class TraceSearch {
   /// rows (the first with the middle row, and so on) changes the log-likelihood by more than closeGain().
   bool dependsOn(const RefinedModel& model, const std::string& column) const;
 
-  /// Adds a candidate to the model, refits all parameters and estimates the noise again.
+  /// Adds a candidate to the model, refits all parameters and estimates the noise again. Forms that were
+  /// found together become one accepted candidate each.
   void accept(const Candidate& candidate);
 
   /// Sets a prior for the first parameter of the effect accepted first.
@@ -62,26 +63,11 @@ class TraceSearch {
   void settleAll();
 
   /// Returns the gain of accepted candidate k relative to the model without candidate k, with unchanged
-  /// noise.
+  /// noise and including Candidate::logPrior().
   double gainOf(std::size_t k) const;
 
-  /// Returns the gain of part number `part` of accepted candidate k relative to the model without this part,
-  /// with unchanged noise.
-  double gainOfPart(std::size_t k, std::size_t part) const;
-
-  /// Returns true if accepted candidate k changes the predictions of some channel by at least a fiftieth of
-  /// the channel's noise (root mean square). Smaller changes would gain less than closeGain() in any table
-  /// that is searched.
-  bool acts(std::size_t k) const;
-
-  /// Removes the parts of accepted candidate k that have a gain of at most `least`, beginning with the last
-  /// part. At least one part remains.
-  void thin(std::size_t k, double least);
-
-  /// Removes the parts of accepted candidate k that have no effect according to the criterion of acts(),
-  /// regardless of their gain: the linearised gain of a form at its bound may come from values beyond the
-  /// bound. At least one part remains.
-  void dropIdleParts(std::size_t k);
+  /// Returns gainOf(k) from a search without accepted candidate k.
+  double gainOver(const TraceSearch& without, std::size_t k) const;
 
   /// Returns the current effects of accepted candidate k in the model.
   std::vector<Effect> parts(std::size_t k) const;
@@ -96,11 +82,8 @@ class TraceSearch {
   void finish(TraceResult& result);
 
  private:
+  Explanation fitted(const Candidate& candidate, double before) const;
   GainDistribution distributionOf(const std::vector<Candidate>& candidates, int draws) const;
-  RefinedModel withoutPart(std::size_t k, std::size_t part) const;
-  /// Returns true if the predictions without an effect differ from those of the model, by the criterion of
-  /// acts().
-  bool differs(const RefinedModel& without) const;
   std::size_t firstPart(std::size_t k) const;  ///< index of the first effect of candidate k in the model
   /// Sets the parameters, their standard deviations and the channel of each found effect.
   void describe(std::vector<TracedEffect>& effects, const Eigen::MatrixXd& covariance) const;
@@ -111,7 +94,11 @@ class TraceSearch {
   std::optional<Estimate> first_prior_;  ///< prior of the first parameter of the first accepted effect
   /// Number of leading effects, those of the base model. These effects are fitted, never removed.
   std::size_t given_effects_;
-  std::vector<std::size_t> part_count_;  ///< number of effects of each accepted candidate
+  struct Unit {
+    std::size_t parts;  ///< number of effects
+    double log_prior;
+  };
+  std::vector<Unit> units_;  ///< accepted candidates
 };
 
 }  // namespace talus::terramech

@@ -74,15 +74,20 @@ void TrialFit::fitSoil(const std::function<bool(double)>& go_on) {
 
 NullModel TrialFit::standing(const RefinedModel& model, const Eigen::MatrixXd& residual,
                              SolvedContacts& solved) const {
+  return standing(model, planFor(model), residual, solved);
+}
+
+NullModel TrialFit::standing(const RefinedModel& model, const FitPlan& plan, const Eigen::MatrixXd& residual,
+                             SolvedContacts& solved) const {
   const Trial& trial = rows_.trial();
   const Whitening& whitening = rows_.whitening();
   NullModel null{whitening.shared(),
                  whitening.common.unit,
                  folds_,
                  whitening.rowByRow(residual),
-                 linearised(model, trial, whitening, planFor(model), solved),
+                 linearised(model, trial, whitening, plan, solved),
                  whitening.common.run,
-                 static_cast<Eigen::Index>(planFor(model).soil_prior.size())};
+                 static_cast<Eigen::Index>(plan.soil_prior.size())};
   const std::optional<Eigen::MatrixXd>& by_slip = rows_.bySharedSlip();
   if (!by_slip) return null;
   // The slip error common to all rows is an additional parameter with prior mean 0 and standard deviation 1.
@@ -101,7 +106,12 @@ NullModel TrialFit::standing(const RefinedModel& model, const Eigen::MatrixXd& r
 double TrialFit::scoreOf(const RefinedModel& fitted) const {
   SolvedContacts solved = solved_;
   const Eigen::MatrixXd residual = rows_.trial().measured - predictRows(fitted, rows_.trial(), solved);
-  return fittedScore(standing(fitted, residual, solved));
+  FitPlan plan = planFor(fitted);
+  std::erase_if(plan.free, [&](const FittedParameter& p) {  // (T45)
+    const ParameterRange range = rangeOf(fitted, p);
+    return p.effect >= 0 && (value(fitted, p) <= range.low || value(fitted, p) >= range.high);
+  });
+  return fittedScore(standing(fitted, plan, residual, solved));
 }
 
 void TrialFit::setModel(const RefinedModel& model) {

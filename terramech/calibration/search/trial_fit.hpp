@@ -42,6 +42,7 @@ class TrialFit {
                      SolvedContacts& solved) const;
 
   /// Returns the score (held-out log-likelihood plus prior term) of a fitted model, with unchanged noise.
+  /// Parameters of effects at a bound of their range are fixed there.
   double scoreOf(const RefinedModel& fitted) const;
 
   /// Replaces the model. The noise remains unchanged.
@@ -69,6 +70,8 @@ class TrialFit {
   FitPlan planFor(const RefinedModel& model) const;
   void fitSoil(const std::function<bool(double)>& go_on);
   void setRows(const Trial& trial);
+  NullModel standing(const RefinedModel& model, const FitPlan& plan, const Eigen::MatrixXd& residual,
+                     SolvedContacts& solved) const;
 
   bool fit_soil_;
   RefinedModel model_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -24,8 +25,8 @@ Channel strongest(const Explanation& e) {
   return static_cast<Channel>(most - e.by_channel.begin());
 }
 
-TracedEffect traced(const Explanation& chosen, double p_value) {
-  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}, .p_value = p_value};
+TracedEffect traced(const Explanation& chosen) {
+  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}};
 }
 
 /// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases
@@ -55,7 +56,8 @@ bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
   return true;
 }
 
-/// Accepted effects, in the order of acceptance.
+/// State of the search: accepted effects, in the order of acceptance. Its objective is the score of the model
+/// plus the logarithms of the candidates' priors, less the threshold for each accepted candidate.
 struct Path {
   TraceSearch search;
   double close;  ///< closeGain()
@@ -64,123 +66,109 @@ struct Path {
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
   GainDistribution noise{};
-  std::size_t pinned = 0;  ///< number of leading effects that only dropIdle() removes
+  std::size_t pinned = 0;  ///< number of leading effects that are not exchanged
+  std::set<std::multiset<std::string>> seen{};
+
+  /// Returns the accepted effects as a set, independent of their order.
+  std::multiset<std::string> taken() const {
+    std::multiset<std::string> all;
+    for (const TracedEffect& e : effects)
+      for (const Effect& part : e.chosen.candidate.parts)
+        all.insert(part.name + '|' + part.covariate + '|' + name(part.channel) + '|' + part.only_value);
+    return all;
+  }
 };
 
-/// Accepts the first of the ranked explanations.
-void take(Path& path, const std::vector<Explanation>& ranked, double p_value) {
-  path.search.accept(ranked.front().candidate);
-  path.effects.push_back(traced(ranked.front(), p_value));
-  TracedEffect& taken = path.effects.back();
-  if (taken.chosen.candidate.parts.size() < 2) return;
-  path.search.thin(path.effects.size() - 1, path.close);
-  taken.chosen.candidate.parts = path.search.parts(path.effects.size() - 1);
+/// Accepts an explanation. Forms that were found together become one effect each.
+void take(Path& path, const Explanation& chosen) {
+  path.search.accept(chosen.candidate);
+  if (chosen.candidate.empirical()) return path.effects.push_back(traced(chosen));
+  for (const Effect& part : chosen.candidate.parts) {
+    Explanation one = chosen;
+    const EffectForm& form = *findEffect(part.name);
+    one.candidate = {{part}, form.family, 0};
+    for (const EffectParameter& p : form.parameters) one.candidate.parameters += p.fitted;
+    path.effects.push_back(traced(one));
+  }
 }
 
-/// Removes, from the last on, the effects whose gain relative to the model without the effect is at most that
-/// of noise.
-void check(Path& path) {
-  for (std::size_t k = path.effects.size(); k-- > path.pinned;) {
-    if (path.search.gainOf(k) > path.threshold) continue;  // (T44)
-    path.search.leaveOut(k);
+void drop(Path& path, std::size_t k) {
+  path.search.leaveOut(k);
+  path.effects.erase(path.effects.begin() + static_cast<long>(k));
+}
+
+/// Removes the effect with the least gain beside the others, as long as this gain is at most that of noise.
+void prune(Path& path) {
+  while (path.effects.size() > path.pinned) {
+    std::size_t least = 0;
+    double gain = std::numeric_limits<double>::infinity();
+    for (std::size_t k = path.pinned; k < path.effects.size(); ++k)
+      if (const double own = path.search.gainOf(k); own < gain) least = k, gain = own;
+    if (gain > path.threshold) return;  // (T43)
+    drop(path, least);
     path.search.settleAll();
-    path.effects.erase(path.effects.begin() + static_cast<long>(k));
   }
-}
-
-/// Removes effects without influence on the predictions, and parts of joint forms whose gain is at most that
-/// of noise.
-void dropIdle(Path& path) {
-  for (std::size_t k = path.pinned; k < path.effects.size(); ++k) {
-    TracedEffect& effect = path.effects[k];
-    if (effect.chosen.candidate.parts.size() < 2 || effect.chosen.candidate.empirical()) continue;
-    path.search.thin(k, path.threshold);
-    path.search.dropIdleParts(k);
-    effect.chosen.candidate.parts = path.search.parts(k);
-  }
-  check(path);
-  for (std::size_t k = path.effects.size(); k-- > 0;) {
-    if (path.search.acts(k)) continue;
-    path.search.leaveOut(k);
-    path.effects.erase(path.effects.begin() + static_cast<long>(k));
-    if (k >= path.pinned) continue;
-    path.pinned = 0;
-    path.search.trust(std::nullopt);
-  }
-}
-
-/// Searches alternative causes for each effect.
-void findRivals(const Path& path, TraceResult& result, const std::function<bool(double)>& go_on) {
-  for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
-    TracedEffect& effect = result.effects[k];
-    const double least = path.search.gainOf(k) - path.close;
-    for (RivalCause& rival : rivalsOf(path.search, k)) {
-      if (rival.explanation.gain >= least) effect.equal.push_back(rival.explanation);  // (T46)
-      result.rivals.push_back(std::move(rival));
-    }
-  }
-  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
-}
-
-/// Returns the accepted effects as a set, independent of their order.
-std::multiset<std::string> takenIn(const Path& path) {
-  std::multiset<std::string> all;
-  for (const TracedEffect& e : path.effects)
-    for (const Effect& part : e.chosen.candidate.parts)
-      all.insert(part.name + '|' + part.covariate + '|' + name(part.channel) + '|' + part.only_value);
-  return all;
 }
 
 /// Accepts the best explanation repeatedly, until no gain exceeds that of noise or a set of effects recurs
 /// (endless loop).
 void grow(Path& path, const Trial& trial, const TraceOptions& options,
           const std::function<bool(double)>& go_on) {
-  std::set<std::multiset<std::string>> seen;
   while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects &&
-         seen.insert(takenIn(path)).second) {
+         path.seen.insert(path.taken()).second) {
     const auto screening = path.search.screen(options.draws);
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
     path.threshold = screening.threshold;
     path.noise = screening.noise;
     path.rejected = path.search.fitBest(screening.promises);
-    preferSimple(path.rejected, screening.threshold, path.close);
     const double least =
         0.5 * options.least_share * static_cast<double>(trial.measured.array().isFinite().count());
-    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;  // (T42)
-    take(path, path.rejected, screening.noise.pValue(path.rejected.front().gain));
+    if (!accepted(path.rejected, std::max(screening.threshold, least))) return;  // (T41)
+    take(path, path.rejected.front());
     path.rejected.erase(path.rejected.begin());
-    check(path);
+    prune(path);
   }
 }
 
-/// Splits effects found together into single effects, each with the p-value of its own gain.
-std::vector<TracedEffect> apart(const Path& path, const std::vector<TracedEffect>& effects) {
-  std::vector<TracedEffect> all;
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    const TracedEffect& e = effects[k];
-    if (e.chosen.candidate.empirical() || e.chosen.candidate.parts.size() == 1) {
-      all.push_back(e);
-      continue;
-    }
-    std::size_t at = 0;
-    for (std::size_t own = 0; own < e.chosen.candidate.parts.size(); ++own) {
-      const Effect& part = e.chosen.candidate.parts[own];
-      TracedEffect one = e;
-      one.p_value = path.noise.pValue(path.search.gainOfPart(k, own));
-      const EffectForm& form = *findEffect(part.name);
-      one.chosen.candidate = {{part}, form.family, 0};
-      one.channel = form.channel;
-      one.parameter_std.clear();
-      for (const EffectParameter& p : form.parameters) {
-        if (!p.fitted || at >= e.parameter_std.size()) continue;
-        ++one.chosen.candidate.parameters;
-        one.parameter_std.push_back(e.parameter_std[at++]);
-      }
-      all.push_back(std::move(one));
+/// Replaces the first effect in whose place another candidate has a higher gain; returns false if there is
+/// none. `in_place` receives the candidates in the place of each effect.
+bool exchange(Path& path, std::vector<Replacements>& in_place, const std::function<bool(double)>& go_on) {
+  constexpr double kOfFit = 0.1;  // error of a fitted gain
+  in_place.clear();
+  for (std::size_t k = path.pinned; k < path.effects.size() && go_on(0.0); ++k) {
+    in_place.push_back(replacementsOf(path.search, k));
+    const auto& ranked = in_place.back().ranked;
+    const bool several = !ranked.empty() && !ranked.front().candidate.empirical() &&
+                         ranked.front().candidate.parts.size() > 1;
+    const double own = path.search.gainOver(in_place.back().without, k);
+    if (!accepted(ranked, own + (several ? path.threshold : kOfFit))) continue;  // (T44)
+    const Explanation better = ranked.front();
+    in_place.clear();
+    drop(path, k);
+    take(path, better);
+    prune(path);
+    return true;
+  }
+  return false;
+}
+
+/// Sets the gain and the p-value of each effect beside the others, and lists alternative causes.
+void findRivals(const Path& path, std::vector<Replacements>& in_place, TraceResult& result,
+                const std::function<bool(double)>& go_on) {
+  for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
+    TracedEffect& effect = result.effects[k];
+    if (in_place.size() <= k - path.pinned) in_place.push_back(replacementsOf(path.search, k));
+    const Replacements& in = in_place[k - path.pinned];
+    effect.chosen.gain = path.search.gainOver(in.without, k);
+    effect.p_value = path.noise.pValue(effect.chosen.gain);
+    const double least = effect.chosen.evidence() - path.close;
+    for (RivalCause& rival : rivalsOf(in, path.search.parts(k))) {
+      if (rival.explanation.evidence() >= least) effect.equal.push_back(rival.explanation);  // (T46)
+      result.rivals.push_back(std::move(rival));
     }
   }
-  return all;
+  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
 }
 
 /// Prior information on a rover's own drive. The pull follows from the slope and has the error of an
@@ -203,35 +191,6 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
 }
 
 }  // namespace
-
-namespace {
-
-/// Rank of a kind of candidate by the causes that the kind can absorb: a drift includes a constant, a curve
-/// includes a drift, and a product represents both of its columns.
-int freedom(const Candidate& candidate) {
-  return isProduct(candidate.covariate()) ? 3
-         : candidate.empirical()          ? 2
-         : candidate.family == "drift"    ? 1
-                                          : 0;
-}
-
-/// True if `a` is of a kind with less freedom, or a form of the same family with fewer parameters.
-bool isSimpler(const Candidate& a, const Candidate& b) {
-  if (freedom(a) != freedom(b)) return freedom(a) < freedom(b);
-  return !a.empirical() && a.family == b.family && a.parts.size() == b.parts.size() &&
-         a.parameters < b.parameters;
-}
-
-}  // namespace
-
-void preferSimple(std::vector<Explanation>& ranked, double threshold, double close) {
-  auto first = ranked.begin();
-  for (auto e = ranked.begin(); e != ranked.end(); ++e)
-    if (e->gain > threshold && e->gain > ranked.front().gain - close &&  // (T43)
-        isSimpler(e->candidate, first->candidate))
-      first = e;
-  if (first != ranked.end()) std::rotate(ranked.begin(), first, first + 1);
-}
 
 bool accepted(const std::vector<Explanation>& ranked, double threshold) {
   return !ranked.empty() && ranked.front().gain > threshold;
@@ -272,8 +231,9 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.base_shared = path.search.sharedError();
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
-  grow(path, trial, options, go_on);
-  dropIdle(path);
+  std::vector<Replacements> in_place;
+  do grow(path, trial, options, go_on);
+  while (exchange(path, in_place, go_on) && !path.seen.contains(path.taken()));
   result.rejected = path.rejected;
   result.first_promises = path.first;
   result.last_promises = path.last;
@@ -281,14 +241,13 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.effects = path.effects;
   path.search.finish(result);
   result.held_out = holdOut(result, options, foldsOf(result.trial));
-  findRivals(path, result, go_on);
+  findRivals(path, in_place, result, go_on);
   result.ends = endLevels(result, options, watch);
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
   keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
-  result.effects = apart(path, result.effects);
   return result;
 }
 

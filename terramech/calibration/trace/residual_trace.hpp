@@ -13,11 +13,6 @@ namespace talus::terramech {
 /// gain exceeds `threshold`.
 bool accepted(const std::vector<Explanation>& ranked, double threshold);
 
-/// Moves the best explanation of the simplest kind to the front of the ranked explanations, if its gain
-/// exceeds `threshold` and is less than `close` below the best gain. The kinds, from the simplest, are known
-/// forms (within a family, the form with the fewest parameters), drifts, and curves.
-void preferSimple(std::vector<Explanation>& ranked, double threshold, double close);
-
 /// Traces the residuals of the model `base` on the rows of `trial`. The result is deterministic for a seed.
 /// After a stop by the watch the result contains the effects found so far.
 TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const TraceOptions& options = {},

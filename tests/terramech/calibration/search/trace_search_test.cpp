@@ -84,34 +84,39 @@ TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
   EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
 }
 
-TEST(TraceSearch, EffectOfSizeZeroIsInactive) {
+TEST(TraceSearch, EffectAtItsBoundGainsNothing) {
+  // Property: the rows contain no rebound, so that the fit of a rebound ends at the bound 0 and predicts as
+  // without it.
   TraceSearch search(sand(), offsetTrial(), {});
   search.accept(torqueOffset());
-  EXPECT_TRUE(search.acts(0));
-  EXPECT_NEAR(search.gainOfPart(0, 0), search.gainOf(0), 1e-6 * search.gainOf(0));
-  // The rows contain no rebound, so that the fit of a rebound ends at the bound 0.
-  search.accept({{{.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}}}, "rebound", 1});
-  EXPECT_FALSE(search.acts(1));
+  const Candidate rebound{
+      {{.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}}}, "rebound", 1};
+  EXPECT_NEAR(search.fitted(rebound).gain, 0.0, 1e-6);
+  search.accept(rebound);
+  EXPECT_NEAR(search.gainOf(1), 0.0, 1e-6);
 }
 
-TEST(TraceSearch, ThinningKeepsOnlyPartsWithSufficientGain) {
+TEST(TraceSearch, FormsFoundTogetherAreAcceptedOneByOne) {
   TraceSearch search(sand(), offsetTrial(), {});
   Candidate both = torqueOffset();
   both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.1}});
   search.accept(both);
-  search.thin(0, closeGain({}));
   ASSERT_EQ(search.parts(0).size(), 1U);
   EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
+  EXPECT_GT(search.gainOf(0), 100.0);
+  EXPECT_EQ(search.parts(1)[0].name, "elastic_rebound");
 }
 
-TEST(TraceSearch, IdlePartsOfSizeZeroAreDropped) {
+TEST(TraceSearch, GainIncludesThePriorOfTheCandidate) {
+  // Closed form: a curve has the prior 1/20 relative to a known form; its evidence excludes the prior.
   TraceSearch search(sand(), offsetTrial(), {});
-  Candidate both = torqueOffset();
-  both.parts.push_back({.name = "elastic_rebound", .covariate = "sinkage_m", .parameters = {0.0}});
-  search.accept(both);
-  search.dropIdleParts(0);
-  ASSERT_EQ(search.parts(0).size(), 1U);
-  EXPECT_EQ(search.parts(0)[0].name, "torque_offset");
+  Effect curve{.name = "empirical", .covariate = "slip", .channel = Channel::Torque};
+  curve.knots = {0.05, 0.8};
+  curve.parameters = {0.0, 0.0};
+  const Candidate line{{curve}, "empirical", 2};
+  const Explanation fitted = search.fitted(line);
+  EXPECT_NEAR(fitted.evidence() - fitted.gain, 3.0, 1e-12);
+  EXPECT_NEAR(search.gainsOf({line}).front(), fitted.evidence(), 0.02 * fitted.gain);
 }
 
 }  // namespace trace_search_test

@@ -21,27 +21,6 @@ TEST(ResidualTrace, BestCandidateIsAcceptedOnlyAboveThreshold) {
   EXPECT_TRUE(accepted({explanation(5.1), explanation(4.0)}, 5.0));
 }
 
-TEST(ResidualTrace, SimplerKindIsPreferredAmongCloseGains) {
-  // Closed form: the rule is evaluated at a threshold of 6 and a close gain of 3.
-  const auto named = [](double gain, const char* name, const char* family, int parameters = 1) {
-    Explanation e = explanation(gain);
-    e.candidate = {{{.name = name}}, family, parameters};
-    return e;
-  };
-  const Explanation curve = named(20.0, "empirical", "empirical"),
-                    near = named(17.5, "sinkage_datum", "sinkage_datum"),
-                    far = named(16.5, "torque_offset", "torque_sensor");
-  const auto first = [](std::vector<Explanation> ranked) {
-    preferSimple(ranked, 6.0, 3.0);
-    return ranked.front().gain;
-  };
-  EXPECT_EQ(first({curve, near, far}), 17.5);
-  EXPECT_EQ(first({curve, far}), 20.0);
-  EXPECT_EQ(first({named(18.0, "torque_offset_viscous", "torque_sensor", 2), far}), 16.5);
-  // A form with a gain below the threshold is not preferred.
-  EXPECT_EQ(first({named(7.0, "empirical", "empirical"), named(5.9, "sinkage_datum", "sinkage_datum")}), 7.0);
-}
-
 TEST(ResidualTrace, HiddenEffectIsIdentifiedAndErrorReachesTheNoiseFloor) {
   // Property: the hidden effects of worlds from an independent generator are found; the seed determines the
   // effect.
