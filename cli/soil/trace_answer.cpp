@@ -56,6 +56,15 @@ std::string strainedText(const Answer& a) {
   return text;
 }
 
+/// Returns the name, column and channel of each effect.
+std::string causes(const TraceResult& result) {
+  std::string text;
+  for (const TracedEffect& e : result.effects)
+    text += fmt::format("{}{} ({}) in {}", text.empty() ? "" : ", ", e.chosen.candidate.parts.front().name,
+                        e.chosen.candidate.covariate(), name(e.channel));
+  return text;
+}
+
 /// Returns the text on effects with several equivalent causes; empty if each effect has one cause.
 std::string equalCauses(const TraceResult& result) {
   std::string text;
@@ -102,28 +111,31 @@ std::string refusal(const TraceResult& result) {
 
 std::string verdictText(const TraceResult& result, const Answer& a) {
   const std::string rest =
-      fmt::format("rms of {} {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest, a.floor);
+      fmt::format("rms of {} on held-out rows {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest,
+                  a.floor);
   if (a.verdict == Verdict::NothingMissing)
     return "nothing missing: the residuals are consistent with noise; " + rest;
-  if (a.verdict == Verdict::Explained)
-    return fmt::format("explained by {} effect{}{}: {}{}", result.effects.size(),
-                       result.effects.size() == 1 ? "" : "s", equalCauses(result), rest,
-                       !a.strained.empty()           ? "; " + strainedText(a)
-                       : a.open && !a.column.empty() ? ", of which most varies with " + a.column
-                                                     : "");
+  const std::string found =
+      result.effects.empty()
+          ? ""
+          : fmt::format("explained by {} effect{}, {}: {} on held-out rows from {:.2f} to {:.2f} noise floors{}",
+                        result.effects.size(), result.effects.size() == 1 ? "" : "s", causes(result),
+                        name(a.channel), a.base / a.floor, a.rest / a.floor, equalCauses(result));
+  if (a.verdict == Verdict::Explained) return found;
   if (!a.inapplicable.empty())
     return "unexplained: the model does not apply: " + a.inapplicable + "; " + rest;
-  if (!a.strained.empty()) return "unexplained: " + strainedText(a) + "; " + rest;
+  const std::string start = found.empty() ? "unexplained: " + rest : "partly " + found;
+  if (!a.strained.empty()) return start + "; " + strainedText(a);
+  if (!a.at_bound.empty()) return fmt::format("{}; at a bound of its range: {}", start, fmt::join(a.at_bound, ", "));
   if (a.strength_scatter + a.stiffness_scatter > 0.0)
     return fmt::format(
-        "unexplained: {}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to "
-        "{}; {} would "
+        "{}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to {}; {} would "
         "decide",
-        rest, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.unit, a.unit, a.measure);
+        start, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.unit, a.unit, a.measure);
   const std::string where = a.column.empty()
                                 ? "it follows no column"
                                 : fmt::format("it varies most with {} ({})", a.column, refusal(result));
-  return fmt::format("unexplained: {}; {}; {} would decide", rest, where, a.measure);
+  return fmt::format("{}; {}; {} would decide", start, where, a.measure);
 }
 
 std::vector<EffectRole> rolesOf(const TraceResult& result) {

@@ -14,9 +14,9 @@ std::string refusal(const terramech::TraceResult& result);
 /// Returns the reason for which a fitted candidate effect was not selected.
 std::string refusal(const terramech::TraceResult& result, const terramech::Explanation& rejected);
 
-/// Returns the answer in one line: nothing missing, explained by n effects, or unexplained with the reason.
-/// The line includes the rms residual of the channel of the answer and, for an unexplained residual, the
-/// measurement that would identify its cause.
+/// Returns the answer in one line: nothing missing; explained, or partly explained, by named effects; or
+/// unexplained with the reason. The line includes the channel of the answer, its errors on held-out rows
+/// before and after, and, for an unexplained residual, the measurement that would identify its cause.
 std::string verdictText(const terramech::TraceResult& result, const terramech::Answer& answer);
 
 /// Contribution of an effect (deviation from the base model that was found in data) to the refined model.

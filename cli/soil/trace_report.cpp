@@ -278,6 +278,7 @@ ordered_json answerJson(const TraceResult& result, const Answer& a) {
   for (const StrainedSensor& s : a.strained)
     strained.push_back({{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}});
   return {{"channel", name(a.channel)},
+          {"base_rmse", a.base},
           {"rmse", a.rest},
           {"noise_floor", a.floor},
           {"varies_with", a.column},
@@ -289,6 +290,7 @@ ordered_json answerJson(const TraceResult& result, const Answer& a) {
           {"sensors_beyond_declared", strained},
           {"sensors_undeclared", a.unstated},
           {"soil_off_prior", moved},
+          {"at_bound", a.at_bound},
           {"soil_at_bound", soilAtBounds(result.refined)}};
 }
 

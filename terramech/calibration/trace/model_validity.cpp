@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kLeastShare = 0.5, kFarOff = 0.15, kLoudest = 0.25;
 
+/// Greatest DP/W and T/(rW) that a wheel reaches on soil [-].
+constexpr double kMostPull = 1.0, kMostTorque = 1.5;
+
 Estimate scatterOf(const Trial& trial, int channel) {
   double n = 0.0, sum = 0.0, square = 0.0;
   for (double v : trial.measured.col(channel))
@@ -28,13 +31,25 @@ bool moves(const Estimate& scatter, int channel, double noise_floor) {
   return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.value));
 }
 
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
 double medianClosureError(const Trial& trial) {
   std::vector<double> errors;
   for (double e : closureErrors(trial))
     if (std::isfinite(e)) errors.push_back(std::abs(e));
-  if (errors.size() < 8) return 0.0;
-  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2), errors.end());
-  return errors[errors.size() / 2];
+  return errors.size() < 8 ? 0.0 : medianOf(std::move(errors));
+}
+
+/// Median of a channel over the rows; 0 if it is not measured.
+double medianReading(const Trial& trial, Channel channel) {
+  std::vector<double> values;
+  for (double v : trial.measured.col(static_cast<Eigen::Index>(channel)))
+    if (std::isfinite(v)) values.push_back(std::abs(v));
+  return medianOf(std::move(values));
 }
 
 std::string number(double value) {
@@ -46,6 +61,12 @@ std::string number(double value) {
 }  // namespace
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
+  for (const auto& [channel, most] :
+       {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
+    if (const double median = medianReading(result.trial, channel); median > most)
+      return {false, std::string("the median of ") + name(channel) + " is " + number(median) +
+                         ", more than a wheel reaches on soil (" + number(most) +
+                         "): check the units of the readings and of the wheel"};
   TraceResult physics = result;
   physics.scope = {};
   physics.refined = withoutSensors(result.refined);

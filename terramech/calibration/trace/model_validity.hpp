@@ -12,7 +12,7 @@ struct Applicability {
   std::string reason;   ///< reason why the model does not apply; otherwise empty
 };
 
-/// Tests the physical model, i.e. without empirical curves and sensor faults, on held-out rows. Only channels
+/// Tests whether the median of DP/W is at most 1 and that of T/(rW) at most 1.5, and then the physical model, i.e. without empirical curves and sensor faults, on held-out rows. Only channels
 /// that vary are tested: the scatter must exceed twice the noise or, for torque and sinkage, a quarter of the
 /// mean. The model must explain at least half of the variance in one channel, and in no channel may its mean
 /// square error exceed twice the variance. If drawbar pull, torque and sinkage are measured together, the

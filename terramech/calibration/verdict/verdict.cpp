@@ -25,6 +25,23 @@ double excess(const ChannelErrors& rmse, const TraceResult& result, const Channe
   return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
 }
 
+/// Greatest error on held-out rows, in floors, of a model that explains the rows.
+constexpr double kExplainedFloors = 1.3;
+
+/// Sets the channel in which `errors` on held-out rows exceed the floor most, with the errors of both models.
+void setChannel(Answer& answer, const TraceResult& result, const ChannelErrors& floors,
+                const ChannelErrors& errors) {
+  double most = -1.0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!result.trial.has(static_cast<Channel>(c)) || !(errors[c] / floors[c] > most)) continue;
+    most = errors[c] / floors[c];
+    answer.channel = static_cast<Channel>(c);
+    answer.base = result.held_out.base_rmse[c];
+    answer.rest = result.held_out.refined_rmse[c];
+    answer.floor = floors[c];
+  }
+}
+
 std::size_t valuesOf(const Trial& trial, const std::string& column) {
   std::set<double> values;
   for (const WheelState& s : trial.states)
@@ -75,32 +92,32 @@ const char* name(Verdict verdict) {
 
 Answer answerOf(const TraceResult& result) {
   Answer answer;
-  const ChannelErrors& sensors = statedFloor(result);
-  double before = 0.0, after = 0.0, most = 0.0;
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    if (!result.trial.has(static_cast<Channel>(c))) continue;
-    const double floor = sensors[c] * sensors[c];
-    const double left = excess(result.refined_rmse, result, sensors, c);
-    before += excess(result.base_rmse, result, sensors, c) / floor;
-    after += left / floor;
-    if (answer.floor > 0.0 && left / floor <= most) continue;
-    most = left / floor;
-    answer.channel = static_cast<Channel>(c);
-    answer.rest = result.refined_rmse[c];
-    answer.floor = sensors[c];
-  }
-  const bool open =
-      (after > 0.0 || !result.strained.empty()) && (result.effects.empty() || after > 0.5 * before);  // (T55)
-  answer.open = after > 0.0 || !result.strained.empty();
+  const ChannelErrors& floors = statedFloor(result);
+  bool above_noise = false;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    above_noise |= result.trial.has(static_cast<Channel>(c)) &&
+                   excess(result.refined_rmse, result, floors, c) > 0.0;
+  setChannel(answer, result, floors, result.held_out.refined_rmse);
+  for (const TracedEffect& e : result.effects)
+    for (const Effect& part : e.chosen.candidate.parts)
+      for (const std::string& name : atBounds(part)) answer.at_bound.push_back(part.name + " " + name);
+  for (const std::string& name : soilAtBounds(result.refined)) answer.at_bound.push_back("soil " + name);
   answer.strained = result.strained;
   answer.unstated = unstatedSensors(result.trial, result.refined.stated);
-  answer.verdict = open                     ? Verdict::Unexplained
-                   : result.effects.empty() ? Verdict::NothingMissing
-                                            : Verdict::Explained;
+  const bool reached = answer.rest < kExplainedFloors * answer.floor,  // (T55)
+      promised = !result.last_promises.empty() && result.last_promises.front().gain > result.threshold;
+  if (result.strained.empty() && !result.effects.empty() && reached && answer.at_bound.empty())
+    answer.verdict = Verdict::Explained;
+  else if (result.strained.empty() && result.effects.empty() && !above_noise && (reached || !promised))
+    answer.verdict = Verdict::NothingMissing;
+  else
+    answer.verdict = Verdict::Unexplained;
+  if (answer.verdict == Verdict::Explained) setChannel(answer, result, floors, result.held_out.base_rmse);
   if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
+  const bool open = answer.verdict == Verdict::Unexplained;
   // (T56)
-  if (after > 0.0 && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
+  if (open && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
     answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
     answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
     answer.measure = unrecorded(answer);
@@ -111,7 +128,7 @@ Answer answerOf(const TraceResult& result) {
     answer.gain = p.gain;
     break;
   }
-  if (answer.open && answer.measure.empty()) answer.measure = furtherRows(result, answer);
+  if (open && answer.measure.empty()) answer.measure = furtherRows(result, answer);
   return answer;
 }
 

@@ -9,9 +9,9 @@ namespace talus::terramech {
 
 /// Kind of conclusion of a residual trace (search for the effects that a wheel model lacks).
 enum class Verdict {
-  Explained,       ///< the found effects explain more than half of the residual above noise
+  Explained,       ///< with the found effects, each channel of held-out rows is within 1.3 floors
   NothingMissing,  ///< no effect was found, and the residual is within the sensor errors
-  Unexplained      ///< the residual exceeds the sensor errors, and most of it has no accepted cause
+  Unexplained      ///< the residual exceeds the sensor errors; the found effects may explain a part of it
 };
 
 /// Returns "explained", "nothing_missing" or "unexplained".
@@ -21,10 +21,10 @@ const char* name(Verdict verdict);
 /// that sensor errors cause.
 struct Answer {
   Verdict verdict = Verdict::NothingMissing;  ///< kind of conclusion
-  Channel channel = Channel::DrawbarPull;     ///< channel whose residual exceeds its floor most
-  bool open = false;  ///< true: a residual exceeds its floor, or `strained` is not empty
-  /// Rms residual of the refined model in `channel`, and floor of this channel [-].
-  double rest = 0.0, floor = 0.0;
+  Channel channel = Channel::DrawbarPull;     ///< channel whose held-out error exceeds its floor most
+  /// Rms errors of the base and of the refined model on held-out rows in `channel`, and its floor [-].
+  double base = 0.0, rest = 0.0, floor = 0.0;
+  std::vector<std::string> at_bound;  ///< fitted parameters at a bound of their range, with their effect
   std::string column;  ///< column on which the remaining residual depends most; may be empty
   double gain = 0.0;   ///< gain of a candidate of that column, for comparison with TraceResult::threshold
   std::vector<StrainedSensor> strained;  ///< sensors whose fitted error is far larger than stated
@@ -34,14 +34,16 @@ struct Answer {
   double strength_scatter = 0.0, stiffness_scatter = 0.0;
   std::string unit = "run";  ///< kind of rows that share an error: a run, or a stretch of time
   std::string inapplicable;  ///< reason why the model does not apply; empty if it applies
-  std::string measure;  ///< measurements that would discriminate between the causes; empty if `open` is false
+  /// Measurements that would discriminate between the causes; empty unless the verdict is Unexplained.
+  std::string measure;
 };
 
 /// Returns the conclusion of a trace. The floor of a channel is the rms of the fitted noise, or of the stated
-/// sensor errors if the fitted errors are far larger than stated. A residual exceeds its floor if its
-/// variance is larger by more than three standard errors of the variance of the same number of normal errors.
-/// The verdict is Explained if the found effects explain more than half of the part of the base model's
-/// residual that exceeds the floor.
+/// sensor errors if the fitted errors are far larger than stated. The verdict is Explained if effects were
+/// found, no held-out channel exceeds 1.3 floors, and no fitted parameter is at a bound of its range. It is
+/// NothingMissing if no effect was found, no residual exceeds its floor by more than three standard errors of
+/// the variance of the same number of normal errors, and either no held-out channel exceeds 1.3 floors or no
+/// candidate promises more than noise.
 Answer answerOf(const TraceResult& result);
 
 /// Soil parameter whose fitted value is far from its prior.

@@ -18,6 +18,7 @@ TraceResult resultOf(double promised, double fitted) {
   result.trial.measured = Eigen::MatrixXd::Constant(10, terramech::kChannels, std::nan(""));
   result.trial.measured.col(0).setZero();
   result.base_rmse[0] = result.refined_rmse[0] = 0.1;
+  result.held_out.base_rmse[0] = result.held_out.refined_rmse[0] = 0.1;
   result.noise_floor[0] = 0.01;
   result.threshold = 6.0;
   const terramech::Candidate curve{{{.name = "empirical", .covariate = "slip"}}, "empirical", 2};
@@ -34,6 +35,22 @@ TEST(TraceAnswer, RejectedGainNamesTheInsufficientValue) {
   const TraceResult result = resultOf(7.7, 5.1);
   EXPECT_THAT(verdictText(result, answerOf(result)),
               testing::HasSubstr("varies most with slip (gain 7.7 to"));
+}
+
+TEST(TraceAnswer, FirstLineNamesCauseChannelAndErrorsBeforeAndAfter) {
+  TraceResult result = resultOf(2.5, 2.0);
+  terramech::TracedEffect effect;
+  effect.chosen.candidate = {{{.name = "torque_offset", .covariate = "load_N"}}, "torque_sensor", 1};
+  effect.channel = terramech::Channel::Torque;
+  result.effects = {effect};
+  result.held_out.refined_rmse[0] = 0.012;
+  EXPECT_EQ(verdictText(result, answerOf(result)),
+            "explained by 1 effect, torque_offset (load_N) in torque_over_load_radius: drawbar_pull_over_load "
+            "on held-out rows from 10.00 to 1.20 noise floors");
+  result.held_out.refined_rmse[0] = 0.04;
+  EXPECT_THAT(verdictText(result, answerOf(result)),
+              testing::AllOf(testing::StartsWith("partly explained by 1 effect, torque_offset"),
+                             testing::HasSubstr("from 10.00 to 4.00 noise floors; it varies most with slip")));
 }
 
 TEST(TraceAnswer, RejectionNamesTheFailedCheck) {

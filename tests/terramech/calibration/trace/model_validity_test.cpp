@@ -55,5 +55,19 @@ TEST(ModelValidity, TorqueUnrelatedToSlipIsNotApplicable) {
   EXPECT_FALSE(judged(rows.telemetry()).applies);
 }
 
+TEST(ModelValidity, ForcesOverALoadInKilogramsAreImpossible) {
+  // Property: readings of the synthetic sand, with the load of a scale in kilograms.
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random{2};
+  for (int k = 0; k < 60; ++k) {
+    std::vector<double> row = wheelRow(madeSand(), 40.0 + 15.0 * (k % 5), 0.05 + 0.014 * k, 0.03, random);
+    row[0] /= 9.81;
+    rows.add(row);
+  }
+  const Applicability a = judged(rows.telemetry());
+  EXPECT_FALSE(a.applies);
+  EXPECT_NE(a.reason.find("more than a wheel reaches on soil"), std::string::npos) << a.reason;
+}
+
 }  // namespace model_validity_test
 }  // namespace talus::terramech

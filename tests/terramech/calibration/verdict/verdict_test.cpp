@@ -18,8 +18,8 @@ TraceResult resultOf(double base, double refined, double floor, std::size_t effe
   }
   result.trial.measured = Eigen::MatrixXd::Constant(100, kChannels, std::nan(""));
   result.trial.measured.col(0).setZero();
-  result.base_rmse[0] = base;
-  result.refined_rmse[0] = refined;
+  result.base_rmse[0] = result.held_out.base_rmse[0] = base;
+  result.refined_rmse[0] = result.held_out.refined_rmse[0] = refined;
   result.noise_floor[0] = floor;
   result.effects.resize(effects);
   result.threshold = 6.0;
@@ -32,8 +32,23 @@ TEST(Verdict, DistinguishesExplainedUnexplainedAndNothingMissing) {
   // Closed form: a variance of 100 values may exceed its floor by 3 sqrt(2/100) = 42 %, an rms by 19 %.
   EXPECT_EQ(answerOf(resultOf(0.0165, 0.0165, 0.0141, 0)).verdict, Verdict::NothingMissing);
   EXPECT_EQ(answerOf(resultOf(0.0170, 0.0170, 0.0141, 0)).verdict, Verdict::Unexplained);
-  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0150, 0.0141, 1)).verdict, Verdict::Explained);
-  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0330, 0.0141, 1)).verdict, Verdict::Unexplained);
+  // Closed form: held-out rows are explained below 1.3 floors, whatever share of the residual that is.
+  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0182, 0.0141, 1)).verdict, Verdict::Explained);
+  EXPECT_EQ(answerOf(resultOf(0.0345, 0.0184, 0.0141, 1)).verdict, Verdict::Unexplained);
+  TraceResult result = resultOf(0.0150, 0.0150, 0.0141, 0);
+  result.held_out.refined_rmse[0] = 0.03;
+  EXPECT_EQ(answerOf(result).verdict, Verdict::NothingMissing);
+  result.last_promises[0].gain = 6.5;  // more than noise would gain
+  EXPECT_EQ(answerOf(result).verdict, Verdict::Unexplained);
+}
+
+TEST(Verdict, ParameterAtItsBoundExplainsNothing) {
+  TraceResult result = resultOf(0.0345, 0.0150, 0.0141, 1);
+  result.effects[0].chosen.candidate.parts = {{.name = "rear_fill", .covariate = "slip", .parameters = {1.0}}};
+  const Answer a = answerOf(result);
+  EXPECT_EQ(a.verdict, Verdict::Unexplained);
+  EXPECT_EQ(a.at_bound, std::vector<std::string>{"rear_fill a"});
+  EXPECT_EQ(a.base, 0.0345);
 }
 
 TEST(Verdict, ComparesResidualsWithDeclaredSensorNoise) {
