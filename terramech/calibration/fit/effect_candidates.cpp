@@ -253,9 +253,8 @@ std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
                              const std::vector<double>& knots) {
   std::vector<Effect> all;
   for (const Channel channel : kChannelOrder)
-    if (trial.has(channel) && !(covariate == "sinkage_m" && channel == Channel::Sinkage))
-      all.push_back(flatCurve("empirical", covariate, channel, knots));
-  if (covariate == "sinkage_m" || covariate == "slip_angle_rad") return all;
+    if (trial.has(channel)) all.push_back(flatCurve("empirical", covariate, channel, knots));
+  if (covariate == "slip_angle_rad") return all;
   all.push_back(flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots));
   all.push_back(flatCurve("empirical_strength", covariate, Channel::DrawbarPull, knots));
   return all;
@@ -313,22 +312,20 @@ void addGroups(const Trial& trial, const std::string& column, std::vector<Candid
   }
 }
 
-/// Lines over products of an additional column with another additional column, or with slip, load or speed.
-void addProducts(const Trial& trial, std::vector<Candidate>& all) {
-  constexpr std::size_t kMostOwn =
-      6;  // limit for pairs of additional columns, which would otherwise outnumber all other candidates
-  std::vector<std::string> own, set;
-  for (const std::string& column : trial.covariates)
-    if (isOwnColumn(column) && !isProduct(column)) own.push_back(column);
-  for (const char* column : {"slip", "load_N", "speed_mps"})
-    if (std::find(trial.covariates.begin(), trial.covariates.end(), column) != trial.covariates.end())
-      set.emplace_back(column);
-  for (std::size_t a = 0; a < own.size(); ++a) {
-    std::vector<std::string> others = set;
-    if (own.size() <= kMostOwn)
-      others.insert(others.end(), own.begin() + static_cast<long>(a) + 1, own.end());
-    for (const std::string& other : others) {
-      const std::string product = own[a] + '*' + other;  // (T30)
+/// Lines over products of an additional column that the effects `in` contain with another column: slip, load,
+/// speed, or an additional one.
+void addProducts(const Trial& trial, const std::vector<Effect>& in, std::vector<Candidate>& all) {
+  const auto isIn = [&](const std::string& column) {
+    return std::ranges::any_of(in, [&](const Effect& e) { return e.covariate == column; });
+  };
+  const auto& columns = trial.covariates;
+  for (const std::string& own : columns) {
+    if (!isOwnColumn(own) || !isIn(own)) continue;
+    for (const std::string& other : columns) {
+      const bool partner = other == "slip" || other == "load_N" || other == "speed_mps" ||
+                           (isOwnColumn(other) && other != own && !(isIn(other) && other < own));
+      if (!partner) continue;
+      const std::string product = own + '*' + other;  // (T30)
       const auto knots = quantileKnots(covariateValues(trial, product, {}), 2);
       if (knots.size() == 2) addCurves(trial, product, knots, all);
     }
@@ -369,13 +366,11 @@ std::vector<Candidate> coarseCandidates(const Trial& trial, const std::string& c
   return all;
 }
 
-std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m) {
+std::vector<Candidate> empiricalCandidates(const Trial& trial, const std::vector<Effect>& in) {
   std::vector<Candidate> all;
-  std::vector<std::string> names = trial.covariates;
-  names.push_back("sinkage_m");
-  for (const std::string& name : names) {
+  for (const std::string& name : trial.covariates) {
     if (isTwin(trial, name)) continue;
-    const Eigen::VectorXd x = covariateValues(trial, name, sinkage_m);
+    const Eigen::VectorXd x = covariateValues(trial, name, {});
     const std::size_t independent = independentValues(trial, x);
     std::size_t coarser = 1;
     for (int most : {2, 4, 7}) {
@@ -386,11 +381,11 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const Eigen::Vect
       coarser = knots.size();
       addCurves(trial, name, knots, all);
     }
-    if (name == "time_s" || name == "heading_rad" || (name != "sinkage_m" && isOwnColumn(name)))
+    if (name == "time_s" || name == "heading_rad" || isOwnColumn(name))
       for (const auto& knots : stepsOf(x))
         if (coarser > 2) addCurves(trial, name, knots, all);
   }
-  addProducts(trial, all);
+  addProducts(trial, in, all);
   for (const std::string& column : trial.groupings) addGroups(trial, column, all);
   return all;
 }

@@ -66,7 +66,7 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
     if ((c.parts.size() == 1 || !shares(model(), c)) && !(drive && c.family == "drift"))
       all.push_back(std::move(c));
   if (!drive)
-    for (Candidate& c : empiricalCandidates(trial, sinkage_m)) all.push_back(std::move(c));
+    for (Candidate& c : empiricalCandidates(trial, model().effects)) all.push_back(std::move(c));
   Screening screening;
   screening.noise = distributionOf(all, draws);
   screening.threshold = screening.noise.threshold(options_.significance);

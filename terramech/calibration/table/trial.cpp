@@ -148,6 +148,30 @@ void addMoments(Trial& trial) {
   if (std::set<int>(trial.run.begin(), trial.run.end()).size() < 5) trial.run = trial.moment;
 }
 
+/// True if a column is a linear function of a reading, from which the reading was then computed (or which was
+/// computed from the reading): such a column contains the reading's own error.
+bool repeatsReading(const Trial& trial, const std::string& column) {
+  constexpr double kOfRounding = 1e-6;  // greatest 1 - r^2 of a column of rounded numbers
+  constexpr int kFewest = 6;
+  for (int c = 0; c < kChannels; ++c) {
+    double n = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+    for (int row = 0; row < trial.rows(); ++row) {
+      const double x = trial.states[static_cast<std::size_t>(row)].covariate(column),
+                   y = trial.measured(row, c) * trial.denominator(row, static_cast<Channel>(c));
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      n += 1.0;
+      const double dx = x - mx, dy = y - my;
+      mx += dx / n;
+      my += dy / n;
+      xx += dx * (x - mx);
+      yy += dy * (y - my);
+      xy += dx * (y - my);
+    }
+    if (n >= kFewest && xx > 0.0 && yy > 0.0 && 1.0 - xy * xy / (xx * yy) < kOfRounding) return true;
+  }
+  return false;
+}
+
 // Replaces the pull of the first wheel of each moment by that of the whole rover.
 void pullTogether(const Trial& trial, Eigen::MatrixXd& scaled) {
   const int pull = static_cast<int>(Channel::DrawbarPull);
@@ -243,6 +267,9 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
   trial.slip_variance = trial.load_variance = Eigen::VectorXd::Zero(trial.rows());
   trial.run = runNumbers(trial.states);
   trial.covariates = varyingCovariates(trial.states);
+  std::erase_if(trial.covariates, [&](const std::string& column) {
+    return std::ranges::find(stateColumns(), column) == stateColumns().end() && repeatsReading(trial, column);
+  });
   trial.groupings = groupingColumns(trial.states);
   addMoments(trial);
   return trial;

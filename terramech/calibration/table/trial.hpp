@@ -26,7 +26,9 @@ struct Trial {
   /// pull DP. The rows of all wheels of a run at one time form a moment. DP/W of the first row of a moment is
   /// that of the whole rover, computed from the slope. Empty for other tables.
   std::vector<int> moment;
-  std::vector<std::string> covariates;  ///< numeric columns that vary, without the answers
+  /// Numeric columns that vary, without the answers and without columns that are linear functions of an
+  /// answer.
+  std::vector<std::string> covariates;
   std::vector<std::string> groupings;   ///< text columns with few distinct values, without the run column
   std::vector<std::string> dropped;     ///< columns that the screening removed (column_screening.hpp)
   std::vector<std::string> chance;      ///< covariates that the screening kept without significance

@@ -54,6 +54,26 @@ TEST(Trial, RoverDrawbarPullEqualsTangentOfSlope) {
   EXPECT_EQ(std::count(trial.covariates.begin(), trial.covariates.end(), "pass_index"), 1);
 }
 
+TEST(Trial, ColumnOfWhichAReadingIsComputedIsNoCovariate) {
+  // Property: a motor current from which the torque was computed is no covariate; one measured with an error
+  // of its own is.
+  std::vector<std::string> columns = wheelColumns();
+  columns.insert(columns.end(), {"current_A", "measured_A"});
+  MadeRows rows(columns);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> error(1.0, 0.01);
+  for (int k = 0; k < 30; ++k) {
+    std::vector<double> row = wheelRow(madeSand(), 50.0 + k, 0.1 + 0.02 * k, 0.02, random);
+    const double current = 0.4 + row[2] / 2.5;
+    row.insert(row.end(), {1e-4 * std::round(1e4 * current), current * error(random)});
+    rows.add(row);
+  }
+  RefinedModel model;
+  model.soil = madeSand();
+  EXPECT_EQ(makeTrial(rows.telemetry(), model).covariates,
+            (std::vector<std::string>{"slip", "load_N", "measured_A"}));
+}
+
 TEST(Trial, ModelledRoverPullSumsAllWheels) {
   const Trial trial = makeTrial(drive(60.0), RefinedModel{});
   RefinedModel model;
