@@ -70,6 +70,19 @@ Telemetry conditionsOf(const Rows& all, const std::string& source) {
   return t;
 }
 
+/// Returns which column of an effect the row lacks; empty if none. A missing slip angle is 0.
+std::string missingFor(const RefinedModel& model, const WheelState& s) {
+  for (const Effect& e : model.effects) {
+    const bool of_group = !e.only_column.empty();
+    const std::string& column = of_group ? e.only_column : e.covariate;
+    const bool known = of_group ? !s.label(column).empty()
+                                : column == "sinkage_m" || column == "slip_angle_rad" ||
+                                      std::isfinite(s.covariate(column));
+    if (!known) return column + " is missing, on which " + e.name + " of the model depends";
+  }
+  return "";
+}
+
 std::string faultOf(const CsvRow& row, const WheelState& s) {
   if (!row.fault.empty()) return row.fault;
   if (!std::isfinite(s.load_N)) return "load_N is missing";
@@ -137,7 +150,8 @@ PredictionTable predictTable(const TableFile& file, const RefinedModel& model, c
     std::string line;
     for (std::size_t k = 0; k < all.header.size(); ++k)
       if (!isPrediction(all.header[k])) line += (k ? "," : "") + csvField(all.rows[row].fields[k]);
-    const std::string fault = faultOf(all.rows[row], states[row]);
+    std::string fault = faultOf(all.rows[row], states[row]);
+    if (fault.empty()) fault = missingFor(model, states[row]);
     if (!fault.empty()) {
       table.refused.push_back({all.rows[row].line, fault});
       line += std::string(2 * kAnswers.size() + 1, ',');

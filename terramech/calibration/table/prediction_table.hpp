@@ -26,7 +26,8 @@ struct PredictionTable {
 /// deviations (suffix _std), and predicted_outside, which lists the columns in which the row is outside the
 /// trained range, separated by semicolons. Outside this range the standard deviations grow with the distance,
 /// and the predictions return to those of the base model where `scope` excludes the corrections. Measured
-/// answers (drawbar_pull_N, sinkage_m, torque_Nm, side_force_N) are copied and not used. Throws InputError if
+/// answers (drawbar_pull_N, sinkage_m, torque_Nm, side_force_N) are copied and not used. A row without the column
+/// of an effect of the model is refused. Throws InputError if
 /// the file cannot be read or lacks load_N, slip or wheel dimensions. After a stop by the watch the text is
 /// incomplete.
 PredictionTable predictTable(const TableFile& file, const RefinedModel& model, const ModelScope& scope = {},

@@ -48,6 +48,20 @@ TEST(PredictionTable, UnpredictableRowsKeepTheirPosition) {
   EXPECT_THAT(table.text, HasSubstr("80,,0.1,0.1,,,,,,,,,\n"));
 }
 
+TEST(PredictionTable, RowWithoutTheColumnOfAnEffectIsRefused) {
+  RefinedModel model = refined();
+  model.effects = {{.name = "drift_torque_zero", .covariate = "time_s", .channel = Channel::Torque}};
+  for (const EffectParameter& p : findEffect("drift_torque_zero")->parameters)
+    model.effects[0].parameters.push_back(p.typical);
+  const test::TemporaryFile file{
+      "load_N,slip,time_s,wheel_radius_m,wheel_width_m\n80,0.3,5,0.1,0.1\n80,0.3,,0.1,0.1\n"};
+  const PredictionTable table = predictTable(file.path(), model);
+  EXPECT_EQ(table.predicted, 1U);
+  ASSERT_EQ(table.refused.size(), 1U);
+  EXPECT_EQ(table.refused[0].line, 3U);
+  EXPECT_EQ(table.refused[0].reason, "time_s is missing, on which drift_torque_zero of the model depends");
+}
+
 TEST(PredictionTable, PredictionForPlainSoilIsTheEquilibrium) {
   const PredictionTable table = predicted("load_N,slip,wheel_radius_m,wheel_width_m\n80,0.3,0.1,0.1\n");
   const WheelForces f =
