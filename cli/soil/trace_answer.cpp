@@ -110,23 +110,24 @@ std::string refusal(const TraceResult& result) {
 }
 
 std::string verdictText(const TraceResult& result, const Answer& a) {
-  const std::string rest =
-      fmt::format("rms of {} on held-out rows {:.4f}, of the sensors alone {:.4f}", name(a.channel), a.rest,
-                  a.floor);
+  const std::string rest = fmt::format("rms of {} on held-out rows {:.4f}, of the sensors alone {:.4f}",
+                                       name(a.channel), a.rest, a.floor);
   if (a.verdict == Verdict::NothingMissing)
     return "nothing missing: the residuals are consistent with noise; " + rest;
   const std::string found =
       result.effects.empty()
           ? ""
-          : fmt::format("explained by {} effect{}, {}: {} on held-out rows from {:.2f} to {:.2f} noise floors{}",
-                        result.effects.size(), result.effects.size() == 1 ? "" : "s", causes(result),
-                        name(a.channel), a.base / a.floor, a.rest / a.floor, equalCauses(result));
+          : fmt::format(
+                "explained by {} effect{}, {}: {} on held-out rows from {:.2f} to {:.2f} noise floors{}",
+                result.effects.size(), result.effects.size() == 1 ? "" : "s", causes(result), name(a.channel),
+                a.base / a.floor, a.rest / a.floor, equalCauses(result));
   if (a.verdict == Verdict::Explained) return found;
   if (!a.inapplicable.empty())
     return "unexplained: the model does not apply: " + a.inapplicable + "; " + rest;
   const std::string start = found.empty() ? "unexplained: " + rest : "partly " + found;
   if (!a.strained.empty()) return start + "; " + strainedText(a);
-  if (!a.at_bound.empty()) return fmt::format("{}; at a bound of its range: {}", start, fmt::join(a.at_bound, ", "));
+  if (!a.at_bound.empty())
+    return fmt::format("{}; at a bound of its range: {}", start, fmt::join(a.at_bound, ", "));
   if (a.strength_scatter + a.stiffness_scatter > 0.0)
     return fmt::format(
         "{}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to {}; {} would "

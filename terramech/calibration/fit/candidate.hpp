@@ -14,9 +14,9 @@ struct Candidate {
   std::string family;         ///< family of the effect; "empirical" for curves
   int parameters = 0;         ///< number of fitted parameters
 
-  /// Returns the logarithm of the prior probability of the candidate as a cause, relative to that of a known
-  /// form: ln(1/20)/2 for a drift, which includes a constant, ln(1/20) for a curve, which includes a drift,
-  /// and 3 ln(1/20)/2 for a product of two columns (ours).
+  /// Returns the logarithm of the prior probability of the candidate as a cause, relative to a known form of
+  /// one parameter: ln(1/20)/4 for each further parameter of a form, ln(1/20)/2 for a drift, ln(1/20) for a
+  /// curve, which includes a drift, and 3 ln(1/20)/2 for a product of two columns (ours).
   double logPrior() const;
 
   /// Returns true if the candidate consists of curves.

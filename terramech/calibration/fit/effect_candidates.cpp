@@ -234,9 +234,6 @@ std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::Vector
 
 namespace {
 
-constexpr Channel kChannelOrder[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque,
-                                     Channel::SideForce};
-
 Effect flatCurve(const char* name, const std::string& covariate, Channel channel,
                  const std::vector<double>& knots) {
   Effect curve;
@@ -252,7 +249,7 @@ Effect flatCurve(const char* name, const std::string& covariate, Channel channel
 std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
                              const std::vector<double>& knots) {
   std::vector<Effect> all;
-  for (const Channel channel : kChannelOrder)
+  for (const Channel channel : {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce})
     if (trial.has(channel)) all.push_back(flatCurve("empirical", covariate, channel, knots));
   if (covariate == "slip_angle_rad") return all;
   all.push_back(flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots));
@@ -319,13 +316,12 @@ void addProducts(const Trial& trial, const std::vector<Effect>& in, std::vector<
     return std::ranges::any_of(in, [&](const Effect& e) { return e.covariate == column; });
   };
   const auto& columns = trial.covariates;
-  for (const std::string& own : columns) {
-    if (!isOwnColumn(own) || !isIn(own)) continue;
-    for (const std::string& other : columns) {
-      const bool partner = other == "slip" || other == "load_N" || other == "speed_mps" ||
-                           (isOwnColumn(other) && other != own && !(isIn(other) && other < own));
-      if (!partner) continue;
-      const std::string product = own + '*' + other;  // (T30)
+  for (auto own = columns.begin(); own != columns.end(); ++own) {
+    if (!isOwnColumn(*own)) continue;
+    for (auto other = columns.begin(); other != columns.end(); ++other) {
+      const bool set = *other == "slip" || *other == "load_N" || *other == "speed_mps";
+      if (set ? !isIn(*own) : !isOwnColumn(*other) || other <= own || !(isIn(*own) || isIn(*other))) continue;
+      const std::string product = *own + '*' + *other;  // (T30)
       const auto knots = quantileKnots(covariateValues(trial, product, {}), 2);
       if (knots.size() == 2) addCurves(trial, product, knots, all);
     }
@@ -336,7 +332,16 @@ void addProducts(const Trial& trial, const std::vector<Effect>& in, std::vector<
 
 double Candidate::logPrior() const {
   constexpr double kStep = -0.5 * 3.0;  // (T42) ln(1/20) = -3.0 in two steps
-  return kStep * (isProduct(covariate()) ? 3.0 : empirical() ? 2.0 : family == "drift" ? 1.0 : 0.0);
+  if (empirical()) return kStep * (isProduct(covariate()) ? 3.0 : 2.0);
+  const int further = parts.size() > 1 ? 0 : std::max(0, parameters - 1);  // forms found together: one by one
+  return kStep * (0.5 * further + (family == "drift" ? 1.0 : 0.0));
+}
+
+Candidate formOf(const Effect& effect) {
+  const EffectForm& form = *findEffect(effect.name);
+  Candidate one{{effect}, form.family, 0};
+  for (const EffectParameter& p : form.parameters) one.parameters += p.fitted;
+  return one;
 }
 
 bool isProduct(const std::string& covariate) {
@@ -373,7 +378,7 @@ std::vector<Candidate> empiricalCandidates(const Trial& trial, const std::vector
     const Eigen::VectorXd x = covariateValues(trial, name, {});
     const std::size_t independent = independentValues(trial, x);
     std::size_t coarser = 1;
-    for (int most : {2, 4, 7}) {
+    for (int most : {2, 4, 7, 13}) {
       const auto knots = quantileKnots(x, most);  // (T29)
       if (knots.size() <= coarser || 4 * static_cast<int>(knots.size()) > trial.rows() ||
           3 * knots.size() > independent)

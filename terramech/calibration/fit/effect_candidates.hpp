@@ -16,12 +16,15 @@ namespace talus::terramech {
 std::vector<Candidate> libraryCandidates(const Trial& trial, const Eigen::VectorXd& sinkage_m);
 
 /// Returns candidate curves of every covariate (numeric column that varies), initially zero: a line, and
-/// splines of 4 and 7 knots, each applied to one measured channel, to the soil stiffness or to the soil
+/// splines of 4, 7 and 13 knots, each applied to one measured channel, to the soil stiffness or to the soil
 /// strength. A column that is constant within runs needs at least three runs per knot. Further candidates are
 /// steps of time, heading and additional columns (columns unknown to Talus), a constant per group of a text
 /// column, and lines over products "A*B" of an additional column A of the effects `in` (those of the present
 /// model) with slip, load, speed or another additional column.
 std::vector<Candidate> empiricalCandidates(const Trial& trial, const std::vector<Effect>& in);
+
+/// Returns the candidate of a single library effect.
+Candidate formOf(const Effect& effect);
 
 /// Returns true if a covariate is a product "A*B" of two columns.
 bool isProduct(const std::string& covariate);

@@ -10,8 +10,8 @@ namespace talus::terramech {
 
 /// Contender: a candidate for addition to a model, linearised about the fitted model.
 struct Contender {
-  LinearModel added;      ///< derivatives of the candidate's parameters, with their priors
-  bool positive = false;  ///< true: the first parameter step must be >= 0
+  LinearModel added;       ///< derivatives of the candidate's parameters, with their priors
+  bool positive = false;   ///< true: the first parameter step must be >= 0
   double log_prior = 0.0;  ///< logarithm of the prior probability, a part of the gain
 };
 

@@ -9,8 +9,8 @@ namespace talus::terramech {
 
 /// Explanations in the place of an accepted candidate.
 struct Replacements {
-  TraceSearch without;  ///< search without the accepted candidate
-  std::vector<Promise> promises;  ///< all candidates, best first
+  TraceSearch without;              ///< search without the accepted candidate
+  std::vector<Promise> promises;    ///< all candidates, best first
   std::vector<Explanation> ranked;  ///< the most promising candidates, fitted, best gain first
 };
 

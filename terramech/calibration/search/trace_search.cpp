@@ -10,16 +10,16 @@
 namespace talus::terramech {
 namespace {
 
-/// True if the model contains a form of the candidate: joint forms are tested once.
+std::string keyOf(const Effect& e) {
+  return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
+}
+
+/// True if the model contains a form of the candidate. A form that is in the model twice would be one cause.
 bool shares(const RefinedModel& model, const Candidate& candidate) {
   return std::any_of(candidate.parts.begin(), candidate.parts.end(), [&](const Effect& part) {
     return std::any_of(model.effects.begin(), model.effects.end(),
-                       [&](const Effect& e) { return e.name == part.name; });
+                       [&](const Effect& e) { return keyOf(e) == keyOf(part); });
   });
-}
-
-std::string keyOf(const Effect& e) {
-  return e.name + '|' + e.covariate + '|' + (e.empirical() ? name(e.channel) : "") + '|' + e.only_value;
 }
 
 }  // namespace
@@ -63,8 +63,7 @@ TraceSearch::Screening TraceSearch::screen(int draws) {
   // Only forms that predict every channel can be distinguished.
   const bool drive = !trial.moment.empty();
   for (Candidate& c : libraryCandidates(trial, sinkage_m))
-    if ((c.parts.size() == 1 || !shares(model(), c)) && !(drive && c.family == "drift"))
-      all.push_back(std::move(c));
+    if (!shares(model(), c) && !(drive && c.family == "drift")) all.push_back(std::move(c));
   if (!drive)
     for (Candidate& c : empiricalCandidates(trial, model().effects)) all.push_back(std::move(c));
   Screening screening;
@@ -157,7 +156,7 @@ void TraceSearch::accept(const Candidate& candidate) {
   if (candidate.empirical())
     units_.push_back({candidate.parts.size(), candidate.logPrior()});
   else
-    units_.insert(units_.end(), candidate.parts.size(), {1, candidate.logPrior()});
+    for (const Effect& part : candidate.parts) units_.push_back({1, formOf(part).logPrior()});
   fit_.settle(withCandidate(model(), candidate));
 }
 

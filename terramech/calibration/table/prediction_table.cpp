@@ -75,9 +75,9 @@ std::string missingFor(const RefinedModel& model, const WheelState& s) {
   for (const Effect& e : model.effects) {
     const bool of_group = !e.only_column.empty();
     const std::string& column = of_group ? e.only_column : e.covariate;
-    const bool known = of_group ? !s.label(column).empty()
-                                : column == "sinkage_m" || column == "slip_angle_rad" ||
-                                      std::isfinite(s.covariate(column));
+    const bool known =
+        of_group ? !s.label(column).empty()
+                 : column == "sinkage_m" || column == "slip_angle_rad" || std::isfinite(s.covariate(column));
     if (!known) return column + " is missing, on which " + e.name + " of the model depends";
   }
   return "";

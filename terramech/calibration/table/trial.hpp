@@ -29,9 +29,9 @@ struct Trial {
   /// Numeric columns that vary, without the answers and without columns that are linear functions of an
   /// answer.
   std::vector<std::string> covariates;
-  std::vector<std::string> groupings;   ///< text columns with few distinct values, without the run column
-  std::vector<std::string> dropped;     ///< columns that the screening removed (column_screening.hpp)
-  std::vector<std::string> chance;      ///< covariates that the screening kept without significance
+  std::vector<std::string> groupings;  ///< text columns with few distinct values, without the run column
+  std::vector<std::string> dropped;    ///< columns that the screening removed (column_screening.hpp)
+  std::vector<std::string> chance;     ///< covariates that the screening kept without significance
 
   /// Returns the number of rows.
   int rows() const { return static_cast<int>(states.size()); }

@@ -64,9 +64,11 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
   for (const auto& [channel, most] :
        {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
     if (const double median = medianReading(result.trial, channel); median > most)
-      return {false, std::string("the median of ") + name(channel) + " is " + number(median) +
-                         ", more than a wheel reaches on soil (" + number(most) +
-                         "): check the units of the readings and of the wheel"};
+      return {false,
+              std::string("the median of ") + name(channel) + " is " + number(median) +
+                  ", more than a wheel reaches on soil (" + number(most) +
+                  "): check the units of the readings and of the wheel",
+              false};
   TraceResult physics = result;
   physics.scope = {};
   physics.refined = withoutSensors(result.refined);

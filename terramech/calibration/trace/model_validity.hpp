@@ -8,8 +8,9 @@ namespace talus::terramech {
 
 /// Conclusion whether the model of a rigid wheel on soil, with physical effects, applies to a table.
 struct Applicability {
-  bool applies = true;  ///< true if the model describes the rows
-  std::string reason;   ///< reason why the model does not apply; otherwise empty
+  bool applies = true;   ///< true if the model describes the rows
+  std::string reason;    ///< reason why the model does not apply; otherwise empty
+  bool possible = true;  ///< true if a wheel on soil can have the median readings
 };
 
 /// Tests whether the median of DP/W is at most 1 and that of T/(rW) at most 1.5, and then the physical model, i.e. without empirical curves and sensor faults, on held-out rows. Only channels

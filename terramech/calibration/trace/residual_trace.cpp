@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 
@@ -85,9 +86,7 @@ void take(Path& path, const Explanation& chosen) {
   if (chosen.candidate.empirical()) return path.effects.push_back(traced(chosen));
   for (const Effect& part : chosen.candidate.parts) {
     Explanation one = chosen;
-    const EffectForm& form = *findEffect(part.name);
-    one.candidate = {{part}, form.family, 0};
-    for (const EffectParameter& p : form.parameters) one.candidate.parameters += p.fitted;
+    one.candidate = formOf(part);
     path.effects.push_back(traced(one));
   }
 }
@@ -114,8 +113,7 @@ void prune(Path& path) {
 /// (endless loop).
 void grow(Path& path, const Trial& trial, const TraceOptions& options,
           const std::function<bool(double)>& go_on) {
-  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects &&
-         path.seen.insert(path.taken()).second) {
+  while (go_on(0.0) && static_cast<int>(path.effects.size()) < options.max_effects) {
     const auto screening = path.search.screen(options.draws);
     if (path.first.empty()) path.first = screening.promises;
     path.last = screening.promises;
@@ -128,38 +126,46 @@ void grow(Path& path, const Trial& trial, const TraceOptions& options,
     take(path, path.rejected.front());
     path.rejected.erase(path.rejected.begin());
     prune(path);
+    if (!path.seen.insert(path.taken()).second) return;
   }
 }
 
-/// Replaces the first effect in whose place another candidate has a higher gain; returns false if there is
-/// none. `in_place` receives the candidates in the place of each effect.
-bool exchange(Path& path, std::vector<Replacements>& in_place, const std::function<bool(double)>& go_on) {
+/// Candidates in the place of each effect.
+using InPlace = std::map<std::size_t, Replacements>;
+
+/// Exchanges effects in turn for candidates with a higher gain in their place, until no exchange of any effect
+/// gains more. Returns true if the effects have changed; false also if a set of effects recurs.
+bool exchange(Path& path, InPlace& in_place, const std::function<bool(double)>& go_on) {
   constexpr double kOfFit = 0.1;  // error of a fitted gain
   in_place.clear();
-  for (std::size_t k = path.pinned; k < path.effects.size() && go_on(0.0); ++k) {
-    in_place.push_back(replacementsOf(path.search, k));
-    const auto& ranked = in_place.back().ranked;
-    const bool several = !ranked.empty() && !ranked.front().candidate.empirical() &&
-                         ranked.front().candidate.parts.size() > 1;
-    const double own = path.search.gainOver(in_place.back().without, k);
-    if (!accepted(ranked, own + (several ? path.threshold : kOfFit))) continue;  // (T44)
-    const Explanation better = ranked.front();
+  bool changed = false;
+  for (std::size_t k = path.pinned; in_place.size() < path.effects.size() - path.pinned && go_on(0.0);) {
+    if (k >= path.effects.size()) k = path.pinned;
+    Replacements in = replacementsOf(path.search, k);
+    const bool several = !in.ranked.empty() && !in.ranked.front().candidate.empirical() &&
+                         in.ranked.front().candidate.parts.size() > 1;
+    const double own = path.search.gainOver(in.without, k);
+    if (!accepted(in.ranked, own + (several ? path.threshold : kOfFit))) {  // (T44)
+      in_place.insert_or_assign(k++, std::move(in));
+      continue;
+    }
     in_place.clear();
     drop(path, k);
-    take(path, better);
+    take(path, in.ranked.front());
     prune(path);
-    return true;
+    changed = true;
+    if (!path.seen.insert(path.taken()).second) return false;
   }
-  return false;
+  return changed;
 }
 
 /// Sets the gain and the p-value of each effect beside the others, and lists alternative causes.
-void findRivals(const Path& path, std::vector<Replacements>& in_place, TraceResult& result,
+void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
                 const std::function<bool(double)>& go_on) {
   for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
     TracedEffect& effect = result.effects[k];
-    if (in_place.size() <= k - path.pinned) in_place.push_back(replacementsOf(path.search, k));
-    const Replacements& in = in_place[k - path.pinned];
+    if (!in_place.contains(k)) in_place.emplace(k, replacementsOf(path.search, k));
+    const Replacements& in = in_place.at(k);
     effect.chosen.gain = path.search.gainOver(in.without, k);
     effect.p_value = path.noise.pValue(effect.chosen.gain);
     const double least = effect.chosen.evidence() - path.close;
@@ -231,9 +237,9 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.base_shared = path.search.sharedError();
   if (options.fit_soil && trial.moment.empty())
     path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
-  std::vector<Replacements> in_place;
+  InPlace in_place;
   do grow(path, trial, options, go_on);
-  while (exchange(path, in_place, go_on) && !path.seen.contains(path.taken()));
+  while (exchange(path, in_place, go_on));
   result.rejected = path.rejected;
   result.first_promises = path.first;
   result.last_promises = path.last;

@@ -1,4 +1,5 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/search/scale_hypotheses.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/trace_input.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
@@ -25,6 +26,11 @@ TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options,
   trace.held_out.insert(trace.held_out.begin(), trace.result.held_out);
   trace.answer = answerOf(trace.result);
   trace.applies = applicability(trace.result, input.options);
+  // No effect makes readings possible that no wheel on soil has.
+  const TraceResult& r = trace.result;
+  if (trace.answer.verdict == Verdict::Unexplained || !trace.applies.applies)
+    if (const auto scale = likelyScale(r, trace.applies.possible ? r.refined : r.base, input.options))
+      trace.applies = {.applies = false, .reason = scale->text()};
   if (!trace.applies.applies) {
     trace.answer.verdict = Verdict::Unexplained;
     trace.answer.inapplicable = trace.applies.reason;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
@@ -28,16 +29,19 @@ double excess(const ChannelErrors& rmse, const TraceResult& result, const Channe
 /// Greatest error on held-out rows, in floors, of a model that explains the rows.
 constexpr double kExplainedFloors = 1.3;
 
-/// Sets the channel in which `errors` on held-out rows exceed the floor most, with the errors of both models.
-void setChannel(Answer& answer, const TraceResult& result, const ChannelErrors& floors,
-                const ChannelErrors& errors) {
-  double most = -1.0;
+/// Sets the channel whose error on held-out rows, or the fall of the error by the effects, is the largest in
+/// floors, with the errors of both models.
+void setChannel(Answer& answer, const TraceResult& result, const ChannelErrors& floors, bool fall) {
+  double most = -std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < kChannels; ++c) {
-    if (!result.trial.has(static_cast<Channel>(c)) || !(errors[c] / floors[c] > most)) continue;
-    most = errors[c] / floors[c];
+    if (!result.trial.has(static_cast<Channel>(c))) continue;
+    const double base = result.held_out.base_rmse[c], rest = result.held_out.refined_rmse[c];
+    const double size = (fall ? base - rest : rest) / floors[c];
+    if (!(size > most)) continue;
+    most = size;
     answer.channel = static_cast<Channel>(c);
-    answer.base = result.held_out.base_rmse[c];
-    answer.rest = result.held_out.refined_rmse[c];
+    answer.base = base;
+    answer.rest = rest;
     answer.floor = floors[c];
   }
 }
@@ -95,9 +99,9 @@ Answer answerOf(const TraceResult& result) {
   const ChannelErrors& floors = statedFloor(result);
   bool above_noise = false;
   for (std::size_t c = 0; c < kChannels; ++c)
-    above_noise |= result.trial.has(static_cast<Channel>(c)) &&
-                   excess(result.refined_rmse, result, floors, c) > 0.0;
-  setChannel(answer, result, floors, result.held_out.refined_rmse);
+    above_noise |=
+        result.trial.has(static_cast<Channel>(c)) && excess(result.refined_rmse, result, floors, c) > 0.0;
+  setChannel(answer, result, floors, false);
   for (const TracedEffect& e : result.effects)
     for (const Effect& part : e.chosen.candidate.parts)
       for (const std::string& name : atBounds(part)) answer.at_bound.push_back(part.name + " " + name);
@@ -112,7 +116,7 @@ Answer answerOf(const TraceResult& result) {
     answer.verdict = Verdict::NothingMissing;
   else
     answer.verdict = Verdict::Unexplained;
-  if (answer.verdict == Verdict::Explained) setChannel(answer, result, floors, result.held_out.base_rmse);
+  if (answer.verdict == Verdict::Explained) setChannel(answer, result, floors, true);
   if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
   const bool open = answer.verdict == Verdict::Unexplained;

@@ -25,8 +25,8 @@ struct Answer {
   /// Rms errors of the base and of the refined model on held-out rows in `channel`, and its floor [-].
   double base = 0.0, rest = 0.0, floor = 0.0;
   std::vector<std::string> at_bound;  ///< fitted parameters at a bound of their range, with their effect
-  std::string column;  ///< column on which the remaining residual depends most; may be empty
-  double gain = 0.0;   ///< gain of a candidate of that column, for comparison with TraceResult::threshold
+  std::string column;                 ///< column on which the remaining residual depends most; may be empty
+  double gain = 0.0;  ///< gain of a candidate of that column, for comparison with TraceResult::threshold
   std::vector<StrainedSensor> strained;  ///< sensors whose fitted error is far larger than stated
   std::vector<std::string> unstated;     ///< measured columns without a stated error
   /// Standard deviations between runs of the logarithms of soil strength and soil stiffness, if these cause

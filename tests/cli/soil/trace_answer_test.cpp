@@ -44,13 +44,15 @@ TEST(TraceAnswer, FirstLineNamesCauseChannelAndErrorsBeforeAndAfter) {
   effect.channel = terramech::Channel::Torque;
   result.effects = {effect};
   result.held_out.refined_rmse[0] = 0.012;
-  EXPECT_EQ(verdictText(result, answerOf(result)),
-            "explained by 1 effect, torque_offset (load_N) in torque_over_load_radius: drawbar_pull_over_load "
-            "on held-out rows from 10.00 to 1.20 noise floors");
+  EXPECT_EQ(
+      verdictText(result, answerOf(result)),
+      "explained by 1 effect, torque_offset (load_N) in torque_over_load_radius: drawbar_pull_over_load "
+      "on held-out rows from 10.00 to 1.20 noise floors");
   result.held_out.refined_rmse[0] = 0.04;
-  EXPECT_THAT(verdictText(result, answerOf(result)),
-              testing::AllOf(testing::StartsWith("partly explained by 1 effect, torque_offset"),
-                             testing::HasSubstr("from 10.00 to 4.00 noise floors; it varies most with slip")));
+  EXPECT_THAT(
+      verdictText(result, answerOf(result)),
+      testing::AllOf(testing::StartsWith("partly explained by 1 effect, torque_offset"),
+                     testing::HasSubstr("from 10.00 to 4.00 noise floors; it varies most with slip")));
 }
 
 TEST(TraceAnswer, RejectionNamesTheFailedCheck) {

@@ -135,10 +135,12 @@ TEST(EffectCandidates, ProductsContainAUserColumnOfTheModel) {
       if (isProduct(c.covariate())) all.insert(c.covariate());
     return all;
   };
-  const Effect dust{.name = "empirical", .covariate = "dust"}, humid{.name = "empirical", .covariate = "humid"};
+  const Effect dust{.name = "empirical", .covariate = "dust"},
+      humid{.name = "empirical", .covariate = "humid"};
   EXPECT_TRUE(products({}).empty());
   EXPECT_TRUE(products({{.name = "empirical", .covariate = "slip"}}).empty());
   EXPECT_EQ(products({dust}), (std::set<std::string>{"dust*humid", "dust*load_N", "dust*slip"}));
+  EXPECT_EQ(products({humid}), (std::set<std::string>{"dust*humid", "humid*load_N", "humid*slip"}));
   EXPECT_EQ(products({humid, dust}),
             (std::set<std::string>{"dust*humid", "dust*load_N", "dust*slip", "humid*load_N", "humid*slip"}));
 }

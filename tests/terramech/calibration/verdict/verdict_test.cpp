@@ -44,7 +44,8 @@ TEST(Verdict, DistinguishesExplainedUnexplainedAndNothingMissing) {
 
 TEST(Verdict, ParameterAtItsBoundExplainsNothing) {
   TraceResult result = resultOf(0.0345, 0.0150, 0.0141, 1);
-  result.effects[0].chosen.candidate.parts = {{.name = "rear_fill", .covariate = "slip", .parameters = {1.0}}};
+  result.effects[0].chosen.candidate.parts = {
+      {.name = "rear_fill", .covariate = "slip", .parameters = {1.0}}};
   const Answer a = answerOf(result);
   EXPECT_EQ(a.verdict, Verdict::Unexplained);
   EXPECT_EQ(a.at_bound, std::vector<std::string>{"rear_fill a"});
