@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <talus/common/constants.hpp>
 #include <talus/planner/bound/directional_cost_bounds.hpp>
@@ -18,7 +19,8 @@ constexpr double kLimitRounding = 1.0 - 1e-6;  // limits and drive costs are flo
 constexpr double kLittle = 1e-3;               // smallest coefficient of a heading that is taken into account
 // A refused heading's limit is at least this share of each cost within the sector.
 constexpr double kFalls = 0.25;
-constexpr double kRefused = 300.0;  // upper limit of a refused heading, as a multiple of the highest limit
+constexpr double kLeastShare = 0.25;  // smallest limit as a share of the lowest cost of the curve
+constexpr double kRefused = 300.0;    // upper limit of a refused heading, as a multiple of the highest limit
 
 using ByHeading = std::array<double, kHeadings>;
 
@@ -285,6 +287,28 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::lackOf(const Gauge& gauge, c
 }
 
 bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
+  constexpr int kLeast = -2048;  // the gradient without an opposite
+  int x = cell.stepsX(), y = cell.stepsY();
+  const bool west = x < 0 && x > kLeast, south = y < 0 && y > kLeast;
+  if (west) x = -x;
+  if (south) y = -y;
+  const bool steeper_north = y > x;
+  if (steeper_north) std::swap(x, y);
+  const CellCode reflected(
+      {.dz_dx = x * CellCode::kStep, .dz_dy = y * CellCode::kStep, .curve = cell.curve()});
+  const auto [known, fresh] = known_.try_emplace(reflected.bits());
+  if (fresh && !compute(reflected, known->second)) known->second.fill(-1.0F);
+  if (known->second.front() < 0.0F) return false;
+  for (int k = 0; k < kHeadings; ++k) {
+    int at = west ? kHeadings / 2 - k : k;
+    if (south) at = -at;
+    if (steeper_north) at = kHeadings / 4 - at;
+    limits[static_cast<std::size_t>(k)] = known->second[static_cast<std::size_t>(at & (kHeadings - 1))];
+  }
+  return true;
+}
+
+bool DirectionalCostBounds::compute(CellCode cell, Limits& limits) {
   if (cell.curve() >= cost_.curves().size()) return false;
   const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
   const Direction climb =
@@ -300,7 +324,13 @@ bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
   for (std::size_t k = 0; k < kHeadings; ++k)
     lowered[k] = gauge[k] * std::clamp(std::min(kept(k), kept((k + kHeadings - 1) % kHeadings)), 0.0, 1.0);
   if (*std::ranges::min_element(lowered) > 1e-6 * *std::ranges::max_element(lowered)) makeConvex(lowered);
-  for (std::size_t k = 0; k < kHeadings; ++k) limits[k] = static_cast<float>(lowered[k] * kLimitRounding);
+  // Gauges below the cost can be mixed; a share of the lowest cost of the curve keeps every limit positive.
+  const auto least_J =
+      static_cast<double>(*std::ranges::min_element(cost_.curves()[cell.curve()].cost_J_per_m));
+  const double least = *std::ranges::min_element(lowered), missing = kLeastShare * least_J - least;
+  const double share = missing > 0.0 ? missing / (least_J - least) : 0.0;
+  for (std::size_t k = 0; k < kHeadings; ++k)
+    limits[k] = static_cast<float>((lowered[k] + share * (least_J - lowered[k])) * kLimitRounding);
   return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include <talus/costmap/cost/travel_cost.hpp>
@@ -20,7 +22,8 @@ namespace talus::planner {
 /// the limits are made convex: a limit above the value that follows from two other limits is reduced to that
 /// value.
 ///
-/// Not thread-safe.
+/// The limits of a cell follow from those of its gradient turned by quarters and reflected into the first eighth
+/// of the plane, because the headings have the same symmetry; these are computed once. Not thread-safe.
 class DirectionalCostBounds {
  public:
   static constexpr int kHeadings = 64;
@@ -29,7 +32,7 @@ class DirectionalCostBounds {
   /// `cost` must outlive the object.
   explicit DirectionalCostBounds(const costmap::TravelCost& cost) : cost_(cost) {}
 
-  /// Computes the limits of a cell. Returns false if the cell allows no heading.
+  /// Sets the limits of a cell. Returns false if the cell allows no heading.
   bool of(costmap::CellCode cell, Limits& limits);
 
   /// Returns the unit vector of heading k, 0 <= k <= kHeadings.
@@ -46,6 +49,7 @@ class DirectionalCostBounds {
 
   using Gauge = std::array<double, kHeadings>;
 
+  bool compute(costmap::CellCode cell, Limits& limits);
   void addNodes(double steepness);
   void addPieces(const costmap::TravelCurve& curve, double steepness);
   Piece pieceOf(const costmap::TravelCurve& curve, double steepness, const costmap::Direction& from,
@@ -60,6 +64,8 @@ class DirectionalCostBounds {
   const costmap::TravelCost& cost_;
   std::vector<costmap::Direction> nodes_;  // directions within a quarter turn from the steepest ascent
   std::vector<Piece> pieces_;              // pieces of half a turn
+  std::unordered_map<std::uint32_t, Limits>
+      known_;  // by bits of the reflected cell code; negative: no heading
 };
 
 }  // namespace talus::planner

@@ -15,10 +15,10 @@ std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
 
 }  // namespace
 
-MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map)
+MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits)
     : map_(std::move(map)),
       mesh_(map_->grid()),
-      limits_(map_->cost()),
+      limits_(limits),
       slot_of_(map_->grid().size(), kNone),
       recent_(kCodes) {}
 
@@ -34,7 +34,8 @@ std::uint32_t MeshCosts::newPrices(costmap::CellCode code) {
 }
 
 std::uint32_t MeshCosts::slotOf(maps::Cell cell) {
-  if (!mesh_.grid().contains(cell)) return kNone;
+  if (!mesh_.grid().contains(cell) || (!region_.empty() && !region_[indexIn(mesh_.grid(), cell)]))
+    return kNone;
   std::uint32_t& slot = slot_of_[indexIn(mesh_.grid(), cell)];
   if (slot == kNone) {
     const std::uint32_t prices = newPrices(map_->at(cell));
@@ -45,7 +46,8 @@ std::uint32_t MeshCosts::slotOf(maps::Cell cell) {
 }
 
 std::uint32_t MeshCosts::knownSlotOf(maps::Cell cell) const noexcept {
-  if (!mesh_.grid().contains(cell)) return kNone;
+  if (!mesh_.grid().contains(cell) || (!region_.empty() && !region_[indexIn(mesh_.grid(), cell)]))
+    return kNone;
   const std::uint32_t slot = slot_of_[indexIn(mesh_.grid(), cell)];
   return slot == kClosed ? kNone : slot;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <talus/costmap/cost/cost_grid.hpp>
@@ -17,14 +18,18 @@ namespace talus::planner {
 /// thread-safe.
 class MeshCosts {
  public:
-  explicit MeshCosts(std::shared_ptr<const costmap::CostGrid> map);
+  /// `limits` are those of the map's cost function and must outlive the object.
+  MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits);
+
+  /// Closes all cells except those of the region, given by index of the cell; empty opens all cells.
+  void keepTo(std::vector<bool> region) { region_ = std::move(region); }
 
   /// Slot number of a cell without a slot.
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const CellMesh& mesh() const noexcept { return mesh_; }
-  /// Returns the slot of a cell, which is created if necessary; kNone outside the map and for cells that
-  /// allow no heading.
+  /// Returns the slot of a cell, which is created if necessary; kNone outside the map and the region
+  /// and for cells that allow no heading.
   std::uint32_t slotOf(maps::Cell cell);
   /// Returns the slot of a cell if slotOf() was called for the cell before; otherwise kNone.
   std::uint32_t knownSlotOf(maps::Cell cell) const noexcept;
@@ -49,7 +54,8 @@ class MeshCosts {
 
   std::shared_ptr<const costmap::CostGrid> map_;
   CellMesh mesh_;
-  DirectionalCostBounds limits_;
+  DirectionalCostBounds& limits_;
+  std::vector<bool> region_;            // by index of the cell; empty: all cells
   std::vector<std::uint32_t> slot_of_;  // slot by cell index
   std::vector<Slot> slots_;
   std::vector<TriangleCosts> prices_;

@@ -24,18 +24,25 @@ MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way w
 
 }  // namespace
 
-SubSolution::SubSolution(const Parts& parts, const StopCheck& stop)
+SubSolution::SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::vector<bool> region,
+                         std::size_t quota, const StopCheck& stop)
     : parts_(parts),
       stop_(stop),
-      prices_(parts.map),
+      prices_(parts.map, limits),
       from_start_(prices_, optionsOf(parts, MeshSearch::Way::ToNode)),
       to_goal_(prices_, optionsOf(parts, MeshSearch::Way::FromNode)) {
-  constexpr std::size_t kAll = ~std::size_t{0};
+  prices_.keepTo(std::move(region));
   seedStart();
-  if (!from_start_.run(MeshSearch::kEnd, kAll, stop_)) return;
+  from_start_.run(MeshSearch::kEnd, quota, stop_);
+}
+
+void SubSolution::solve(std::vector<bool> region, std::size_t quota) {
+  prices_.keepTo(std::move(region));
   parts_.goal_tolerance_m > 0.0 ? seedDisc() : seedPlane();
-  while (!to_goal_.done())
+  while (!to_goal_.done()) {
+    if (to_goal_.taken() > quota) return;
     if (!to_goal_.run(MeshSearch::kEnd, to_goal_.taken() + kBand, stop_) || !settle(false)) return;
+  }
   complete_ = settle(true);
 }
 

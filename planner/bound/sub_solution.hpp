@@ -27,6 +27,9 @@ namespace talus::planner {
 /// of caps, the pair closest to the values of a search from the start is used, because that search satisfies
 /// the same limits. Caps are added behind the front of the search after every kBand nodes, so that the search
 /// continues from valid values.
+///
+/// Both searches stay in a region that no route of at most the known cost leaves; the region of the second may
+/// be smaller.
 class SubSolution {
  public:
   /// Input of the search.
@@ -40,11 +43,20 @@ class SubSolution {
     double cheapest_J;  ///< lower bound of the cost per metre on the whole map [J/m], > 0
   };
 
-  /// Runs the search.
-  SubSolution(const Parts& parts, const StopCheck& stop);
+  /// Runs the search from the start for at most `quota` nodes. `region` is true for the cells of the region,
+  /// by index of the cell; empty: all cells. `limits` are those of the map's cost function and must outlive
+  /// the object.
+  SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::vector<bool> region, std::size_t quota,
+              const StopCheck& stop);
 
-  /// Returns false if a stop ended the search.
+  /// Runs the search from the goal in `region`, for at most `quota` nodes.
+  void solve(std::vector<bool> region, std::size_t quota);
+
+  /// Returns false if a stop or a quota ended a search.
   bool complete() const noexcept { return complete_; }
+
+  /// Returns the cost from the start to a node [J] by the first search; kFar for a node not reached.
+  float fromStart(std::uint32_t node) const noexcept { return from_start_.at(node); }
 
   static constexpr float kFar = MeshSearch::kFar;  ///< value of a node that was not reached
 

@@ -13,7 +13,12 @@ namespace talus::planner {
 namespace admissible_edges_test {
 
 using testing::drawn;
-using testing::randomMap;
+
+OctagonOf octagonsOf(const std::shared_ptr<const costmap::CostGrid>& map) {
+  return [map, octagons = std::make_shared<FittedOctagons>(map->cost())](maps::Cell cell) {
+    return octagons->of(map->at(cell));
+  };
+}
 
 // Property: the field over the corners is below the cost of every allowed motion between two corners,
 // straight or with one bend, in any heading; on uniform patches, where the bound is close to the cost.
@@ -33,14 +38,15 @@ TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
         cells[{column, row}] = patches[static_cast<std::size_t>(row / 8 * 3 + column / 8)];
     const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
     const MotionCost cost(map);
-    const auto edges = admissibleEdges(map);
-    ASSERT_TRUE(edges);
+    const auto edges = admissibleEdges(map, octagonsOf(map)),
+               back = admissibleEdges(map, octagonsOf(map), {}, RouteSense::FromStart);
+    ASSERT_TRUE(edges && back);
     const auto corner = [&below] { return maps::Cell{below(25), below(25)}; };
     const auto place = [](maps::Cell c) { return maps::Point{2.0 * c.column, 2.0 * c.row}; };
     for (int g = 0; g < 4; ++g) {
       const maps::Cell goal = corner();
-      CostToGo field(edges, {{.cell = goal}});
-      ASSERT_TRUE(field.settleAll());
+      CostToGo field(edges, {{.cell = goal}}), from_there(back, {{.cell = goal}});
+      ASSERT_TRUE(field.settleAll() && from_there.settleAll());
       for (int k = 0; k < 400; ++k) {
         const maps::Cell start = corner();
         const double cost_J = k % 2 == 0 ? cost({place(start), place(goal)})
@@ -51,6 +57,8 @@ TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
         ASSERT_TRUE(bound_J);
         ASSERT_LE(*bound_J, cost_J * (1 + 1e-9)) << seed;
         sharp += *bound_J > 0.85 * cost_J;
+        const double back_J = cost({place(goal), place(start)});
+        ASSERT_LE(*from_there.cost_J(start), back_J * (1 + 1e-9)) << seed;
       }
     }
   }
@@ -59,9 +67,10 @@ TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
 }
 
 // Closed form: on uniform ground of 10 J/m all headings cost the same. The edges of the octagon under that
-// circle are at least cos(22.5 degrees) of its radius; rounding to whole units takes 1/64.
+// circle are at least cos(22.5 degrees) of its radius; rounding to whole units takes 1/256.
 TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
-  const auto edges = admissibleEdges(drawn({"....", "....", "...."}));
+  const auto map = drawn({"....", "....", "...."});
+  const auto edges = admissibleEdges(map, octagonsOf(map));
   ASSERT_TRUE(edges);
   EXPECT_EQ(edges->padded().width, 5);  // corners, one more than cells
   EXPECT_EQ(edges->padded().height, 4);
@@ -69,14 +78,15 @@ TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
     const double step_J = edges->into(edges->padded().index({2, 2}))[k] * edges->units().unit_J();
     const double exact_J = 10.0 * std::hypot(kStep[k].column, kStep[k].row);
     EXPECT_LE(step_J, exact_J);
-    EXPECT_GT(step_J, 0.92 * exact_J * 63 / 64);
+    EXPECT_GT(step_J, 0.92 * exact_J * 255 / 256);
   }
 }
 
 // Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; no step exists
 // across a blocked cell or off the map.
 TEST(AdmissibleEdges, SideEdgeUsesTheCheaperCellAndBlockedCellsHaveNone) {
-  const auto edges = admissibleEdges(drawn({"44", "..", "##"}));
+  const auto map = drawn({"44", "..", "##"});
+  const auto edges = admissibleEdges(map, octagonsOf(map));
   const auto step_J = [&](maps::Cell into, int heading) {
     return edges->into(edges->padded().index(into))[heading] * edges->units().unit_J();
   };
@@ -90,8 +100,9 @@ TEST(AdmissibleEdges, SideEdgeUsesTheCheaperCellAndBlockedCellsHaveNone) {
 TEST(AdmissibleEdges, StopYieldsNoEdges) {
   std::stop_source source;
   source.request_stop();
-  EXPECT_EQ(admissibleEdges(drawn({".."}), ProgressMonitor{.progress = {}, .stop = source.get_token()}),
-            nullptr);
+  const auto map = drawn({".."});
+  const ProgressMonitor stopped{.progress = {}, .stop = source.get_token()};
+  EXPECT_EQ(admissibleEdges(map, octagonsOf(map), stopped), nullptr);
 }
 
 TEST(AdmissibleEdges, ZeroCostGroundYieldsNoEdges) {
@@ -101,7 +112,8 @@ TEST(AdmissibleEdges, ZeroCostGroundYieldsNoEdges) {
       {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}}, costmap::CellCode({.curve = 0}));
   const auto cost =
       std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{free_of_charge});
-  EXPECT_EQ(admissibleEdges(std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost))), nullptr);
+  const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
+  EXPECT_EQ(admissibleEdges(map, octagonsOf(map)), nullptr);
 }
 
 }  // namespace admissible_edges_test

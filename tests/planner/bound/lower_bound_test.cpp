@@ -5,6 +5,7 @@
 #include <talus/planner/grid/field_planner.hpp>
 
 #include "drawn_map.hpp"
+#include "jagged_cost.hpp"
 
 namespace talus::planner {
 namespace lower_bound_test {
@@ -129,6 +130,47 @@ TEST(LowerBound, BoundIsValidIfSlopeCostDominatesRollingCost) {
   const Segment ends{{5.5, 10.5}, {55.5, 10.5}};
   EXPECT_NEAR(MotionCost(map)(ends), 50.0, 1e-6);
   EXPECT_LE(LowerBound()(map, ends, 0.0), 50.0);
+}
+
+std::shared_ptr<const costmap::CostGrid> randomGround(
+    unsigned seed, const std::shared_ptr<const costmap::TravelCost>& cost) {
+  std::mt19937 random(seed);
+  const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  maps::Raster<costmap::CellCode> cells(
+      {.width = 24, .height = 17, .resolution_m = 2.0, .south_west = {-7.0, 3.0}});
+  for (auto& cell : cells.values())
+    cell = costmap::CellCode(
+        {.dz_dx = 0.12 * (2 * unit() - 1),
+         .dz_dy = 0.12 * (2 * unit() - 1),
+         .curve = unit() < 0.1 ? costmap::CellCode::kBlocked : static_cast<std::uint8_t>(3 * unit())});
+  return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
+}
+
+// Property: the bound for a known cost, in the region of its routes, is between the first level's bound and
+// the known cost, and at most the cost of the route over all headings that the search finds; on ground of
+// uncorrelated cells, where single headings are allowed.
+TEST(LowerBound, KnownCostNarrowsTheSearchSoundly) {
+  int found = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const auto map = randomGround(seed, seed % 2 == 0 ? testing::jaggedCost() : testing::driveCost());
+    const Segment ends{{-3.3, 5.1}, {30.7, 25.2}};
+    const MotionCost cost(map);
+    if (!cost.allowed(ends.from) || !cost.allowed(ends.to)) continue;
+    LowerBound all;
+    const double whole_J = all(map, ends, 0.0);
+    const double along_J = cost.ofLegs(all.way());
+    for (const double known_J : {1.01 * whole_J, 1.1 * whole_J, along_J}) {
+      if (all.way().empty() || !std::isfinite(along_J)) continue;
+      const double near_J = LowerBound()(map, ends, 0.0, {}, known_J);
+      EXPECT_LE(near_J, known_J) << seed;
+      if (known_J >= along_J) {
+        EXPECT_LE(near_J, along_J) << seed;
+        ++found;
+      }
+    }
+    EXPECT_TRUE(all.way().empty() || whole_J <= along_J) << seed;
+  }
+  EXPECT_GT(found, 5);
 }
 
 }  // namespace lower_bound_test

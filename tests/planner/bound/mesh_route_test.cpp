@@ -3,8 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include <talus/planner/bound/cheapest_metre.hpp>
-#include <talus/planner/bound/sub_solution_check.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/grid/many_headings.hpp>
 
 #include "drawn_map.hpp"
@@ -45,15 +44,14 @@ TEST(MeshRoute, RouteIsCheaperThanWithThirtyTwoHeadings) {
     const auto map = hills(seed);
     const Segment places{{14.3, -4.6}, {49.8, 20.1}};
     const MotionCost cost(map);
-    const SubSolution::Parts parts{
-        .map = map, .places = places, .known_J = kInfinity, .cheapest_J = cheapestMetre_J(*map)};
-    const SubSolution solution(parts, {});
-    const Polyline way = solution.way();
+    LowerBound bound;
+    const double bound_J = bound(map, places, 0.0);
+    const Polyline& way = bound.way();
     if (way.empty()) continue;
     EXPECT_EQ(way.front(), places.from);
     EXPECT_EQ(way.back(), places.to);
     const double along_J = legs_J(cost, way);
-    EXPECT_GE(along_J, provenBy(solution, parts).bound_J);
+    EXPECT_GE(along_J, bound_J);
     const Polyline in_few = manyHeadingsRoute(cost, places, 0.0, kInfinity);
     if (in_few.size() > 1) ratios.push_back(along_J / legs_J(cost, in_few));
   }
@@ -69,11 +67,9 @@ TEST(MeshRoute, UnreachableGoalYieldsAnEmptyRoute) {
   for (int row = 0; row < 9; ++row)
     cells[{6, row}] = costmap::CellCode({.curve = costmap::CellCode::kBlocked});
   const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
-  const SubSolution::Parts parts{.map = map,
-                                 .places = {{1.5, 4.5}, {10.5, 4.5}},
-                                 .known_J = kInfinity,
-                                 .cheapest_J = cheapestMetre_J(*map)};
-  EXPECT_TRUE(SubSolution(parts, {}).way().empty());
+  LowerBound bound;
+  bound(map, {{1.5, 4.5}, {10.5, 4.5}}, 0.0);
+  EXPECT_TRUE(bound.way().empty());
 }
 
 }  // namespace mesh_route_test

@@ -20,6 +20,17 @@ SubSolution::Parts partsOf(const MapPointer& map, const Segment& places,
   return {.map = map, .places = places, .known_J = known_J, .cheapest_J = cheapestMetre_J(*map)};
 }
 
+// A sub-solution on the whole map.
+struct Solved {
+  explicit Solved(const SubSolution::Parts& parts)
+      : limits(parts.map->cost()), u(parts, limits, {}, kAll, {}) {
+    u.solve({}, kAll);
+  }
+  static constexpr std::size_t kAll = ~std::size_t{0};
+  DirectionalCostBounds limits;
+  SubSolution u;
+};
+
 MapPointer randomGround(unsigned seed, const std::shared_ptr<const costmap::TravelCost>& cost) {
   std::mt19937 random(seed);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
@@ -40,7 +51,8 @@ TEST(SubSolution, SlopeIsBoundedByTheCostInAllHeadings) {
     const auto map = randomGround(seed, seed % 2 == 0 ? testing::jaggedCost() : testing::driveCost());
     const SubSolution::Parts parts = partsOf(map, {{-3.3, 5.1}, {39.7, 35.2}});
     if (!MotionCost(map).allowed(parts.places.to)) continue;
-    const SubSolution solution(parts, {});
+    const Solved solved(parts);
+    const SubSolution& solution = solved.u;
     const Proof proof = provenBy(solution, parts);
     std::mt19937 random(seed);
     int triangles = 0;
@@ -123,10 +135,11 @@ TEST(SubSolution, KnownRouteOnlyPrunesTheSearch) {
     const auto map = randomGround(seed, testing::driveCost());
     const Segment ends{{-3.3, 5.1}, {30.7, 25.2}};
     const SubSolution::Parts all = partsOf(map, ends);
-    const SubSolution whole(all, {});
+    const Solved solved(all);
+    const SubSolution& whole = solved.u;
     const double whole_J = provenBy(whole, all).bound_J;
     const SubSolution::Parts near = partsOf(map, ends, 1.05 * whole_J);
-    const double near_J = provenBy(SubSolution(near, {}), near).bound_J;
+    const double near_J = provenBy(Solved(near).u, near).bound_J;
     EXPECT_NEAR(near_J, whole_J, 0.04 * whole_J) << seed;
     const Polyline way = whole.way();
     double along_J = 0.0;

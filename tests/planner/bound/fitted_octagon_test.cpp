@@ -1,0 +1,116 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <talus/planner/bound/fitted_octagon.hpp>
+
+#include "drawn_map.hpp"
+#include "jagged_cost.hpp"
+
+namespace talus::planner {
+namespace fitted_octagon_test {
+
+constexpr double kEighth = std::numbers::pi / 4.0;
+
+// The gauge of an octagon: linear between the weights of neighbouring headings.
+double gauge(const Octagon& octagon, double angle) {
+  const auto k = static_cast<std::size_t>(angle / kEighth);
+  const double in = angle - static_cast<double>(k) * kEighth;
+  return (std::sin(kEighth - in) * static_cast<double>(octagon[k % 8]) +
+          std::sin(in) * static_cast<double>(octagon[(k + 1) % 8])) /
+         std::sin(kEighth);
+}
+
+void expectConvexAndPositive(const Octagon& octagon) {
+  for (std::size_t k = 0; k < 8; ++k) {
+    ASSERT_GT(octagon[k], 0.0F);
+    ASSERT_LE(octagon[k], (octagon[(k + 1) % 8] + octagon[(k + 7) % 8]) * 0.70710678F * 1.000001F);
+  }
+}
+
+// Property: by brute force over 3600 directions, no octagon is above the cost of a cell of random curve and
+// gradient, whatever decrease is wanted; and every octagon is convex.
+TEST(FittedOctagon, GaugeIsBelowTheCostInEveryDirection) {
+  for (const auto& cost :
+       {testing::driveCost({.max_along = 0.4, .max_across = 0.4}), testing::jaggedCost()}) {
+    DirectionalCostBounds bounds(*cost);
+    FittedOctagons octagons(*cost);
+    std::mt19937 random(3);
+    const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+    for (int n = 0; n < 1'000; ++n) {
+      const int most = n % 2 == 0 ? 300 : 900;
+      const auto gradient = [&] { return (static_cast<int>(random()) % most) / 1024.0; };
+      const costmap::CellCode cell({.dz_dx = gradient(),
+                                    .dz_dy = gradient(),
+                                    .curve = static_cast<std::uint8_t>(random() % cost->curves().size())});
+      DirectionalCostBounds::Limits limits;
+      if (!bounds.of(cell, limits)) {
+        ASSERT_TRUE(std::isinf(octagons.of(cell).front()));
+        continue;
+      }
+      Octagon wanted;  // of a plane; in every fourth case of no function
+      const double steep = 40.0 * unit(), towards = 2.0 * std::numbers::pi * unit();
+      for (std::size_t k = 0; k < 8; ++k)
+        wanted[k] = static_cast<float>(
+            n % 4 == 0 ? 40.0 * unit() : steep * std::cos(towards - static_cast<double>(k) * kEighth));
+      for (const Octagon& octagon : {octagons.of(cell), fittedOctagon(limits, wanted)}) {
+        expectConvexAndPositive(octagon);
+        for (int d = 0; d < 3'600; ++d) {
+          const double angle = std::numbers::pi / 1800.0 * d;
+          const float price = cost->costPerMetre(cell, {std::cos(angle), std::sin(angle)});
+          if (std::isfinite(price)) {
+            ASSERT_LE(gauge(octagon, angle), static_cast<double>(price)) << n << " " << d;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Closed form: on level ground of 10 J/m the regular octagon in the circle of the limits has weights of 10
+// cos(22.5 degrees). For a wanted plane that decreases by the limit along any direction, the octagon has a
+// corner there: its weights at the two headings beside the direction are at least those of the plane, but for
+// the cosine of half a sector of the limits and rounding.
+TEST(FittedOctagon, OctagonHasACornerAtTheWantedPlane) {
+  const auto cost = testing::driveCost();
+  const costmap::CellCode level({.curve = 0});
+  DirectionalCostBounds::Limits limits;
+  ASSERT_TRUE(DirectionalCostBounds(*cost).of(level, limits));
+  FittedOctagons octagons(*cost);
+  for (const float weight : octagons.of(level))
+    EXPECT_NEAR(static_cast<double>(weight), 10.0 * std::cos(0.5 * kEighth), 0.03);
+  for (int d = 0; d < 90; ++d) {
+    const double towards = std::numbers::pi / 45.0 * d;
+    Octagon plane;
+    for (std::size_t k = 0; k < 8; ++k)
+      plane[k] = static_cast<float>(10.0 * std::cos(towards - static_cast<double>(k) * kEighth));
+    const Octagon octagon = fittedOctagon(limits, plane);
+    const auto beside = static_cast<std::size_t>(towards / kEighth);
+    for (const std::size_t k : {beside % 8, (beside + 1) % 8}) EXPECT_GE(octagon[k], 0.997F * plane[k]) << d;
+  }
+}
+
+// Property: for an allowed heading the weight is finite and not above the cost of the heading, also if gravity
+// exceeds the rolling resistance many times.
+TEST(FittedOctagon, WeightsAreFiniteForAllowedHeadingsAndBelowTheCost) {
+  for (const double level_J_per_m : {100.0, 10.0, 1.0}) {
+    costmap::TravelCurve curve;
+    for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
+      curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
+          std::max(0.1 * level_J_per_m, level_J_per_m + 1000.0 * costmap::TravelCurve::gradient(bin)));
+    const costmap::TravelCost cost(costmap::TravelCost::Limits{}, std::vector{curve});
+    FittedOctagons octagons(cost);
+    for (int x = -380; x <= 380; x += 19)
+      for (int y = -380; y <= 380; y += 19) {
+        const costmap::CellCode cell({.dz_dx = x / 1024.0, .dz_dy = y / 1024.0, .curve = 0});
+        for (std::size_t k = 0; k < 8; ++k) {
+          const double length = std::hypot(kStep[k].column, kStep[k].row);
+          const float exact = cost.costPerMetre(cell, {kStep[k].column / length, kStep[k].row / length});
+          ASSERT_LE(octagons.of(cell)[k], exact) << level_J_per_m << ": " << x << "," << y << " " << k;
+        }
+      }
+  }
+}
+
+}  // namespace fitted_octagon_test
+}  // namespace talus::planner
