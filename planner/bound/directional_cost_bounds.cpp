@@ -286,7 +286,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::lackOf(const Gauge& gauge, c
   return lack;
 }
 
-bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
+DirectionalCostBounds::Reflected DirectionalCostBounds::reflected(CellCode cell) noexcept {
   constexpr int kLeast = -2048;  // the gradient without an opposite
   int x = cell.stepsX(), y = cell.stepsY();
   const bool west = x < 0 && x > kLeast, south = y < 0 && y > kLeast;
@@ -294,17 +294,17 @@ bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
   if (south) y = -y;
   const bool steeper_north = y > x;
   if (steeper_north) std::swap(x, y);
-  const CellCode reflected(
-      {.dz_dx = x * CellCode::kStep, .dz_dy = y * CellCode::kStep, .curve = cell.curve()});
-  const auto [known, fresh] = known_.try_emplace(reflected.bits());
-  if (fresh && !compute(reflected, known->second)) known->second.fill(-1.0F);
+  return {CellCode({.dz_dx = x * CellCode::kStep, .dz_dy = y * CellCode::kStep, .curve = cell.curve()}), west,
+          south, steeper_north};
+}
+
+bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
+  const Reflected of = reflected(cell);
+  const auto [known, fresh] = known_.try_emplace(of.cell.bits());
+  if (fresh && !compute(of.cell, known->second)) known->second.fill(-1.0F);
   if (known->second.front() < 0.0F) return false;
-  for (int k = 0; k < kHeadings; ++k) {
-    int at = west ? kHeadings / 2 - k : k;
-    if (south) at = -at;
-    if (steeper_north) at = kHeadings / 4 - at;
-    limits[static_cast<std::size_t>(k)] = known->second[static_cast<std::size_t>(at & (kHeadings - 1))];
-  }
+  for (int k = 0; k < kHeadings; ++k)
+    limits[static_cast<std::size_t>(k)] = known->second[of.heading(k, kHeadings)];
   return true;
 }
 

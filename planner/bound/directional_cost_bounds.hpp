@@ -35,6 +35,23 @@ class DirectionalCostBounds {
   /// Sets the limits of a cell. Returns false if the cell allows no heading.
   bool of(costmap::CellCode cell, Limits& limits);
 
+  /// A cell code whose gradient lies in the first eighth of the plane, and the reflections that lead there.
+  struct Reflected {
+    costmap::CellCode cell;
+    bool west = false, south = false, steeper_north = false;
+
+    /// Returns the heading of the reflected cell, of `headings`, a power of two >= 8, to which heading k belongs.
+    std::size_t heading(int k, int headings) const noexcept {
+      int at = west ? headings / 2 - k : k;
+      if (south) at = -at;
+      if (steeper_north) at = headings / 4 - at;
+      return static_cast<std::size_t>(at & (headings - 1));
+    }
+  };
+
+  /// Returns the reflection of a cell code.
+  static Reflected reflected(costmap::CellCode cell) noexcept;
+
   /// Returns the unit vector of heading k, 0 <= k <= kHeadings.
   static costmap::Direction heading(int k) noexcept;
 

@@ -9,10 +9,10 @@ namespace talus::planner {
 namespace {
 
 constexpr std::size_t kParts = DirectionalCostBounds::kHeadings / 8;  // limits of one sector of the octagon
-constexpr int kSweeps = 2, kRounds = 4, kFullRounds = 3;
+constexpr int kProjections = 2, kRaises = 4, kFullRaises = 3;
 constexpr double kDiagonal = std::numbers::sqrt2 / 2;
-constexpr double kEven = 0.92387;     // cos(pi/8): equal weights of this share of a limit are below the limit
-constexpr double kLeastShare = 0.25;  // smallest weight as a share of these equal weights
+constexpr double kEven = 0.92387;  // cos(pi/8): equal weights of this share of a limit are below the limit
+constexpr double kLeastOfEven = 0.25;     // smallest weight as a share of these equal weights
 constexpr double kRounding = 1.0 - 1e-6;  // weights are floats
 
 using Weights = std::array<double, 8>;
@@ -76,12 +76,12 @@ double mostAt(std::size_t k, const Sectors& sectors, const Weights& weights) noe
 
 // Raises each weight by half of the increase permitted, all at once, then one after the other by all of it.
 void raise(const Sectors& sectors, Weights& weights) noexcept {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRaises; ++round) {
     const Weights before = weights;
     for (std::size_t k = 0; k < 8; ++k)
       weights[k] += 0.5 * std::max(0.0, mostAt(k, sectors, before) - before[k]);
   }
-  for (int round = 0; round < kFullRounds; ++round)
+  for (int round = 0; round < kFullRaises; ++round)
     for (std::size_t k = 0; k < 8; ++k) weights[k] = std::max(weights[k], mostAt(k, sectors, weights));
 }
 
@@ -107,8 +107,8 @@ Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon
   const Sectors sectors = sectorsOf(limits);
   Weights weights, ratio;
   for (std::size_t k = 0; k < 8; ++k)
-    weights[k] = std::max(static_cast<double>(wanted[k]), kLeastShare * even);
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    weights[k] = std::max(static_cast<double>(wanted[k]), kLeastOfEven * even);
+  for (int sweep = 0; sweep < kProjections; ++sweep)
     for (std::size_t k = 0; k < 8; ++k)
       if (ratioOf(sectors[k], weights[k], weights[(k + 1) % 8]) < 1.0)
         project(sectors[k], weights[k], weights[(k + 1) % 8]);
@@ -117,7 +117,7 @@ Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon
   raise(sectors, weights);
   makeConvex(weights);
   // Octagons below the limits can be mixed; the share of equal weights keeps every weight positive.
-  const double least = *std::ranges::min_element(weights), missing = kLeastShare * even - least,
+  const double least = *std::ranges::min_element(weights), missing = kLeastOfEven * even - least,
                share = missing > 0.0 ? missing / (even - least) : 0.0;
   Octagon octagon;
   for (std::size_t k = 0; k < 8; ++k)
@@ -125,22 +125,28 @@ Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon
   return octagon;
 }
 
-const Octagon& FittedOctagons::of(costmap::CellCode cell) {
-  const auto [at, fresh] = known_.try_emplace(cell.bits());
-  if (!fresh) return at->second;
+Octagon FittedOctagons::of(costmap::CellCode cell) {
+  const auto reflected = DirectionalCostBounds::reflected(cell);
+  const auto [at, fresh] = known_.try_emplace(reflected.cell.bits());
+  if (fresh) at->second = fitted(reflected.cell);
+  Octagon octagon;
+  for (int k = 0; k < 8; ++k) octagon[static_cast<std::size_t>(k)] = at->second[reflected.heading(k, 8)];
+  return octagon;
+}
+
+Octagon FittedOctagons::fitted(costmap::CellCode cell) {
+  Octagon wanted;
+  wanted.fill(std::numeric_limits<float>::infinity());
   DirectionalCostBounds::Limits limits;
-  if (!limits_.of(cell, limits)) {
-    at->second.fill(std::numeric_limits<float>::infinity());
-    return at->second;
-  }
+  if (!limits_.of(cell, limits)) return wanted;
   // Refused headings have high limits, which must not lower their neighbours.
   for (std::size_t k = 0; k < 8; ++k) {
-    at->second[k] = limits[k * kParts];
+    wanted[k] = limits[k * kParts];
     for (std::size_t j = 1; j < kParts; ++j)
       for (const std::size_t i : {k * kParts + j, k * kParts + limits.size() - j})
-        at->second[k] = std::min(at->second[k], static_cast<float>(kEven) * limits[i % limits.size()]);
+        wanted[k] = std::min(wanted[k], static_cast<float>(kEven) * limits[i % limits.size()]);
   }
-  return at->second = fittedOctagon(limits, at->second);
+  return fittedOctagon(limits, wanted);
 }
 
 }  // namespace talus::planner

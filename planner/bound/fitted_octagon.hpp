@@ -27,14 +27,14 @@ using Octagon = std::array<float, 8>;
 Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted);
 
 /// Octagons of cells whose costs are wanted equally in all directions, computed at the first use of a cell
-/// code. Not thread-safe.
+/// code or a reflection of it. Not thread-safe.
 class FittedOctagons {
  public:
   /// `cost` must outlive the object.
   explicit FittedOctagons(const costmap::TravelCost& cost) : limits_(cost) {}
 
   /// Returns the octagon of a cell code.
-  const Octagon& of(costmap::CellCode cell);
+  Octagon of(costmap::CellCode cell);
 
   /// Returns the limits of the cost function.
   DirectionalCostBounds& limits() noexcept { return limits_; }
@@ -43,8 +43,10 @@ class FittedOctagons {
   static constexpr double kLeastShare = 0.05;
 
  private:
+  Octagon fitted(costmap::CellCode cell);
+
   DirectionalCostBounds limits_;
-  std::unordered_map<std::uint32_t, Octagon> known_;  // by bits of the cell code
+  std::unordered_map<std::uint32_t, Octagon> known_;  // by bits of the reflected cell code
 };
 
 }  // namespace talus::planner
