@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <thread>
 
 #include <fmt/format.h>
@@ -91,7 +92,11 @@ void print(std::string_view text) {
 }
 
 void printError(std::string_view text) noexcept {
-  send(text, stderr);
+  try {
+    send(text, stderr);
+  } catch (const std::exception&) {
+    std::fputs("talus: no memory for a message\n", stderr);
+  }
   std::fflush(stderr);
 }
 

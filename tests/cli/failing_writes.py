@@ -51,7 +51,7 @@ CALLS = [
     ([TALUS, "costmap", *GROUND, "--png"], ["c.png"], 4),
     ([TALUS, "explain", *GROUND, "--at", "500005,4000005", "--png"], ["e.svg"], 4),
     *[([*PLAN, "-o"], [f"r.{form}"], 4) for form in ("geojson", "gpkg", "gpx", "kml", "csv")],
-    *[([*PLAN, option], [name], 4) for option, name in (("--png", "r.png"), ("--html", "r.html"), ("--pareto", "p.html"))],
+    *[([*PLAN, option], [name], 4) for option, name in (("--png", "r.png"), ("--html", "r.html"))],
     ([TALUS, "view", "../map.ot", "-o"], ["v.html"], 4),
     ([TALUS, "drive", *GROUND, "--truth", "../truth.yaml", "--start", "500005,4000005", "--goal", "500009,4000009", "--telemetry"],
      ["t.csv"], 4),

@@ -40,7 +40,8 @@ TEST(TraceAnswer, RejectedGainNamesTheInsufficientValue) {
 TEST(TraceAnswer, FirstLineNamesCauseChannelAndErrorsBeforeAndAfter) {
   TraceResult result = resultOf(2.5, 2.0);
   terramech::TracedEffect effect;
-  effect.chosen.candidate = {{{.name = "torque_offset", .covariate = "load_N"}}, "torque_sensor", 1};
+  effect.chosen.candidate = {
+      {{.name = "torque_offset", .covariate = "load_N", .parameters = {0.2}}}, "torque_sensor", 1};
   effect.channel = terramech::Channel::Torque;
   result.effects = {effect};
   result.held_out.refined_rmse[0] = 0.012;
