@@ -27,8 +27,8 @@ if(TALUS_OFFLINE)
   find_package(NLopt 2.7 REQUIRED)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
-  pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
   find_library(CSV_LIBRARY csv REQUIRED)
+  find_library(NETTLE_LIBRARY nettle REQUIRED)
 endif()
 # Test campaigns over many ranks, if Boost.MPI is installed. Open MPI leaks memory at the end of every
 # process.

@@ -41,7 +41,6 @@ CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
   command.callback([options, run, &command, &context] {
     for (const std::string& warning : oldNamesUsed(command)) context.warn(warning);
     checkNumbers(command);
-    checkInputs(command);
     checkOutputs(command, context.force);
     context.exit_code = run(*options, context);
   });

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <string_view>
 
@@ -121,6 +122,14 @@ CLI::Validator positive() {
 
 CLI::Validator finite() {
   return within(-kNoEnd, kNoEnd);
+}
+
+CLI::Validator heading() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (within(-2 * std::numbers::pi, 2 * std::numbers::pi)(text).empty()) return "";
+    return text + ", must be an angle in radians, -2 pi to 2 pi; for degrees use the option with -deg";
+  };
+  return CLI::Validator(check, "");
 }
 
 }  // namespace talus::cli

@@ -27,4 +27,7 @@ CLI::Validator positive();
 /// Returns a check that rejects NaN and infinity.
 CLI::Validator finite();
 
+/// Returns a check that rejects values other than angles in radians from -2 pi to 2 pi, such as degrees.
+CLI::Validator heading();
+
 }  // namespace talus::cli

@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {
 namespace {
@@ -130,6 +130,11 @@ void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   if (fs::is_symlink(path, error) && leavesItsFolder(path)) refuse(path, "is a link to another folder");
   for (const std::string& input : inputs)
     if (!input.empty() && same(path, input)) refuse(path, "is also an input or another output of this call");
+  if (fs::is_regular_file(status))
+    for (const std::string& input : inputs)
+      if (const std::string file = input.substr(input.find('=') + 1); fs::is_regular_file(file, error))
+        for (const std::string& part : maps::filesOpenedWith(file))
+          if (same(path, part)) refuse(path, "is a part of the input " + file);
   if (fs::is_regular_file(status) && isJournal(path)) refuse(path, "is an SQLite file, as a journal is");
   if (const fs::path journal = journalBehind(path); !journal.empty())
     refuse(path, "is a part of the journal " + journal.string());
@@ -165,16 +170,6 @@ void checkFormat(const fs::path& path, const std::string& written) {
                     fmt::format("is named {}, but a {} file is written", path.extension().string(),
                                 fmt::join(endings, " or ")),
                     "name it " + stem.string() + endings.front() + ", or pass --force"});
-}
-
-void checkInputs(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->empty() || isOutput(*option)) continue;
-    for (const std::string& word : option->results()) {
-      compareChecksum(word);
-      if (const auto equals = word.find('='); equals != word.npos) compareChecksum(word.substr(equals + 1));
-    }
-  }
 }
 
 void checkOutputs(const CLI::App& command, bool force) {

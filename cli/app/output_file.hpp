@@ -38,8 +38,4 @@ void checkFormat(const std::filesystem::path& path, const std::string& written);
 /// option's type name (FILE.tif).
 void checkOutputs(const CLI::App& command, bool force);
 
-/// Calls compareChecksum() for every file that an option other than those of addOutput() states, alone or as
-/// NAME=FILE.
-void checkInputs(const CLI::App& command);
-
 }  // namespace talus::cli

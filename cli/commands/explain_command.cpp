@@ -13,6 +13,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/slope_rose.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/motion_options.hpp>
 #include <talus/costmap/map/explanation.hpp>
 #include <talus/maps/vector/place_reader.hpp>
 
@@ -33,11 +34,8 @@ void bind(CLI::App& command, ExplainOptions& options) {
                   "place: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
       ->required()
       ->type_name("P");
-  command
-      .add_option("--heading", options.heading_rad,
-                  "heading, counter-clockwise from east (default: the worst heading)")
-      ->type_name("RAD")
-      ->check(finite());
+  addHeading(command, "--heading", options.heading_rad,
+             "heading, counter-clockwise from east (default: the worst heading)");
   groupOptions(command, "Place");
   addOutput(command, "--png", options.png, "picture of cost, slip and slip angle over all headings")
       ->type_name("FILE.png|FILE.svg");

@@ -88,14 +88,16 @@ int run(const InitOptions& options, Context& context) {
     cells = {{map.grid().width / 4, map.grid().height / 4},
              {3 * map.grid().width / 4, 3 * map.grid().height / 4}};
   }
-  const fs::path folder = fs::absolute(options.output, error).parent_path();
-  const MissionDraft draft{.dem = fs::absolute(options.map.path, error).lexically_relative(folder).string(),
-                           .resolution_m = options.map.read.resolution_m.value_or(0.0),
-                           .ignore_crs = options.map.read.ignore_crs,
-                           .rover = rover,
-                           .soil = soil,
-                           .start = placeAt(cells, map.grid(), 0.25),
-                           .goal = placeAt(cells, map.grid(), 0.75)};
+  const fs::path folder = fs::weakly_canonical(fs::absolute(options.output), error).parent_path();
+  const MissionDraft draft{
+      .dem = fs::weakly_canonical(options.map.path, error).lexically_relative(folder).string(),
+      .resolution_m = options.map.read.resolution_m.value_or(0.0),
+      .ignore_crs = options.map.read.ignore_crs,
+      .rover = rover,
+      .soil = soil,
+      .start = placeAt(cells, map.grid(), 0.25),
+      .goal = placeAt(cells, map.grid(), 0.75),
+      .output = fs::path(options.output).stem().string() + "_route.geojson"};
   writeFile(options.output, missionText(draft));
   if (context.json)
     printJson({{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}});

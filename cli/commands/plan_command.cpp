@@ -13,7 +13,6 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/reach_scene.hpp>
@@ -29,6 +28,7 @@
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/route_writer.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plan/plan_route.hpp>

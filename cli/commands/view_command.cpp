@@ -12,7 +12,6 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_comparison.hpp>
@@ -21,6 +20,7 @@
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -234,16 +235,13 @@ void checkSameSite(const maps::ElevationMap& dem, const costmap::TraversabilityM
       refuse(fmt::format("elevation {:.6g} m against {:.6g} m in cell {}", heights[i], own[i], i));
 }
 
-// Elevation map given in addition to a built map; nothing, with a warning, if the file cannot be read.
+// Elevation map given in addition to a built map; nothing, with a warning, if there is no such file.
 std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std::string& path,
                                          const Context& context) {
   if (isBuiltAlone(options, path)) return std::nullopt;
-  try {
-    return readMap(options.dem, context);
-  } catch (const InputError& e) {
-    context.warn(path + " is not compared with the elevation map: " + e.what());
-    return std::nullopt;
-  }
+  if (std::filesystem::exists(options.dem.path)) return readMap(options.dem, context);
+  context.warn(path + " is not compared with the elevation map: " + options.dem.path + ": no such file");
+  return std::nullopt;
 }
 
 void warnOfRover(const terramech::Rover& rover, const Context& context) {

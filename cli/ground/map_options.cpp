@@ -39,7 +39,11 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
   command.add_option("--nodata", read.nodata, "value of cells without data")->type_name("VALUE");
   command.add_flag("--keep-zeros", read.keep_zeros,
                    "take a region of exactly 0 for ground although the elevation around it is not near 0");
-  command.add_option("--vertical-scale", read.vertical_scale, "metres per unit of elevation")
+  command.add_flag("--keep-holes", read.keep_holes,
+                   "leave single cells without data unknown instead of interpolating them");
+  command
+      .add_option("--vertical-scale", read.vertical_scale,
+                  "factor on the heights; metres per unit where the file states an unknown one")
       ->type_name("FACTOR");
   command.add_flag("--ignore-crs", read.ignore_crs,
                    "ignore a wrong CRS and read as local metres (with --resolution)");
@@ -64,7 +68,8 @@ void refuseReadOptions(const MapOptions& options) {
       {"--window", !options.window.empty()},
       {"--nodata", read.nodata.has_value()},
       {"--keep-zeros", read.keep_zeros},
-      {"--vertical-scale", read.vertical_scale != maps::ReadOptions{}.vertical_scale},
+      {"--keep-holes", read.keep_holes},
+      {"--vertical-scale", read.vertical_scale.has_value()},
       {"--ignore-crs", read.ignore_crs},
       {"--max-cells", read.max_cells != maps::ReadOptions{}.max_cells}};
   for (const auto& [name, present] : given)

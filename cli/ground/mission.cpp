@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <talus/cli/app/number_check.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
@@ -16,17 +16,23 @@ namespace {
 using terramech::FileKey;
 using terramech::YamlFields;
 
-// Resolves a path relative to the folder of the mission; library names stay unchanged.
-std::string resolved(const std::string& path, const std::filesystem::path& folder) {
-  const std::filesystem::path beside = folder / path;
-  const std::string found = !path.empty() && std::filesystem::exists(beside) ? beside.string() : path;
-  compareChecksum(found);
-  return found;
+// Path of a file that a mission names: relative to its folder.
+std::string beside(const std::string& path, const std::filesystem::path& folder) {
+  return path.empty() ? path : (folder / path).string();
 }
 
-void take(std::string& option, const YamlFields& fields, const std::string& name) {
+// A rover or soil: a YAML file, or else a name of the library.
+std::string fileOrName(const std::string& word, const std::filesystem::path& folder) {
+  const bool names_file = word.ends_with(".yaml") || word.ends_with(".yml") || word.find('/') != word.npos;
+  return names_file ? beside(word, folder) : word;
+}
+
+// Takes a value of the mission, resolved by the mission's folder, unless the call states one.
+void take(std::string& option, const YamlFields& fields, const std::string& name,
+          const std::filesystem::path& folder,
+          std::string (*resolved)(const std::string&, const std::filesystem::path&) = beside) {
   const std::string given = fields.word(name, "");
-  if (option.empty()) option = given;
+  if (option.empty()) option = resolved(given, folder);
 }
 
 // A number checked with the validator of the corresponding option.
@@ -38,38 +44,41 @@ double ranged(const YamlFields& fields, const std::string& name, const CLI::Vali
   return value;
 }
 
-// A place as "x,y", from a text or a list of two numbers.
-std::string place(const YamlFields& fields, const std::string& name) {
+// A place as "x,y", from a text, a vector file or a list of two numbers.
+std::string place(const YamlFields& fields, const std::string& name, const std::filesystem::path& folder) {
   if (!fields.has(name)) return "";
   try {
     const auto numbers = fields.numbers(name);
     if (numbers.size() == 2) return fmt::format("{},{}", numbers[0], numbers[1]);
   } catch (const InputError&) {
   }
-  return fields.word(name);
+  const std::string word = fields.word(name);
+  return maps::isNamedAsVector(word) ? beside(word, folder) : word;
 }
 
 // One place or a list of places.
-std::vector<std::string> places(const YamlFields& fields, const std::string& name) {
+std::vector<std::string> places(const YamlFields& fields, const std::string& name,
+                                const std::filesystem::path& folder) {
   try {
-    if (fields.numbers(name).size() == 2) return {place(fields, name)};
+    if (fields.numbers(name).size() == 2) return {place(fields, name, folder)};
   } catch (const InputError&) {
   }
-  return fields.texts(name);
+  std::vector<std::string> words = fields.texts(name);
+  for (std::string& word : words)
+    if (maps::isNamedAsVector(word)) word = beside(word, folder);
+  return words;
 }
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
   maps.only(namesOf(missionMapKeys()));
-  ground.dem.path = resolved(maps.word("dem", ""), folder);
-  take(ground.map_file, maps, "map");
-  take(ground.layers.terrain, maps, "terrain");
-  take(ground.layers.rocks, maps, "rocks");
-  if (maps.has("keep_out")) ground.layers.keep_out.push_back(resolved(maps.word("keep_out"), folder));
+  ground.dem.path = beside(maps.word("dem", ""), folder);
+  take(ground.map_file, maps, "map", folder);
+  take(ground.layers.terrain, maps, "terrain", folder);
+  take(ground.layers.rocks, maps, "rocks", folder);
+  if (maps.has("keep_out")) ground.layers.keep_out.push_back(beside(maps.word("keep_out"), folder));
   if (maps.has("resolution_m") && !ground.dem.read.resolution_m)
     ground.dem.read.resolution_m = maps.number("resolution_m");
   if (maps.flag("ignore_crs", false)) ground.dem.read.ignore_crs = true;
-  for (std::string* path : {&ground.map_file, &ground.layers.terrain, &ground.layers.rocks})
-    *path = resolved(*path, folder);
   if (ground.dem.path.empty() && ground.map_file.empty())
     maps.refuse("", "defines no map", "give dem: FILE, or map: FILE.ot");
   if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
@@ -163,27 +172,25 @@ void readMission(PlanOptions& options) {
   const YamlFields fields = YamlFields::file(path.string());
   fields.only(namesOf(missionKeys()));
   readMaps(fields.fields("maps"), options.ground, folder);
-  take(options.ground.rover, fields, "rover");
-  take(options.ground.soil, fields, "soil");
-  take(options.ground.model, fields, "model");
-  take(options.ground.soils, fields, "soils");
-  for (std::string* file :
-       {&options.ground.rover, &options.ground.soil, &options.ground.model, &options.ground.soils})
-    *file = resolved(*file, folder);
+  take(options.ground.rover, fields, "rover", folder, fileOrName);
+  take(options.ground.soil, fields, "soil", folder, fileOrName);
+  take(options.ground.model, fields, "model", folder);
+  take(options.ground.soils, fields, "soils", folder);
   if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), options.ground.policy);
   if (options.planner == "field") options.planner = fields.word("planner", "field");
-  if (options.start.empty()) options.start = place(fields, "start");
-  if (options.goals.empty()) options.goals = places(fields, "goal");
-  if (options.via.empty()) options.via = places(fields, "via");
+  if (options.start.empty()) options.start = place(fields, "start", folder);
+  if (options.goals.empty()) options.goals = places(fields, "goal", folder);
+  if (options.via.empty()) options.via = places(fields, "via", folder);
+  const CLI::Validator heading_range = heading();
   for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
                                      std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
-    if (!*heading && fields.has(key)) *heading = ranged(fields, key, finite());
+    if (!*heading && fields.has(key)) *heading = ranged(fields, key, heading_range);
   if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
   if (options.tolerance_m == 0.0 && fields.has("tolerance_m"))
     options.tolerance_m = ranged(fields, "tolerance_m", notNegative());
   if (options.time_limit_s == 0.0 && fields.has("time_s"))
     options.time_limit_s = ranged(fields, "time_s", positive());
-  take(options.output, fields, "output");
+  take(options.output, fields, "output", folder);
 }
 
 }  // namespace talus::cli

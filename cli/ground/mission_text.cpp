@@ -34,7 +34,7 @@ std::string missionText(const MissionDraft& draft) {
                                                   {"soil", quoted(draft.soil)},
                                                   {"start", quoted(draft.start)},
                                                   {"goal", quoted(draft.goal)},
-                                                  {"output", "route.geojson"}};
+                                                  {"output", quoted(draft.output)}};
   std::string text =
       "# talus plan FILE.yaml; paths are relative to this file. Take the # off what you need.\nmaps:\n";
   text += keysText(missionMapKeys(), maps, "  ");

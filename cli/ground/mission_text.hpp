@@ -11,6 +11,7 @@ struct MissionDraft {
   bool ignore_crs = false;
   std::string rover{"mer"}, soil{"mars_blocky"};
   std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]
+  std::string output{"route.geojson"};            ///< relative to the mission
 };
 
 /// Returns the text of a mission file with all keys that the reader accepts. Keys without a value in the

@@ -9,16 +9,14 @@
 #include <talus/terramech/contact/turning_radius.hpp>
 
 namespace talus::cli {
-namespace {
 
-// Declares a heading option in radians and a second option in degrees.
-void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad,
+                const std::string& text) {
   auto* radians = command
                       .add_option_function<double>(
-                          name, [&heading_rad](double value) { heading_rad = value; },
-                          "heading of the rover there, counter-clockwise from east (default: any)")
+                          name, [&heading_rad](double value) { heading_rad = value; }, text)
                       ->type_name("RAD")
-                      ->check(finite());
+                      ->check(heading());
   command
       .add_option_function<double>(
           name + "-deg", [&heading_rad](double value) { heading_rad = value * kDegree; },
@@ -28,11 +26,10 @@ void addHeading(CLI::App& command, const std::string& name, std::optional<double
       ->excludes(radians);
 }
 
-}  // namespace
-
 void addMotionOptions(CLI::App& command, MotionOptions& drive) {
-  addHeading(command, "--start-heading", drive.start_heading_rad);
-  addHeading(command, "--goal-heading", drive.goal_heading_rad);
+  constexpr const char* kText = "heading of the rover there, counter-clockwise from east (default: any)";
+  addHeading(command, "--start-heading", drive.start_heading_rad, kText);
+  addHeading(command, "--goal-heading", drive.goal_heading_rad, kText);
   command
       .add_option_function<double>(
           "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },

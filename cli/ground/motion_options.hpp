@@ -19,6 +19,10 @@ namespace talus::cli {
 /// --no-reverse and --chassis.
 void addMotionOptions(CLI::App& command, MotionOptions& drive);
 
+/// Declares a heading option `name` in radians and NAME-deg in degrees.
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad,
+                const std::string& text);
+
 /// Declares the option --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
 

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/app/sha256.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/route/provenance.hpp>
+#include <talus/common/input_file.hpp>
 
 namespace talus::cli {
 namespace {

@@ -11,6 +11,7 @@
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/table_columns.hpp>
@@ -78,6 +79,7 @@ terramech::TableFile tableFile(const std::string& path, const TableOptions& opti
   std::vector<std::string> known = terramech::namesOf(terramech::telemetryKeys());
   known.insert(known.end(), also.begin(), also.end());
   if (!options.columns_file.empty()) {
+    checkInput(options.columns_file);
     std::ifstream file(options.columns_file);
     if (!file) throw InputError({options.columns_file, "cannot be opened", "check the path"});
     std::size_t number = 0;

@@ -7,6 +7,7 @@
 #include <sqlite3.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
 
 namespace talus::costmap {
@@ -31,6 +32,7 @@ void requireJournalOrNothing(const std::string& path) {
     throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
   const std::uintmax_t size = fs::file_size(path, error);
   if (error || size == 0) return;
+  checkInput(path);
   constexpr std::string_view kStart("SQLite format 3\0", 16);
   std::array<char, kStart.size()> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());

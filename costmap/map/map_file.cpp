@@ -15,6 +15,7 @@
 
 #include <talus/common/checksum.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/output_file.hpp>
 #include <talus/costmap/map/map_file.hpp>
@@ -328,7 +329,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
         {reading.name, "damaged: it holds no elevation", "write the map again with talus costmap"});
   try {
     for (const std::string& bytes : costs) layers.costs.push_back(costLayerOf(bytes, text.grid));
-    layers.floors = Floors(std::move(floors), text.grid.size());
+    layers.floors = Floors(floors, text.grid.size());
     if (text.coordinate_system)
       layers.elevation.georeference = reading.georeference
                                           ? reading.georeference(*text.coordinate_system, text.grid)
@@ -359,6 +360,7 @@ TraversabilityMap readMap(const MapReading& reading, const ProgressMonitor& watc
   std::error_code error;
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     throw InputError({path, "is a folder, a device, a FIFO or a socket", "give a file"});
+  checkInput(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
   return readMap(stream, reading, watch);

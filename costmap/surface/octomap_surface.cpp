@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
 #include <talus/costmap/surface/octree_keys.hpp>
@@ -221,8 +222,8 @@ maps::ElevationMap octomapGround(std::istream& stream, const std::string& name, 
   const maps::Grid grid{.width = static_cast<int>(box.x1 - box.x0),
                         .height = static_cast<int>(box.y1 - box.y0),
                         .resolution_m = header->resolution_m,
-                        .south_west = {(box.x0 - kCentreKey) * header->resolution_m,
-                                       (box.y0 - kCentreKey) * header->resolution_m}};
+                        .south_west = {(static_cast<double>(box.x0) - kCentreKey) * header->resolution_m,
+                                       (static_cast<double>(box.y0) - kCentreKey) * header->resolution_m}};
   if (grid.size() > kMostColumns)
     throw InputError(
         {name, std::to_string(grid.size()) + " columns, more than 4e8", "crop it or lower its resolution"});
@@ -242,6 +243,7 @@ maps::ElevationMap octomapGround(std::istream& stream, const std::string& name, 
 }
 
 maps::ElevationMap octomapGround(const std::string& path, double ceiling_m) {
+  checkInput(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError({path, "cannot be opened", "check the path"});
   return octomapGround(stream, path, ceiling_m);

@@ -3,18 +3,24 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include <cpl_minixml.h>
+#include <cpl_string.h>
 #include <gdal_priv.h>
+#include <nlohmann/json.hpp>
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
+#include <talus/maps/raster/gdal_handle.hpp>
 
 namespace talus::maps {
 namespace {
@@ -31,21 +37,135 @@ std::uintmax_t cellsOf(GDALDataset& dataset) {
          static_cast<std::uintmax_t>(dataset.GetRasterYSize());
 }
 
-void refuseFewerBytes(const std::string& path, std::uintmax_t needed) {
+std::uintmax_t wholeNumber(const std::string& text) {
+  std::uintmax_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+std::uintmax_t sizeOf(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size < needed)
+  return error ? 0 : size;
+}
+
+[[noreturn]] void refuseSize(const std::string& path, std::uintmax_t size, std::uintmax_t stated) {
+  throw InputError({path,
+                    "holds " + std::to_string(size) + " bytes, its label states " + std::to_string(stated) +
+                        ": bytes were inserted or lost",
+                    "fetch file and label again"});
+}
+
+void refuseFewerBytes(const std::string& path, std::uintmax_t needed) {
+  if (const std::uintmax_t size = sizeOf(path); size < needed)
     throw InputError({path,
                       "is cut short: " + std::to_string(size) + " of " + std::to_string(needed) + " bytes",
                       "fetch it again"});
 }
 
-// Size [bytes] that the header of an ENVI file states. GDAL reads missing bytes at the end of the file as
-// zeros.
-std::uintmax_t bytesOfEnvi(GDALDataset& dataset) {
-  const auto bytes =
-      static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType()));
-  return bytes * cellsOf(dataset) * static_cast<std::uintmax_t>(dataset.GetRasterCount());
+// End [bytes] of the last object (label, history, table) of an ISIS cube by its StartByte and Bytes.
+std::uintmax_t lastByte(const nlohmann::json& label) {
+  std::uintmax_t end = 0;
+  if (label.is_object() && label.contains("StartByte") && label.contains("Bytes") &&
+      label["StartByte"].is_number_unsigned() && label["Bytes"].is_number_unsigned())
+    end = label["StartByte"].get<std::uintmax_t>() - 1 + label["Bytes"].get<std::uintmax_t>();
+  if (label.is_structured())
+    for (const auto& part : label) end = std::max(end, lastByte(part));
+  return end;
+}
+
+nlohmann::json labelOf(GDALDataset& dataset, const char* domain) {
+  char** text = dataset.GetMetadata(domain);
+  return text == nullptr ? nlohmann::json() : nlohmann::json::parse(*text, nullptr, false);
+}
+
+// File size [bytes] that the label of a raster of plain numbers states, beside the size of its pixels: of
+// records (PDS3, VICAR), of the file (PDS4) or of further objects (ISIS). 0: none.
+std::uintmax_t statedBytes(GDALDataset& dataset, const std::string& path, std::uintmax_t size) {
+  const std::string_view driver = driverOf(dataset);
+  if (driver == "PDS")
+    return wholeNumber(pds3Keyword(path, "RECORD_BYTES")) * wholeNumber(pds3Keyword(path, "FILE_RECORDS"));
+  if (driver == "ISIS3") return lastByte(labelOf(dataset, "json:ISIS3"));
+  if (driver == "VICAR") {
+    const auto record = labelOf(dataset, "json:VICAR").value("RECSIZE", std::uintmax_t{0});
+    return record == 0 ? 0 : size / record * record;
+  }
+  if (driver != "PDS4") return 0;
+  char** xml = dataset.GetMetadata("xml:PDS4");
+  const CPLXMLTreeCloser tree(CPLParseXMLString(xml == nullptr ? "" : *xml));
+  CPLStripXMLNamespace(tree.get(), nullptr, TRUE);
+  const CPLXMLNode* file = CPLSearchXMLNode(tree.get(), "=File");
+  return file == nullptr ? 0 : wholeNumber(CPLGetXMLValue(file, "file_size", "0"));
+}
+
+// Rejects a raster of plain numbers whose file is shorter or longer than its label states: GDAL reads missing
+// bytes as zeros, and a byte that was inserted moves all pixels behind it into other numbers.
+void refuseOtherSize(GDALDataset& dataset, const std::string& path) {
+  GDALDataset::RawBinaryLayout raw;
+  if (driverOf(dataset) == "GTiff" || !dataset.GetRawBinaryLayout(raw)) return;
+  if (raw.osRawFilename.empty()) raw.osRawFilename = path;
+  // A negative offset runs towards the beginning of the file.
+  const auto steps = [](int count, GIntBig bytes) {
+    return static_cast<std::uintmax_t>(std::max(count - 1, 0)) *
+           static_cast<std::uintmax_t>(std::max<GIntBig>(bytes, 0));
+  };
+  const std::uintmax_t end =
+      std::uintmax_t{raw.nImageOffset} + steps(dataset.GetRasterCount(), raw.nBandOffset) +
+      steps(dataset.GetRasterYSize(), raw.nLineOffset) + steps(dataset.GetRasterXSize(), raw.nPixelOffset) +
+      static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(raw.eDataType));
+  refuseFewerBytes(raw.osRawFilename, end);
+  const std::uintmax_t size = sizeOf(raw.osRawFilename), stated = statedBytes(dataset, path, size);
+  // Lines may be longer than their pixels, also the last one.
+  const std::uintmax_t whole_lines =
+      std::uintmax_t{raw.nImageOffset} + steps(dataset.GetRasterYSize() + 1, raw.nLineOffset);
+  if (size != end && size != stated && size != whole_lines)
+    refuseSize(raw.osRawFilename, size, std::max(end, stated));
+}
+
+// Rejects pixels that GDAL reads as other numbers or in another order than the label states.
+void refuseMisread(GDALDataset& dataset, const std::string& path) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError({path, what + ", which GDAL reads as other numbers", "convert it to a GeoTIFF"});
+  };
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  const char* signed_byte = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  if (signed_byte != nullptr && signed_byte == std::string_view("SIGNEDBYTE")) refuse("holds signed bytes");
+  if (driverOf(dataset) == "PDS") {
+    const std::string type = pds3Keyword(path, "SAMPLE_TYPE", "IMAGE");
+    const bool integers = type.find("INTEGER") != type.npos;
+    if (integers && (GDALDataTypeIsFloating(band.GetRasterDataType()) != FALSE ||
+                     (band.GetRasterDataType() == GDT_Byte && type.find("UNSIGNED") == type.npos)))
+      refuse("holds pixels of SAMPLE_TYPE " + type + " and SAMPLE_BITS " +
+             pds3Keyword(path, "SAMPLE_BITS", "IMAGE"));
+    if (wholeNumber(pds3Keyword(path, "LINE_SUFFIX_BYTES", "IMAGE")) > 0) refuse("has LINE_SUFFIX_BYTES");
+  }
+  if (driverOf(dataset) == "PDS4") {
+    char** xml = dataset.GetMetadata("xml:PDS4");
+    const std::string_view label = xml == nullptr ? "" : *xml;
+    for (const char* unread : {"SignedByte", "Right to Left"})
+      if (label.find(unread) != label.npos) refuse(std::string("states ") + unread);
+  }
+}
+
+// Rejects a GeoTIFF with an image that GDAL uses neither as the raster nor as its overview or mask: one bit of
+// its header separates a mask from the raster.
+void refuseUnusedImages(GDALDataset& dataset, const std::string& path) {
+  if (driverOf(dataset) != "GTiff") return;
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  const std::vector<std::string> files = listedFiles(dataset);
+  const auto beside = [&](const char* ending) { return std::ranges::count(files, path + ending) > 0; };
+  int used = 1 + (beside(".ovr") ? 0 : band.GetOverviewCount());
+  const bool masked = (band.GetMaskFlags() & GMF_PER_DATASET) != 0;
+  if (beside(".msk") && !masked)
+    throw InputError({path + ".msk", "lacks INTERNAL_MASK_FLAGS, by which GDAL knows a mask",
+                      "write it again with gdal_translate -mask, or remove it"});
+  if (masked && !beside(".msk")) used += 1 + band.GetMaskBand()->GetOverviewCount();
+  const GdalErrors quiet;
+  constexpr const char* kTiff[] = {"GTiff", nullptr};
+  const std::string next = "GTIFF_DIR:" + std::to_string(used + 1) + ":" + path;
+  if (const Dataset more{GDALDataset::Open(next.c_str(), GDAL_OF_RASTER, kTiff)})
+    throw InputError({path, "holds a further image, neither raster, overview nor mask",
+                      "fetch it again; if it is meant to, take its image out with gdal_translate " + next});
 }
 
 // Parser of a netCDF-3 header ("The NetCDF Classic Format Specification", Unidata). A read beyond the end of
@@ -194,19 +314,23 @@ void refuseForeignBytes(const std::string& path) {
 // Calls `each` for every source raster of a VRT.
 template <typename Each>
 void forSources(GDALDataset& dataset, const std::string& path, Each each) {
-  char** files = dataset.GetFileList();
-  for (char** file = files; file != nullptr && *file != nullptr; ++file)
-    if (const GDALDatasetUniquePtr source{std::string_view(*file) == path
-                                              ? nullptr
-                                              : GDALDataset::Open(*file, GDAL_OF_RASTER | GDAL_OF_READONLY)})
-      each(*source, *file);
-  CSLDestroy(files);
+  for (const std::string& file : listedFiles(dataset))
+    if (const Dataset source{
+            file == path ? nullptr : GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)})
+      each(*source, file);
 }
 
+// True if a block of a GeoTIFF has no place in the file, and no value stands for no data.
 bool lost(GDALRasterBand& band) {
   if (int stated = 0; band.GetNoDataValue(&stated), stated != 0) return false;
-  return (band.GetDataCoverageStatus(0, 0, band.GetXSize(), band.GetYSize(), 0, nullptr) &
-          GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
+  int width = 0, height = 0;
+  band.GetBlockSize(&width, &height);
+  for (int row = 0; row * height < band.GetYSize(); ++row)
+    for (int column = 0; column * width < band.GetXSize(); ++column)
+      if (const std::string block = "BLOCK_OFFSET_" + std::to_string(column) + "_" + std::to_string(row);
+          band.GetMetadataItem(block.c_str(), "TIFF") == nullptr)
+        return true;
+  return false;
 }
 
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
@@ -243,24 +367,33 @@ class Words {
     }
     if (!value_of_key_) header_ = false;
     value_of_key_ = false;
+    values_ += header_ ? 0 : 1;
     if (isNumber(word)) return;
     throw InputError({path_ + ":" + std::to_string(line),
                       "'" + std::string(word.substr(0, 40)) + "' is not a number",
                       "write the NODATA_value, or nan, where nothing is known"});
   }
 
+  std::uintmax_t values() const { return values_; }
+
  private:
   const std::string& path_;
   bool header_ = true, value_of_key_ = false;
+  std::uintmax_t values_ = 0;
 };
 
 }  // namespace
 
-void refuseCutShort(GDALDataset& dataset, const std::string& path) {
+void refuseDamaged(GDALDataset& dataset, const std::string& path) {
   const std::string_view driver = driverOf(dataset);
-  if (driver == "ENVI") refuseFewerBytes(path, bytesOfEnvi(dataset));
+  refuseOtherSize(dataset, path);
+  refuseMisread(dataset, path);
+  refuseUnusedImages(dataset, path);
   if (driver == "netCDF")
-    if (const auto end = ClassicHeader(path).end()) refuseFewerBytes(path, *end);
+    if (const auto end = ClassicHeader(path).end()) {
+      refuseFewerBytes(path, *end);
+      if (sizeOf(path) > (*end + 3) / 4 * 4) refuseSize(path, sizeOf(path), *end);
+    }
   // Each value takes at least two bytes: a digit and a separator.
   if (driver == "AAIGrid" || driver == "GSAG") refuseFewerBytes(path, 2 * cellsOf(dataset));
   if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") {
@@ -268,7 +401,7 @@ void refuseCutShort(GDALDataset& dataset, const std::string& path) {
     refuseOpenEnd(path);
   }
   if (driver == "VRT")
-    forSources(dataset, path, [](GDALDataset& source, const std::string& of) { refuseCutShort(source, of); });
+    forSources(dataset, path, [](GDALDataset& source, const std::string& of) { refuseDamaged(source, of); });
 }
 
 void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path) {
@@ -276,16 +409,31 @@ void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path) {
     return forSources(dataset, path, [](GDALDataset& source, const std::string& of) {
       for (int own = 1; own <= source.GetRasterCount(); ++own) refuseLostBlocks(source, own, of);
     });
-  GDALRasterBand& of = *dataset.GetRasterBand(band);
-  bool any = lost(of);
-  for (int i = 0; i < of.GetOverviewCount(); ++i) any = any || lost(*of.GetOverview(i));
-  if (any)
+  if (driverOf(dataset) == "GTiff" && lost(*dataset.GetRasterBand(band)))
     throw InputError(
         {path, "is cut short or half written: blocks are missing, and no value stands for no data",
          "write it again, or state one with gdal_edit.py -a_nodata if they are meant to be empty"});
 }
 
-void refuseWordsInGrid(const std::string& path) {
+std::string pds3Keyword(const std::string& path, const std::string& keyword, const std::string& object) {
+  // GDAL searches a label of PDS3 in as many bytes at most.
+  constexpr std::size_t kLabel = std::size_t{64} << 10U;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kLabel, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(kLabel));
+  std::istringstream lines(text.substr(0, text.find('\0')));
+  bool inside = object.empty();
+  for (std::string line, key, equals, value; std::getline(lines, line) && key != "END";) {
+    std::istringstream words(line);
+    if (!(words >> key >> equals >> value) || equals != "=") continue;
+    std::erase(value, '"');
+    if (inside && key == keyword) return value;
+    if (value == object && (key == "OBJECT" || key == "END_OBJECT")) inside = key == "OBJECT";
+  }
+  return "";
+}
+
+std::uintmax_t valuesOfGrid(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string piece(kPiece, '\0'), word;
   Words words(path);
@@ -301,6 +449,7 @@ void refuseWordsInGrid(const std::string& path) {
       line += c == '\n' ? 1U : 0U;
     }
   if (!word.empty()) words.take(word, line);
+  return words.values();
 }
 
 }  // namespace talus::maps

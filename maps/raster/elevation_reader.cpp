@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,16 +12,18 @@
 #include <system_error>
 #include <utility>
 
-#include <cpl_string.h>
+#include <gdal_alg.h>
 #include <gdal_priv.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/elevation_values.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
 #include <talus/maps/raster/raster_band.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
+#include <talus/maps/raster/warp.hpp>
 
 namespace talus::maps {
 namespace {
@@ -33,7 +36,8 @@ void check(const ReadOptions& options) {
           "--resolution", "must be a number of metres above 0");
   require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6),
           "--resolution", "must be 0.001 to 1000000 metres");
-  require(std::abs(options.vertical_scale) >= 1e-6 && std::abs(options.vertical_scale) <= 1e6,
+  require(!options.vertical_scale ||
+              (std::abs(*options.vertical_scale) >= 1e-6 && std::abs(*options.vertical_scale) <= 1e6),
           "--vertical-scale", "must be 1e-6 to 1e6, or that below 0");
 }
 
@@ -94,21 +98,13 @@ void refuseSize(const Grid& grid, const ReadOptions& options, const std::string&
   requireMemory(8.0 * static_cast<double>(grid.size()), path);
 }
 
-double radius(GDALDataset& file) {
-  const OGRSpatialReference* crs = file.GetSpatialRef();
-  return crs == nullptr ? 0.0 : crs->GetSemiMajor();
-}
-
-// Pixels to read from a file, their grid and the conversion of their values to heights.
+// Raster of a file, the cells to read and the grid of the result.
 struct Selection {
+  Dataset file;
+  int band = 1;
   FramedRaster from;
-  HeightConversion code;
   CellBox box;
-  Grid grid;            // grid of the result
-  GDALDataset* pixels;  // raster of the file as opened; owned through `from`
-  int band;             // band of `pixels`
-
-  bool resampled() const { return from.raster.get() != pixels; }
+  Grid grid;
 };
 
 int overviewCells(int cells, int overview) {
@@ -124,134 +120,305 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
                                .words = {"elev", "dem", "dtm", "height", "topo", "altitude"},
                                .others = {"slope", "aspect", "shade", "error", "count"}},
                               notes);
-  HeightConversion code = heightCode(*file->GetRasterBand(band), radius(*file), notes);
-  if (options.nodata) code.nodata = options.nodata;
-  code.scale *= options.vertical_scale;
-  code.offset_m *= options.vertical_scale;
-  GDALDataset* const pixels = file.get();
-  FramedRaster from = frame(std::move(file), band, options, path, notes);
+  FramedRaster from = frame(*file, options, path, notes);
   const CellBox whole{{0, 0}, {from.grid.width - 1, from.grid.height - 1}};
   const CellBox box = options.window ? cellsOf(*options.window, from, path) : whole;
   Grid grid = part(from.grid, box);
   grid.width = overviewCells(grid.width, options.overview);
   grid.height = overviewCells(grid.height, options.overview);
   grid.resolution_m *= options.overview;
-  return {std::move(from), code, box, grid, pixels, band};
+  return {std::move(file), band, std::move(from), box, grid};
 }
 
 // In larger files, only the vicinity of the pixels to read is searched for lost data.
 constexpr double kSearchedWhole = 1e8;  // pixels
 
-PixelBox wholeOf(GDALDataset& pixels) {
-  return {0, 0, pixels.GetRasterXSize(), pixels.GetRasterYSize()};
+// Box extended by width and height on each side, within the file.
+PixelBox around(const PixelBox& box, int width, int height, GDALDataset& file) {
+  const int column = std::max(box.column - width, 0), row = std::max(box.row - height, 0);
+  const auto end = [](int first, int count, int margin, int all) {
+    return static_cast<int>(std::min(std::int64_t{all}, std::int64_t{first} + count + margin));
+  };
+  return {column, row, end(box.column, box.width, width, file.GetRasterXSize()) - column,
+          end(box.row, box.height, height, file.GetRasterYSize()) - row};
 }
 
-bool isSearchedWhole(GDALDataset& pixels) {
-  return static_cast<double>(pixels.GetRasterXSize()) * pixels.GetRasterYSize() <= kSearchedWhole;
-}
-
-// Pixels searched for lost data: the whole file, or the box to read, extended on each side by its own size.
-PixelBox searched(const Selection& chosen, const PixelBox& read) {
-  const PixelBox whole = wholeOf(*chosen.pixels);
-  if (isSearchedWhole(*chosen.pixels)) return whole;
-  const int column = std::max(read.column - read.width, 0), row = std::max(read.row - read.height, 0);
-  return {column, row,
-          static_cast<int>(
-              std::min(std::int64_t{whole.width}, std::int64_t{read.column} + 2 * std::int64_t{read.width})) -
-              column,
-          static_cast<int>(
-              std::min(std::int64_t{whole.height}, std::int64_t{read.row} + 2 * std::int64_t{read.height})) -
-              row};
+PixelBox wholeOf(GDALDataset& file) {
+  return {0, 0, file.GetRasterXSize(), file.GetRasterYSize()};
 }
 
 // Names, sizes and modification times of all files of a raster. All files are listed because the data may
 // change while the label does not.
-std::string stateOf(GDALDataset& pixels) {
+std::string stateOf(GDALDataset& raster) {
   std::ostringstream state;
-  char** files = pixels.GetFileList();
-  for (char** file = files; file != nullptr && *file != nullptr; ++file) {
+  for (const std::string& file : listedFiles(raster)) {
     std::error_code error;
-    state << *file << ' ' << std::filesystem::file_size(*file, error) << ' '
-          << std::filesystem::last_write_time(*file, error).time_since_epoch().count() << '\n';
+    state << file << ' ' << std::filesystem::file_size(file, error) << ' '
+          << std::filesystem::last_write_time(file, error).time_since_epoch().count() << '\n';
   }
-  CSLDestroy(files);
   return state.str();
 }
 
-// Lost cells in pixels of the file. Caches the last result, because a map that is read in windows opens the
-// file for each window.
-std::shared_ptr<const LostCells> lostOf(const Selection& chosen, const PixelBox& box,
-                                        const std::string& path) {
-  struct Known {
-    std::string files;
-    int band = 0;
-    PixelBox box;
-    std::optional<double> nodata;
-    bool operator==(const Known&) const = default;
-  };
-  static std::mutex mutex;
-  static Known last;
-  static std::shared_ptr<const LostCells> lost;
-  const Known asked{stateOf(*chosen.pixels), chosen.band, box, chosen.code.nodata};
-  const std::lock_guard lock(mutex);
-  if (!lost || asked.files.empty() || asked != last) {
-    lost = std::make_shared<const LostCells>(
-        lostCells(*chosen.pixels, chosen.band, box, chosen.code.nodata, path));
-    last = asked;
-  }
-  return lost;
-}
+// Reads heights [m] from the cells of a file. All checks of values (no-data marks, lost zeros, plausibility)
+// are made here, before any mean or resampling mixes the cells.
+class HeightReader {
+ public:
+  HeightReader(const Selection& from, const std::string& path, const ReadOptions& options,
+               std::vector<std::string>& notes)
+      : file_(*from.file),
+        band_(from.band),
+        code_(heightCode(file_, band_, path, options, notes)),
+        path_(path),
+        keep_zeros_(options.keep_zeros),
+        asked_nodata_(options.nodata.has_value()),
+        notes_(notes) {}
 
-// Rejects a raster with lost cells before resampling, which would mix lost values with the adjacent terrain.
-void refuseLostToResample(const Selection& chosen, const std::string& path) {
-  if (!isSearchedWhole(*chosen.pixels) || chosen.code.nodata == 0.0) return;
-  const auto lost = lostOf(chosen, wholeOf(*chosen.pixels), path);
-  if (lost->count > 0)
-    throw InputError(
-        {path,
-         std::to_string(lost->count) +
-             " pixels are exactly 0 and what surrounds them does not come down to 0, as where a part "
-             "of the file was lost; they cannot be resampled",
-         "fetch it again, or pass --nodata 0, or --keep-zeros if 0 is their elevation"});
-}
-
-// Reads the pixels of the selection in the row order of the file. An overview cell that the box covers in
-// part only, at its northern or eastern edge, is the mean of the covered pixels.
-std::vector<float> pixelsOf(const Selection& chosen, const ReadOptions& options, const std::string& path,
-                            std::vector<std::string>& notes) {
-  const auto& [from, code, box, grid, pixels, band] = chosen;
-  const int overview = options.overview;
-  const bool may_be_lost = !options.keep_zeros && !chosen.resampled() && code.nodata != 0.0 &&
-                           (overview == 1 || isSearchedWhole(*pixels));
-  std::shared_ptr<const LostCells> lost;
-  std::vector<float> values(grid.size());
-  const auto parts = [overview](int cells) {
-    const int whole = cells / overview * overview;
-    return std::array<std::pair<int, int>, 2>{{{0, whole}, {whole, cells - whole}}};
-  };
-  for (const auto& [row, rows] : parts(box.height()))
-    for (const auto& [column, columns] : parts(box.width())) {
-      if (rows == 0 || columns == 0) continue;
-      const int south = box.first.row + row;
-      const int first_row = from.north_up ? from.grid.height - south - rows : south;
-      const PixelBox from_file{box.first.column + column, first_row, columns, rows};
-      std::vector<float> part = readPixels(*from.raster, from.band, from_file, path, overview);
-      if (may_be_lost && std::ranges::count(part, 0.0F) > 0) {
-        lost = lostOf(chosen, searched(chosen, from_file), path);
-        blank(*lost, from_file, overview, part);
+  /// Means of the known among factor x factor pixels of a box, in file order. Blocks at the last column, and at
+  /// the first row if `from_below`, else at the last row, have fewer pixels.
+  std::vector<float> read(const PixelBox& box, int factor, bool from_below) {
+    if (!asked_nodata_) declareMarks(box, factor);
+    std::vector<float> heights;
+    std::shared_ptr<const LostCells> lost;
+    eachStrip(box, factor, from_below, [&](const PixelBox& strip) {
+      std::vector<float> values = pixels(strip);
+      if (!keep_zeros_ && code_.nodata != 0.0 && std::ranges::count(values, 0.0F) > 0) {
+        if (!lost) lost = lostOf(searched(box));
+        blank(*lost, strip, values);
       }
-      const int width = overviewCells(columns, overview), height = overviewCells(rows, overview);
-      const int to_row = from.north_up ? grid.height - row / overview - height : row / overview;
-      for (int r = 0; r < height; ++r)
-        std::copy_n(part.begin() + std::ptrdiff_t{r} * width, width,
-                    values.begin() + std::ptrdiff_t{to_row + r} * grid.width + column / overview);
+      decodeHeights(values, code_, path_);
+      if (factor == 1 && heights.empty())
+        heights = std::move(values);
+      else
+        appendMeans(values, strip, factor, from_below, heights);
+    });
+    if (lost && lost->count > 0) notes_.push_back(lostNote(*lost, "--keep-zeros"));
+    return heights;
+  }
+
+ private:
+  // Calls `each` for strips of whole blocks from the first row to the last.
+  template <typename Each>
+  static void eachStrip(const PixelBox& box, int factor, bool from_below, Each each) {
+    constexpr int kPixelsAtOnce = 1 << 24;
+    const int usual = factor == 1 ? box.height : std::max(1, kPixelsAtOnce / box.width / factor) * factor;
+    const int first = from_below ? usual - factor + (box.height - 1) % factor + 1 : usual;
+    for (int row = 0, rows = 0; row < box.height; row += rows) {
+      rows = std::min(row == 0 ? first : usual, box.height - row);
+      each(PixelBox{box.column, box.row + row, box.width, rows});
     }
-  if (lost && lost->count > 0) notes.push_back(lostNote(*lost, "--keep-zeros"));
-  return values;
+  }
+
+  // Pixels of a strip; the last strip is kept until it is asked for again.
+  std::vector<float> pixels(const PixelBox& strip) {
+    if (!kept_.empty() && strip == kept_box_) return std::exchange(kept_, {});
+    return readPixels(file_, band_, strip, path_);
+  }
+
+  // Recognises customary no-data values that the file does not declare: those below all other values.
+  void declareMarks(const PixelBox& box, int factor) {
+    float least = std::numeric_limits<float>::infinity();
+    std::array<std::size_t, std::size(kCustomaryMarks)> counts{};
+    eachStrip(box, factor, false, [&](const PixelBox& strip) {
+      kept_ = pixels(strip);
+      kept_box_ = strip;
+      for (const float v : kept_) {
+        if (!(v >= -1e30F)) continue;
+        const auto mark = std::ranges::find(kCustomaryMarks, v);
+        if (mark == std::end(kCustomaryMarks))
+          least = std::min(least, v);
+        else
+          ++counts[static_cast<std::size_t>(mark - std::begin(kCustomaryMarks))];
+      }
+    });
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const double mark = static_cast<double>(kCustomaryMarks[i]);
+      if (counts[i] == 0 || kCustomaryMarks[i] >= least || code_.nodata == mark ||
+          std::ranges::count(code_.marks, mark) > 0)
+        continue;
+      if (code_.nodata)
+        code_.marks.push_back(mark);
+      else
+        code_.nodata = mark;
+      notes_.push_back(std::to_string(counts[i]) + " cells of " + std::to_string(static_cast<long>(mark)) +
+                       " treated as no data although the file does not declare it (--nodata corrects it)");
+    }
+  }
+
+  // Pixels searched for lost data: the whole file, or the box extended on each side by its own size.
+  PixelBox searched(const PixelBox& box) const {
+    const bool whole = static_cast<double>(file_.GetRasterXSize()) * file_.GetRasterYSize() <= kSearchedWhole;
+    return whole ? wholeOf(file_) : around(box, box.width, box.height, file_);
+  }
+
+  // Lost cells in pixels of the file. Caches the last result, because a map that is read in windows opens the
+  // file for each window.
+  std::shared_ptr<const LostCells> lostOf(const PixelBox& box) const {
+    struct Known {
+      std::string files;
+      int band = 0;
+      PixelBox box;
+      std::optional<double> nodata;
+      bool operator==(const Known&) const = default;
+    };
+    static std::mutex mutex;
+    static Known last;
+    static std::shared_ptr<const LostCells> lost;
+    const Known asked{stateOf(file_), band_, box, code_.nodata};
+    const std::lock_guard lock(mutex);
+    if (!lost || asked.files.empty() || asked != last) {
+      lost = std::make_shared<const LostCells>(lostCells(file_, band_, box, code_.nodata, path_));
+      last = asked;
+    }
+    return lost;
+  }
+
+  static void appendMeans(const std::vector<float>& values, const PixelBox& strip, int factor,
+                          bool from_below, std::vector<float>& means) {
+    const int width = overviewCells(strip.width, factor), height = overviewCells(strip.height, factor);
+    const int above = from_below ? height * factor - strip.height : 0;  // rows missing in the first block
+    std::vector<double> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    std::vector<int> counts(sums.size());
+    for (int row = 0; row < strip.height; ++row)
+      for (int column = 0; column < strip.width; ++column) {
+        const float v = values[static_cast<std::size_t>(row) * static_cast<std::size_t>(strip.width) +
+                               static_cast<std::size_t>(column)];
+        const auto block =
+            static_cast<std::size_t>((row + above) / factor) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(column / factor);
+        sums[block] += std::isnan(v) ? 0.0 : static_cast<double>(v);
+        counts[block] += std::isnan(v) ? 0 : 1;
+      }
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      means.push_back(counts[i] == 0 ? kNoValue : static_cast<float>(sums[i] / counts[i]));
+  }
+
+  GDALDataset& file_;
+  int band_;
+  HeightConversion code_;
+  const std::string& path_;
+  bool keep_zeros_, asked_nodata_;
+  std::vector<std::string>& notes_;
+  std::vector<float> kept_;
+  PixelBox kept_box_;
+};
+
+// Pixels of the file that cover cells of a grid in another frame, with a margin for interpolation.
+PixelBox pixelsUnder(const Grid& grid, GDALDataset& file, const Georeference& to, const std::string& path) {
+  const std::string target = "DST_SRS=" + to.system().wkt;
+  const char* const options[] = {target.c_str(), nullptr};
+  const std::unique_ptr<void, decltype(&GDALDestroyTransformer)> transformer(
+      GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file), nullptr, const_cast<char**>(options)),
+      GDALDestroyTransformer);
+  if (!transformer) throw InputError({path, "cannot be brought to metres", "project it with gdalwarp"});
+  constexpr int kPlaces = 33, kMarginCells = 4, kMarginPixels = 16;
+  double west = 1e300, east = -1e300, north = 1e300, south = -1e300;  // columns and rows
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    const auto along = [](int k, int cells) {
+      return (cells + 2.0 * kMarginCells) * k / (kPlaces - 1) - kMarginCells;
+    };
+    double x = grid.south_west.x_m + grid.resolution_m * along(i % kPlaces, grid.width);
+    double y = grid.south_west.y_m + grid.resolution_m * along(i / kPlaces, grid.height), z = 0.0;
+    int reached = 0;
+    GDALGenImgProjTransform(transformer.get(), TRUE, 1, &x, &y, &z, &reached);
+    if (reached == 0 || !std::isfinite(x) || !std::isfinite(y)) return wholeOf(file);
+    west = std::min(west, x), east = std::max(east, x), north = std::min(north, y),
+    south = std::max(south, y);
+  }
+  const PixelBox whole = wholeOf(file);
+  const auto at = [](double pixel, int most) {
+    return static_cast<int>(std::clamp(std::floor(pixel), 0.0, static_cast<double>(most - 1)));
+  };
+  const PixelBox box{at(west, whole.width), at(north, whole.height), 1, 1};
+  return around(
+      {box.column, box.row, at(east, whole.width) - box.column + 1, at(south, whole.height) - box.row + 1},
+      kMarginPixels, kMarginPixels, file);
 }
 
-// Limit of |height|: heights are stored in single precision, whose resolution is 1/64 m at 131072 m.
-constexpr float kFarthest_m = 131072.0F;
+// Heights [m] of pixels of a file as a raster in memory in the frame of the file; NaN without data.
+Dataset heightsInFrame(HeightReader& reader, GDALDataset& file, PixelBox box, int factor,
+                       const std::string& path) {
+  box.width -= box.width > factor ? box.width % factor : 0;
+  box.height -= box.height > factor ? box.height % factor : 0;
+  requireMemory(12.0 * box.width * box.height / factor / factor, path);
+  const int width = overviewCells(box.width, factor), height = overviewCells(box.height, factor);
+  Dataset raster = memoryRaster(width, height);
+  std::array<double, 6> c{};
+  file.GetGeoTransform(c.data());
+  c[0] += box.column * c[1] + box.row * c[2];
+  c[3] += box.column * c[4] + box.row * c[5];
+  for (const std::size_t i : {1U, 2U, 4U, 5U}) c[i] *= factor;
+  raster->SetGeoTransform(c.data());
+  raster->SetSpatialRef(file.GetSpatialRef());
+  std::vector<float> heights = reader.read(box, factor, false);
+  if (raster->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, width, height, heights.data(), width, height,
+                                         GDT_Float32, 0, 0, nullptr) != CE_None)
+    throw InputError({path, "does not fit into memory", "read a part with --window"});
+  return raster;
+}
+
+// Heights of the cells of the result in file order, resampled from the heights of the file.
+std::vector<float> resampled(const Selection& chosen, HeightReader& reader, const ReadOptions& options,
+                             const std::string& path) {
+  const Grid cells = part(chosen.from.grid, chosen.box);
+  GDALDataset& file = *chosen.file;
+  const PixelBox box =
+      options.window ? pixelsUnder(cells, file, *chosen.from.georeference, path) : wholeOf(file);
+  // Files too large for memory are reduced first, by a part of the factor that the result asks for.
+  const Grid& all = chosen.from.grid;
+  const double pixel_m = all.resolution_m * std::sqrt(static_cast<double>(all.size()) /
+                                                      file.GetRasterXSize() / file.GetRasterYSize());
+  int factor = 1;
+  while (static_cast<double>(box.width) * box.height / factor / factor > kSearchedWhole &&
+         cells.resolution_m >= 2.0 * (factor + 1) * pixel_m)
+    ++factor;
+  const Dataset heights = heightsInFrame(reader, file, box, factor, path);
+  const Dataset square = warp(
+      *heights,
+      {.wkt = chosen.from.georeference->system().wkt, .grid = cells, .method = chosen.from.resampling}, path);
+  return readPixels(*square, 1, {0, 0, cells.width, cells.height}, path);
+}
+
+// Heights of the cells of the file, in file order.
+std::vector<float> asStored(const Selection& chosen, HeightReader& reader, const ReadOptions& options) {
+  const auto& [file, band, from, box, grid] = chosen;
+  const int row = from.north_up ? from.grid.height - 1 - box.last.row : box.first.row;
+  return reader.read({box.first.column, row, box.width(), box.height()}, options.overview, from.north_up);
+}
+
+// Interpolates single cells without data between opposite neighbours, where the pairs agree: at a step those
+// across it and those along it differ.
+void fillHoles(Raster<float>& heights, std::vector<std::string>& notes) {
+  constexpr double kAgree = 0.25;  // of the cell's side
+  constexpr std::array<Cell, 4> kWays{Cell{1, 0}, Cell{0, 1}, Cell{1, 1}, Cell{1, -1}};
+  const Grid& grid = heights.grid();
+  std::vector<std::pair<Cell, float>> filled;
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      if (!std::isnan(heights[{column, row}])) continue;
+      const auto at = [&](int right, int up) {
+        const Cell cell{column + right, row + up};
+        return grid.contains(cell) ? heights[cell] : kNoValue;
+      };
+      float low = 0.0F, high = 0.0F, sum = 0.0F;
+      int pairs = 0;
+      for (const Cell way : kWays) {
+        const float mean = 0.5F * (at(way.column, way.row) + at(-way.column, -way.row));
+        if (std::isnan(mean)) continue;
+        low = pairs == 0 ? mean : std::min(low, mean);
+        high = pairs == 0 ? mean : std::max(high, mean);
+        sum += mean;
+        ++pairs;
+      }
+      if (pairs >= 3 && static_cast<double>(high - low) <= kAgree * grid.resolution_m)
+        filled.emplace_back(Cell{column, row}, sum / static_cast<float>(pairs));
+    }
+  for (const auto& [cell, height] : filled) heights[cell] = height;
+  if (!filled.empty())
+    notes.push_back(
+        std::to_string(filled.size()) +
+        " single cells without data interpolated between neighbours that agree (--keep-holes leaves "
+        "them unknown)");
+}
 
 }  // namespace
 
@@ -260,20 +427,14 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   ElevationMap map;
   map.source = path;
   const Selection chosen = select(path, options, map.notes);
-  const auto& [from, code, box, grid, pixels, band] = chosen;
+  const auto& [file, band, from, box, grid] = chosen;
   refuseSize(grid, options, path);
-  if (chosen.resampled() && !options.keep_zeros) refuseLostToResample(chosen, path);
-  std::vector<float> values = pixelsOf(chosen, options, path, map.notes);
-  decodeHeights(values, code, map.notes);
-  const auto farthest =
-      std::find_if(values.begin(), values.end(), [](float z) { return std::abs(z) > kFarthest_m; });
-  if (farthest != values.end())
-    throw InputError({path,
-                      "holds an elevation of " + std::to_string(*farthest) +
-                          " m; beyond 131072 m steps of some centimetres are lost",
-                      "take a datum off, as the body's radius, or name the mark of no data by --nodata"});
+  HeightReader reader(chosen, path, options, map.notes);
+  std::vector<float> values =
+      from.resampling.empty() ? asStored(chosen, reader, options) : resampled(chosen, reader, options, path);
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
   map.georeference = from.georeference;
+  if (!options.keep_holes) fillHoles(map.elevation_m, map.notes);
   if (validFraction(map.elevation_m) == 0.0)
     throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),
                       "check --band, --nodata and --window"});

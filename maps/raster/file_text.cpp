@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/maps/raster/file_text.hpp>
 
 namespace talus::maps {
@@ -25,6 +26,7 @@ void requireReadableFile(const std::string& path) {
     throw InputError({path, std::string("cannot be read: ") + std::strerror(errno), "check its permissions"});
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0)
     throw InputError({path, "is empty", "fetch it again"});
+  checkInput(path);
 }
 
 std::string lower(std::string text) {

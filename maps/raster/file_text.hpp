@@ -7,7 +7,8 @@
 /// Checks of files and text functions that are independent of the file format.
 namespace talus::maps {
 
-/// Checks that a file can be read. @throws InputError unless the path is a readable, non-empty regular file
+/// Checks that a file can be read, and calls checkInput(). @throws InputError unless the path is a readable,
+/// non-empty regular file
 void requireReadableFile(const std::string& path);
 
 /// Returns the text with ASCII letters in lower case.

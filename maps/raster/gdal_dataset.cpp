@@ -2,6 +2,7 @@
 #include <iterator>
 #include <mutex>
 #include <new>
+#include <string_view>
 #include <utility>
 
 #include <cpl_vsi.h>
@@ -12,7 +13,7 @@
 #include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/referenced_files.hpp>
+#include <talus/maps/raster/source_files.hpp>
 
 namespace talus::maps {
 namespace {
@@ -32,19 +33,18 @@ bool holdsName(const char* const* drivers, std::string_view name) {
   return false;
 }
 
-// Rejects overviews in another folder: the metadata of a GeoTIFF may name overview files, which GDAL opens
-// when the overviews are requested.
-void refuseForeignOverviews(GDALDataset& dataset, const std::string& path) {
-  const char* name = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
-  if (name != nullptr && std::string_view(name).find_first_of("/\\") != std::string_view::npos)
-    throw InputError({path, "has its overviews in another folder", "make them again with gdaladdo"});
-}
-
 // Reopens an ASCII grid as Float64. By default, GDAL infers an integer type from the first values and reads
 // "inf" and "nan" as 0.
 Dataset withFractions(Dataset file, const std::string& path) {
   if (std::string_view(file->GetDriver()->GetDescription()) != "AAIGrid") return file;
-  refuseWordsInGrid(path);
+  const std::uintmax_t values = valuesOfGrid(path),
+                       cells = static_cast<std::uintmax_t>(file->GetRasterXSize()) *
+                               static_cast<std::uintmax_t>(file->GetRasterYSize());
+  if (values != cells)
+    throw InputError({path,
+                      "holds " + std::to_string(values) + " values, its header states " +
+                          std::to_string(cells) + " cells: values were inserted or lost",
+                      "fetch it again"});
   constexpr const char* kText[] = {"AAIGrid", nullptr};
   constexpr const char* kOptions[] = {"DATATYPE=Float64", nullptr};
   Dataset again(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kText, kOptions));
@@ -91,8 +91,16 @@ std::vector<std::string> vectorFormats() {
   return {std::begin(kVectorDrivers), std::end(kVectorDrivers) - 1};
 }
 
-void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
-  if (dataset != nullptr) dataset->ReleaseRef();
+std::vector<std::string> filesOpenedWith(const std::string& path) {
+  registerDrivers();
+  const GdalErrors quiet;
+  std::vector<std::string> files;
+  if (const Dataset file{GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY)})
+    files = listedFiles(*file);
+  std::erase(files, path);
+  for (const std::string& one : std::vector<std::string>(files)) files.push_back(one + ".sha256");
+  files.push_back(path + ".sha256");
+  return files;
 }
 
 void limitPixelCache(std::int64_t bytes) {
@@ -102,32 +110,43 @@ void limitPixelCache(std::int64_t bytes) {
 Dataset openRaster(const std::string& path, bool allow_vrt) {
   registerDrivers();
   requireReadableFile(path);
-  refuseForeignReferences(path, allow_vrt);
+  requireRegularNeighbours(path);
   const GdalErrors errors;
   constexpr const char* kVirtual[] = {"VRT", nullptr};
   constexpr unsigned kHow = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   Dataset dataset(GDALDataset::Open(path.c_str(), kHow, kDrivers));
-  if (!dataset && allow_vrt) dataset.reset(GDALDataset::Open(path.c_str(), kHow, kVirtual));
+  if (!dataset && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, kVirtual, nullptr) != nullptr) {
+    if (!allow_vrt)
+      throw InputError(
+          {path, "is a virtual raster, which names other files", "pass --allow-vrt if you trust it"});
+    dataset.reset(GDALDataset::Open(path.c_str(), kHow, kVirtual));
+  }
   if (!dataset)
     throw InputError({path, "GDAL opens no raster of the allowed formats: " + errors.last(),
                       "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
-  refuseForeignOverviews(*dataset, path);
-  refuseCutShort(*dataset, path);
+  // GDAL reads the CRS of a TIFF later: what it warns of on opening is the structure. Of other formats it may
+  // be a convention.
+  if (errors.anyWarning() && GDALGetDriverShortName(dataset->GetDriver()) == std::string_view("GTiff"))
+    throw InputError({path, "GDAL warns of its structure: " + errors.last(),
+                      "fetch it again, or write it again with gdal_translate"});
+  sourceFiles(*dataset, path);
+  refuseDamaged(*dataset, path);
   return withFractions(std::move(dataset), path);
 }
 
 Dataset openVector(const std::string& path) {
   registerDrivers();
   requireReadableFile(path);
-  refuseForeignReferences(path, false);
+  requireRegularNeighbours(path);
   const GdalErrors errors;
   constexpr unsigned kHow = GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   Dataset dataset(GDALDataset::Open(path.c_str(), kHow, kVectorDrivers));
   if (!dataset)
     throw InputError({path, "GDAL opens no vector file of the allowed formats: " + errors.last(),
                       "give a GeoPackage, GeoJSON, GPX, KML or shapefile"});
+  sourceFiles(*dataset, path);
   return dataset;
 }
 

@@ -7,20 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include <talus/maps/raster/gdal_errors.hpp>
+#include <talus/maps/raster/gdal_handle.hpp>
 
 class GDALDataset;
 class GDALDriver;
 
 namespace talus::maps {
-
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const noexcept;
-};
-
-/// An owned reference to a GDAL dataset. The dataset closes when its last reference is released; a virtual
-/// raster derived from the dataset holds a reference, too.
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
 /// Registers the allowed GDAL drivers (file formats), once per process, and removes all other drivers.
 void registerDrivers();
@@ -29,9 +21,9 @@ void registerDrivers();
 std::vector<std::string> rasterFormats();
 
 /// Opens a raster file for reading with a driver of rasterFormats(). Rejects network paths, archives, and
-/// files that refer to other files (referenced_files.hpp). A virtual raster (VRT) is accepted only if
-/// `allow_vrt`. @throws InputError if the file is missing, a directory, unreadable, truncated, or without a
-/// raster
+/// files outside the folder of `path` (sourceFiles()). A virtual raster (VRT) is accepted only if `allow_vrt`.
+/// @throws InputError if the file is missing, a directory, unreadable, truncated, without a raster, or a TIFF
+/// of whose structure GDAL warns
 Dataset openRaster(const std::string& path, bool allow_vrt = false);
 
 /// Returns GDAL's short names of the drivers that openVector() tries.
@@ -40,6 +32,10 @@ std::vector<std::string> vectorFormats();
 /// Opens a vector file with a driver of vectorFormats() under the restrictions of openRaster(). @throws
 /// InputError
 Dataset openVector(const std::string& path);
+
+/// Returns the files that GDAL opens with a raster or vector file (not itself), and the checksum files of all; empty
+/// for other files.
+std::vector<std::string> filesOpenedWith(const std::string& path);
 
 /// Sets the limit of GDAL's pixel cache for the whole process [bytes]. Default: 5 % of the physical memory.
 void limitPixelCache(std::int64_t bytes);

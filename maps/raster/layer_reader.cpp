@@ -57,7 +57,7 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
 }
 
 // Copies a band to memory as 32-bit floats with a margin of one NaN pixel, because values beyond a file are
-// unknown. No-data pixels become NaN. The copy has a CRS only if the CRS differs from that of the map;
+// unknown, by the scale and offset of the band. No-data pixels become NaN. The copy has a CRS only if the CRS differs from that of the map;
 // otherwise its geotransform is relative to the south-west corner of the map.
 Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
@@ -82,6 +82,7 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
   std::vector<std::uint8_t> known(static_cast<std::size_t>(width));
   GDALRasterBand& from = *file.GetRasterBand(band);
   GDALRasterBand& mask = *from.GetMaskBand();
+  const double scale = from.GetScale(), offset = from.GetOffset();
   for (int y = -1; y <= height; ++y) {
     const bool rim = y < 0 || y == height;
     if (rim)
@@ -92,7 +93,8 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
                  CE_None)
       throw InputError({path, "row " + number(y) + " cannot be read", "the file is damaged or truncated"});
     for (std::size_t x = 0; !rim && x < known.size(); ++x)
-      if (known[x] == 0) row[x + 1] = std::numeric_limits<float>::quiet_NaN();
+      row[x + 1] = known[x] == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                 : static_cast<float>(static_cast<double>(row[x + 1]) * scale + offset);
     if (copy->GetRasterBand(1)->RasterIO(GF_Write, 0, y + 1, width + 2, 1, row.data(), width + 2, 1,
                                          GDT_Float32, 0, 0, nullptr) != CE_None)
       throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -8,17 +7,12 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
+#include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/raster_band.hpp>
 
 namespace talus::maps {
 namespace {
-
-std::string lowered(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool holdsOneOf(const std::string& text, const std::vector<std::string_view>& words) {
   return std::any_of(words.begin(), words.end(),
@@ -35,20 +29,14 @@ bool isPicture(GDALRasterBand& band) {
   return colour == GCI_RedBand || colour == GCI_PaletteIndex;
 }
 
-// Number of overview cells along a side of `pixels` pixels; at least 1.
-int shared(int pixels, int overview) {
-  return std::max(1, pixels / overview);
-}
-
 // Sets pixels to NaN that the dataset mask or alpha mask of the band excludes.
 void applyMask(GDALRasterBand& band, const PixelBox& box, std::vector<float>& values,
-               const std::string& where, int overview) {
+               const std::string& where) {
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return;
   std::vector<unsigned char> mask(values.size());
   const GdalErrors errors;
   if (band.GetMaskBand()->RasterIO(GF_Read, box.column, box.row, box.width, box.height, mask.data(),
-                                   shared(box.width, overview), shared(box.height, overview), GDT_Byte, 0, 0,
-                                   nullptr) != CE_None)
+                                   box.width, box.height, GDT_Byte, 0, 0, nullptr) != CE_None)
     throw InputError({where, "its mask cannot be read: " + errors.last(), "fetch it again"});
   for (std::size_t i = 0; i < values.size(); ++i)
     if (mask[i] == 0) values[i] = kNoValue;
@@ -68,7 +56,7 @@ int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::str
   }
   int chosen = 1;
   for (int band = count; band >= 1; --band) {
-    const std::string name = lowered(file.GetRasterBand(band)->GetDescription());
+    const std::string name = lower(file.GetRasterBand(band)->GetDescription());
     if (holdsOneOf(name, wish.words) && !holdsOneOf(name, wish.others)) chosen = band;
   }
   if (isPicture(*file.GetRasterBand(chosen)))
@@ -79,23 +67,18 @@ int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::str
   return chosen;
 }
 
-std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
-                              int overview) {
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where) {
   GDALRasterBand& source = *raster.GetRasterBand(band);
   if (GDALDataTypeIsComplex(source.GetRasterDataType()) != FALSE)
     throw InputError({where, "contains complex numbers", "choose a band of real numbers with --band"});
-  const int width = shared(box.width, overview), height = shared(box.height, overview);
-  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  GDALRasterIOExtraArg how;
-  INIT_RASTERIO_EXTRA_ARG(how);
-  if (overview > 1) how.eResampleAlg = GRIORA_Average;
+  std::vector<float> values(static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height));
   const GdalErrors errors;
   const CPLErr done = source.RasterIO(GF_Read, box.column, box.row, box.width, box.height, values.data(),
-                                      width, height, GDT_Float32, 0, 0, &how);
-  if (done != CE_None)
+                                      box.width, box.height, GDT_Float32, 0, 0, nullptr);
+  if (done != CE_None || errors.any())
     throw InputError({where, "cannot be read to its end: " + errors.last(),
                       "the file is damaged or cut short: fetch it again"});
-  applyMask(source, box, values, where, overview);
+  applyMask(source, box, values, where);
   for (float& v : values)
     if (!std::isfinite(v)) v = kNoValue;
   return values;
@@ -120,17 +103,13 @@ LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::opt
   return lost;
 }
 
-void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values) {
-  const int width = shared(box.width, overview);
+void blank(const LostCells& lost, const PixelBox& box, std::vector<float>& values) {
   for (const CellRun& run : lost.runs) {
-    const int first = std::max(run.first - box.column, 0),
+    const int row = run.row - box.row, first = std::max(run.first - box.column, 0),
               last = std::min(run.last - box.column, box.width - 1);
-    const int row = run.row - box.row;
     if (row < 0 || row >= box.height || first > last) continue;
-    const auto begin =
-        values.begin() + std::ptrdiff_t{std::min(row / overview, shared(box.height, overview) - 1)} * width;
-    std::fill(begin + std::min(first / overview, width - 1), begin + std::min(last / overview, width - 1) + 1,
-              kNoValue);
+    const auto begin = values.begin() + std::ptrdiff_t{row} * box.width;
+    std::fill(begin + first, begin + last + 1, kNoValue);
   }
 }
 

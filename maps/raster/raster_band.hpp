@@ -41,12 +41,8 @@ struct PixelBox {
 };
 
 /// Returns the values of a band in file order, before any conversion; masked pixels and infinities are NaN.
-/// With `overview` > 1, returns the mean of each block of overview x overview pixels, from the overviews
-/// (coarser copies) of the file if present. The width and the height of the box must each be a multiple of
-/// `overview`, or less than `overview`. `where` names the file in error messages. @throws InputError with
-/// GDAL's message
-std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where,
-                              int overview = 1);
+/// `where` names the file in error messages. @throws InputError with GDAL's message
+std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where);
 
 /// Returns the cells of a box that were overwritten by zeros, found by LostZeros within the box. `nodata` is
 /// the no-data value of the band. If `zero_is_ordinary`, 0 is an ordinary value of the layer (see LostZeros).
@@ -54,8 +50,8 @@ std::vector<float> readPixels(GDALDataset& raster, int band, const PixelBox& box
 LostCells lostCells(GDALDataset& raster, int band, const PixelBox& box, std::optional<double> nodata,
                     const std::string& where, bool zero_is_ordinary = false);
 
-/// Sets to NaN each value of `values` whose block of overview x overview pixels contains a lost cell.
-void blank(const LostCells& lost, const PixelBox& box, int overview, std::vector<float>& values);
+/// Sets to NaN each value of the pixels `values` of a box that is a lost cell.
+void blank(const LostCells& lost, const PixelBox& box, std::vector<float>& values);
 
 /// Returns a message about lost cells. `remedy` is the command-line option to use if 0 is the true value of
 /// the cells.

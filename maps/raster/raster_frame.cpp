@@ -56,27 +56,32 @@ bool near(double a, double b) {
 }
 
 // Frame of a raster with square, upright pixels; `metres` is the length of a unit of the file.
-FramedRaster upright(Dataset raster, int band, double metres) {
-  const Pixels p(*raster);
+FramedRaster upright(GDALDataset& raster, double metres) {
+  const Pixels p(raster);
   const double south = std::min(p.c[3], p.c[3] + p.height * p.c[5]);
-  return {.raster = std::move(raster),
-          .band = band,
-          .grid = {.width = p.width,
+  return {.grid = {.width = p.width,
                    .height = p.height,
                    .resolution_m = p.side() * metres,
                    .south_west = {p.c[0] * metres, south * metres}},
-          .north_up = p.c[5] < 0,
-          .georeference = std::nullopt};
+          .north_up = p.c[5] < 0};
 }
 
-FramedRaster local(Dataset file, int band, double resolution_m, const std::string& path,
+FramedRaster local(GDALDataset& file, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes) {
-  const Pixels p(*file);
+  const Pixels p(file);
+  const double resolution_m = *options.resolution_m;
   if (!p.areSquare())
     throw InputError({path, "has no usable CRS and its pixels are not square and upright",
                       "resample it with gdalwarp -tr, or give it a CRS with gdal_edit.py -a_srs"});
-  FramedRaster out = upright(std::move(file), band, 1.0);
-  if (!p.stated || !near(p.side(), resolution_m)) out.grid.south_west = {0.0, 0.0};
+  const bool contradicts = p.stated && !near(p.side(), resolution_m);
+  if (contradicts && !options.ignore_crs)
+    throw InputError(
+        {path, "states cells of " + number(p.side()) + ", --resolution states " + number(resolution_m) + " m",
+         "pass --resolution " + number(p.side()) +
+             " if that is metres, correct the file with gdal_edit.py "
+             "(-a_srs, -tr), or pass --ignore-crs to ignore what it states"});
+  FramedRaster out = upright(file, 1.0);
+  if (!p.stated || contradicts) out.grid.south_west = {0.0, 0.0};
   out.grid.resolution_m = resolution_m;
   notes.push_back("no CRS: cells of " + number(resolution_m) + " m taken, x and y in local metres from " +
                   number(out.grid.south_west.x_m) + "," + number(out.grid.south_west.y_m));
@@ -110,10 +115,10 @@ void refuseWholeBodies(const Pixels& p, const ReadOptions& options, const std::s
                     "read a part with --window LATd,LONd,LATd,LONd or project it with gdalwarp"});
 }
 
-// Rejects longitudes beyond 360 and latitudes beyond 90 degrees by more than a pixel. Half a pixel beyond a
+// Rejects longitudes beyond 360 and latitudes beyond 90 degrees by more than a pixel or a hundredth of a degree. Half a pixel beyond a
 // pole is valid: the pixel centres may lie on the pole.
 void refuseBeyondBody(const Pixels& p, const std::string& path) {
-  const double pixel = std::max(std::hypot(p.c[1], p.c[4]), std::hypot(p.c[2], p.c[5]));
+  const double pixel = std::max({std::hypot(p.c[1], p.c[4]), std::hypot(p.c[2], p.c[5]), 0.01});
   for (const double column : {0.0, static_cast<double>(p.width)})
     for (const double row : {0.0, static_cast<double>(p.height)})
       if (const Point corner = p.at(column, row);
@@ -134,25 +139,19 @@ Georeference localGeoreference(const OGRSpatialReference& crs, GeoPoint centre, 
   return georeferenceAt(coordinateSystem(localProjection(crs, centre), path), std::array{Point{}});
 }
 
-FramedRaster resampled(Dataset file, int band, const Resampling& to, const ReadOptions& options,
-                       const std::string& path) {
+FramedRaster resampled(GDALDataset& file, const Resampling& to, const std::string& path) {
   const bool coarser = to.resolution_m > 1.5 * to.finest_m;
-  Dataset raster = warp(*file,
-                        {.band = band,
-                         .wkt = to.target.system().wkt,
-                         .resolution = to.resolution_m,
-                         .grid = std::nullopt,
-                         .method = coarser ? "average" : "cubic",
-                         .nodata = options.nodata},
-                        path);
-  FramedRaster out = upright(std::move(raster), 1, 1.0);
+  const Dataset cells =
+      warp(file, {.wkt = to.target.system().wkt, .resolution = to.resolution_m, .grid = std::nullopt}, path);
+  FramedRaster out = upright(*cells, 1.0);
   out.georeference = to.target;
+  out.resampling = coarser ? "average" : "cubic";
   return out;
 }
 
-FramedRaster geographic(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
+FramedRaster geographic(GDALDataset& file, const OGRSpatialReference& crs, const ReadOptions& options,
                         const std::string& path, std::vector<std::string>& notes) {
-  const Pixels p(*file);
+  const Pixels p(file);
   refuseBeyondBody(p, path);
   refuseWholeBodies(p, options, path);
   const GeoPoint centre = geographicCentre(p, options);
@@ -161,13 +160,12 @@ FramedRaster geographic(Dataset file, int band, const OGRSpatialReference& crs, 
   notes.push_back("degrees resampled to cells of " + number(resolution_m) +
                   " m in a local projection around " + number(centre.latitude_rad / kDegree) + "d," +
                   number(centre.longitude_rad / kDegree) + "d");
-  return resampled(std::move(file), band, {localGeoreference(crs, centre, path), resolution_m, finest_m},
-                   options, path);
+  return resampled(file, {localGeoreference(crs, centre, path), resolution_m, finest_m}, path);
 }
 
-FramedRaster projected(Dataset file, int band, const OGRSpatialReference& crs, const ReadOptions& options,
+FramedRaster projected(GDALDataset& file, const OGRSpatialReference& crs, const ReadOptions& options,
                        const std::string& path, std::vector<std::string>& notes) {
-  const Pixels p(*file);
+  const Pixels p(file);
   const double metres = crs.GetLinearUnits();
   const auto at = [&](double right, double down) {
     const Point point = p.at(right * p.width, down * p.height);
@@ -189,41 +187,42 @@ FramedRaster projected(Dataset file, int band, const OGRSpatialReference& crs, c
                     number(ground.y_m) +
                     " m northward: resampled to true metres in a local projection, cells of " +
                     number(resolution_m) + " m");
-    return resampled(std::move(file), band, {localGeoreference(crs, centre, path), resolution_m, finest_m},
-                     options, path);
+    return resampled(file, {localGeoreference(crs, centre, path), resolution_m, finest_m}, path);
   }
   const double pixel_m = p.meanSide() * metres;
   const double resolution_m = options.resolution_m.value_or(pixel_m);
   if (!p.areSquare() || !near(resolution_m, pixel_m)) {
     notes.push_back("pixels resampled to square cells of " + number(resolution_m) + " m");
-    return resampled(std::move(file), band, {std::move(georeference), resolution_m, pixel_m}, options, path);
+    return resampled(file, {std::move(georeference), resolution_m, pixel_m}, path);
   }
-  FramedRaster out = upright(std::move(file), band, metres);
+  FramedRaster out = upright(file, metres);
   out.georeference.emplace(std::move(georeference));
   return out;
 }
 
 }  // namespace
 
-FramedRaster frame(Dataset file, int band, const ReadOptions& options, const std::string& path,
+FramedRaster frame(GDALDataset& file, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes) {
-  if (!Pixels(*file).areFinite())
+  if (!Pixels(file).areFinite())
     throw InputError(
         {path, "its pixel size or origin is not a number or zero", "repair it with gdal_edit.py -a_ullr"});
-  const OGRSpatialReference* stated = file->GetSpatialRef();
+  const OGRSpatialReference* stated = file.GetSpatialRef();
   const bool usable =
       stated != nullptr && (stated->IsProjected() || stated->IsGeographic()) && !options.ignore_crs;
   if (!usable) {
-    if (options.resolution_m) return local(std::move(file), band, *options.resolution_m, path, notes);
-    throw InputError({path, options.ignore_crs ? "its CRS is ignored, so its cell size is unknown" : "no CRS",
-                      "pass --resolution METRES to read it as local metres"});
+    if (options.resolution_m) return local(file, options, path, notes);
+    throw InputError(
+        {path, options.ignore_crs ? "its CRS is ignored, so its cell size is unknown" : "no CRS",
+         "pass --resolution METRES to read it as local metres" +
+             (Pixels(file).stated ? "; it states cells of " + number(Pixels(file).side()) : "")});
   }
-  if (!Pixels(*file).stated)
+  if (!Pixels(file).stated)
     throw InputError({path, "has a CRS but no pixel size", "pass --ignore-crs --resolution METRES"});
   OGRSpatialReference crs(*stated);
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return crs.IsProjected() ? projected(std::move(file), band, crs, options, path, notes)
-                           : geographic(std::move(file), band, crs, options, path, notes);
+  return crs.IsProjected() ? projected(file, crs, options, path, notes)
+                           : geographic(file, crs, options, path, notes);
 }
 
 }  // namespace talus::maps

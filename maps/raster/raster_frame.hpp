@@ -10,19 +10,19 @@
 
 namespace talus::maps {
 
-/// A raster of square cells in metres, with its grid.
+/// Square cells in metres that a raster file has, or to which it is resampled.
 struct FramedRaster {
-  Dataset raster{};
-  int band = 1;
   Grid grid{};           ///< grid of the whole raster in map coordinates
-  bool north_up = true;  ///< true if the first row of `raster` is the northernmost row
+  bool north_up = true;  ///< true if the first row is the northernmost row
   std::optional<Georeference> georeference{};
+  std::string resampling{};  ///< method of WarpTarget; empty: the pixels of the file are the cells
 };
 
-/// Returns a band of a file as a raster of square cells in metres; resamples the band if its pixels are not
-/// square cells in metres. Decisions are appended to `notes`. `path` names the file in error messages.
-/// @throws InputError
-FramedRaster frame(Dataset file, int band, const ReadOptions& options, const std::string& path,
+/// Returns the frame of a file: its own pixels if they are square cells in metres of the stated resolution,
+/// else cells of a projection to which its heights must be resampled. Decisions are appended to `notes`. `path`
+/// names the file in error messages. @throws InputError, also if ReadOptions::resolution_m contradicts the
+/// pixel size of a file without a CRS
+FramedRaster frame(GDALDataset& file, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes);
 
 }  // namespace talus::maps

@@ -19,13 +19,17 @@ struct ReadOptions {
   /// True if regions of 0 are ground even if the surrounding elevations are not near 0. False: such regions
   /// are lost data.
   bool keep_zeros = false;
-  /// Factor on the heights, applied after the conversion from the unit that the file states [-].
-  double vertical_scale = 1.0;
+  /// True if single cells without data stay without data. False: such a cell whose neighbours agree is
+  /// interpolated (readElevation()).
+  bool keep_holes = false;
+  /// Factor on the heights, applied after the conversion from the unit that the file states [-]. Where the file
+  /// states a unit that is not known, metres per unit.
+  std::optional<double> vertical_scale{};
   bool ignore_crs = false;  ///< true if the CRS of the file is ignored and coordinates are local metres
   /// True if a virtual raster (VRT) is accepted whose source files lie in its own folder.
   bool allow_vrt = false;
-  /// Number of cells per side, >= 1, whose mean becomes one cell; the file's overviews (coarser copies) are
-  /// used if present.
+  /// Number of cells per side, >= 1, whose mean becomes one cell. Overviews (coarser copies) of a file are not
+  /// read.
   int overview = 1;
   /// Maximum number of cells; larger maps are rejected (the default takes 1.6 GB as float).
   std::uint64_t max_cells = 400'000'000;

@@ -20,26 +20,11 @@ std::string exact(double value) {
   return text.data();
 }
 
-// Makes a virtual raster with a single band, because the warper would resample all bands.
-Dataset oneBand(GDALDataset& source, int band) {
-  CPLStringList words;
-  for (const std::string& word :
-       {std::string("-of"), std::string("VRT"), std::string("-b"), std::to_string(band)})
-    words.AddString(word.c_str());
-  const std::unique_ptr<GDALTranslateOptions, decltype(&GDALTranslateOptionsFree)> options(
-      GDALTranslateOptionsNew(words.List(), nullptr), GDALTranslateOptionsFree);
-  return Dataset(
-      GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&source), options.get(), nullptr)));
-}
-
-bool holdsFloats(GDALRasterBand& band) {
-  return GDALDataTypeIsFloating(band.GetRasterDataType()) != FALSE;
-}
-
 CPLStringList warpWords(GDALDataset& source, const WarpTarget& target) {
   CPLStringList words;
   const auto add = [&](const auto&... word) { (words.AddString(std::string(word).c_str()), ...); };
-  add("-of", "VRT", "-ot", "Float32", "-wt", "Float32", "-dstnodata", "nan", "-r", target.method);
+  add("-of", "VRT", "-ot", "Float32", "-wt", "Float32", "-dstnodata", "nan", "-et", "0.001", "-r",
+      target.method);
   if (!target.wkt.empty()) add("-t_srs", target.wkt);
   if (target.grid) {
     const Grid& g = *target.grid;
@@ -51,9 +36,8 @@ CPLStringList warpWords(GDALDataset& source, const WarpTarget& target) {
     add("-tr", exact(target.resolution), exact(target.resolution));
   }
   GDALRasterBand& band = *source.GetRasterBand(1);
-  if (target.nodata)
-    add("-srcnodata", exact(*target.nodata));
-  else if (int declared = 0; band.GetNoDataValue(&declared), declared == 0 && holdsFloats(band))
+  if (int declared = 0; band.GetNoDataValue(&declared),
+                        declared == 0 && GDALDataTypeIsFloating(band.GetRasterDataType()) != FALSE)
     add("-srcnodata", "nan");
   return words;
 }
@@ -62,12 +46,10 @@ CPLStringList warpWords(GDALDataset& source, const WarpTarget& target) {
 
 Dataset warp(GDALDataset& source, const WarpTarget& target, const std::string& where) {
   const GdalErrors errors;
-  const Dataset band = oneBand(source, target.band);
-  if (!band) throw InputError({where, errors.last(), ""});
-  CPLStringList words = warpWords(*band, target);
+  CPLStringList words = warpWords(source, target);
   const std::unique_ptr<GDALWarpAppOptions, decltype(&GDALWarpAppOptionsFree)> options(
       GDALWarpAppOptionsNew(words.List(), nullptr), GDALWarpAppOptionsFree);
-  GDALDatasetH input = GDALDataset::ToHandle(band.get());
+  GDALDatasetH input = GDALDataset::ToHandle(&source);
   Dataset out(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &input, options.get(), nullptr)));
   if (!out) throw InputError({where, "cannot be resampled: " + errors.last(), "resample it with gdalwarp"});
   return out;

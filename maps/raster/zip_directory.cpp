@@ -1,7 +1,8 @@
 // File format: PKWARE, APPNOTE.TXT - .ZIP File Format Specification, sections 4.3.12 and 4.3.16.
 #include <algorithm>
-#include <array>
 #include <fstream>
+
+#include <boost/crc.hpp>
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/file_text.hpp>
@@ -24,23 +25,12 @@ std::string bytesAt(std::ifstream& file, std::streamoff begin, std::size_t count
   return bytes;
 }
 
-constexpr std::array<std::uint32_t, 256> crcTable() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < table.size(); ++i) {
-    std::uint32_t value = i;
-    for (int bit = 0; bit < 8; ++bit) value = (value >> 1U) ^ ((value & 1U) != 0 ? 0xEDB88320U : 0U);
-    table[i] = value;
-  }
-  return table;
-}
-
 }  // namespace
 
 std::uint32_t crc32(const std::string& bytes) noexcept {
-  static constexpr auto kTable = crcTable();
-  std::uint32_t value = 0xFFFFFFFFU;
-  for (const char c : bytes) value = (value >> 8U) ^ kTable[(value ^ static_cast<unsigned char>(c)) & 0xFFU];
-  return ~value;
+  boost::crc_32_type crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
 }
 
 std::map<std::string, ZipEntry> zipDirectory(const std::string& path) {

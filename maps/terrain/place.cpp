@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include <talus/common/constants.hpp>
@@ -96,6 +97,20 @@ double withinBorder(double at_m, double from_m, int cells, double resolution_m) 
   return at_m == border_m ? border_m - 1e-6 * resolution_m : at_m;
 }
 
+// Refuses a pair in metres that lies elsewhere on the map if it is read as latitude and longitude, in either
+// order: degrees without their suffix.
+void refuseBareDegrees(Point given, const ElevationMap& map, const std::string& name) {
+  const Georeference* places = map.places();
+  for (const auto& [latitude, longitude] : {std::pair{given.x_m, given.y_m}, {given.y_m, given.x_m}}) {
+    if (places == nullptr || std::abs(latitude) > 90 || std::abs(longitude) > 360) continue;
+    const GeoPoint as_degrees{latitude * kDegree, longitude * kDegree};
+    const auto cell = map.grid().cellAt(places->forward(as_degrees));
+    if (cell && cell != map.grid().cellAt(given))
+      throw InputError({name, "metres without a suffix, and a place of the map if it is in degrees",
+                        "write " + degrees(as_degrees) + " for latitude and longitude"});
+  }
+}
+
 }  // namespace
 
 Point locate(const Place& place, const ElevationMap& map, const std::string& name) {
@@ -107,6 +122,7 @@ Point locate(const Place& place, const ElevationMap& map, const std::string& nam
                           (map.georeference ? " that is known without PROJ" : ""),
                       "give x,y in map metres"});
   const Grid& grid = map.grid();
+  if (geographic == nullptr) refuseBareDegrees(std::get<Point>(place), map, name);
   const Point given = geographic != nullptr ? places->forward(*geographic) : std::get<Point>(place);
   const Point point{withinBorder(given.x_m, grid.south_west.x_m, grid.width, grid.resolution_m),
                     withinBorder(given.y_m, grid.south_west.y_m, grid.height, grid.resolution_m)};

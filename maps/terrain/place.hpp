@@ -17,7 +17,8 @@ Place parsePlace(std::string_view text);
 
 /// Returns the map coordinates of a position inside the map. `name` begins the error message ("--start
 /// 10,20"). @throws InputError if the position has a latitude but the map has no coordinate reference system
-/// (CRS), or if the position lies outside the map (the message states the bounds)
+/// (CRS), if the position lies outside the map (the message states the bounds), or if a position in metres is
+/// another one of the map when read as degrees
 Point locate(const Place& place, const ElevationMap& map, const std::string& name);
 
 /// A rectangle given by two opposite corners, in any order.

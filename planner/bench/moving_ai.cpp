@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/planner/bench/moving_ai.hpp>
 
 namespace talus::planner {
@@ -26,6 +27,7 @@ std::shared_ptr<const costmap::TravelCost> flatCost() {
 
 // Opens a regular file; the stream fails for other files, because opening a FIFO would block.
 std::ifstream opened(const std::string& path) {
+  checkInput(path);
   std::error_code error;
   std::ifstream file;
   if (std::filesystem::is_regular_file(path, error))

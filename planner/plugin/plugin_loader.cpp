@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
@@ -85,6 +86,7 @@ std::string linkerReason(const std::string& path) {
 }  // namespace
 
 boost::dll::shared_library openedLibrary(const std::string& path) {
+  checkInput(path);
   boost::dll::fs::error_code error;
   if (!boost::dll::fs::is_regular_file(path, error))
     throw InputError({path, "no such file", "name a plugin's shared library (.so)"});

@@ -10,6 +10,7 @@
 #include <csv.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/table_columns.hpp>
 
@@ -18,14 +19,19 @@ namespace {
 
 constexpr std::size_t kMostColumns = 1000;
 
-// Returns the field separator, from the first line that is not empty.
+// Returns the field separator, from the first line that is neither empty nor a comment: the most frequent of
+// comma, semicolon and tab, or else blanks.
 char separatorOf(std::string_view text) {
-  text.remove_prefix(std::min(text.size(), text.find_first_not_of("\r\n ")));
-  const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+  std::string_view line;
+  do {
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of("\r\n ")));
+    line = text.substr(0, text.find_first_of("\r\n"));
+    text.remove_prefix(line.size());
+  } while (line.starts_with('#'));
   char most = ',';
   for (const char c : {';', '\t'})
     if (std::ranges::count(line, c) > std::ranges::count(line, most)) most = c;
-  return most;
+  return line.find(most) == line.npos && line.find(' ') != line.npos ? ' ' : most;
 }
 
 }  // namespace
@@ -68,6 +74,7 @@ CsvReader::Parser::Parser(const TableFile& asked) : table(asked), path(asked.pat
 void CsvReader::Parser::open() {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) refuse("is a directory", "name a CSV file");
+  checkInput(path.string());
   file.open(path, std::ios::binary);
   if (!file) refuse(std::strerror(errno), "check the path and its permissions");
   size = std::filesystem::file_size(path, error);
@@ -152,7 +159,11 @@ void CsvReader::Parser::endRecord(int terminator) {
   if (swallowed == 0 && std::ranges::any_of(current.fields, holds_rows)) swallowed = line;
   for (const auto& f : current.fields) line += static_cast<std::size_t>(std::count(f.begin(), f.end(), '\n'));
   ++line;
-  if (!current.fields.empty()) ready.push_back(std::move(current));
+  if (separator == ' ') std::erase(current.fields, "");  // between blanks
+  const bool before_header = header.empty() && ready.empty();
+  const bool comment = !current.fields.empty() && current.fields.front().starts_with('#') &&
+                       (before_header || current.fields.size() == 1 || current.fields.front() == "#");
+  if (!current.fields.empty() && !comment) ready.push_back(std::move(current));
   current = {};
 }
 

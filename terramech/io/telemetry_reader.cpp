@@ -1,15 +1,19 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <locale>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <unordered_map>
 #include <utility>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/memory_budget.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
@@ -150,6 +154,22 @@ class Table {
     return "";
   }
 
+  /// Refuses a column most of whose numbers lie beyond its range as those of another unit do.
+  void refuseOtherUnits(const std::string& where) const {
+    for (const Column& column : columns_) {
+      const bool share = column.name == "slip", angle = column.name.ends_with("_rad");
+      if (column.rule == nullptr || !(share || angle)) continue;
+      const auto beyond = std::ranges::count_if(
+          column.rejected, [](double v) { return std::abs(v) > 1.6 && std::abs(v) <= 360.0; });
+      if (beyond <= std::ssize(column.numbers)) continue;
+      throw InputError({.where = where + ", column " + column.name,
+                        .reason = std::to_string(beyond) + " values are not " + column.rule->bound + ", as " +
+                                  (share ? "percent" : "degrees") + " are",
+                        .remedy = "if they are, pass --column " + column.name + "=" + column.name +
+                                  (share ? ":percent" : ":deg")});
+    }
+  }
+
   void moveInto(Telemetry& telemetry) {
     for (Column& column : columns_) {
       if (column.name.empty()) continue;
@@ -261,6 +281,11 @@ Telemetry readTelemetry(const TableFile& file, const TelemetryOptions& options,
   CsvReader reader{file};
   Telemetry telemetry;
   telemetry.source = file.path;
+  // numbers of eight bytes in vectors that grow by doubling, from fields of some five
+  constexpr double kBytesPerByte = 4.0;
+  std::error_code unknown;
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file.path, unknown); !unknown)
+    requireMemory(kBytesPerByte * static_cast<double>(bytes), telemetry.source);
   checkColumnUnits(reader.header(), knownTelemetryColumns(), telemetry.source);
   checkColumns(reader.header(), options.required, telemetry.source);
   Table table{reader.header(), options};
@@ -277,6 +302,7 @@ Telemetry readTelemetry(const TableFile& file, const TelemetryOptions& options,
     if (watch.stopped()) break;
     watch.report(reader.fraction());
   }
+  table.refuseOtherUnits(telemetry.source);
   table.moveInto(telemetry);
   checkUsable(telemetry);
   return telemetry;

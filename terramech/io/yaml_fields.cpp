@@ -10,6 +10,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <talus/common/input_error.hpp>
+#include <talus/common/input_file.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/field_text.hpp>
@@ -129,6 +130,7 @@ YamlFields YamlFields::file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) fail(path, "is a directory", "name a YAML file");
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     fail(path, "is a device, a FIFO or a socket", "give a file");
+  checkInput(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) fail(path, "cannot be read", "check the path and its permissions");
   std::string content;

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 628},    {"terramech", 22686}, {"maps", 7472},     {"costmap", 14522},
-                           {"planner", 24529}, {"cli", 15187},       {"examples", 1703}, {"tests", 62340}};
+const Budget kBudgets[] = {{"common", 701},    {"terramech", 22702}, {"maps", 7637},     {"costmap", 14523},
+                           {"planner", 24511}, {"cli", 15194},       {"examples", 1703}, {"tests", 62974}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -79,6 +79,33 @@ TEST(CheckOutput, OutputMustNotBePartOfTheJournal) {
   EXPECT_FALSE(refused("j2.db-wal", "j.db"));
 }
 
+// Headers, data of labels, georeferences and checksums belong to an input; other files beside it do not.
+TEST(CheckOutput, PartsOfAnInputAreProtected) {
+  const Folder folder;
+  folder.write("h.bsq", std::string(1600, '\1'));
+  folder.write("h.hdr",
+               "ENVI\nsamples = 20\nlines = 20\nbands = 1\nheader offset = 0\ndata type = 4\n"
+               "interleave = bsq\nbyte order = 0\n");
+  folder.write("p.dat", std::string(1600, '\1'));
+  folder.write("p.lbl",
+               "PDS_VERSION_ID = PDS3\nRECORD_TYPE = FIXED_LENGTH\nRECORD_BYTES = 80\nFILE_RECORDS = 20\n"
+               "^IMAGE = \"p.dat\"\nOBJECT = IMAGE\nLINES = 20\nLINE_SAMPLES = 20\nSAMPLE_TYPE = PC_REAL\n"
+               "SAMPLE_BITS = 32\nEND_OBJECT = IMAGE\nEND\n");
+  for (const char* other : {"h.png", "h.bsq.sha256"}) folder.write(other, "x");
+  const auto answer = [&](const std::string& output, const std::string& input) {
+    try {
+      checkOutput(folder / output, {folder / input});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(answer("h.hdr", "h.bsq"), testing::HasSubstr("is a part of the input"));
+  EXPECT_THAT(answer("h.bsq.sha256", "h.bsq"), testing::HasSubstr("is a part of the input"));
+  EXPECT_THAT(answer("p.dat", "p.lbl"), testing::HasSubstr("is a part of the input"));
+  EXPECT_EQ(answer("h.png", "h.bsq"), "");
+}
+
 TEST(CheckOutput, EveryCommandProtectsItsInputs) {
   const BadFiles files;
   const std::string map = "good.asc";

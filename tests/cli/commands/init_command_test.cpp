@@ -24,7 +24,7 @@ TEST(InitCommand, CreatedMissionCanBePlanned) {
   ASSERT_EQ(made.code, 0) << made.err;
   const Ran planned = runTalus({"plan", "m/site.yaml", "--quiet"}, folder.path());
   EXPECT_EQ(planned.code, 0) << planned.err;
-  EXPECT_THAT(fileContent(folder / "route.geojson"), HasSubstr("\"FeatureCollection\""));
+  EXPECT_THAT(fileContent(folder / "m/site_route.geojson"), HasSubstr("\"FeatureCollection\""));
   const Ran again =
       runTalus({"init", "flat ground.asc", "--resolution", "1", "-o", "m/site.yaml"}, folder.path());
   EXPECT_EQ(again.code, 2);

@@ -29,7 +29,7 @@ TEST(Mission, MissionIsDetectedByItsExtension) {
   EXPECT_FALSE(isMission("yaml") || isMission("m.tif") || isMission("m.yaml.tif"));
 }
 
-// Closed form: degrees are converted to radians; paths beside the mission are resolved, other names
+// Closed form: degrees are converted to radians; paths are relative to the mission, names of the library
 // unchanged.
 TEST(Mission, EveryMissionFieldIsRead) {
   const Folder folder;
@@ -38,9 +38,9 @@ TEST(Mission, EveryMissionFieldIsRead) {
   const PlanOptions plan = readIn(folder);
   EXPECT_EQ(plan.ground.dem.path, folder / "dem.tif");
   EXPECT_EQ(plan.ground.soils, folder / "soils.yaml");
-  EXPECT_EQ(plan.ground.layers.terrain, "classes.tif");  // not read here
+  EXPECT_EQ(plan.ground.layers.terrain, folder / "classes.tif");  // not read here
   EXPECT_EQ(plan.ground.rover, "mer");
-  EXPECT_THAT(plan.ground.layers.keep_out, ElementsAre("area.json"));
+  EXPECT_THAT(plan.ground.layers.keep_out, ElementsAre(folder / "area.json"));
   EXPECT_EQ(plan.ground.dem.read.resolution_m, 2.0);
   EXPECT_NEAR(plan.ground.policy.slope_margin_rad, 10.0 * kDegree, 1e-12);
   EXPECT_EQ(plan.ground.policy.risk_weight_J, 5e6);
@@ -52,7 +52,7 @@ TEST(Mission, EveryMissionFieldIsRead) {
   EXPECT_TRUE(plan.drive.no_reverse);
   EXPECT_EQ(plan.tolerance_m, 1.5);
   EXPECT_EQ(plan.time_limit_s, 20.0);
-  EXPECT_EQ(plan.output, "r.geojson");
+  EXPECT_EQ(plan.output, folder / "r.geojson");
 }
 
 // Property: values from the command line have precedence over the mission file, such as stricter thresholds.

@@ -51,6 +51,24 @@ TEST(OctomapSurface, ReadsFullBinaryAndColourTrees) {
   expectSlopeUnderSlab(octomapGround(coloured, "c.ot"));
 }
 
+// Closed form: one voxel in each octant; the cell of its column is where the voxel is.
+TEST(OctomapSurface, EveryOctantKeepsItsCoordinates) {
+  for (int octant = 0; octant < 8; ++octant) {
+    const auto sign = [&](int axis) { return octant >> axis & 1 ? 1.0 : -1.0; };
+    const octomap::point3d at(static_cast<float>(3.05 * sign(0)), static_cast<float>(7.25 * sign(1)),
+                              static_cast<float>(1.15 * sign(2)));
+    octomap::OcTree tree(0.1);
+    tree.updateNode(at, true);
+    std::stringstream stream;
+    tree.writeBinaryConst(stream);
+    const maps::ElevationMap map = octomapGround(stream, "octant.bt");
+    ASSERT_EQ(map.grid().size(), 1U);
+    EXPECT_NEAR(map.grid().centre({0, 0}).x_m, 3.05 * sign(0), 1e-6) << octant;
+    EXPECT_NEAR(map.grid().centre({0, 0}).y_m, 7.25 * sign(1), 1e-6) << octant;
+    EXPECT_NEAR((map.elevation_m[{0, 0}]), 1.15 * sign(2), 1e-6) << octant;
+  }
+}
+
 TEST(OctomapSurface, CeilingSelectsTheGroundBelow) {
   octomap::OcTree tree(0.1);
   fill(tree);

@@ -46,6 +46,7 @@ struct Format {
   std::function<void(const std::string& path)> make;
   std::string data{};  // file with the cells if not `name`
   ReadOptions options{};
+  float tolerance_m = 0.0F;
 };
 
 Format written(const std::string& driver, const std::string& name, GDALDataType type = GDT_Float32,
@@ -98,14 +99,16 @@ std::vector<Format> formats() {
                    spill(path, bytes);
                  },
                  "",
-                 {.resolution_m = 90.0}});
+                 {.resolution_m = 90.0},
+                 0.84F});  // degrees: resampled; a pixel away the heights differ by 0.5 m + 0.34 m at most
   return all;
 }
 
 // True if a damaged file is rejected, or has no height that differs from the undamaged file. The grid may be
-// smaller by whole rows at one end.
+// smaller by whole rows at one end. Beside unknown pixels a resampled height is interpolated from those that are
+// left, within `tolerance_m`.
 ::testing::AssertionResult refusedOrUnknown(const std::string& path, const ReadOptions& options,
-                                            const ElevationMap& whole) {
+                                            const ElevationMap& whole, float tolerance_m) {
   ElevationMap map;
   const std::string line = refusal([&] { map = readElevation(path, options); });
   if (line.starts_with("another error")) return ::testing::AssertionFailure() << line;
@@ -117,7 +120,8 @@ std::vector<Format> formats() {
     for (int column = 0; column < grid.width; ++column) {
       const float z = map.elevation_m[{column, row}];
       if (std::isnan(z)) continue;
-      if (row + up < 0 || row + up >= full.height || z != whole.elevation_m[{column, row + up}])
+      if (row + up < 0 || row + up >= full.height ||
+          std::abs(z - whole.elevation_m[{column, row + up}]) > tolerance_m)
         return ::testing::AssertionFailure() << z << " m in column " << column << ", row " << row;
     }
   return ::testing::AssertionSuccess() << "unknown";
@@ -137,8 +141,83 @@ TEST(CompleteFile, TruncatedFileOfAnyFormatIsRejectedOrNoData) {
     for (std::size_t k = 1; k <= 20; ++k) cuts.push_back(bytes.size() * k / 21);
     for (const std::size_t cut : cuts) {
       spill(data, bytes.substr(0, cut));
-      EXPECT_TRUE(refusedOrUnknown(path, format.options, whole)) << format.driver << " cut to " << cut;
+      EXPECT_TRUE(refusedOrUnknown(path, format.options, whole, format.tolerance_m))
+          << format.driver << " cut to " << cut;
     }
+  }
+}
+
+// Property: a raster of plain numbers with one byte more or fewer anywhere is rejected: all pixels behind it would
+// be other numbers.
+TEST(CompleteFile, InsertedOrRemovedByteIsRejected) {
+  const std::set<std::string> plain{"ENVI", "EHdr", "PDS", "PDS4", "ISIS3", "VICAR", "SRTMHGT", "netCDF"};
+  for (const Format& format : formats()) {
+    if (!plain.contains(format.driver)) continue;
+    const TemporaryFolder folder;
+    const std::string path = folder / format.name, data = format.data.empty() ? path : folder / format.data;
+    format.make(path);
+    const std::string bytes = slurped(data);
+    for (std::size_t k = 1; k <= 8; ++k) {
+      const std::size_t at = bytes.size() * (k + 8) / 17;  // in the second half: behind the label
+      spill(data, bytes.substr(0, at) + 'x' + bytes.substr(at));
+      EXPECT_NE(refusal([&] { readElevation(path, format.options); }), "accepted") << format.driver << at;
+      spill(data, bytes.substr(0, at) + bytes.substr(at + 1));
+      EXPECT_NE(refusal([&] { readElevation(path, format.options); }), "accepted") << format.driver << at;
+    }
+  }
+}
+
+// A file system may store zeros of a complete GeoTIFF as holes; only its block offsets tell what is missing.
+TEST(CompleteFile, HolesOfTheFileSystemAreNotMissingBlocks) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "level.tif";
+  write({.rows = std::vector<std::vector<double>>(256, std::vector<double>(256, 0.0))}, path);
+  const std::string bytes = slurped(path);
+  std::filesystem::remove(path);
+  std::ofstream sparse(path, std::ios::binary);
+  for (std::size_t at = 0; at < bytes.size(); at += 4096) {
+    const std::string page = bytes.substr(at, 4096);
+    if (page.find_first_not_of('\0') == page.npos) continue;
+    sparse.seekp(static_cast<std::streamoff>(at));
+    sparse << page;
+  }
+  sparse.close();
+  std::filesystem::resize_file(path, bytes.size());
+  EXPECT_EQ(validFraction(readElevation(path).elevation_m), 1.0);
+}
+
+// Property: one turned bit of the mask's header never makes all pixels valid.
+TEST(CompleteFile, InternalMaskThatIsNotUsedIsRejected) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "masked.tif";
+  registerDrivers();
+  CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
+  {
+    const std::string plain = write({.rows = heights()}, folder / "plain.tif");
+    const Dataset source = openRaster(plain);
+    const Dataset file(
+        driverNamed("GTiff").CreateCopy(path.c_str(), source.get(), FALSE, nullptr, nullptr, nullptr));
+    ASSERT_EQ(file->CreateMaskBand(GMF_PER_DATASET), CE_None);
+    std::vector<unsigned char> mask(kSide * kSide, 255);
+    std::fill_n(mask.begin(), kSide * kSide / 4, static_cast<unsigned char>(0));
+    ASSERT_EQ(file->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, kSide, kSide, mask.data(),
+                                                              kSide, kSide, GDT_Byte, 0, 0, nullptr),
+              CE_None);
+  }
+  CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
+  const std::string bytes = slurped(path);
+  ASSERT_EQ(validFraction(readElevation(path).elevation_m), 0.75);
+  // The tag NewSubfileType (254, LONG, one value) of the mask has the value 4.
+  const std::string tag("\xfe\0\x04\0\x01\0\0\0\x04\0\0\0", 12);
+  const std::size_t at = bytes.find(tag);
+  ASSERT_NE(at, bytes.npos);
+  for (int bit = 0; bit < 8 * 12; ++bit) {
+    std::string damaged = bytes;
+    damaged[at + static_cast<std::size_t>(bit / 8)] ^= static_cast<char>(1 << (bit % 8));
+    spill(path, damaged);
+    double valid = 0.0;
+    const std::string line = refusal([&] { valid = validFraction(readElevation(path).elevation_m); });
+    EXPECT_TRUE(line != "accepted" || valid <= 0.75) << bit;
   }
 }
 
@@ -165,7 +244,7 @@ TEST(CompleteFile, ZeroedBlocksOfAnyFormatAreRejectedOrNoData) {
         std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(begin),
                     std::min(block, bytes.size() - begin), '\0');
         spill(data, damaged);
-        EXPECT_TRUE(refusedOrUnknown(path, format.options, whole))
+        EXPECT_TRUE(refusedOrUnknown(path, format.options, whole, format.tolerance_m))
             << format.driver << ", " << block << " bytes from " << begin << " of " << bytes.size();
       }
   }
@@ -232,6 +311,22 @@ TEST(CompleteFile, TextGridSmallerThanItsCellCountIsRejected) {
       HasSubstr("is cut short: 63 of 800000000 bytes"));
 }
 
+// Property: an inserted or a lost value, and a header of other sizes, would move all values behind.
+TEST(CompleteFile, TextGridOfAnotherNumberOfValuesIsRejected) {
+  const TemporaryFolder folder;
+  const auto line = [&](const std::string& size, const std::string& values) {
+    return refusal([&] {
+      readElevation(folder.write("g.asc", size + "xllcorner 0\nyllcorner 0\ncellsize 1\n" + values),
+                    {.resolution_m = 1.0});
+    });
+  };
+  EXPECT_EQ(line("ncols 3\nnrows 2\n", "1 2 3\n4 5 6\n"), "accepted");
+  EXPECT_THAT(line("ncols 3\nnrows 2\n", "1 2 3\n3 4 5 6\n"),
+              HasSubstr("holds 7 values, its header states 6"));
+  EXPECT_THAT(line("ncols 3\nnrows 2\n", "1 2 3\n4 56\n"), HasSubstr("holds 5 values"));
+  EXPECT_THAT(line("ncols 2\nnrows 2\n", "1 2 3\n4 5 6\n"), HasSubstr("holds 6 values"));
+}
+
 TEST(CompleteFile, PointFileTruncatedWithinANumberIsRejected) {
   const TemporaryFolder folder;
   std::string text;
@@ -284,10 +379,9 @@ TEST(TextGrid, NonNumericFieldIsRejectedWithItsLine) {
                 HasSubstr("g.asc:8: '" + std::string(word) + "' is not a number"));
   }
   const TemporaryFolder folder;
-  refuseWordsInGrid(folder.write("h.asc", "ncols 1\nnrows 1\nNODATA_value nan\ncellsize 1\n7"));
-  EXPECT_THAT(
-      refusal([&] { refuseWordsInGrid(folder.write("l.asc", "ncols 1\n" + std::string(9000, '1'))); }),
-      HasSubstr("l.asc:2: '1111"));
+  EXPECT_EQ(valuesOfGrid(folder.write("h.asc", "ncols 1\nnrows 1\nNODATA_value nan\ncellsize 1\n7")), 1U);
+  EXPECT_THAT(refusal([&] { valuesOfGrid(folder.write("l.asc", "ncols 1\n" + std::string(9000, '1'))); }),
+              HasSubstr("l.asc:2: '1111"));
 }
 
 TEST(TextGrid, ClassAndRockGridsAreValidatedEqually) {

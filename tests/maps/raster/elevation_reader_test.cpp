@@ -96,9 +96,36 @@ TEST(ElevationReader, ZeroedRegionIsNoDataUnlessKeptOnRequest) {
   EXPECT_THAT(refusal([&] { readElevation(path, {.window = inside}); }), HasSubstr("no data in any cell"));
   const ElevationMap means = readElevation(path, {.overview = 2});
   for (const float z : means.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 28.0F) << z;
-  EXPECT_THAT(refusal([&] { readElevation(path, {.resolution_m = 7.0}); }),
-              HasSubstr("128 pixels are exactly 0 and what surrounds them does not come down to 0"));
+  for (const double resolution_m : {7.0, 25.0}) {
+    const ElevationMap resampled = readElevation(path, {.resolution_m = resolution_m});
+    for (const float z : resampled.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 28.0F) << z;
+  }
   EXPECT_EQ(validFraction(readElevation(path, {.nodata = 0.0}).elevation_m), 1.0 - 128.0 / 1600);
+}
+
+// Property: of a plane, a single hole is interpolated exactly; at a step, beside another hole that leaves
+// fewer than three pairs, or on request it stays unknown.
+TEST(ElevationReader, SingleHolesAreInterpolatedWhereNeighboursAgree) {
+  const TemporaryFolder folder;
+  RasterFile plane{.rows = {}, .nodata = -1};
+  for (int row = 0; row < 12; ++row) {
+    plane.rows.emplace_back();
+    for (int column = 0; column < 12; ++column) plane.rows.back().push_back(50 + 2 * column + 3 * row);
+  }
+  const auto holed = [&](std::initializer_list<std::pair<int, int>> holes, double step) {
+    RasterFile file = plane;
+    for (auto& row : file.rows)
+      for (std::size_t c = 6; c < 12; ++c) row[c] += step;
+    for (const auto& [row, column] : holes)
+      file.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = -1;
+    return write(file, folder / "holed.tif");
+  };
+  const ElevationMap map = readElevation(holed({{4, 4}}, 0.0));
+  EXPECT_NEAR((map.elevation_m[{4, 7}]), 50 + 8 + 12, 1e-4);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("1 single cells without data interpolated")));
+  EXPECT_LT(validFraction(readElevation(holed({{4, 4}}, 0.0), {.keep_holes = true}).elevation_m), 1.0);
+  EXPECT_LT(validFraction(readElevation(holed({{4, 6}}, 8.0)).elevation_m), 1.0) << "at a step of 8 m";
+  EXPECT_LT(validFraction(readElevation(holed({{4, 4}, {4, 5}, {5, 4}, {5, 5}}, 0.0)).elevation_m), 1.0);
 }
 
 // Property: the grid for windowed planning has the same limit on cells as a map that is read whole.
@@ -158,6 +185,28 @@ TEST(ElevationReader, WindowEqualsThatPartOfTheMap) {
   const GeoPoint a = whole.georeference->reverse({500011, 4999961});
   const GeoPoint b = whole.georeference->reverse({500029, 4999989});
   EXPECT_EQ(readElevation(path, {.window = Window{a, b}}).grid(), part.grid());
+}
+
+// Property: a window of a map that is resampled has the values of the whole map there. Tolerance: places are
+// transformed within 0.001 pixels, and a pixel rises by 3.7 m at most.
+TEST(ElevationReader, WindowOfAResampledMapEqualsThatPart) {
+  const TemporaryFolder folder;
+  RasterFile file{
+      .rows = {}, .crs = "EPSG:4326", .transform = std::array<double, 6>{10.0, 3e-4, 0, 46.0, 0, -2e-4}};
+  for (int row = 0; row < 150; ++row) {
+    file.rows.emplace_back();
+    for (int column = 0; column < 150; ++column)
+      file.rows.back().push_back(500.0 + 30.0 * std::sin(0.1 * column) + 20.0 * std::cos(0.13 * row));
+  }
+  const std::string path = write(file, folder / "degrees.tif");
+  const ElevationMap whole = readElevation(path);
+  const Grid& g = whole.grid();
+  const Point a = g.centre({60, 70}), b = g.centre({90, 95});
+  const ElevationMap part = readElevation(path, {.window = Window{a, b}});
+  ASSERT_EQ(part.grid().width, 31);
+  for (int row = 0; row < part.grid().height; ++row)
+    for (int column = 0; column < part.grid().width; ++column)
+      EXPECT_NEAR((part.elevation_m[{column, row}]), (whole.elevation_m[{60 + column, 70 + row}]), 4e-3F);
 }
 
 TEST(ElevationReader, SouthUpRastersAreFlipped) {
@@ -273,8 +322,11 @@ TEST(ElevationReader, ReadsEveryRealMap) {
     if (entry.path().extension() != ".tif" || entry.path().string().find("class") != std::string::npos)
       continue;
     const std::string path = entry.path().string();
-    const bool local = refusal([&] { readElevation(path); }).find("no CRS") != std::string::npos;
-    const ElevationMap map = local ? readElevation(path, {.resolution_m = 1.0}) : readElevation(path);
+    const std::string line = refusal([&] { readElevation(path); });
+    const bool local = line.find("no CRS") != std::string::npos;
+    const ElevationMap map =
+        local ? readElevation(path, {.resolution_m = std::stod(line.substr(line.rfind(' ')))})
+              : readElevation(path);
     EXPECT_GT(map.grid().size(), 10000U) << path;
     EXPECT_GT(validFraction(map.elevation_m), 0.15) << path;
     ++count;

@@ -49,50 +49,176 @@ TEST(ElevationValues, UndeclaredNodataValuesAreNoData) {
   EXPECT_TRUE(std::isnan(readElevation(folder / "huge.tif", {.nodata = 8}).elevation_m[{3, 0}]));
 }
 
-// Closed form: an international foot is 0.3048 m, one of the US survey 1200/3937 m.
-TEST(ElevationValues, BandUnitsAreConvertedToMetres) {
+// The conversion of a band of one cell on a body of a radius [m].
+HeightConversion codeOf(const std::string& unit, double offset, double radius_m,
+                        std::vector<std::string>& notes, const ReadOptions& options = {}) {
   const Dataset raster = memoryRaster(1, 1);
-  GDALRasterBand& band = *raster->GetRasterBand(1);
+  OGRSpatialReference crs;
+  crs.SetGeogCS("body", "datum", "sphere", radius_m, 0.0);
+  raster->SetSpatialRef(&crs);
+  raster->GetRasterBand(1)->SetUnitType(unit.c_str());
+  raster->GetRasterBand(1)->SetOffset(offset);
+  return heightCode(*raster, 1, "map.tif", options, notes);
+}
+
+// Closed form: an international foot is 0.3048 m, one of the US survey 1200/3937 m.
+TEST(ElevationValues, BandUnitsAreConvertedToMetresOrRefused) {
   const auto scale = [&](const char* unit, std::size_t said) {
-    band.SetUnitType(unit);
     std::vector<std::string> notes;
-    const double out = heightCode(band, 0.0, notes).scale;
+    const double out = codeOf(unit, 0.0, 1737400.0, notes).scale;
     EXPECT_EQ(notes.size(), said) << unit;
     return out;
   };
   EXPECT_EQ(scale("", 0), 1.0);
   EXPECT_EQ(scale("Metre", 0), 1.0);
   EXPECT_EQ(scale("KM", 1), 1000.0);
+  for (const char* unit : {"kilometre", "KILOMETERS", "Kilometer"}) EXPECT_EQ(scale(unit, 1), 1000.0) << unit;
   EXPECT_EQ(scale("ft", 1), 0.3048);
   EXPECT_EQ(scale("US survey foot", 1), 1200.0 / 3937.0);
-  EXPECT_EQ(scale("furlong", 1), 1.0);  // unknown: taken as metres, with a note
+  std::vector<std::string> notes;
+  for (const char* unit : {"yard", "furlong", "kilometr", "ms"})
+    EXPECT_THAT(refusal([&] { codeOf(unit, 0.0, 1737400.0, notes); }),
+                HasSubstr("which is no known unit; pass --vertical-scale"))
+        << unit;
+  EXPECT_EQ(codeOf("yard", 0.0, 1737400.0, notes, {.vertical_scale = 0.9144}).scale, 0.9144);
+}
+
+// Property: an offset near the radius, in metres or kilometres, states the unit; a stated unit must agree.
+TEST(ElevationValues, OffsetNearTheRadiusSettlesTheUnit) {
+  std::vector<std::string> notes;
+  for (const char* unit : {"", "km"}) {
+    const HeightConversion code = codeOf(unit, 1737.4, 1737400.0, notes);
+    EXPECT_EQ(code.scale, 1000.0);
+    EXPECT_NEAR(code.offset_m, 0.0, 1e-6);
+  }
+  EXPECT_NEAR(codeOf("", 1737410.0, 1737400.0, notes).offset_m, 10.0, 1e-6);
+  EXPECT_EQ(codeOf("", 1500.0, 1737400.0, notes).offset_m, 1500.0);
+  for (const auto& [unit, offset] : {std::pair{"m", 1737.4}, {"km", 1737400.0}, {"ft", 1737400.0}})
+    EXPECT_THAT(refusal([&, unit = unit, offset = offset] { codeOf(unit, offset, 1737400.0, notes); }),
+                HasSubstr("which is the body's radius in"));
+}
+
+TEST(ElevationValues, ImplausibleScaleIsRefused) {
+  const TemporaryFolder folder;
+  for (const double scale : {0.0, 1e-9, -1e9})
+    EXPECT_THAT(refusal([&] { readElevation(write({.rows = kHill, .scale = scale}, folder / "s.tif")); }),
+                HasSubstr("the scale must be 1e-6 to 1e6"))
+        << scale;
+}
+
+// A label of PDS3 and heights from 0 in steps of 0.001.
+std::string pds3(const std::string& unit, const std::string& offset) {
+  std::string text =
+      "PDS_VERSION_ID = PDS3\r\nRECORD_TYPE = FIXED_LENGTH\r\nRECORD_BYTES = 192\r\nFILE_RECORDS = 16\r\n"
+      "LABEL_RECORDS = 4\r\n^IMAGE = 5\r\nOBJECT = TABLE\r\nUNIT = DEGREE\r\nEND_OBJECT = TABLE\r\n"
+      "OBJECT = IMAGE\r\nLINES = 12\r\nLINE_SAMPLES = 48\r\nSAMPLE_TYPE = PC_REAL\r\nSAMPLE_BITS = 32\r\n" +
+      unit + "OFFSET = " + offset + "\r\nEND_OBJECT = IMAGE\r\nEND\r\n";
+  text.resize(768, ' ');
+  for (int i = 0; i < 12 * 48; ++i) {
+    const auto value = static_cast<float>(0.001 * i);
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  return text;
+}
+
+// GDAL reads no unit from labels of PDS3. Closed form: the step from cell to cell is 0.001 units.
+TEST(ElevationValues, UnitOfAPds3LabelIsRead) {
+  const TemporaryFolder folder;
+  const auto step = [&](const std::string& unit) {
+    const auto z = readElevation(folder.write("h.img", pds3(unit, "0.0")), {.resolution_m = 5.0}).elevation_m;
+    return (z[{1, 0}]) - (z[{0, 0}]);
+  };
+  EXPECT_NEAR(step("UNIT = KILOMETER\r\n"), 1.0F, 1e-3F);
+  EXPECT_NEAR(step("UNIT = \"METER\"\r\n"), 0.001F, 1e-6F);
+  EXPECT_NEAR(step(""), 0.001F, 1e-6F);
+  EXPECT_THAT(refusal([&] { step("UNIT = PARSEC\r\n"); }), HasSubstr("'PARSEC', which is no known unit"));
+}
+
+// Special constants and the valid range of a label are no data; pixels that GDAL reads as other numbers are refused.
+TEST(ElevationValues, Pds3LabelIsHonouredOrRefused) {
+  const TemporaryFolder folder;
+  const auto valid = [&](const std::string& more) {
+    return validFraction(
+        readElevation(folder.write("h.img", pds3(more, "0.0")), {.resolution_m = 5.0, .keep_holes = true})
+            .elevation_m);
+  };
+  EXPECT_EQ(valid(""), 1.0);
+  EXPECT_DOUBLE_EQ(valid("UNKNOWN_CONSTANT = 0.25\r\n"), 1.0 - 1.0 / 576);
+  EXPECT_DOUBLE_EQ(valid("VALID_MINIMUM = 0.0995\r\n"), 1.0 - 100.0 / 576);
+  EXPECT_THAT(refusal([&] { valid("LINE_SUFFIX_BYTES = 4\r\n"); }),
+              HasSubstr("which GDAL reads as other numbers"));
+  std::string integers = pds3("", "0.0");
+  integers.replace(integers.find("PC_REAL"), 7, "LSB_INTEGER");
+  integers.erase(integers.find("END\r\n") + 5, 4);
+  EXPECT_THAT(refusal([&] { readElevation(folder.write("i.img", integers), {.resolution_m = 5.0}); }),
+              HasSubstr("holds pixels of SAMPLE_TYPE LSB_INTEGER and SAMPLE_BITS 32"));
 }
 
 TEST(ElevationValues, ElevationIsValueTimesScalePlusOffset) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> values{-1, 0, 10, nan, 2e30F};
-  std::vector<std::string> notes;
-  decodeHeights(values, {.scale = 0.5, .offset_m = 100.0, .nodata = -1.0}, notes);
+  decodeHeights(values, {.scale = 0.5, .offset_m = 100.0, .nodata = -1.0}, "map.tif");
   EXPECT_TRUE(std::isnan(values[0]));
   EXPECT_EQ(values[1], 100.0F);
   EXPECT_EQ(values[2], 105.0F);
   EXPECT_TRUE(std::isnan(values[3]));
   EXPECT_TRUE(std::isnan(values[4]));
-  EXPECT_TRUE(notes.empty());
+  std::vector<float> far{2e5F};
+  EXPECT_THAT(refusal([&] { decodeHeights(far, {}, "map.tif"); }), HasSubstr("beyond 131072 m"));
 }
 
 // Property: a customary no-data value counts as no data only if it is the minimum of all values.
 TEST(ElevationValues, NodataMarkerCountsOnlyAsTheMinimumValue) {
-  std::vector<std::string> notes;
-  std::vector<float> trench{-9999, -10500, 3};
-  decodeHeights(trench, {}, notes);
-  EXPECT_THAT(trench, testing::ElementsAre(-9999, -10500, 3));
-  EXPECT_TRUE(notes.empty());
-  std::vector<float> marked{-32768, 12, -32768};
-  decodeHeights(marked, {}, notes);
-  EXPECT_TRUE(std::isnan(marked[0]) && std::isnan(marked[2]));
-  EXPECT_EQ(marked[1], 12.0F);
-  EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("2 cells of -32768")));
+  const TemporaryFolder folder;
+  auto rows = kHill;
+  rows[0][0] = -9999, rows[1][1] = -10500;
+  EXPECT_EQ((readElevation(write({.rows = rows}, folder / "trench.tif")).elevation_m[{0, 4}]), -9999.0F);
+  // Beside a declared value, and two of them.
+  rows[1][1] = -32768, rows[2][3] = -1;
+  const ElevationMap two =
+      readElevation(write({.rows = rows, .nodata = -1}, folder / "two.tif"), {.keep_holes = true});
+  EXPECT_DOUBLE_EQ(validFraction(two.elevation_m), 17.0 / 20);
+  EXPECT_THAT(two.notes,
+              testing::IsSupersetOf({HasSubstr("1 cells of -9999"), HasSubstr("1 cells of -32768")}));
+}
+
+// Property: a void that the file does not declare is no data in every frame and scale to which the map is
+// resampled, and no mean mixes it with ground.
+TEST(ElevationValues, UndeclaredVoidIsNoDataInEveryFrame) {
+  const TemporaryFolder folder;
+  std::vector<std::vector<double>> rows(40, std::vector<double>(40));
+  for (std::size_t r = 0; r < 40; ++r)
+    for (std::size_t c = 0; c < 40; ++c)
+      rows[r][c] = r > 11 && r < 21 && c > 19 && c < 32 ? -32768.0 : 100.0 + 0.5 * static_cast<double>(r + c);
+  using Transform = std::array<double, 6>;
+  const RasterFile plain{.rows = rows, .type = GDT_Int16};
+  RasterFile degrees = plain, oblong = plain, turned = plain, mercator = plain;
+  degrees.crs = "EPSG:4326", degrees.transform = Transform{10.0, 2e-4, 0, 46.0, 0, -1.4e-4};
+  oblong.transform = Transform{500000, 10, 0, 5000000, 0, -15};
+  turned.transform = Transform{500000, 8, 6, 5000000, 6, -8};
+  mercator.crs = "EPSG:3857", mercator.transform = Transform{1e6, 10, 0, 6e6, 0, -10};
+  const double void_share = 9.0 * 12.0 / 1600.0;
+  const auto expectVoid = [&](const RasterFile& file, const ReadOptions& options, double most) {
+    const ElevationMap map = readElevation(write(file, folder / "void.tif"), options);
+    EXPECT_THAT(map.notes, Contains(HasSubstr("108 cells of -32768 treated as no data"))) << file.crs;
+    double least = 1e9, greatest = -1e9, unknown = 0;
+    for (const float z : map.elevation_m.values()) {
+      unknown += std::isnan(z) ? 1.0 : 0.0;
+      if (std::isnan(z)) continue;
+      least = std::min(least, static_cast<double>(z)), greatest = std::max(greatest, static_cast<double>(z));
+    }
+    EXPECT_GT(least, 98.0) << file.crs;
+    EXPECT_LT(greatest, 142.0) << file.crs;
+    unknown /= static_cast<double>(map.elevation_m.values().size());
+    EXPECT_GT(unknown, 0.5 * void_share) << file.crs;
+    EXPECT_LT(unknown, most) << file.crs;
+  };
+  expectVoid(plain, {}, 1.01 * void_share);
+  expectVoid(plain, {.overview = 4}, void_share);
+  expectVoid(plain, {.resolution_m = 25.0}, void_share);
+  expectVoid(plain, {.resolution_m = 7.0}, 2.0 * void_share);
+  for (const RasterFile& file : {degrees, oblong, mercator}) expectVoid(file, {}, 2.5 * void_share);
+  expectVoid(turned, {}, 0.7);  // half of the square around a turned raster lies outside of it
 }
 
 }  // namespace elevation_values_test

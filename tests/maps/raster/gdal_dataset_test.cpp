@@ -49,8 +49,10 @@ TEST(GdalDataset, ErrorsAreCapturedAndNotPrinted) {
     EXPECT_EQ(errors.last(), "unknown error");
     CPLError(CE_Warning, CPLE_AppDefined, "a warning");
     EXPECT_FALSE(errors.any());
+    EXPECT_TRUE(errors.anyWarning());
     CPLError(CE_Failure, CPLE_AppDefined, "first line\nsecond line");
     EXPECT_TRUE(errors.any());
+    CPLError(CE_Warning, CPLE_AppDefined, "a later warning");
     EXPECT_EQ(errors.last(), "first line");
     const GdalErrors later;
     EXPECT_FALSE(later.any()) << "counts from its construction";

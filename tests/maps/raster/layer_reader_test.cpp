@@ -29,6 +29,16 @@ TEST(LayerReader, ComplexNumbersAreRejected) {
   }
 }
 
+// Closed form: an abundance of 7 with scale 0.01 and offset 0.1 is 0.17.
+TEST(LayerReader, ScaleAndOffsetOfTheBandAreApplied) {
+  const TemporaryFolder folder;
+  const ElevationMap dem = readElevation(write({.rows = drawn({"1111", "1111", "1111"})}, folder / "d.tif"));
+  const std::string path =
+      write({.rows = drawn({"7777", "7777", "7777"}), .type = GDT_Byte, .scale = 0.01, .offset = 0.1},
+            folder / "r.tif");
+  EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, dem).share[{1, 1}]), 0.17F);
+}
+
 // Property: in a zeroed region of a file with abundances of about 0.3 the rock abundance is unknown.
 TEST(LayerReader, ZeroedRegionOfRockAbundanceIsUnseen) {
   const TemporaryFolder folder;

@@ -59,13 +59,6 @@ TEST(RasterBand, PixelsAreReadFirstRowFirst) {
               HasSubstr("a: cannot be read to its end"));
 }
 
-// Closed form: means of two by two pixels of the drawing.
-TEST(RasterBand, OverviewIsTheMean) {
-  const TemporaryFolder folder;
-  const Dataset file = openRaster(write({.rows = drawn({"1135", "3379"})}, folder / "m.tif"));
-  EXPECT_THAT(readPixels(*file, 1, {.width = 4, .height = 2}, "a", 2), testing::ElementsAre(2, 6));
-}
-
 TEST(RasterBand, MaskedAndInfinitePixelsAreNan) {
   const TemporaryFolder folder;
   auto rows = kHill;

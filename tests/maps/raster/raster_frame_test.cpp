@@ -21,8 +21,10 @@ TEST(RasterFrame, WithoutCrsTheResolutionIsRequired) {
   const ElevationMap map = readElevation(path, {.resolution_m = 0.5});
   EXPECT_FALSE(map.georeference);
   EXPECT_EQ(map.grid(), (Grid{.width = 4, .height = 5, .resolution_m = 0.5, .south_west = {-20, 27.5}}));
-  // If the given pixel size differs from the file's, the file's coordinates are ignored.
-  EXPECT_EQ(readElevation(path, {.resolution_m = 0.1}).grid().south_west, (Point{0, 0}));
+  // A resolution that contradicts the file would change slopes and origin.
+  for (const double other_m : {0.1, 1.0})
+    EXPECT_THAT(refusal([&] { readElevation(path, {.resolution_m = other_m}); }),
+                HasSubstr("states cells of 0.5, --resolution states"));
   const std::string bogus = write({.rows = kHill, .crs = "EPSG:4326"}, folder / "bogus.tif");
   EXPECT_EQ(readElevation(bogus, {.resolution_m = 2.0, .ignore_crs = true}).grid().resolution_m, 2.0);
 }
@@ -112,7 +114,8 @@ TEST(RasterFrame, FeetAreConvertedAndSouthUpRowsDetected) {
       write({.rows = kHill, .crs = "EPSG:2227", .transform = std::array<double, 6>{6e6, 10, 0, 2e6, 0, 10}},
             folder / "feet.tif");
   std::vector<std::string> notes;
-  const FramedRaster framed = frame(openRaster(path), 1, {}, path, notes);
+  const Dataset file = openRaster(path);
+  const FramedRaster framed = frame(*file, {}, path, notes);
   const double foot_m = 1200.0 / 3937.0;
   EXPECT_FALSE(framed.north_up);
   EXPECT_NEAR(framed.grid.resolution_m, 10 * foot_m, 1e-9);

@@ -62,29 +62,12 @@ TEST(Warp, AverageResamplingIsTheMeanOfPixels) {
   EXPECT_NEAR(pixels(*coarse).front(), 100 + 2 * 0.5 + 3 * 0.5, 1e-3);
 }
 
-// Property: a value that the caller declares as no data, overriding the file, never enters a mean.
-TEST(Warp, NoDataIsExcludedFromMeans) {
-  const TemporaryFolder folder;
-  const Dataset source = openRaster(write({.rows = drawn({"9911", "9911"})}, folder / "marks.tif"));
-  const Dataset coarse = warp(*source, {.resolution = 20, .method = "average", .nodata = 9.0}, "test");
-  const std::vector<float> values = pixels(*coarse);
-  ASSERT_EQ(values.size(), 2U);
-  EXPECT_TRUE(std::isnan(values[0]));
-  EXPECT_EQ(values[1], 1.0F);
-}
-
 TEST(Warp, ResultIsIndependentOfTheClosedSource) {
   const TemporaryFolder folder;
   Dataset source = openRaster(plane(folder));
   const Dataset same = warp(*source, {.method = "near"}, "test");
   source.reset();
   EXPECT_EQ(pixels(*same).front(), 100.0F);
-}
-
-TEST(Warp, RequestedBandIsResampled) {
-  const TemporaryFolder folder;
-  const Dataset source = openRaster(write({.rows = kHill, .names = {"a", "b"}}, folder / "two.tif"));
-  EXPECT_EQ(pixels(*warp(*source, {.band = 2, .method = "near"}, "test")).front(), 1001.0F);
 }
 
 TEST(Warp, InvalidCrsIsRejected) {

@@ -43,6 +43,23 @@ TEST(CsvReader, RepeatedByteOrderMarksAreSkipped) {
   EXPECT_THAT(CsvReader{file.path()}.header(), ElementsAre("slip", "load_N"));
 }
 
+TEST(CsvReader, CommentsAndColumnsDividedByBlanksAreRead) {
+  const test::TemporaryFile file{"# rig A, day 2\n#\nload_N  slip\n 60 0.1\n# pause\n80   0.3 \n90\n"};
+  CsvReader reader{file.path()};
+  EXPECT_THAT(reader.header(), ElementsAre("load_N", "slip"));
+  CsvRow row;
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_THAT(row.fields, ElementsAre("60", "0.1"));
+  EXPECT_EQ(row.line, 4U);
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_THAT(row.fields, ElementsAre("80", "0.3"));
+  EXPECT_EQ(row.line, 6U);
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(row.fault, "has 1 fields, the header 2");
+  // Property: a row of data whose first field begins with # is no comment.
+  EXPECT_THAT(rowsOf("run,slip\n#1,0.2\n")[0].fields, ElementsAre("#1", "0.2"));
+}
+
 TEST(CsvReader, CountsLinesInsideQuotes) {
   const auto rows = rowsOf("a,b\n\"1\n2\",3\n4,5\n");
   ASSERT_EQ(rows.size(), 2U);

@@ -51,6 +51,22 @@ TEST(TelemetryReader, RejectsPhysicallyImpossibleValues) {
   }
 }
 
+// Property: a column most of whose numbers are those of percent or degrees is refused, not thinned out to the rest.
+TEST(TelemetryReader, PercentAndDegreesAreRefusedWithTheOptionThatReadsThem) {
+  const auto column = [](const std::string& name, std::initializer_list<double> values) {
+    std::string text = "load_N," + name + "\n";
+    for (const double v : values) text += "80," + std::to_string(v) + "\n";
+    return text;
+  };
+  EXPECT_THAT(
+      errorOf(column("slip", {12, 35, 0.4, 8, 90})),
+      HasSubstr("column slip: 4 values are not in [-1, 1], as percent are; if they are, pass --column "
+                "slip=slip:percent"));
+  EXPECT_THAT(errorOf(column("slope_rad", {10, 1, 14, -12})),
+              HasSubstr("pass --column slope_rad=slope_rad:deg"));
+  EXPECT_EQ(read(column("slip", {0.12, 0.35, 40, 0.08})).rejected.size(), 1U);
+}
+
 TEST(TelemetryReader, RejectedRowsHaveLineAndReason) {
   struct Case {
     const char* row;

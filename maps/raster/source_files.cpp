@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include <cpl_minixml.h>
+#include <gdal_priv.h>
+
+#include <talus/common/input_error.hpp>
+#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_handle.hpp>
+#include <talus/maps/raster/source_files.hpp>
+
+namespace talus::maps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostLevels = 8;  // of virtual rasters that name each other
+
+fs::path folderOf(const fs::path& file) {
+  std::error_code error;
+  return fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
+}
+
+// Gathers the files of a dataset and of the sources of a virtual raster.
+class Sources {
+ public:
+  explicit Sources(const std::string& path) : given_(folderOf(path)) {
+    std::error_code error;
+    target_ = fs::weakly_canonical(path, error).parent_path();
+    files.push_back(path);
+  }
+
+  void add(GDALDataset& dataset, const std::string& path) {
+    if (open_.size() >= kMostLevels)
+      throw InputError({path, "is named through more than eight other files", "name the rasters directly"});
+    open_.push_back(path);
+    const std::vector<std::string> listed = listedFiles(dataset);
+    for (const std::string& file : listed)
+      if (file != path) take(file);
+    const bool is_virtual = GDALGetDriverShortName(dataset.GetDriver()) == std::string_view("VRT");
+    if (is_virtual) requirePlainNames(dataset, path);
+    for (const char* ending : {".msk", ".aux.xml"}) requireUsed(path, ending, listed);
+    for (const std::string& file : listed)
+      if (is_virtual && file != path) addSource(file, path);
+    open_.pop_back();
+  }
+
+  std::vector<std::string> files;
+
+ private:
+  // Takes a file that lies in the folder of the raster.
+  void take(const std::string& file) {
+    if (std::ranges::find(files, file) != files.end()) return;
+    std::error_code error;
+    const fs::path folder = fs::canonical(file, error).parent_path();
+    if (error || (folder != given_ && folder != target_))
+      throw InputError({files.front(),
+                        "names '" + file.substr(0, 80) + "', which is no file of its own folder",
+                        "put the files into one folder and name them without a path"});
+    requireReadableFile(file);
+    if (file.ends_with(".aux.xml")) requireXml(file);
+    files.push_back(file);
+  }
+
+  static void requireXml(const std::string& file) {
+    const GdalErrors errors;
+    const CPLXMLTreeCloser tree(CPLParseXMLFile(file.c_str()));
+    if (!tree) throw InputError({file, "is no XML: " + errors.last(), "write it again, or remove it"});
+  }
+
+  static void requireUsed(const std::string& path, const char* ending,
+                          const std::vector<std::string>& listed) {
+    const std::string side = path + ending;
+    std::error_code error;
+    if (fs::exists(side, error) && std::ranges::count(listed, side) == 0)
+      throw InputError({side,
+                        "belongs to the raster by its name, and GDAL does not use it, as when it is damaged",
+                        "write it again, or remove it"});
+  }
+
+  // Sources are compared with GDAL's list by their names alone; /vsi, subdatasets and pixel functions are not
+  // in it.
+  static void requirePlainNames(GDALDataset& dataset, const std::string& path) {
+    char** xml = dataset.GetMetadata("xml:VRT");
+    const CPLXMLTreeCloser tree(CPLParseXMLString(xml == nullptr ? "" : *xml));
+    std::vector<const CPLXMLNode*> open{tree.get()};
+    while (!open.empty()) {
+      const CPLXMLNode* node = open.back();
+      open.pop_back();
+      if (node == nullptr) continue;
+      open.push_back(node->psNext);
+      open.push_back(node->psChild);
+      if (node->eType != CXT_Element) continue;
+      const std::string element = lower(node->pszValue);
+      if (element == "pixelfunctiontype")
+        throw InputError(
+            {path, "contains code (PixelFunctionType)", "compute the raster with gdal_translate"});
+      const bool names_file = element == "sourcefilename" || element == "sourcedataset";
+      const fs::path name = names_file ? CPLGetXMLValue(node, nullptr, "") : "";
+      if (name.string().find(':') != std::string::npos || name.string().starts_with("/vsi"))
+        throw InputError({path,
+                          "names '" + name.string().substr(0, 80) + "', which is no file of its own folder",
+                          "put the files into one folder and name them without a path"});
+    }
+  }
+
+  void addSource(const std::string& file, const std::string& path) {
+    std::error_code error;
+    const auto same = [&](const std::string& other) { return fs::equivalent(file, other, error); };
+    if (std::ranges::any_of(open_, same))
+      throw InputError({path, "names itself by '" + file + "'", "name another raster"});
+    const GdalErrors errors;
+    const Dataset source(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    if (source) add(*source, file);
+  }
+
+  fs::path given_, target_;  // folders of the file as named and of its target
+  std::vector<std::string> open_;
+};
+
+}  // namespace
+
+std::vector<std::string> sourceFiles(GDALDataset& dataset, const std::string& path) {
+  Sources sources(path);
+  sources.add(dataset, path);
+  return std::move(sources.files);
+}
+
+void requireRegularNeighbours(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  const std::string stem = lower(fs::path(path).stem().string());
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (!lower(at->path().filename().string()).starts_with(stem)) continue;
+    const fs::file_status status = at->status(error);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+      throw InputError({at->path().string(),
+                        "is a device, a FIFO or a socket beside or named by '" + path + "'",
+                        "remove it or give a file"});
+    error.clear();
+  }
+}
+
+}  // namespace talus::maps
