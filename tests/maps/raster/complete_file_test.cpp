@@ -157,12 +157,12 @@ TEST(CompleteFile, InsertedOrRemovedByteIsRejected) {
     const std::string path = folder / format.name, data = format.data.empty() ? path : folder / format.data;
     format.make(path);
     const std::string bytes = slurped(data);
-    for (std::size_t k = 1; k <= 8; ++k) {
-      const std::size_t at = bytes.size() * (k + 8) / 17;  // in the second half: behind the label
-      spill(data, bytes.substr(0, at) + 'x' + bytes.substr(at));
-      EXPECT_NE(refusal([&] { readElevation(path, format.options); }), "accepted") << format.driver << at;
-      spill(data, bytes.substr(0, at) + bytes.substr(at + 1));
-      EXPECT_NE(refusal([&] { readElevation(path, format.options); }), "accepted") << format.driver << at;
+    // The size is the reason, not implausible numbers; GDAL knows SRTMHGT by its size alone.
+    const char* reason = format.driver == "SRTMHGT" ? "GDAL opens no raster" : " bytes";
+    for (std::size_t k = 0; k < 16; ++k) {
+      const std::size_t at = bytes.size() * (k / 2 + 9) / 17;  // in the second half: behind the label
+      spill(data, bytes.substr(0, at) + (k % 2 == 0 ? "x" : "") + bytes.substr(at + k % 2));
+      EXPECT_THAT(refusal([&] { readElevation(path, format.options); }), HasSubstr(reason)) << format.driver;
     }
   }
 }
