@@ -23,7 +23,8 @@ TEST(MotionOptions, HeadingsAreAcceptedInRadiansOrDegrees) {
   EXPECT_NEAR(*parsed("--goal-heading-deg 90").goal_heading_rad, std::numbers::pi / 2, 1e-12);
   EXPECT_FALSE(parsed("").any());
   EXPECT_THROW(parsed("--start-heading 1 --start-heading-deg 2"), CLI::ExcludesError);
-  EXPECT_THROW(parsed("--start-heading nan"), CLI::ValidationError);
+  for (const char* angle : {"nan", "90"})
+    EXPECT_THROW(parsed(std::string("--start-heading ") + angle), CLI::ValidationError) << angle;
   for (const char* radius : {"-1", "1e-9", "1e-15", "0.0009", "1001"})
     EXPECT_THROW(parsed("--turning-radius " + std::string(radius)), CLI::ValidationError) << radius;
   EXPECT_EQ(parsed("--turning-radius 0").turning_radius_m, 0.0);

@@ -62,14 +62,6 @@ TEST(Warp, AverageResamplingIsTheMeanOfPixels) {
   EXPECT_NEAR(pixels(*coarse).front(), 100 + 2 * 0.5 + 3 * 0.5, 1e-3);
 }
 
-TEST(Warp, ResultIsIndependentOfTheClosedSource) {
-  const TemporaryFolder folder;
-  Dataset source = openRaster(plane(folder));
-  const Dataset same = warp(*source, {.method = "near"}, "test");
-  source.reset();
-  EXPECT_EQ(pixels(*same).front(), 100.0F);
-}
-
 TEST(Warp, InvalidCrsIsRejected) {
   const TemporaryFolder folder;
   const Dataset source = openRaster(plane(folder));

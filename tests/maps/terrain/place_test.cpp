@@ -78,6 +78,10 @@ TEST(Place, DegreesAreConvertedByTheMapGeoreference) {
                 locate(GeoPoint{0.5, 0.5}, map, "--goal");
               }),
               HasSubstr("at 28.647890d,28.647890d lies outside"));
+  // Degrees without their suffix, in either order.
+  for (const Point bare : {Point{-0.000989, 0.003628}, Point{0.003628, -0.000989}})
+    EXPECT_THAT(refusal([&] { locate(bare, map, "--goal"); }), HasSubstr("write -0.000989d,0.003628d"));
+  EXPECT_EQ(locate(Point{110, -30}, map, "--goal"), (Point{110, -30}));
 }
 
 TEST(Place, WindowRequiresFourNumbersOfOneUnit) {
