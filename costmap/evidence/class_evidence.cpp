@@ -1,197 +1,123 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
-#include <limits>
-#include <vector>
+#include <utility>
 
 #include <talus/costmap/evidence/class_evidence.hpp>
-#include <talus/costmap/evidence/spreading.hpp>
-#include <talus/costmap/ground/ground_kind.hpp>
 
 namespace talus::costmap {
 namespace {
 
-constexpr double kUnit = 1048576.0;  // fixed-point units per 1
+constexpr double kUnit = 1048576.0;    // fixed-point units per 1
+// Prior probability that the sensors of a source are faulty, by Trust.
+constexpr std::array<double, 3> kFaulty{0.5, 0.07, 0.001};
+constexpr double kFaultStd = 2.0;      // departures that faulty sensors read, over mean_std
+constexpr double kLeastError = 0.005;  // least error of a source [-]
+constexpr double kOrdinary = 2.0;      // a block that departs by more standard deviations is on another soil,
+                                       // which the class raster does not show: it counts as that far
+constexpr double kWeightStep = 1.0 / 64.0;
 
 std::int64_t fixed(double value) {
   return static_cast<std::int64_t>(std::llround(value * kUnit));
 }
 
-constexpr double kPullStep = 0.005, kSinkageStep = 0.02;
-constexpr double kSame = 1e-6;  // tolerance [steps], so that a rounded number rounds to itself
-
-double below(double value, double step) noexcept {
-  return std::floor(value / step + kSame) * step;
+double rounded(double value, double step) noexcept {
+  return step > 0.0 ? std::round(value / step) * step : value;
+}
+double roundedUp(double value, double step) noexcept {
+  return step > 0.0 ? std::ceil(value / step - 1e-6) * step : value;
 }
 
-double above(double value, double step) noexcept {
-  return std::ceil(value / step - kSame) * step;
-}
+// A hypothesis while sources are added: log of its weight, precision of D', and mean of D' times precision.
+struct Hypothesis {
+  double log_weight, precision, sum;
+  std::vector<bool> faulty{};
+};
 
 }  // namespace
 
-void IndependentPlaces::set(const Square& square, std::optional<float> departure) {
-  Colour& colour =
-      colours_[(static_cast<unsigned>(square.first) & 1U) << 1 | (static_cast<unsigned>(square.second) & 1U)];
-  const auto known = colour.known.find(square);
-  if (known != colour.known.end()) {
-    if (departure == known->second) return;
-    colour.sorted.erase(colour.sorted.find(known->second));
-    if (!departure) colour.known.erase(known);
+void ClassEvidence::count(std::span<const SourcePull> pulls, double prior, double places, int sign) {
+  const double variance = ground_.pull_std * ground_.pull_std, q = ground_.mean_std;
+  double most = 0.0;
+  for (const SourcePull& one : pulls) {
+    const double weight = places * variance / (variance + one.variance());
+    const double limit = kOrdinary * std::sqrt(variance + q * q + one.variance() + one.shared * one.shared);
+    Sums& sums = sources_[one.source];
+    sums.weight += sign * fixed(weight);
+    sums.departure += sign * fixed(weight * std::clamp(one.pull - prior, -limit, limit));
+    sums.shared += sign * fixed(weight * one.shared);
+    if (sums.weight == 0) sources_.erase(one.source);
+    most = std::max(most, weight);
   }
-  if (!departure) return;
-  colour.known[square] = *departure;
-  colour.sorted.insert(*departure);
+  places_ += sign * fixed(most);
 }
 
-std::size_t IndependentPlaces::driven() const noexcept {
-  std::size_t most = 0;
-  for (const Colour& colour : colours_) most = std::max(most, colour.sorted.size());
-  return most;
+void ClassEvidence::countSinkage(double departure, double places, int sign) {
+  const double limit = kOrdinary * ground_.sinkage_std;
+  sinkage_.weight += sign * fixed(places);
+  sinkage_.departure += sign * fixed(places * std::clamp(departure, -limit, limit));
 }
 
-double IndependentPlaces::agreed(std::size_t places) const noexcept {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Colour& colour : colours_)
-    if (colour.sorted.size() >= places)
-      most = std::max(most, static_cast<double>(
-                                *std::next(colour.sorted.rbegin(), static_cast<std::ptrdiff_t>(places) - 1)));
-  return most;
+double ClassEvidence::places() const noexcept {
+  return static_cast<double>(places_) / kUnit;
 }
 
-void ClassEvidence::WeightedSum::add(const WeightedSum& other) noexcept {
-  weight += other.weight;
-  departure += other.departure;
-}
-
-void ClassEvidence::add(std::uint16_t drive, const WeightedSum& sum, ByDrive& drives) {
-  WeightedSum& all = drives[drive];
-  all.add(sum);
-  if (all.weight == 0) drives.erase(drive);
-}
-
-void ClassEvidence::sum(const BlockContribution& contribution, std::int64_t sign) {
-  const auto sum = [&](double departure) {
-    return WeightedSum{sign * fixed(contribution.weight), sign * fixed(contribution.weight * departure)};
+ClassState ClassEvidence::state(double step) const {
+  const double p2 = ground_.pull_std * ground_.pull_std, q2 = ground_.mean_std * ground_.mean_std;
+  const double of_places = places_ > 0 ? p2 / places() : 0.0;
+  std::vector<Hypothesis> all{{0.0, 1.0 / (q2 + of_places), 0.0}};
+  struct Heard {
+    Source source;
+    double mean, shared, variance;
   };
-  if (contribution.raises) {
-    pull_.add(sum(contribution.pull));
-    add(contribution.drive, sum(contribution.pull), pull_by_drive_);
-    shared_ += sign * fixed(contribution.weight * contribution.shared);
-  } else {
-    add(contribution.drive, sum(contribution.pull), lower_pull_);
+  std::vector<Heard> heard;
+  for (const auto& [source, sums] : sources_) {
+    const double weight = static_cast<double>(sums.weight) / kUnit;
+    const double shared = std::max(static_cast<double>(sums.shared) / kUnit / weight, kLeastError);
+    heard.push_back({source, static_cast<double>(sums.departure) / kUnit / weight, shared,
+                     shared * shared + std::max(p2 / weight - of_places, 0.0)});
+    std::vector<Hypothesis> next;
+    for (const Hypothesis& before : all)
+      for (const bool faulty : {false, true}) {
+        const double of_fault = kFaulty[static_cast<std::size_t>(source.trust)], error = heard.back().variance;
+        const double variance = error + (faulty ? kFaultStd * kFaultStd * q2 : 1.0 / before.precision);
+        const double off = heard.back().mean - (faulty ? 0.0 : before.sum / before.precision);
+        Hypothesis h = before;
+        h.log_weight +=
+            std::log(faulty ? of_fault : 1.0 - of_fault) - 0.5 * (std::log(variance) + off * off / variance);
+        h.precision += faulty ? 0.0 : 1.0 / error;
+        h.sum += faulty ? 0.0 : heard.back().mean / error;
+        h.faulty.push_back(faulty);
+        next.push_back(std::move(h));
+      }
+    std::ranges::stable_sort(next, std::greater{}, &Hypothesis::log_weight);
+    if (next.size() > kMost) next.resize(kMost);
+    all = std::move(next);
   }
-  if (!contribution.sinkage) return;
-  if (contribution.sinkage_raises)
-    sinkage_.add(sum(-*contribution.sinkage));
-  else
-    add(contribution.drive, sum(-*contribution.sinkage), lower_sinkage_);
-}
-
-double ClassEvidence::mostRise() const noexcept {
-  return mayRaise() ? std::max(places_.agreed(kPlaces), 0.0) : 0.0;
-}
-
-ClassState ClassEvidence::state() const noexcept {
-  return {.pull = posterior_.pull.value,
-          .pull_std = posterior_.pull.std,
-          .own_std = posterior_.own_std,
-          .shared = posterior_.shared,
-          .sinkage = posterior_.sinkage.value,
-          .may_raise = mayRaise(),
-          .most_rise = mostRise()};
-}
-
-ClassState ClassEvidence::stateInSteps() const noexcept {
-  ClassState s = state();
-  s.pull = below(s.pull, kPullStep);
-  s.pull_std = std::min(above(s.pull_std, kPullStep), ground_.mean_std);
-  s.own_std = std::min(above(s.own_std, kPullStep), ground_.mean_std);
-  s.shared = above(s.shared, kPullStep);
-  s.sinkage = above(s.sinkage, kSinkageStep);
-  s.most_rise = below(s.most_rise, GroundKind::kPullStep);
-  s.pull_step = kPullStep;
-  s.sinkage_step = kSinkageStep;
-  return s;
-}
-
-// Conjugate update of the class mean with prior variance mean_std^2 (B12).
-double ClassEvidence::meanOf(const WeightedSum& sum) const noexcept {
-  const double prior = ground_.mean_std * ground_.mean_std;
-  return prior * static_cast<double>(sum.departure) / kUnit /
-         (prior * static_cast<double>(sum.weight) / kUnit + ground_.pull_std * ground_.pull_std);
-}
-
-// Least mean over all combinations of the contributions that may raise with any of the lowering drives (B12).
-// The set of drives with the least mean contains all drives below some departure; the drives are therefore
-// added in ascending order.
-double ClassEvidence::leastMean(WeightedSum raising, const ByDrive& lowering) const {
-  std::vector<WeightedSum> drives;
-  for (const auto& [drive, sum] : lowering) drives.push_back(sum);
-  std::ranges::sort(drives, [](const WeightedSum& a, const WeightedSum& b) {
-    return static_cast<double>(a.departure) * static_cast<double>(b.weight) <
-           static_cast<double>(b.departure) * static_cast<double>(a.weight);
-  });
-  double least = meanOf(raising);
-  for (const WeightedSum& sum : drives) {
-    raising.add(sum);
-    least = std::min(least, meanOf(raising));
+  ClassState state;
+  double sum = 0.0;
+  for (const Hypothesis& h : all) {
+    const double share = q2 / (q2 + of_places), mean = h.sum / h.precision;
+    ClassHypothesis one{.weight = std::exp(h.log_weight - all.front().log_weight),
+                        .pull = rounded(share * mean, step),
+                        .own_std = roundedUp(std::sqrt(q2 * (1.0 - share)), step),
+                        .shared_std = roundedUp(share / std::sqrt(h.precision), step)};
+    if (heard.empty()) std::swap(one.own_std, one.shared_std);
+    for (std::size_t i = 0; i < heard.size(); ++i)
+      if (!h.faulty[i])
+        one.sound.emplace_back(heard[i].source, rounded((heard[i].mean - mean) * heard[i].shared *
+                                                            heard[i].shared / heard[i].variance,
+                                                        step));
+    if (step > 0.0) one.weight = rounded(one.weight, kWeightStep);
+    if (!(one.weight > 0.0)) continue;
+    sum += one.weight;
+    state.hypotheses.push_back(std::move(one));
   }
-  return least;
-}
-
-// Posterior standard deviation of the class mean from the given contributions alone (B12).
-double ClassEvidence::deviationOf(const WeightedSum& sum) const noexcept {
-  const double weighed = ground_.mean_std * ground_.mean_std * static_cast<double>(sum.weight) / kUnit /
-                         (ground_.pull_std * ground_.pull_std);
-  return ground_.mean_std / std::sqrt(1.0 + weighed);
-}
-
-// Least value of mean plus one standard deviation over the drives that may raise; infinite for fewer than two
-// drives.
-double ClassEvidence::mostByDrives() const noexcept {
-  double most = std::numeric_limits<double>::infinity();
-  if (pull_by_drive_.size() < 2) return most;
-  for (const auto& [drive, sum] : pull_by_drive_)
-    if (drive != 0) most = std::min(most, meanOf(sum) + deviationOf(sum));
-  return most;
-}
-
-bool ClassEvidence::drivesAgree() const noexcept {
-  constexpr double kApart =
-      3.0;  // standard deviations of the difference; 0.3 % of pairs of sound drives lie further apart
-  for (const auto& [one, weak] : pull_by_drive_)
-    for (const auto& [other, strong] : pull_by_drive_)
-      if (one != 0 && other != 0 &&
-          meanOf(strong) - meanOf(weak) > kApart * std::hypot(deviationOf(weak), deviationOf(strong)))
-        return false;
-  return true;
-}
-
-void ClassEvidence::refresh() {
-  const double variance = ground_.pull_std * ground_.pull_std;
-  const double prior = ground_.mean_std * ground_.mean_std;
-  const double heard = std::clamp(
-      (static_cast<double>(places_.driven()) - 1.0) / (static_cast<double>(kPlaces) - 1.0), 0.0, 1.0);
-  std::int64_t weight = pull_.weight;
-  for (const auto& [drive, sum] : lower_pull_) weight += sum.weight;
-  posterior_.places = static_cast<double>(weight) / kUnit;
-  posterior_.pull = {std::min({heard * leastMean(pull_, lower_pull_), mostByDrives(), mostRise()}),
-                     ground_.mean_std};
-  posterior_.own_std = ground_.mean_std;
-  posterior_.shared = 0.0;
-  posterior_.sinkage.value = 0.0 - heard * leastMean(sinkage_, lower_sinkage_);
-  if (mayRaise()) {
-    const double raising = static_cast<double>(pull_.weight) / kUnit;
-    const double share = prior * raising / (prior * raising + variance);
-    posterior_.own_std = std::sqrt(prior * (1.0 - share));
-    if (raising > 0.0) posterior_.shared = share * static_cast<double>(shared_) / kUnit / raising;
-    posterior_.pull.std = std::sqrt(
-        withSharedError({.prior = prior, .variance = prior * (1.0 - share), .shared = posterior_.shared}));
-  } else {
-    posterior_.sinkage.value = std::max(posterior_.sinkage.value, 0.0);
-  }
-  posterior_.sinkage.std = posterior_.pull.std * ground_.sinkage_std / ground_.pull_std;
+  for (ClassHypothesis& h : state.hypotheses) h.weight /= sum;
+  const double weight = static_cast<double>(sinkage_.weight) / kUnit;
+  const double ratio2 = q2 / p2;  // variance of the class mean over that of places
+  state.sinkage = rounded(ratio2 * static_cast<double>(sinkage_.departure) / kUnit / (ratio2 * weight + 1.0), step);
+  return state;
 }
 
 }  // namespace talus::costmap

@@ -18,8 +18,8 @@ struct EvidenceBeliefs::Patch {
   std::array<std::optional<InferredGround>, kPatchSide * kPatchSide> known;
 };
 
-EvidenceBeliefs::EvidenceBeliefs(const EvidenceField& field, EvidenceField::Classes classes)
-    : store_(field.store()), states_(field.states(classes)) {}
+EvidenceBeliefs::EvidenceBeliefs(const EvidenceField& field)
+    : store_(field.store()), states_(field.states()) {}
 
 EvidenceBeliefs::~EvidenceBeliefs() = default;
 
@@ -47,7 +47,7 @@ EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockLevel& block, int cl
   if (patches_.size() >= kMostRemembered) patches_.clear();
   auto patch = patches_.find(key);
   if (patch == patches_.end()) {
-    LocalGround ground = groundAround(store_, first, groundOf(class_index));
+    LocalGround ground(store_, first, groundOf(class_index));
     patch = patches_.emplace(key, std::make_shared<Patch>(Patch{std::move(ground), {}})).first;
   }
   last_key_ = key;
@@ -60,9 +60,7 @@ const InferredGround& EvidenceBeliefs::at(maps::Cell cell, int class_index) {
   if (patch.ground.empty()) return away(class_index);
   std::optional<InferredGround>& known =
       patch.known[static_cast<std::size_t>(block.row % kPatchSide * kPatchSide + block.column % kPatchSide)];
-  if (!known)
-    known = inferredGround(store_, patch.ground, groundOf(class_index),
-                           store_.blocks.middleOf(store_.blocks.blockAt(block.column, block.row)));
+  if (!known) known = patch.ground.at(store_.blocks.middleOf(store_.blocks.blockAt(block.column, block.row)));
   return *known;
 }
 

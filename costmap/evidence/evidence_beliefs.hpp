@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <talus/costmap/evidence/evidence_field.hpp>
-#include <talus/costmap/evidence/ground_inference.hpp>
+#include <talus/costmap/evidence/local_ground.hpp>
 
 namespace talus::costmap {
 
@@ -16,8 +16,7 @@ namespace talus::costmap {
 /// thread-safe.
 class EvidenceBeliefs {
  public:
-  explicit EvidenceBeliefs(const EvidenceField& field,
-                           EvidenceField::Classes classes = EvidenceField::Classes::AsKnown);
+  explicit EvidenceBeliefs(const EvidenceField& field);
   ~EvidenceBeliefs();
   EvidenceBeliefs(const EvidenceBeliefs&) = delete;
   EvidenceBeliefs& operator=(const EvidenceBeliefs&) = delete;

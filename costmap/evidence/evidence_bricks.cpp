@@ -67,6 +67,11 @@ BlockEvidence& EvidenceBricks::at(const BlockLevel& block) {
                                                  .place_in_brick = static_cast<std::uint8_t>(key >> 24)});
 }
 
+void EvidenceBricks::erase(const BlockLevel& block) {
+  std::erase_if(bricks_[brickOf(block.column, block.row)].blocks,
+                [key = keyOf(block)](const BlockEvidence& e) { return keyOf(e) == key; });
+}
+
 std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const {
   std::vector<ReadingCount> out;
   if (!contains(block.column, block.row)) return out;

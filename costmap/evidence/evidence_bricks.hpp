@@ -33,6 +33,8 @@ class EvidenceBricks {
   /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
   /// inside the map.
   BlockEvidence& at(const BlockLevel& block);
+  /// Removes evidence that at() created; its readings must have been removed.
+  void erase(const BlockLevel& block);
   /// Returns the readings of a class on a level of a block, sorted by kind, value and drive; empty without
   /// readings.
   std::vector<ReadingCount> counts(const BlockLevel& block) const;

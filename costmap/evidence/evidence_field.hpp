@@ -23,8 +23,6 @@ struct SavedBlock {
   std::vector<ReadingCount> counts;
 };
 
-struct BlockContribution;
-struct ClassPosterior;
 struct ClassState;
 struct EvidenceStore;
 
@@ -35,13 +33,6 @@ struct EvidenceStore;
 /// Blocks have a side of a quarter of the correlation length, so that the work for an observation does not
 /// depend on the map's resolution. The same evidence in any order gives bit-identical results. Not
 /// thread-safe while changed.
-///
-/// Evidence lowers an estimate immediately: no estimate exceeds the value that any single nearby place
-/// implies, if that place is weaker than the variation of its class explains or has only unverified readings.
-/// Evidence raises an estimate, or reduces its standard deviation, only if at least three independent places
-/// of the class have readings that may raise an estimate (readings of verified sensors). The increase is at
-/// most the departure that each of the three places reaches. Until then, no estimate exceeds that of the
-/// class without nearby evidence.
 class EvidenceField {
  public:
   /// Makes a field without evidence.
@@ -62,21 +53,15 @@ class EvidenceField {
   /// estimate may change; nullopt if the block has no evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& readings);
 
-  /// Form of the class states from which estimates are computed. AsKnown: exact. InSteps: rounded towards
-  /// danger (ClassEvidence::stateInSteps()), as used for publishing.
-  enum class Classes : std::uint8_t { AsKnown, InSteps };
-
   /// Returns the evidence of the block that contains a cell, for the cell's class; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
   /// Returns the number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
   double samplesOf(maps::Cell cell) const;
 
-  /// Returns the posterior of a class, not rounded.
-  const ClassPosterior& posterior(int class_index) const;
   /// Returns the estimate for ground of a class without nearby evidence.
-  GroundBelief classBelief(int class_index, Classes classes = Classes::AsKnown) const;
+  GroundBelief classBelief(int class_index) const;
   /// Returns the states of all classes, in the order of GroundModel::Parts::classes.
-  std::vector<ClassState> states(Classes classes) const;
+  std::vector<ClassState> states() const;
   /// Returns disjoint boxes of cells that evidence can affect; ground outside these boxes has the estimate of
   /// its class.
   std::vector<maps::CellBox> reached() const;
@@ -100,12 +85,7 @@ class EvidenceField {
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
   maps::CellBox count(const BlockLevel& where, const SavedBlock& readings, Count how = Count::Add);
-  BlockContribution lessonOf(const BlockEvidence& block, int class_index) const;
-  std::vector<BlockContribution> contributionsOf(const BlockLevel& where, const BlockEvidence& block,
-                                                 int class_index) const;
-  Estimate priorOf(int class_index) const;
-  std::optional<float> squareStrength(const std::pair<int, int>& square, int class_index) const;
-  ClassState stateOf(int class_index, Classes classes = Classes::AsKnown) const;
+  ClassState stateOf(int class_index) const;
 
   std::shared_ptr<const GroundSite> site_;
   std::unique_ptr<EvidenceStore> store_;

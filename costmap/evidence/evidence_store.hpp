@@ -21,14 +21,14 @@ struct EvidenceStore {
         blocks(site),
         bricks(blocks.columns(), blocks.rows()),
         reach(site),
-        contributions(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
+        classes(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
 
   std::shared_ptr<const GroundSite> site;
   BlockGrid blocks;
   EvidenceBricks bricks;
   EvidenceReach reach;
   /// Evidence of each terrain class, in the order of the model's classes.
-  std::vector<ClassEvidence> contributions;
+  std::vector<ClassEvidence> classes;
 
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {

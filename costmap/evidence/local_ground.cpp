@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <talus/costmap/evidence/evidence_store.hpp>
@@ -10,119 +11,144 @@ namespace {
 
 constexpr int kPatchBlocks = EvidenceReach::kPatchBlocks;
 constexpr std::size_t kMostNeighbours = 64;
+constexpr double kDecision = 0.02;  // quantile over the hypotheses that decisions use
 
-// LocalGround while it is collected.
-struct NearbyEvidence {
-  GroundOfClass of;
-  std::vector<PlaceEvidence> places{};
-  std::vector<WeakPlace> weak{}, lower{};
-  std::vector<PlaceBound> bounds{};
-};
-
-// Adds the evidence of one block. Pulls that may raise an estimate are added to the Gaussian process. Places
-// with less pull than the spread of their class allows, or whose readings may only lower an estimate, become
-// separate bounds.
-// Evidence of another class is used only if its position uncertainty includes this ground.
-void place(const EvidenceStore& store, const BlockLevel& block, const BlockEvidence& e,
-           NearbyEvidence& nearby) {
-  const int own = store.model().classIndex(block.terrain_class);
-  const GroundBelief mean = classGround(store.model(), nearby.of),
-                     prior = store.model().prior(nearby.of.class_index);
-  const GroundClass& ground = store.groundClass(own);
-  const maps::Point middle = store.blocks.middleOf(store.blocks.blockAt(block.column, block.row));
-  const bool alike = own == nearby.of.class_index;
-  const double variance = static_cast<double>(e.weak_variance);
-  const double below = static_cast<double>(e.weak_pull) - store.model().prior(own).pull.value;
-  const double deeper = static_cast<double>(e.sinkage) - store.model().prior(own).sinkage.value;
-  const bool weak = below < -kOrdinary * std::sqrt(ground.pull_std * ground.pull_std + variance);
-  const bool own_lowers = alike && e.lowers;
-  const bool deep = deeper > (own_lowers ? 0.0 : kOrdinary * ground.sinkage_std);
-  if (alike && !std::isnan(e.pull)) {
-    const double sinkage = static_cast<double>(e.sinkage) - mean.sinkage.value;
-    nearby.places.push_back(
-        {.place = middle,
-         .pull = static_cast<double>(e.pull) - mean.pull.value,
-         .sinkage = e.sinkage_raises || std::isnan(sinkage) ? sinkage : std::fmax(sinkage, 0.0),
-         .variance = static_cast<double>(e.variance),
-         .shared = static_cast<double>(e.shared)});
-  }
-  const bool may_be_here = alike || e.reach > 0;
-  if (!may_be_here) return;
-  if (!std::isnan(e.most_pull) || !std::isnan(e.least_sinkage))
-    nearby.bounds.push_back(
-        {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
-  const double pull = static_cast<double>(e.weak_pull) - prior.pull.value;
-  const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value;
-  const WeakPlace place{.place = middle,
-                        .pull = weak ? std::fmin(pull, 0.0) : 0.0,
-                        .variance = variance,
-                        .sinkage = std::isnan(sinkage) ? 0.0 : std::fmax(sinkage, 0.0),
-                        .reach_m = e.reach_m() + (alike ? 0.0 : 0.5 * store.blocks.side_m()),
-                        .beyond_reach = alike};
-  if (weak || deep) nearby.weak.push_back(place);
-  if (!own_lowers || !(below < 0.0)) return;
-  nearby.lower.push_back(place);
-  nearby.lower.back().pull = below;
+// True if the place of a bound may lie in the block around `at`: the place is anywhere in its block or within
+// its position uncertainty around the block.
+bool mayBeIn(const PlaceBound& bound, const maps::Point& at, double side_m) noexcept {
+  const double gap_x_m = std::fmax(std::abs(at.x_m - bound.block.x_m) - side_m, 0.0);
+  const double gap_y_m = std::fmax(std::abs(at.y_m - bound.block.y_m) - side_m, 0.0);
+  const bool itself = at.x_m == bound.block.x_m && at.y_m == bound.block.y_m;
+  return itself || std::hypot(gap_x_m, gap_y_m) < bound.reach_m;
 }
 
-// Uses the kMostNeighbours places nearest to `middle`, always including those of the patch. The remaining
-// places become separate bounds.
-LocalGround grounded(const EvidenceStore& store, NearbyEvidence nearby, const maps::Point& middle) {
-  std::vector<PlaceEvidence>& places = nearby.places;
-  if (places.size() > kMostNeighbours) {
-    const auto far = [&](const PlaceEvidence& e) {
-      return std::fmax(std::abs(e.place.x_m - middle.x_m), std::abs(e.place.y_m - middle.y_m));
-    };
-    std::stable_sort(places.begin(), places.end(),
-                     [&](const PlaceEvidence& a, const PlaceEvidence& b) { return far(a) < far(b); });
-    for (std::size_t i = kMostNeighbours; i < places.size(); ++i)
-      nearby.lower.push_back({.place = places[i].place,
-                              .pull = std::fmin(places[i].pull + nearby.of.state.pull, 0.0),
-                              .variance = places[i].variance,
-                              .sinkage = std::fmax(places[i].sinkage + nearby.of.state.sinkage, 0.0)});
-    places.resize(kMostNeighbours);
+// Estimate by one hypothesis.
+struct Weighed {
+  double weight = 0.0;
+  Estimate pull;
+};
+
+// Returns the estimate at the quantile kDecision of the means.
+Estimate decided(std::vector<Weighed> all) {
+  std::ranges::stable_sort(all, {}, [](const Weighed& w) { return w.pull.value; });
+  double below = 0.0;
+  for (const Weighed& w : all)
+    if ((below += w.weight) >= kDecision) return w.pull;
+  return all.back().pull;
+}
+
+// Evidence of one block.
+struct Block {
+  maps::Point middle;
+  std::vector<SourcePull> pulls;
+  double sinkage = 0.0;  // departure of sinkage over radius from the class; NaN: not measured
+};
+
+// Readings of the sound sources of a hypothesis, each without the error of its source.
+std::vector<PlaceEvidence> soundOf(const std::vector<Block>& blocks, const ClassHypothesis& h, double prior) {
+  std::vector<PlaceEvidence> out;
+  for (const Block& block : blocks) {
+    SourcePull all;
+    for (const SourcePull& one : block.pulls) {
+      const auto sound =
+          std::ranges::lower_bound(h.sound, one.source, {}, [](const auto& s) { return s.first; });
+      if (sound == h.sound.end() || sound->first != one.source) continue;
+      all.weight += one.weight;
+      all.pull += one.weight * (one.pull - sound->second);
+    }
+    if (all.weight > 0.0)
+      out.push_back({.place = block.middle,
+                     .pull = all.pull / all.weight - prior - h.pull,
+                     .sinkage = block.sinkage,
+                     .variance = all.variance()});
   }
-  return {GaussianProcess(std::move(places), variationOf(store, nearby.of.class_index)),
-          std::move(nearby.weak), std::move(nearby.lower), std::move(nearby.bounds)};
+  return out;
 }
 
 }  // namespace
 
 GroundBelief classGround(const GroundModel& model, const GroundOfClass& of) {
   const GroundClass& ground = model.parts().classes[static_cast<std::size_t>(of.class_index)];
-  const ClassState& state = of.state;
   const GroundBelief prior = model.prior(of.class_index);
-  return {.pull = {prior.pull.value + state.pull, std::hypot(ground.pull_std, state.pull_std)},
-          .sinkage = {std::max(prior.sinkage.value + state.sinkage, 0.0), ground.sinkage_std}};
+  std::vector<Weighed> all;
+  for (const ClassHypothesis& h : of.state.hypotheses)
+    all.push_back(
+        {h.weight, {prior.pull.value + h.pull, std::hypot(ground.pull_std, h.own_std, h.shared_std)}});
+  return {.pull = decided(std::move(all)),
+          .sinkage = {std::max(prior.sinkage.value + of.state.sinkage, 0.0), ground.sinkage_std}};
 }
 
-Variation variationOf(const EvidenceStore& store, int class_index) noexcept {
-  const GroundClass& ground = store.groundClass(class_index);
-  return {.pull_std = ground.pull_std,
-          .sinkage_std = ground.sinkage_std,
-          .correlation_length_m = store.model().parts().policy.correlation_length_m};
+// The process contains only places within a correlation length of the patch, of more than kMostNeighbours the
+// nearest. Bounds, of any class, also lie beyond, if their position uncertainty reaches the patch.
+LocalGround::LocalGround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of)
+    : store_(store), of_(of) {
+  const int near = store.blocks.reach();
+  const int reach = near + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));
+  const GroundBelief& prior = store.model().prior(of.class_index);
+  const int number = store.groundClass(of.class_index).number;
+  std::vector<Block> blocks;
+  store.bricks.visitTop(
+      {patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
+       patch.row + kPatchBlocks + reach - 1},
+      [&](const BlockLevel& at, const BlockEvidence& e) {
+        const maps::Point middle = store.blocks.middleOf(store.blocks.blockAt(at.column, at.row));
+        const bool alike = at.terrain_class == number;
+        if ((alike || e.reach > 0) && !(std::isnan(e.most_pull) && std::isnan(e.least_sinkage)))
+          bounds_.push_back(
+              {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
+        const auto isNear = [&](int block) { return block >= -near && block < kPatchBlocks + near; };
+        if (!alike || std::isnan(e.pull) || !isNear(at.column - patch.column) || !isNear(at.row - patch.row))
+          return;
+        const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value - of.state.sinkage;
+        blocks.push_back({middle, pullsOf(store.bricks.counts(at)),
+                          e.sinkage_verified || std::isnan(sinkage) ? sinkage : std::max(sinkage, 0.0)});
+      });
+  any_ = !blocks.empty() || !bounds_.empty();
+  if (blocks.size() > kMostNeighbours) {
+    const maps::Point low = store.blocks.middleOf(store.blocks.blockAt(patch.column, patch.row));
+    const double half_m = 0.5 * (kPatchBlocks - 1) * store.blocks.side_m();
+    std::ranges::stable_sort(blocks, {}, [&](const Block& b) {
+      return std::max(std::abs(b.middle.x_m - low.x_m - half_m), std::abs(b.middle.y_m - low.y_m - half_m));
+    });
+    blocks.resize(kMostNeighbours);
+  }
+  const GroundClass& ground = store.groundClass(of.class_index);
+  const Variation variation{ground.pull_std, ground.sinkage_std,
+                            store.model().parts().policy.correlation_length_m};
+  for (const ClassHypothesis& h : of.state.hypotheses)
+    hypotheses_.push_back({h, GaussianProcess(soundOf(blocks, h, prior.pull.value), variation)});
 }
 
-// The process contains only places within a correlation length of the patch. Places beyond, whose position
-// uncertainty reaches the patch, are bounds only.
-LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of) {
-  const int reach =
-      store.blocks.reach() + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));
-  NearbyEvidence nearby{.of = of};
-  const auto isNear = [&](int blocks) {
-    return blocks >= -store.blocks.reach() && blocks < kPatchBlocks + store.blocks.reach();
-  };
-  store.bricks.visitTop({patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
-                         patch.row + kPatchBlocks + reach - 1},
-                        [&](const BlockLevel& at, const BlockEvidence& e) {
-                          const std::size_t known = nearby.places.size();
-                          place(store, at, e, nearby);
-                          if (!isNear(at.column - patch.column) || !isNear(at.row - patch.row))
-                            nearby.places.resize(known);
-                        });
-  const maps::Point low = store.blocks.middleOf(store.blocks.blockAt(patch.column, patch.row));
-  const double half_m = 0.5 * (kPatchBlocks - 1) * store.blocks.side_m();
-  return grounded(store, std::move(nearby), {low.x_m + half_m, low.y_m + half_m});
+InferredGround LocalGround::at(const maps::Point& at) const {
+  const GroundBelief away = classGround(store_.model(), of_), prior = store_.model().prior(of_.class_index);
+  InferredGround out{away};
+  std::vector<Weighed> all;
+  bool any = false;
+  double sinkage = -std::numeric_limits<double>::infinity();
+  for (const auto& [h, process] : hypotheses_) {
+    const LearnedPlace learned = process.learned(at);
+    any |= learned.any;
+    all.push_back(
+        {h.weight,
+         {prior.pull.value + h.pull + learned.departure.pull.value,
+          std::hypot(learned.departure.pull.std, (1.0 - learned.weight) * h.own_std, h.shared_std)}});
+    if (learned.departure.sinkage.value > sinkage) {
+      sinkage = learned.departure.sinkage.value;
+      out.ground.sinkage.std = learned.departure.sinkage.std;
+    }
+  }
+  if (any) {
+    out.ground.pull = decided(std::move(all));
+    out.ground.sinkage.value = std::max(prior.sinkage.value + of_.state.sinkage + sinkage, 0.0);
+  }
+  for (const PlaceBound& bound : bounds_)
+    if (mayBeIn(bound, at, store_.blocks.side_m())) {
+      out.ground.pull.value = std::fmin(out.ground.pull.value, bound.most_pull);
+      out.ground.sinkage.value = std::fmax(out.ground.sinkage.value, bound.least_sinkage);
+    }
+  out.learned = out.ground.pull.value != away.pull.value || out.ground.pull.std != away.pull.std ||
+                out.ground.sinkage.value != away.sinkage.value;
+  return out;
 }
 
 }  // namespace talus::costmap

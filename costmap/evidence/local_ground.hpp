@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <talus/costmap/evidence/class_evidence.hpp>
@@ -10,6 +10,12 @@
 namespace talus::costmap {
 
 struct EvidenceStore;
+
+/// Estimated strength of the ground at a place.
+struct InferredGround {
+  GroundBelief ground;
+  bool learned = false;  ///< true if nearby evidence made the estimate different from that of the class
+};
 
 /// Bounds of the ground in a block (square of cells), independent of all other evidence. NaN: no bound.
 struct PlaceBound {
@@ -25,26 +31,37 @@ struct GroundOfClass {
   ClassState state{};
 };
 
-/// Evidence that can affect the ground of one terrain class in one patch. A patch is 8x8 blocks. Immutable.
-struct LocalGround {
-  /// Readings that may raise an estimate, as departures from the posterior mean of the class.
-  GaussianProcess process;
-  /// Places with departures from the prior of the class. `weak`: ground weaker than the variation of the
-  /// class explains. `lower`: departures within that variation, which may only lower an estimate.
-  std::vector<WeakPlace> weak, lower;
-  std::vector<PlaceBound> bounds;
-
-  bool empty() const noexcept { return process.empty() && weak.empty() && lower.empty() && bounds.empty(); }
-};
-
 /// Returns the estimate for ground of a class without nearby evidence.
 GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
 
-/// Returns the spatial variation of ground of a class.
-Variation variationOf(const EvidenceStore& store, int class_index) noexcept;
+/// Evidence that can affect the ground of one terrain class in one patch of 8x8 blocks: for each hypothesis of
+/// the class, one Gaussian process over the readings of the sound sources. Immutable.
+///
+/// A hypothesis of a class mean D with standard deviations (o, e) of the places not driven and of the sources
+/// gives the ground at a place the mean P0 + D + f and the variance
+///   var f + (1 - A)^2 o^2 + e^2                                                                          (2)
+/// with the departure f of the process from D, its variance, and the sum A of the weights of the evidence.
+/// The estimate that decisions use is the hypothesis at the 2 % quantile of the mean.
+class LocalGround {
+ public:
+  /// Collects the evidence that can affect the patch with the south-west block `patch`.
+  LocalGround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
 
-/// Returns the evidence on the top surface that can affect the patch of 8x8 blocks with the south-west block
-/// `patch`.
-LocalGround groundAround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
+  bool empty() const noexcept { return !any_; }
+  /// Returns the estimate of the ground at `at`, as ground of the class. It lies within the bounds of its
+  /// block, and is bit-identical to classGround() where no evidence affects `at`.
+  InferredGround at(const maps::Point& at) const;
+
+ private:
+  struct Hypothesis {
+    ClassHypothesis of_class;
+    GaussianProcess process;
+  };
+  const EvidenceStore& store_;
+  GroundOfClass of_;
+  bool any_ = false;
+  std::vector<Hypothesis> hypotheses_;
+  std::vector<PlaceBound> bounds_;
+};
 
 }  // namespace talus::costmap

@@ -7,19 +7,8 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kReferenceSlip = 0.5;
-// Error of a departure extrapolated to the reference slip, per unit of slip: a constant, and beyond the
-// reference slip a term in proportion to the departure (ours).
-constexpr double kMissPerSlip = 0.06;
-constexpr double kMissPerSlipAndDeparture = 1.2;
-constexpr double kFlatFrom = 0.25;  // slip difference from which the error no longer grows
-// Further error by differences between soils of a class other than strength, in standard deviations of the
-// class, per H(0.5)/H - 1 (H: thrust over load) (ours; for soils drawn from the deviations of mars_crusty,
-// clay, sandy_loam, dry_sand at slip 0.1 to 0.3: 0.2 to 0.6).
-constexpr double kMissPerGrowth = 0.4;
-constexpr double kMostGrowth =
-    3.0;                       // greatest factor from a departure to that at the reference slip; readings
-                               // with a greater factor raise no estimate
+constexpr double kLeastShare = 0.15;  // least thrust, relative to that at the reference slip, at which slip
+                                      // tells about the strength of the ground (ours)
 constexpr double kFelt = 0.1;  // least torque that is extrapolated, relative to that at the reference slip
 // Factor on the standard deviation of the class where the torque of the class replaces a torque that is not
 // mobilised. The torque of the class is not a measurement, and the estimate includes the class already
@@ -32,24 +21,6 @@ constexpr double kRutRelativeStd = 1.0;  // relative error of the pull gained in
 
 bool known(double value) noexcept {
   return std::isfinite(value);
-}
-
-// True if a departure is extrapolated to the reference slip. `share`: mobilised thrust relative to that at
-// the reference slip.
-bool isMobilised(double share) noexcept {
-  return kMostGrowth * share >= 1.0;
-}
-
-// Returns the factor from a departure to the departure at the reference slip. Beyond the reference slip
-// (share > 1) the factor of a negative departure is 1.
-double growth(double departure, double share) noexcept {
-  return isMobilised(share) ? std::max(1.0 / share, departure < 0.0 ? 1.0 : 0.0) : 1.0;
-}
-
-// Returns the value reduced by the part that its error explains: v v^2/(v^2 + e^2).
-double beyondError(double value, double error) noexcept {
-  const double square = value * value;
-  return square > 0.0 ? value * square / (square + error * error) : 0.0;
 }
 
 // Mean of two estimates of one number, weighted by inverse variance.
@@ -83,8 +54,6 @@ struct WheelObserver::Wheel {
   double known = 0.0;      // departure of the ground at the reference slip from other data
   double from_torque = std::numeric_limits<double>::quiet_NaN();     // pull at the measured slip
   Estimate by_torque{0.0, std::numeric_limits<double>::infinity()};  // departure at the reference slip
-  double torque_std =
-      0.0;  // standard deviation of by_torque by the torque, including the torque of the class
 };
 
 WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
@@ -105,20 +74,11 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
   const SteadyWheel straight =
       turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
-  // Share at the measured slip. The part of its difference from the class on this slope that the slip error
-  // explains is removed; otherwise a greater error would increase the weight of a reading.
-  if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
+  if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0)
     w.share = straight.torque_over_load_radius / thrust;
-    if (known(w.asked)) {
-      const double of_class = model_.onSlope(read.class_index, w.asked, rut).torque_over_load_radius / thrust;
-      const double error = 0.5 * (more.torque_over_load_radius - less.torque_over_load_radius) / thrust;
-      w.share = of_class + beyondError(w.share - of_class, error);
-    }
-  }
-  if (!departures.empty() && w.reference.torque_over_load_radius > 0.0) {
+  if (!departures.empty()) {
     w.known = departures[static_cast<std::size_t>(read.class_index)];
-    w.expected.gradient +=
-        w.known * std::max(straight.torque_over_load_radius / w.reference.torque_over_load_radius, 0.0);
+    w.expected.gradient += w.known * std::max(w.share, 0.0);
   }
   const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
   if (!known(t) || !(z >= 0.0 && z < 1.0)) return w;
@@ -139,7 +99,6 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
                       {t * mobilised, noise_.torque_share * t * mobilised +
                                           noise_.mobilised * std::abs(mobilised - 1.0) + noise_.model_pull});
   }
-  w.torque_std = torque.std;
   w.by_torque = {pullFromTorque(torque.value, depth) - class_pull,
                  std::hypot(torque.std, noise_.sinkage_share, noise_.model_pull)};
   return w;
@@ -155,26 +114,11 @@ double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
          thrust;
 }
 
-// Returns the standard deviation of a departure at the reference slip by the model error, common to all
-// readings at one slip. At low slip only a share of the thrust is mobilised. The departure is then not
-// extrapolated; the standard deviation of the share that is not mobilised is added.
-double WheelObserver::miss(const Wheel& w, const Balance& all, double carried) const {
-  const double by_slip = std::min(std::abs(w.read.reading.slip - kReferenceSlip), kFlatFrom);
-  const double class_std = model_.prior(w.read.class_index).pull.std;
-  if (!(all.share < 1.0)) return by_slip * (kMissPerSlip + kMissPerSlipAndDeparture * std::abs(carried));
-  const double unfelt = isMobilised(all.share) ? kMissPerGrowth * (1.0 / all.share - 1.0)
-                                               : 1.0 - std::clamp(all.share, 0.0, 1.0);
-  return std::hypot(by_slip * kMissPerSlip, unfelt * class_std);
-}
-
-// `own`: departure of this wheel from the other wheels by torque and sinkage; its standard deviation is half
-// its value.
+// Departure D by P(i) + D f(i) = g with the share f of the thrust. `own`: departure of this wheel from the
+// other wheels by torque and sinkage; its standard deviation is half its value.
 Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) const {
-  const double there = all.departure + own;
-  const double error = std::hypot(noise_.gradient, noise_.model_pull, std::hypot(0.5 * own, w.steepness));
-  const double grown = there + (growth(there, all.share) - 1.0) * beyondError(there, error);
-  const double mean = std::min(w.known + grown, all.across + own);
-  return {mean, std::hypot(growth(-1.0, all.share) * error, miss(w, all, mean))};
+  const double error = std::hypot(noise_.gradient, std::hypot(0.5 * own, w.steepness));
+  return {std::min(w.known + (all.departure + own) / all.share, all.across + own), error / all.share};
 }
 
 // Upper bound for a rover that may be stationary: the lower of the balance and the estimate from torque and
@@ -203,36 +147,19 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
                        .bound = balance.standing && !known(reading.drawbar_pull_N)};
   const GroundBelief prior = model_.prior(w.read.class_index);
   Estimate seen = w.by_torque;
-  double by_class =
-      known(seen.std) ? w.torque_std : 0.0;  // error of the class's torque, common to all readings
   if (by_balance) {
-    const Estimate slope = bySlope(w, balance, own);
-    seen = known(seen.std) ? combined(slope, seen) : slope;
-    by_class *= seen.std * seen.std / (w.by_torque.std * w.by_torque.std);
+    seen = balance.share >= kLeastShare ? bySlope(w, balance, own) : Estimate{w.known, 1.0};
   }
-  Balance alone = balance;
-  if (known(reading.drawbar_pull_N)) {
-    alone = {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.gradient, .share = w.share};
-    seen = bySlope(w, alone, 0.0);
-    by_class = 0.0;
-  }
+  if (known(reading.drawbar_pull_N))
+    seen = bySlope(w,
+                   {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.gradient,
+                    .share = std::max(w.share, kLeastShare)},
+                   0.0);
   if (out.bound) seen = upperBound(w, balance);
   if (!known(seen.std)) return std::nullopt;
-  // Only the slope is evidence of ground stronger than its class: torque, sinkage and differences between
-  // wheels never raise the value above that of the slope.
-  if (!known(reading.drawbar_pull_N)) {
-    const double less = std::min(own, std::max(-balance.departure, 0.0));
-    seen.value = std::min(seen.value, by_balance ? std::max(bySlope(w, balance, less).value, 0.0) : 0.0);
-  }
   const double rut = kRutRelativeStd * w.rut_gain;
-  if (by_balance) {
-    const Estimate slope = bySlope(w, balance, 0.0);
-    out.by_slope = {prior.pull.value + slope.value, std::hypot(slope.std, rut)};
-  }
   out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};
-  out.shared_std = isMobilised(alone.share) ? std::hypot(miss(w, alone, seen.value), by_class)
-                                            : std::numeric_limits<double>::quiet_NaN();
-  out.share = alone.share;
+  out.share = balance.share;
   out.sinkage = {prior.sinkage.value, std::numeric_limits<double>::infinity()};
   const double z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (reading.pass <= 1 && z >= 0.0 && z < 1.0 && w.expected.sinkage_over_radius > 0.0) {

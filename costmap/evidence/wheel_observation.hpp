@@ -66,6 +66,9 @@ struct ReadingNoise {
   double model_pull = 0.02;
 };
 
+/// How the sensors of a reading were verified: not; by one slip (DrivePosterior); by two independent slips.
+enum class Trust : std::uint8_t { Unverified, Once, Twice };
+
 /// Wheel observation: the result of one reading. It contains an estimate of the ground under the wheel at the
 /// reference slip 0.5, a bound of the ground at that place, or both.
 struct WheelObservation {
@@ -77,23 +80,20 @@ struct WheelObservation {
   double demand = 0.0;       ///< DP/W that the slope requires [-]
   double from_torque = 0.0;  ///< DP/W from torque and sinkage [-]; NaN: not measured
   /// Standard deviation of `pull` due to errors common to all readings, for example of the slip; more readings
-  /// do not reduce these errors; >= 0 [-]. NaN: unknown, and `pull` may only lower an estimate.
+  /// do not reduce these errors; >= 0 [-]. NaN: unknown, and `pull` counts as unverified.
   double shared_std = 0.0;
   /// Thrust of the terrain class at the measured slip over its thrust at the reference slip [-].
   double share = 1.0;
-  /// DP/W of the ground from slip and slope alone [-]; NaN: no slope.
-  Estimate by_slope{std::numeric_limits<double>::quiet_NaN(), 0.0};
   double pose_std_m = 0.0;  ///< position uncertainty, one standard deviation
   bool bound = false;       ///< true if the rover may have been stationary: `pull` is then an upper bound
-  /// True if the sensors of `pull` are verified; otherwise `pull` may only lower an estimate.
-  bool pull_may_raise = false;
-  bool sinkage_may_raise = false;  ///< true if the sensors of the sinkage are verified
+  Trust trust = Trust::Unverified;  ///< how the sensors of `pull` were verified
+  bool sinkage_verified = false;    ///< true if the sensors of the sinkage are verified
   /// Number of the drive (driveTag()), because the sensors of each drive have their own errors.
   std::uint16_t drive = 0;
   GroundBound here{};  ///< bounds of the ground at this place
 
   /// Returns true if the observation contains an estimate of the pull.
-  bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0; }
+  bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0 && pull.std <= 0.5; }
 };
 
 /// Converts readings to observations, i.e. to estimates of undisturbed ground at the reference slip 0.5. The
@@ -162,7 +162,6 @@ class WheelObserver {
   };
 
   Wheel expected(const ClassReading& read, std::span<const double> departures) const;
-  double miss(const Wheel& wheel, const Balance& all, double carried) const;
   Estimate bySlope(const Wheel& wheel, const Balance& all, double own) const;
   Estimate upperBound(const Wheel& wheel, const Balance& all) const;
   std::optional<WheelObservation> observed(const Wheel& wheel, const Balance& balance, double own) const;

@@ -57,7 +57,7 @@ class CostCurveTable {
   int level() const noexcept { return level_; }
 
   /// Replaces the prior of a class by the estimate `next` from evidence. Returns false if the prior is
-  /// unchanged, as in most calls with EvidenceField::Classes::InSteps.
+  /// unchanged, as in most calls.
   bool setPrior(int class_index, const GroundBelief& next);
 
   /// Returns the estimate from which the curve with an index was computed.

@@ -131,8 +131,8 @@ std::uint8_t GroundCurves::numberOfGround(maps::Cell cell) {
 GroundCurves::ClassChange GroundCurves::learnClasses(const EvidenceField& field) {
   ClassChange changed;
   for (int i = 0; i < static_cast<int>(site_->model->parts().classes.size()); ++i)
-    changed.priors |= table_.setPrior(i, field.classBelief(i, EvidenceField::Classes::InSteps));
-  std::vector<ClassState> states = field.states(EvidenceField::Classes::InSteps);
+    changed.priors |= table_.setPrior(i, field.classBelief(i));
+  std::vector<ClassState> states = field.states();
   changed.learned = states != states_;
   states_ = std::move(states);
   return changed;

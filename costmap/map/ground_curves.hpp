@@ -39,8 +39,7 @@ class GroundCurves {
   };
   /// Updates the estimates of the terrain classes from the evidence.
   ClassChange learnClasses(const EvidenceField& field);
-  /// Updates the estimates of the cells of the boxes `ranges`, from class states rounded to steps
-  /// (EvidenceField::Classes::InSteps). Returns the boxes of cells whose curve indices may have changed.
+  /// Updates the estimates of the cells of the boxes `ranges`. Returns the boxes of cells whose curve indices may have changed.
   std::vector<maps::CellBox> learn(EvidenceBeliefs& beliefs, const std::vector<maps::CellBox>& ranges);
 
   /// Reads the changed terrain classes of the site in a box. Returns the box of cells whose curve indices may

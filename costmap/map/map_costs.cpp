@@ -143,7 +143,7 @@ void MapCosts::publish(const EvidenceField& field, bool whole) {
   const GroundCurves::ClassChange moved = curves_->learnClasses(field);
   if (moved.learned && !whole) append(learned, field.reached());
   if (!any && !moved.priors && learned.empty()) return;
-  EvidenceBeliefs beliefs(field, EvidenceField::Classes::InSteps);
+  EvidenceBeliefs beliefs(field);
   append(changed, curves_->learn(beliefs, learned));
   if (moved.priors) append(changed, curves_->mixedRanges());
   published_->store(costed(changed));

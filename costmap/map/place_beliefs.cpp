@@ -15,7 +15,7 @@ void set(const GroundBelief& strength, CellBelief& belief) {
 
 void set(const BlockEvidence& own, double samples, CellBelief& belief) {
   belief.evidence = static_cast<float>(samples);
-  const float weakest = std::fmin(own.weak_pull, own.most_pull);
+  const float weakest = std::fmin(own.pull, own.most_pull);
   belief.evidence_pull = std::isnan(weakest) ? 0.0F : weakest;
   belief.evidence_sinkage = std::fmax(0.0F, std::fmax(own.sinkage, own.least_sinkage));
   belief.updated_s = own.updated_s;

@@ -75,16 +75,18 @@ std::string lackingFinding(std::size_t drives) {
          " that the map contains, and cannot rebuild this map";
 }
 
-void reportDrive(const SlipPosterior& drive, const GroundModel& model, DriveReport& report) {
-  report.slip_offset = drive.slip_bias;
-  report.slip_scale = drive.slip_scale;
-  for (std::size_t c = 0; c < drive.departure.size(); ++c) {
-    if (!std::isfinite(drive.departure[c].std)) continue;
-    const double of_class = model.prior(static_cast<int>(c)).pull.value;
-    report.learned.push_back({model.parts().classes[c].number,
-                              {of_class + drive.learned[c].value, drive.learned[c].std},
-                              {of_class + drive.if_sound[c].value, drive.if_sound[c].std},
-                              of_class + drive.learned[c].value - drive.caution[c]});
+void reportDrive(const DriveEstimate& drive, const TraversabilityMap& map, DriveReport& report) {
+  report.slip_offset = drive.offset;
+  report.slip_scale = drive.sensor.scale;
+  for (std::size_t c = 0; c < drive.classes.size(); ++c) {
+    const DriveEstimate::OfClass& one = drive.classes[c];
+    if (!std::isfinite(one.shared_std)) continue;
+    const auto index = static_cast<int>(c);
+    const double of_class = map.model().prior(index).pull.value;
+    report.learned.push_back({map.model().parts().classes[c].number,
+                              {of_class + one.departure.value, one.departure.std},
+                              {of_class + one.if_sound.value, one.if_sound.std},
+                              map.evidence().classBelief(index).pull.value});
   }
 }
 
@@ -155,7 +157,7 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
                  .observation = result.observation.value_or(WheelObservation{}),
                  .wheel = wheelOf(map.model().rover())};
   ++(accepted ? report.used : report.rejected);
-  if (accepted && row.observation.pull_may_raise) ++report.raising;
+  if (accepted && row.observation.trust != Trust::Unverified) ++report.raising;
   if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
   if (journal) rows.push_back(std::move(row));
 }
@@ -255,9 +257,7 @@ DriveReport DriveIntake::report() const {
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
-  if (const std::string why = state_->processor->whyNoneRaises();
-      report.used > 0 && report.raising == 0 && !why.empty())
-    report.findings.push_back("no row may raise an estimate: " + why);
+  if (const std::string fault = state_->processor->fault(); !fault.empty()) report.findings.push_back(fault);
   report.others = state_->processor->others();
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   if (report.bounding > 0)
@@ -285,7 +285,8 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   intake.state_->put(telemetry, verdict, known);
   map.publishAll();
   DriveReport report = intake.report();
-  if (verdict.drive && report.raising > 0) reportDrive(*verdict.drive, map.model(), report);
+  if (verdict.drive) report.informing = verdict.drive->informing;
+  if (verdict.drive && report.raising > 0) reportDrive(*verdict.drive, map, report);
   return report;
 }
 
@@ -301,12 +302,13 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
     }
     for (JournalRow& row : journal.rows(drive)) {
       if (!isOf(map.model().rover(), row.wheel)) {
-        row.observation.pull_may_raise = row.observation.sinkage_may_raise = false;
+        row.observation.trust = Trust::Unverified;
+        row.observation.sinkage_verified = false;
         ++report.others;
       }
       const bool used = row.accepted && map.learn(row.observation);
       ++(used ? report.used : report.rejected);
-      if (used && row.observation.pull_may_raise) ++report.raising;
+      if (used && row.observation.trust != Trust::Unverified) ++report.raising;
     }
     map.noteDrive(drive);
   }

@@ -45,6 +45,7 @@ struct DriveReport {
   double slip_offset = 0.0;  ///< estimated offset of the slip sensor: its reading at zero slip [-]
   /// Estimated scale of the slip sensor: change of the reading per change of slip [-].
   double slip_scale = 1.0;
+  double informing = 1.0;  ///< probability that the slip depends on the ground [-]
 };
 
 /// Options for adding telemetry, and default values for missing columns.

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
@@ -10,17 +12,11 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestStdShare =
-    2.0;  // limit, in units of the class's mean_std: a drive with a greater standard deviation raises no
-          // estimate (ours)
-constexpr double kMostCompressing =
-    0.9;  // a drive whose sensor compresses large slips with a greater probability raises no estimate (ours)
+    2.0;  // in units of the class's mean_std: a drive with a greater standard deviation is not verified (ours)
+constexpr double kVerified =
+    0.9;  // probability that the slip depends on the ground, of a verified drive (ours)
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
 constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
-constexpr double kSlipOfResistance =
-    0.03;  // slip on level ground that ground with more resistance than its class may cause (ours)
-constexpr double kLittleSlip =
-    0.5;  // shared error of a reading at low slip, in units of the class's standard deviation (ours)
-
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
   const int index = cell ? map.surface().classIndex(*cell) : -1;
@@ -39,24 +35,53 @@ WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& her
   return boundAlone(out);
 }
 
-// Replaces the pull by the pull from slip and slope if lower: unverified torque and sinkage never raise a
-// pull.
-void weakerBySlope(WheelObservation& seen) {
-  if (std::isfinite(seen.from_torque) && seen.by_slope.value < seen.pull.value) seen.pull = seen.by_slope;
+// Median of the known values; NaN without any.
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return kNone;
+  std::ranges::sort(values);
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+// Returns the most probable fault of the sensors of a drive, and what would settle it; empty for sound ones.
+std::string faultText(const DriveEstimate& drive) {
+  static const std::map<std::string, const char*> texts{
+      {"offset", "slip has an offset, which is corrected"},
+      {"step", "slip steps on the way, which is corrected"},
+      {"stuck",
+       "slip no longer depends on the ground from some place on; the rows from there on tell nothing"},
+      {"scale", "slip is read too small or too large in proportion"},
+      {"compressed", "large slips are read too small"},
+      {"uphill", "slip is read too small on climbs"},
+      {"by gradient", "slip is read too small in proportion to the slope"},
+      {"of class", "slip is computed from the soil of the class instead of measured; the rows tell nothing"},
+      {"unrelated", "slip does not depend on the slope; the rows tell little"}};
+  if (drive.displaced_from < DriveEstimate::kParts)
+    return "measured slopes do not follow those of the map from part " +
+           std::to_string(drive.displaced_from + 1) + " of " + std::to_string(DriveEstimate::kParts) +
+           " of the drive on: the pose is displaced, and the rows from there on tell nothing; check pose and "
+           "heading_rad";
+  const auto text = texts.find(drive.hypothesis);
+  if (text == texts.end()) return {};
+  char probability[16];
+  std::snprintf(probability, sizeof probability, "%.2f", drive.probability);
+  return std::string(text->second) + " (probability " + probability + ")" +
+         (drive.twice ? "" : "; a second slip settles it: give rim_speed_mps and speed_mps");
 }
 
 }  // namespace
 
 WheelObservation boundAlone(const WheelObservation& observation) {
   WheelObservation left = observation;
-  left.pull = left.sinkage = left.by_slope = {kNone, kNone};
+  left.pull = left.sinkage = {kNone, kNone};
   left.from_torque = kNone;
-  left.bound = left.pull_may_raise = left.sinkage_may_raise = false;
+  left.bound = left.sinkage_verified = false;
+  left.trust = Trust::Unverified;
   return left;
 }
 
 TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
-    : map_(map), danger_(map.model()), watch_(map.model()), fit_(map.model()), observer_(map.model()) {}
+    : map_(map), danger_(map.model()), watch_(map.model()), posterior_(map.model()), observer_(map.model()) {}
 
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
@@ -91,17 +116,17 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
     sound_at.push_back(w);
   }
   auto seen = observed(sound, verdict);
-  prove(rows, sound, seen);
-  if (verdict.proof && !verdict.drive) refit();
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] && !torqueSound(rows, sound.row[i], verdict)) weakerBySlope(*seen[i]);
+  const std::size_t number = posterior_.moments();
+  take(rows, sound);
+  if (verdict.follows && !verdict.drive) follow();
+  if (verdict.drive) fitted_ = verdict.drive;
   const bool of_rover =
       carriesRover(moment.readings, map_.model().rover()) &&
       std::all_of(moment.rows.begin(), moment.rows.end(), [&](std::size_t row) { return rows.ofRover(row); });
   if (!of_rover)
     others_ += moment.readings.size();
-  else if (mayRaise(rows, moment, sound, verdict))
-    allow(rows, sound, verdict, seen);
+  else if (fitted_)
+    correct(sound, number, verdict, seen);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Result& result = all[sound_at[i]];
     if (seen[i]) {
@@ -136,7 +161,6 @@ GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gra
   if (!suspected) return here;
   auto seen = observer_.observe({read}).front();
   if (!seen) return here;
-  weakerBySlope(*seen);
   here.lower(danger_.bound(read.class_index, *seen).most_pull);
   return here;
 }
@@ -173,133 +197,81 @@ std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const 
   return observer_.observe(without);
 }
 
-// Adds a moment to the fit if all wheels are on one class, travel straight ahead and indicate no danger.
-void TelemetryProcessor::fit(const TelemetryRows& rows, const Sound& sound) {
+// Adds a moment to the posterior if all wheels are on one class, travel straight ahead and indicate no danger.
+void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
   if (sound.read.empty() || std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end())
     return;
-  SlipFit::Moment moment{.run = rows.run(sound.row.front()),
-                         .class_index = sound.read.front().class_index,
-                         .wheels = static_cast<int>(sound.read.size()),
-                         .place = sound.read.front().reading.place,
-                         .gradient = rows.measuredGradient(sound.row.front())};
-  for (const std::size_t row : sound.row)
-    if (proof_.isSuspect(moment.run, rows.wheel(row))) return;
+  const std::size_t first = sound.row.front();
+  DrivePosterior::Moment moment{.class_index = sound.read.front().class_index,
+                                .wheels = static_cast<int>(sound.read.size()),
+                                .place = sound.read.front().reading.place,
+                                .gradient = rows.measuredGradient(first),
+                                .map_gradient = rows.mapGradient(first)};
+  std::vector<double> slips, second;
   for (const ClassReading& read : sound.read) {
     if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing) return;
     moment.rutted += read.reading.pass > 1 ? 1 : 0;
-    moment.slip += read.reading.slip / moment.wheels;
+    slips.push_back(read.reading.slip);
   }
-  fit_.take(moment);
+  for (const std::size_t row : sound.row) second.push_back(rows.secondSlip(row));
+  moment.slip = median(std::move(slips));
+  moment.second_slip = median(std::move(second));
+  moment.second_std = rows.secondStd();
+  posterior_.take(moment);
 }
 
-// Repeats the fit each time that the number of moments has grown by a quarter, for drives added in parts.
-void TelemetryProcessor::refit() {
-  if (fit_.moments() < std::max(next_fit_, kFirstFit)) return;
-  fitted_ = fitted();
-  next_fit_ = fit_.moments() + fit_.moments() / 4;
+// Repeats the fit each time that the number of moments has grown by a quarter.
+void TelemetryProcessor::follow() {
+  if (posterior_.moments() < std::max(next_fit_, kFirstFit)) return;
+  fitted_ = std::make_shared<DriveEstimate>(posterior_.fitted());
+  next_fit_ = posterior_.moments() + posterior_.moments() / 4;
 }
 
-std::shared_ptr<const SlipPosterior> TelemetryProcessor::fitted() const {
-  return fit_.fitted([&](const std::string& run) { return proof_.gradientExcess(run); });
+std::string TelemetryProcessor::fault() const {
+  return fitted_ ? faultText(*fitted_) : std::string();
 }
 
 DriveVerdict TelemetryProcessor::verdict() const {
   DriveVerdict verdict = soFar();
-  if (verdict.proof) verdict.drive = fitted();
+  verdict.drive = std::make_shared<DriveEstimate>(posterior_.fitted());
+  verdict.follows = false;
   return verdict;
 }
 
-void TelemetryProcessor::prove(const TelemetryRows& rows, const Sound& sound,
-                               const std::vector<std::optional<WheelObservation>>& seen) {
-  fit(rows, sound);
-  SlipOfClasses of_classes{*this, sound.read};
-  double mean_slip = sound.read.size() > 1 ? 0.0 : kNone;
-  for (const ClassReading& read : sound.read)
-    mean_slip += read.reading.slip / static_cast<double>(sound.read.size());
-  for (std::size_t i = 0; i < sound.read.size(); ++i) {
-    const std::size_t row = sound.row[i];
-    const double gradient = rows.measuredGradient(row);
-    proof_.take({.run = rows.run(row),
-                 .wheel = rows.wheel(row),
-                 .reading = sound.read[i].reading,
-                 .measured_gradient = gradient,
-                 .map_gradient = rows.mapGradient(row),
-                 .class_slip = of_classes.on(gradient),
-                 .torque_pull = seen[i] ? seen[i]->from_torque : kNone,
-                 .share = seen[i] ? seen[i]->share : 0.0,
-                 .mean_slip = mean_slip,
-                 .danger = sound.danger[i]});
-  }
-}
-
-bool TelemetryProcessor::torqueSound(const TelemetryRows& rows, std::size_t row,
-                                     const DriveVerdict& verdict) {
-  return verdict.proof && verdict.proof->torqueSound(rows.run(row), rows.wheel(row));
-}
-
-bool TelemetryProcessor::mayRaise(const TelemetryRows& rows, const Moment& moment, const Sound& sound,
-                                  const DriveVerdict& verdict) const {
-  const std::string run = rows.run(moment.rows.front());
-  const std::size_t wheels = moment.readings.size();
-  const SlipPosterior* drive = verdict.drive ? verdict.drive.get() : fitted_.get();
-  if (!drive || drive->compressing > kMostCompressing) return false;
-  if (!verdict.proof || verdict.without_torque || proof_.displaced(run) || sound.read.size() != wheels ||
-      verdict.proof->wheels(run) != wheels ||
-      (wheels != 1 && wheels != static_cast<std::size_t>(map_.model().rover().wheel_count)))
-    return false;
-  if (std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end()) return false;
-  return std::all_of(sound.row.begin(), sound.row.end(), [&](std::size_t row) {
-    return verdict.proof->pullSound(run, rows.wheel(row)) && !proof_.isSuspect(run, rows.wheel(row));
-  });
-}
-
-std::string TelemetryProcessor::whyNoneRaises() const {
-  if (watch_.clockWentBack() || watch_.biased() || others_ == read_) return {};
-  const SensorProof::FailedTest failedTest = proof_.failedTest();
-  if (failedTest != SensorProof::FailedTest::Nothing) return SensorProof::text(failedTest);
-  return fitted()->compressing > kMostCompressing
-             ? "large slips are smaller than the slopes and the small slips imply; check the slip of each "
-               "wheel"
-             : "no moment has sound rows of all wheels of the rover, or of "
-               "the only one of the file; give them all, and time_s";
-}
-
-// Replaces the observations by those from the corrected slips, relative to the mean strength of the drive,
-// and marks the observations that may raise an estimate.
-void TelemetryProcessor::allow(const TelemetryRows& rows, const Sound& sound, const DriveVerdict& verdict,
-                               std::vector<std::optional<WheelObservation>>& seen) const {
-  const SlipPosterior& drive = verdict.drive ? *verdict.drive : *fitted_;
-  const double bias = std::min(drive.slip_bias, std::max(drive.slip_bias - kSlipOfResistance, 0.0));
+// Replaces the observations of the moment with a number by those from the corrected median slip and gradient,
+// relative to the mean strength of the drive; by bounds alone where the slip tells nothing about the ground.
+void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const DriveVerdict& verdict,
+                                 std::vector<std::optional<WheelObservation>>& seen) const {
+  const DriveEstimate& drive = *fitted_;
   std::vector<ClassReading> read = sound.read;
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    TelemetryReading& reading = read[i].reading;
-    reading.slip = std::clamp((reading.slip - bias) / drive.slip_scale, -1.0, 1.0);
-    reading.gradient -= std::max(verdict.proof->gradientExcess(rows.run(sound.row[i])), 0.0);
+  std::vector<double> slips, departures;
+  for (const ClassReading& one : read) slips.push_back(one.reading.slip);
+  const double slip = median(std::move(slips));
+  for (const DriveEstimate::OfClass& one : drive.classes) departures.push_back(one.at);
+  for (ClassReading& one : read) {
+    if (verdict.without_torque) one = withoutTorque(one);
+    one.reading.gradient = drive.gradient(one.reading.gradient);
+    one.reading.slip = std::clamp(drive.slip(number, slip, one.reading.gradient), -1.0, 1.0);
   }
-  std::vector<double> departures;
-  for (const Estimate& departure : drive.departure) departures.push_back(departure.value);
-  const auto fitted = observer_.observe(read, departures);
+  const auto corrected = observer_.observe(read, departures);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Estimate& of_drive = drive.departure[static_cast<std::size_t>(read[i].class_index)];
-    const double largest_std =
-        kLargestStdShare *
-        map_.model().parts().classes[static_cast<std::size_t>(read[i].class_index)].mean_std;
-    if (!seen[i] || !fitted[i] || read[i].reading.slip >= kDangerSlip || seen[i]->bound ||
-        !(of_drive.std <= largest_std) || std::isfinite(read[i].reading.drawbar_pull_N))
+    if (!seen[i] || !corrected[i]) continue;
+    const auto index = static_cast<std::size_t>(read[i].class_index);
+    const DriveEstimate::OfClass& of = drive.classes[index];
+    const double largest = kLargestStdShare * map_.model().parts().classes[index].mean_std;
+    const bool verified = drive.informing > kVerified && of.shared_std <= largest;
+    if (!std::isfinite(of.shared_std)) continue;  // no moment of the class was fitted
+    if (!drive.informs(number)) {
+      seen[i] = boundAlone(*seen[i]);
       continue;
-    WheelObservation& one = *seen[i];
-    const bool torque_sound = torqueSound(rows, sound.row[i], verdict);
-    one.pull = fitted[i]->pull;
-    if (!torque_sound && fitted[i]->by_slope.value < one.pull.value) one.pull = fitted[i]->by_slope;
-    one.pull.value -= drive.caution[static_cast<std::size_t>(read[i].class_index)];
-    one.shared_std = fitted[i]->shared_std;
-    // A reading at low slip raises an estimate only if the drive has mobilised most of the thrust.
-    if (std::isnan(one.shared_std) &&
-        verdict.proof->mobilised(rows.run(sound.row[i]), rows.wheel(sound.row[i])))
-      one.shared_std = kLittleSlip * map_.model().prior(read[i].class_index).pull.std;
-    one.shared_std = std::hypot(one.shared_std, of_drive.std);
-    one.pull_may_raise = std::isfinite(one.shared_std);
-    one.sinkage_may_raise = torque_sound;
+    }
+    seen[i] = corrected[i];
+    seen[i]->pull.value += (verified ? of.read : of.departure.value) - of.at;
+    seen[i]->pull.std *=
+        std::max(drive.sensor.amplification(read[i].reading.slip, read[i].reading.gradient), 1.0);
+    seen[i]->shared_std = of.shared_std;
+    if (verified) seen[i]->trust = drive.twice ? Trust::Twice : Trust::Once;
+    seen[i]->sinkage_verified = verified;
   }
 }
 

@@ -27,11 +27,11 @@ double slipOf(double speed_mps, double rim_speed_mps) noexcept {
                                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
-constexpr std::array<std::string_view, 19> kNumbers{
-    "drawbar_pull_N", "heading_rad", "load_N",    "pass_index", "pose_std_m",
-    "rim_speed_mps",  "roll_rad",    "sinkage_m", "slip",       "slip_angle_rad",
-    "slope_rad",      "speed_mps",   "time_s",    "torque_Nm",  "wheel_radius_m",
-    "wheel_width_m",  "x_m",         "y_m",       "z_m"};
+constexpr std::array<std::string_view, 22> kNumbers{
+    "drawbar_pull_N", "heading_rad",   "load_N",   "odometry_x_m", "odometry_y_m",   "pass_index",
+    "pose_std_m",     "rim_speed_mps", "roll_rad", "sinkage_m",    "slip",           "slip_angle_rad",
+    "slope_rad",      "speed_mps",     "time_s",   "torque_Nm",    "wheel_radius_m", "wheel_rate_rad_s",
+    "wheel_width_m",  "x_m",           "y_m",      "z_m"};
 constexpr std::array<std::string_view, 2> kWords{"run", "wheel"};
 
 }  // namespace
@@ -67,8 +67,63 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
       slip_angle_(telemetry.find("slip_angle_rad")),
       radius_(telemetry.find("wheel_radius_m")),
       width_(telemetry.find("wheel_width_m")),
+      rate_(telemetry.find("wheel_rate_rad_s")),
       wheel_(telemetry.findWords("wheel")),
-      run_(telemetry.findWords("run")) {}
+      run_(telemetry.findWords("run")) {
+  measureSecond(telemetry);
+}
+
+double TelemetryRows::rimSpeed(std::size_t i) const {
+  if (std::isfinite(value(rim_speed_, i))) return value(rim_speed_, i);
+  const double radius_m = value(radius_, i);
+  return value(rate_, i) * (std::isfinite(radius_m) ? radius_m : map_.model().rover().wheel.radius_m);
+}
+
+void TelemetryRows::measureSecond(const terramech::Telemetry& telemetry) {
+  constexpr double kCopied = 0.01;  // root mean square difference of slips below which one is computed from
+                                    // the other (ours)
+  if (!rim_speed_ && !rate_) return;
+  const auto *x = telemetry.find("odometry_x_m"), *y = telemetry.find("odometry_y_m");
+  if (!x || !y) x = &x_, y = &y_;
+  const auto way_m = [&](std::size_t a, std::size_t b) {
+    return std::hypot((*x)[b] - (*x)[a], (*y)[b] - (*y)[a]);
+  };
+  double copied = 0.0, rows = 0.0, jitter_m2 = 0.0, bends = 0.0;
+  const auto compare = [&](std::size_t i, double slip) {
+    if (!std::isfinite(slip - slip_[i])) return;
+    copied += (slip - slip_[i]) * (slip - slip_[i]);
+    rows += 1.0;
+  };
+  second_.assign(size(), std::numeric_limits<double>::quiet_NaN());
+  std::map<std::string, std::vector<std::size_t>> of_series;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (speed_) {
+      compare(i, second_[i] = slipOf(value(speed_, i), rimSpeed(i)));
+      continue;
+    }
+    std::vector<std::size_t>& before = of_series[series(i)];
+    before.push_back(i);
+    const std::size_t n = before.size();
+    if (n < 3 || !(value(time_, i) > value(time_, before[n - 2]))) continue;
+    const std::size_t last = before[n - 2];
+    compare(i, slipOf(way_m(last, i) / (value(time_, i) - value(time_, last)), rimSpeed(i)));
+    const double bend_x = (*x)[i] - 2.0 * (*x)[last] + (*x)[before[n - 3]],
+                 bend_y = (*y)[i] - 2.0 * (*y)[last] + (*y)[before[n - 3]];
+    jitter_m2 += (bend_x * bend_x + bend_y * bend_y) / 12.0;
+    bends += 1.0;
+    double rim_m = 0.0;
+    for (std::size_t k = n - 1; k-- > 0;) {
+      const double passed_s = value(time_, before[k + 1]) - value(time_, before[k]);
+      if (!(passed_s > 0.0)) break;
+      rim_m += rimSpeed(before[k + 1]) * passed_s;
+      if (way_m(before[k], i) < kSecondWay_m && k > 0) continue;
+      second_[i] = std::abs(rim_m) > 0.5 * kSecondWay_m ? 1.0 - way_m(before[k], i) / rim_m : second_[i];
+      break;
+    }
+  }
+  second_std_ = bends > 0.0 ? std::sqrt(2.0 * jitter_m2 / bends) / kSecondWay_m : 0.0;
+  if (copied < kCopied * kCopied * rows) second_.clear();
+}
 
 double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
   return column ? (*column)[i] : std::numeric_limits<double>::quiet_NaN();

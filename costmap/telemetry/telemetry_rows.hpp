@@ -46,6 +46,14 @@ class TelemetryRows {
   /// map at the position, or the measured gradient if lower.
   double steepestDescent(std::size_t i) const;
 
+  /// Returns the second slip of row i, 1 - v/(r omega), with v by speed_mps, or by the odometry or the poses
+  /// over the last kSecondWay_m, and r omega by rim_speed_mps or wheel_rate_rad_s. NaN: unknown, or computed
+  /// from the same speed or poses as the slip.
+  double secondSlip(std::size_t i) const { return second_.empty() ? value(nullptr, i) : second_[i]; }
+  /// Returns the standard deviation of secondSlip() by the scatter of the positions [-].
+  double secondStd() const noexcept { return second_std_; }
+  static constexpr double kSecondWay_m = 2.0;
+
   /// Returns the indices of all rows, grouped by moment. A moment is the rows of different wheels at one time
   /// of one run. The order of rows within a moment, and of interleaved runs, affects only the indices.
   std::vector<std::vector<std::size_t>> byMoment() const;
@@ -54,13 +62,18 @@ class TelemetryRows {
   static double value(const std::vector<double>* column, std::size_t i);
   double mapGradient(const TelemetryReading& reading, double direction_rad) const;
   double measuredSlope(std::size_t i) const;
+  double rimSpeed(std::size_t i) const;
+  void measureSecond(const terramech::Telemetry& telemetry);
 
   const TraversabilityMap& map_;
   double pose_std_m_;
   const std::vector<double>&x_, &y_, &load_, &slip_;
   const std::vector<double>*time_, *torque_, *sinkage_, *z_, *slope_, *heading_, *pull_, *pass_, *pose_;
   const std::vector<double>*speed_, *rim_speed_, *roll_, *slip_angle_, *radius_, *width_;
+  const std::vector<double>* rate_;
   const std::vector<std::string>*wheel_, *run_;
+  std::vector<double> second_;
+  double second_std_ = 0.0;
 };
 
 /// The readings of all wheels at one time. If all wheels have the same load although the rover is on a slope,

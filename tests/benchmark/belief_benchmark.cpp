@@ -33,8 +33,8 @@ costmap::WheelObservation seen(const maps::Point& place, double pull) {
           .place = place,
           .pull = {pull, 0.05},
           .sinkage = {0.17, 0.05},
-          .pull_may_raise = true,
-          .sinkage_may_raise = true};
+          .trust = Trust::Once,
+          .sinkage_verified = true};
 }
 
 // Samples of six wheels at 100 Hz along a line, each learned and published separately.

@@ -53,9 +53,12 @@ double slipOn(const GroundModel& model, double gradient) {
 
 using Read = std::function<double(double slip, double of_class)>;
 
-terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& truth, const Read& read) {
-  const char* const names[] = {"time_s",    "x_m",  "y_m",    "heading_rad",
-                               "slope_rad", "slip", "load_N", "pass_index"};
+// `twice`: true if the file states the speeds of the rover and of the rims as well.
+terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& truth, const Read& read,
+                           bool twice) {
+  std::vector<const char*> names{"time_s",    "x_m",  "y_m",    "heading_rad",
+                                 "slope_rad", "slip", "load_N", "pass_index"};
+  if (twice) names.insert(names.end(), {"rim_speed_mps", "speed_mps"});
   terramech::Telemetry out;
   for (const char* name : names) out.numbers.push_back({name, {}});
   out.words = {{"run", {}}, {"wheel", {}}};
@@ -70,6 +73,7 @@ terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& trut
                    slip = slipOn(truth, gradient);
       if (slip > 0.75) continue;
       const double seen = read(slip + 0.015 * noise(random), slipOn(map.model(), gradient));
+      const double speed_mps = 0.2 * (1.0 - slip + 0.015 * noise(random));
       const double slope_rad = std::atan(gradient) + 0.005 * noise(random);
       for (int w = 0; w < 6; ++w) {
         const double row[] = {2.0 * i,
@@ -79,8 +83,10 @@ terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& trut
                               slope_rad,
                               std::clamp(seen + 0.005 * noise(random), -1.0, 1.0),
                               terramech::wheelLoad_N(map.model().rover()),
-                              w / 2 + 1.0};
-        for (std::size_t c = 0; c < std::size(row); ++c) out.numbers[c].values.push_back(row[c]);
+                              w / 2 + 1.0,
+                              0.2,
+                              speed_mps};
+        for (std::size_t c = 0; c < names.size(); ++c) out.numbers[c].values.push_back(row[c]);
         out.words[0].values.push_back("line" + std::to_string(line));
         out.words[1].values.push_back("w" + std::to_string(w));
         out.lines.push_back(out.lines.size() + 2);
@@ -117,22 +123,24 @@ int main() {
       {"+ 0.1", [](double slip, double) { return slip + 0.1; }},
       {"of the class", [](double, double of_class) { return of_class; }}};
   std::printf(
-      "| truth | slip | offset, scale found | learned | if sound | counted on | held cells allowed | others "
-      "allowed |\n"
-      "|---|---|---|---|---|---|---|---|\n");
-  for (const double strength : {0.81, 0.9, 1.0, 1.1, 1.22, 1.4}) {
-    const auto truth = modelOf(rover, ground, strength);
-    for (const auto& [name, read] : sensors) {
-      TraversabilityMap map(waves(), modelOf(rover, ground, 1.0), {});
-      const auto before = allowed(map, *truth);
-      const DriveReport report = addDrive(map, drive(map, *truth, read));
-      const auto after = allowed(map, *truth);
-      if (report.learned.empty()) continue;
-      const LearnedClass& one = report.learned.front();
-      std::printf("| %.3f | %s | %+.2f, %.2f | %.3f +- %.3f | %.3f +- %.3f | %.3f | %d -> %d | %d -> %d |\n",
-                  truth->reference(0, false).gradient, name, report.slip_offset, report.slip_scale,
-                  one.pull.value, one.pull.std, one.if_sound.value, one.if_sound.std, one.counted_on,
-                  before.first, after.first, before.second, after.second);
+      "| truth | slip | slips | offset, scale found | learned | if sound | counted on | held cells allowed | "
+      "others allowed |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (const bool twice : {false, true})
+    for (const double strength : {0.81, 0.9, 1.0, 1.1, 1.22, 1.4}) {
+      const auto truth = modelOf(rover, ground, strength);
+      for (const auto& [name, read] : sensors) {
+        TraversabilityMap map(waves(), modelOf(rover, ground, 1.0), {});
+        const auto before = allowed(map, *truth);
+        const DriveReport report = addDrive(map, drive(map, *truth, read, twice));
+        const auto after = allowed(map, *truth);
+        if (report.learned.empty()) continue;
+        const LearnedClass& one = report.learned.front();
+        std::printf(
+            "| %.3f | %s | %s | %+.2f, %.2f | %.3f +- %.3f | %.3f +- %.3f | %.3f | %d -> %d | %d -> %d |\n",
+            truth->reference(0, false).gradient, name, twice ? "two" : "one", report.slip_offset,
+            report.slip_scale, one.pull.value, one.pull.std, one.if_sound.value, one.if_sound.std,
+            one.counted_on, before.first, after.first, before.second, after.second);
+      }
     }
-  }
 }

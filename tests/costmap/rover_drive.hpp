@@ -68,6 +68,18 @@ inline terramech::Telemetry tableOf(const Drive& drive, bool felt = true) {
   return out;
 }
 
+/// Adds speeds of rover and rims that give the slip a second time, with a noise of 0.02.
+inline terramech::Telemetry measuredTwice(terramech::Telemetry drive) {
+  std::vector<double> speed, rim;
+  for (const double slip : drive.at("slip")) {
+    rim.push_back(0.2);
+    speed.push_back(0.2 * (1.0 - slip + (rim.size() % 2 == 0 ? 0.02 : -0.02)));
+  }
+  drive.numbers.push_back({"speed_mps", speed});
+  drive.numbers.push_back({"rim_speed_mps", rim});
+  return drive;
+}
+
 /// A drive back and forth along lines of the map, on one soil. All wheels have the same slip; their mean
 /// pull equals the demand of the slope as far as the soil allows.
 inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil, unsigned seed,

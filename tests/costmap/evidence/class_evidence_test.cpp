@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <random>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Dense>
 #include <site_fixture.hpp>
 
 #include <talus/costmap/evidence/class_evidence.hpp>
@@ -10,208 +13,167 @@
 namespace talus::costmap {
 namespace class_evidence_test {
 
+constexpr double kPrior = 0.2, kP = 0.05, kQ = 0.08;
+
 GroundClass sand() {
-  return {.number = 1, .soil = testSand(), .pull_std = 0.05, .mean_std = 0.05};
+  return {.number = 1, .soil = testSand(), .pull_std = kP, .mean_std = kQ};
 }
 
-TEST(IndependentPlaces, AdjacentSquaresAreNotCountedAsIndependent) {
-  IndependentPlaces places;
-  for (int column = 0; column < 4; ++column) places.set({column, 0}, 0.1F);
-  EXPECT_EQ(places.driven(), 2U) << "of four in a row every other one";
-  EXPECT_TRUE(std::isinf(places.agreed(3)));
-  places.set({4, 0}, 0.05F);
-  // Closed form: squares 0, 2 and 4 contain 0.1, 0.1 and 0.05
-  EXPECT_NEAR(places.agreed(3), 0.05, 1e-7);
-  places.set({4, 0}, std::nullopt);
-  EXPECT_EQ(places.driven(), 2U);
+SourcePull pullOf(std::uint16_t drive, Trust trust, double departure, double shared) {
+  return {.source = {drive, trust}, .weight = 1e9, .pull = kPrior + departure, .shared = shared};
 }
 
-ClassEvidence taught(const std::vector<double>& pulls, bool raises) {
-  ClassEvidence contributions(sand());
-  int column = 0;
-  for (const double pull : pulls) {
-    contributions.add({.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = raises});
-    contributions.places().set({2 * column++, 0}, raises ? static_cast<float>(pull) : -INFINITY);
-  }
-  contributions.refresh();
-  return contributions;
+// Number of places as which one block with such a pull counts.
+double weightOf(const SourcePull& pull) {
+  return kP * kP / (kP * kP + pull.variance());
 }
 
-TEST(ClassEvidence, OnePlaceTeachesNothingTwoHalfThreeAll) {
-  EXPECT_EQ(taught({-0.2}, true).posterior().pull.value, 0.0);
-  const double two = taught({-0.2, -0.2}, true).posterior().pull.value;
-  const double three = taught({-0.2, -0.2, -0.2}, true).posterior().pull.value;
-  // Closed form: prior n y / (n prior + variance) for equal variances; the weight of two places is 1/2
-  EXPECT_NEAR(two, 0.5 * -0.2 * 2.0 / 3.0, 1e-5);
-  EXPECT_NEAR(three, -0.2 * 3.0 / 4.0, 1e-5);
+double meanOf(const ClassState& state) {
+  double mean = 0.0;
+  for (const ClassHypothesis& h : state.hypotheses) mean += h.weight * h.pull;
+  return mean;
 }
 
-TEST(ClassEvidence, RisesOnlyAsFarAsThreePlacesReach) {
-  EXPECT_LE(taught({0.2, 0.2}, true).posterior().pull.value, 0.0);
-  EXPECT_NEAR(taught({0.2, 0.2, 0.01}, true).posterior().pull.value, 0.01, 1e-6);
-  EXPECT_LE(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.value, 0.0) << "none may raise";
-  EXPECT_EQ(taught({0.2, 0.2, 0.2, 0.2}, false).posterior().pull.std, 0.05);
+TEST(ClassEvidence, WithoutEvidenceIsThePrior) {
+  const ClassState state = ClassEvidence(sand()).state();
+  ASSERT_EQ(state.hypotheses.size(), 1U);
+  EXPECT_EQ(state.hypotheses[0].pull, 0.0);
+  EXPECT_NEAR(std::hypot(state.hypotheses[0].own_std, state.hypotheses[0].shared_std), kQ, 1e-12);
 }
 
-// Property: two drives of 25 places each may raise the class only if their means differ by less than 3
-// standard deviations of the difference, in either order of the drives. Closed form: the mean over n places
-// has the variance q^2 p^2 / (n q^2 + p^2), with q = p = 0.05.
-TEST(ClassEvidence, DrivesThatContradictEachOtherRaiseNothing) {
-  const double apart =
-      3.0 * std::sqrt(2.0) * 0.05 / std::sqrt(26.0) * 26.0 / 25.0;  // in the contributions of the places
-  for (const double times : {0.0, 0.9, 1.1, 2.0})
-    for (const double sign : {-1.0, 1.0}) {
-      ClassEvidence contributions(sand());
-      for (std::uint16_t drive = 1; drive <= 2; ++drive)
-        for (int place = 0; place < 25; ++place) {
-          const double pull = drive == 1 ? 0.0 : sign * times * apart;
-          contributions.add(
-              {.weight = 1.0, .pull = pull, .sinkage = std::nullopt, .raises = true, .drive = drive});
-          contributions.places().set({2 * place, 2 * drive}, static_cast<float>(pull));
+// Property: the probability and the mean of each hypothesis are those of the joint normal distribution of the
+// class mean, the driven places and the readings, by brute force over all combinations of faulty drives.
+TEST(ClassEvidence, HypothesesEqualBruteForce) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 30; ++round) {
+    std::vector<SourcePull> pulls;
+    const int drives = 1 + round % 3;
+    for (int d = 0; d < drives; ++d)
+      pulls.push_back(pullOf(static_cast<std::uint16_t>(d), static_cast<Trust>((round + d) % 3),
+                             std::clamp(0.08 * normal(random), -0.15, 0.15), 0.02 + 0.01 * d));
+    ClassEvidence evidence(sand());
+    constexpr int kBlocks = 7;
+    for (int b = 0; b < kBlocks; ++b) evidence.count(pulls, kPrior, 1.0, 1);
+    const ClassState state = evidence.state();
+    const double places = kBlocks * weightOf(pulls[0]);
+    const double faulty[] = {0.5, 0.07, 0.001};
+    std::vector<std::pair<double, double>> expected;  // probability and mean of D
+    double sum = 0.0;
+    for (unsigned set = 0; set < 1U << drives; ++set) {
+      double weight = 1.0;
+      std::vector<int> sound;
+      for (int d = 0; d < drives; ++d) {
+        const double p = faulty[static_cast<int>(pulls[static_cast<std::size_t>(d)].source.trust)];
+        const double y = pulls[static_cast<std::size_t>(d)].pull - kPrior;
+        if ((set >> d & 1U) != 0) {
+          const double v = std::pow(2.0 * kQ, 2) + std::pow(pulls[static_cast<std::size_t>(d)].shared, 2);
+          weight *= p * std::exp(-0.5 * y * y / v) / std::sqrt(v);
+        } else {
+          weight *= 1.0 - p;
+          sound.push_back(d);
         }
-      contributions.refresh();
-      EXPECT_EQ(contributions.mayRaise(), times < 1.0) << sign * times;
-      EXPECT_EQ(contributions.state().may_raise, times < 1.0) << sign * times;
+      }
+      const auto n = static_cast<Eigen::Index>(sound.size());
+      Eigen::MatrixXd covariance(n, n);
+      Eigen::VectorXd y(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const SourcePull& one = pulls[static_cast<std::size_t>(sound[static_cast<std::size_t>(i)])];
+        y(i) = one.pull - kPrior;
+        for (Eigen::Index j = 0; j < n; ++j)
+          covariance(i, j) = kQ * kQ + kP * kP / places + (i == j ? one.shared * one.shared : 0.0);
+      }
+      double mean = 0.0;
+      if (n > 0) {
+        const Eigen::VectorXd solved = covariance.ldlt().solve(y);
+        weight *= std::exp(-0.5 * y.dot(solved)) / std::sqrt(covariance.determinant());
+        mean = kQ * kQ * solved.sum();
+      }
+      expected.emplace_back(weight, mean);
+      sum += weight;
     }
-}
-
-// Property: evidence from unverified sensors never raises the class mean above the mean from verified
-// evidence.
-TEST(ClassEvidence, UnverifiedReadingsNeverRaise) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> any(-0.2, 0.2);
-  for (int world = 0; world < 200; ++world) {
-    ClassEvidence contributions = taught({any(random), any(random), any(random), any(random)}, true);
-    const double alone = contributions.posterior().pull.value;
-    for (int i = 0; i < 10; ++i) {
-      contributions.add({.weight = 1.0, .pull = any(random), .sinkage = std::nullopt, .raises = false});
-      contributions.refresh();
-      EXPECT_LE(contributions.posterior().pull.value, alone);
-    }
-  }
-}
-
-// Property: a drive with unverified sensors never raises the mean, changes the standard deviation or reduces
-// the sinkage, with and without verified evidence, and with a second unverified drive.
-TEST(ClassEvidence, UnverifiedDrivesNeverRaise) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> any(-0.2, 0.2), deep(0.0, 0.2);
-  for (int world = 0; world < 500; ++world) {
-    ClassEvidence contributions(sand());
-    for (int column = 0; column < 8; ++column)
-      contributions.places().set({2 * column, 0}, world % 2 == 0 ? 0.1F : -INFINITY);
-    for (int i = 0; world % 2 == 0 && i < 6; ++i)
-      contributions.add({.weight = 1.0,
-                         .pull = any(random),
-                         .sinkage = any(random),
-                         .raises = true,
-                         .sinkage_raises = true,
-                         .drive = 1});
-    contributions.refresh();
-    for (std::uint16_t drive = 2; drive < 8; ++drive) {
-      const ClassState before = contributions.state();
-      const double of_drive = any(random), deeper = deep(random);
-      for (int i = 0; i < 1 + world % 7; ++i)
-        contributions.add({.weight = 0.5,
-                           .pull = std::min(of_drive + 0.1 * any(random), 0.0),
-                           .sinkage = deeper,
-                           .raises = false,
-                           .drive = drive});
-      contributions.refresh();
-      const ClassState after = contributions.state();
-      EXPECT_LE(after.pull, before.pull + 1e-12);
-      EXPECT_EQ(after.pull_std, before.pull_std);
-      EXPECT_EQ(after.own_std, before.own_std);
-      EXPECT_EQ(after.shared, before.shared);
-      EXPECT_GE(after.sinkage, before.sinkage - 1e-12);
-      EXPECT_EQ(after.may_raise, before.may_raise);
-      EXPECT_LE(after.most_rise, before.most_rise);
+    ASSERT_EQ(state.hypotheses.size(), expected.size());
+    std::ranges::sort(expected, std::greater{});
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_NEAR(state.hypotheses[i].weight, expected[i].first / sum, 1e-4) << round;
+      EXPECT_NEAR(state.hypotheses[i].pull, expected[i].second, 2e-5) << round;
     }
   }
 }
 
-// Closed form: the mean is the minimum over sets of drives of q^2 sum(h y)/(q^2 sum(h) + p^2). For -0.10, 0
-// and -0.08 at one place each, the minimum is that of the set {-0.10, -0.08}.
-TEST(ClassEvidence, MeanIsTheMinimumOverSetsOfDrives) {
-  ClassEvidence contributions(sand());
-  for (int column = 0; column < 8; ++column) contributions.places().set({2 * column, 0}, -INFINITY);
-  const double of_drive[] = {-0.10, 0.0, -0.08};
-  for (std::uint16_t drive = 1; drive <= 3; ++drive)
-    contributions.add({.weight = 1.0, .pull = of_drive[drive - 1], .sinkage = std::nullopt, .drive = drive});
-  contributions.refresh();
-  EXPECT_NEAR(contributions.posterior().pull.value, -0.18 / 3.0, 1e-5);
-}
-
-// Closed form: with two drives the mean is at most the value of the weaker drive, q^2 W y/(q^2 W + p^2), with
-// the standard deviation q/sqrt(1 + q^2 W/p^2) of that drive and W = 40 contributions. The result is
-// bit-identical in either order, and after a drive is added and removed again.
-TEST(ClassEvidence, NoDriveLiftsWhatAnotherShows) {
-  const auto lessonOf = [](std::uint16_t drive) {
-    return BlockContribution{.weight = 1.0,
-                             .pull = drive == 1 ? -0.08 : 0.02,
-                             .sinkage = std::nullopt,
-                             .raises = true,
-                             .drive = drive};
+// Property: of two drives that contradict each other, some hypothesis of considerable weight has the weaker.
+// A slip measured twice outweighs one measured once.
+TEST(ClassEvidence, ContradictingDrivesLeaveTheWeakerOneProbable) {
+  const auto with = [](Trust strong) {
+    ClassEvidence evidence(sand());
+    for (int b = 0; b < 20; ++b)
+      evidence.count(std::vector{pullOf(1, Trust::Once, -0.09, 0.01), pullOf(2, strong, 0.09, 0.01)}, kPrior,
+                     1.0, 1);
+    double weak = 0.0;
+    for (const ClassHypothesis& h : evidence.state().hypotheses) weak += h.pull < -0.05 ? h.weight : 0.0;
+    return weak;
   };
-  ClassEvidence one(sand()), other(sand());
-  for (int column = 0; column < 8; ++column)
-    for (ClassEvidence* contributions : {&one, &other}) contributions->places().set({2 * column, 0}, 0.1F);
-  for (int i = 0; i < 40; ++i) {
-    one.add(lessonOf(1));
-    other.add(lessonOf(2));
-  }
-  one.refresh();
-  const ClassState alone = one.state();
-  EXPECT_NEAR(alone.pull, -0.08 * 40.0 / 41.0, 1e-5);
-  for (int i = 0; i < 40; ++i) {
-    one.add(lessonOf(2));
-    other.add(lessonOf(1));
-  }
-  one.refresh();
-  other.refresh();
-  EXPECT_NEAR(one.posterior().pull.value, -0.08 * 40.0 / 41.0 + 0.05 / std::sqrt(41.0), 1e-5);
-  EXPECT_EQ(one.state(), other.state());
-  for (int i = 0; i < 40; ++i) one.remove(lessonOf(2));
-  one.refresh();
-  EXPECT_EQ(one.state(), alone);
+  EXPECT_GT(with(Trust::Once), 0.3);
+  EXPECT_LT(with(Trust::Twice), 0.25);
 }
 
-// Property: each number is rounded conservatively by less than a step and not beyond the prior; numbers
-// without evidence are unchanged.
-TEST(ClassEvidence, StepsErrTowardsDanger) {
-  EXPECT_EQ(ClassEvidence(sand()).stateInSteps().pull, 0.0);
-  EXPECT_EQ(ClassEvidence(sand()).stateInSteps().pull_std, 0.05);
-  for (int i = 0; i < 200; ++i) {
-    const double y = -0.2 + 0.0021 * i;
-    const ClassEvidence contributions = taught({y, y + 0.013, y - 0.007, y}, i % 3 > 0);
-    const ClassState exact = contributions.state(), steps = contributions.stateInSteps();
-    EXPECT_LE(steps.pull, exact.pull + 1e-8);
-    EXPECT_GT(steps.pull, exact.pull - steps.pull_step);
-    EXPECT_GE(steps.pull_std, exact.pull_std - 1e-8);
-    EXPECT_LE(steps.pull_std, 0.05);
-    EXPECT_GE(steps.own_std, exact.own_std - 1e-8);
-    EXPECT_GE(steps.shared, exact.shared - 1e-8);
-    EXPECT_GE(steps.sinkage, exact.sinkage - 1e-7);
-    EXPECT_LT(steps.sinkage, exact.sinkage + steps.sinkage_step);
-    EXPECT_LE(steps.most_rise, exact.most_rise + 3e-8);
-    EXPECT_GT(steps.most_rise, exact.most_rise - 0.02);
-    EXPECT_EQ(steps.may_raise, exact.may_raise);
-    EXPECT_EQ(exact.pull_step, 0.0);
-  }
+// Property: the order of blocks has no effect, and a block that is removed leaves nothing behind.
+TEST(ClassEvidence, SumsAreExact) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<std::vector<SourcePull>> blocks;
+  for (int b = 0; b < 40; ++b)
+    blocks.push_back({pullOf(static_cast<std::uint16_t>(b % 3), Trust::Once, 0.05 * normal(random), 0.02)});
+  ClassEvidence forwards(sand()), backwards(sand());
+  for (const auto& block : blocks) forwards.count(block, kPrior, 0.4, 1);
+  std::ranges::reverse(blocks);
+  const std::vector<SourcePull> other{pullOf(77, Trust::Once, 0.1, 0.02)};
+  backwards.count(other, kPrior, 0.4, 1);
+  for (const auto& block : blocks) backwards.count(block, kPrior, 0.4, 1);
+  backwards.count(other, kPrior, 0.4, -1);
+  EXPECT_EQ(forwards.state(), backwards.state());
 }
 
-// Property: removing a contribution restores the previous state to the bit.
-TEST(ClassEvidence, ForgetsToTheBit) {
-  ClassEvidence contributions = taught({-0.1, -0.05, -0.07}, true);
-  const ClassPosterior before = contributions.posterior();
-  const BlockContribution contribution{.weight = 0.37, .pull = -0.123, .sinkage = 0.2, .raises = true};
-  contributions.add(contribution);
-  contributions.refresh();
-  EXPECT_NE(contributions.posterior().pull.value, before.pull.value);
-  contributions.remove(contribution);
-  contributions.refresh();
-  EXPECT_EQ(contributions.posterior().pull.value, before.pull.value);
-  EXPECT_EQ(contributions.posterior().pull.std, before.pull.std);
+// Property: on classes and drives drawn from the model, the posterior mean is unbiased and the truth lies
+// within one and two standard deviations as often as the normal distribution says.
+TEST(ClassEvidence, PosteriorIsCalibrated) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  double bias = 0.0;
+  int one = 0, two = 0;
+  constexpr int kWorlds = 3000, kBlocks = 12;
+  for (int world = 0; world < kWorlds; ++world) {
+    const double truth = kQ * normal(random);
+    ClassEvidence evidence(sand());
+    const int drives = 1 + world % 3;
+    std::vector<double> error, faulty;
+    for (int d = 0; d < drives; ++d) {
+      faulty.push_back(uniform(random) < 0.07 ? 1.0 : 0.0);
+      error.push_back(faulty.back() > 0.0 ? 2.0 * kQ * normal(random) : 0.02 * normal(random));
+    }
+    for (int b = 0; b < kBlocks; ++b) {
+      const double place = truth + kP * normal(random);
+      std::vector<SourcePull> pulls;
+      for (std::size_t d = 0; d < error.size(); ++d)
+        pulls.push_back(pullOf(static_cast<std::uint16_t>(d), Trust::Once,
+                               faulty[d] > 0.0 ? error[d] : place + error[d] + 0.02 * normal(random), 0.02));
+      evidence.count(pulls, kPrior, 1.0, 1);
+    }
+    const ClassState state = evidence.state();
+    const double mean = meanOf(state);
+    double variance = 0.0;
+    for (const ClassHypothesis& h : state.hypotheses)
+      variance +=
+          h.weight * (std::pow(h.pull - mean, 2) + h.own_std * h.own_std + h.shared_std * h.shared_std);
+    const double z = (truth - mean) / std::sqrt(variance);
+    bias += (mean - truth) / kWorlds;
+    one += std::abs(z) < 1.0 ? 1 : 0;
+    two += std::abs(z) < 2.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(bias, 0.0, 0.003);
+  EXPECT_NEAR(one / double{kWorlds}, 0.70, 0.06);  // mixtures have longer tails than the normal distribution
+  EXPECT_NEAR(two / double{kWorlds}, 0.95, 0.02);
 }
 
 }  // namespace class_evidence_test

@@ -19,8 +19,8 @@ WheelObservation soft(double x, double y) {
           .place = {100.0 + x, 200.0 + y},
           .pull = {0.05, 0.05},
           .sinkage = {0.6, 0.05},
-          .pull_may_raise = true,
-          .sinkage_may_raise = true};
+          .trust = Trust::Once,
+          .sinkage_verified = true};
 }
 
 // A reading whose pull is lower than the class mean by `by`.
@@ -29,8 +29,8 @@ WheelObservation weaker(double x, double y, double by) {
           .place = {100.0 + x, 200.0 + y},
           .pull = {testGround()->prior(0).pull.value - by, 0.05},
           .sinkage = {0.2, 0.05},
-          .pull_may_raise = true,
-          .sinkage_may_raise = true};
+          .trust = Trust::Once,
+          .sinkage_verified = true};
 }
 
 TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {
@@ -43,8 +43,11 @@ TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {
   EXPECT_LT(here.pull.std, before.pull.std);
   EXPECT_LT(here.pull.value, near.pull.value);
   EXPECT_LT(near.pull.value, far.pull.value);
-  EXPECT_EQ(far.pull.value, before.pull.value) << "what one place says it says of itself";
-  EXPECT_EQ(far.pull.std, before.pull.std);
+  EXPECT_GT(far.pull.value, before.pull.value - 0.25 * (before.pull.value - here.pull.value))
+      << "one place tells little about its class";
+  EXPECT_LE(here.pull.std, near.pull.std);
+  EXPECT_LE(near.pull.std, far.pull.std);
+  EXPECT_LE(far.pull.std, before.pull.std);
 }
 
 TEST(TraversabilityMap, PublishingAddsEvidenceAndKeepsEarlierVersions) {
@@ -97,10 +100,8 @@ TEST(EvidenceField, ClassMeanMovesMoreWithManyIndependentPlaces) {
     one.learn(weaker(30.5, 30.5, 0.06));
     many.learn(weaker(5.5 + 0.25 * i, 30.5, 0.06));
   }
-  EXPECT_LT(one.evidence().posterior(0).places, 1.0);
-  EXPECT_GT(many.evidence().posterior(0).places,
-            8.0);  // Closed form: 50 m divided by the integral scale of 3.3 m, reduced for noise
-  EXPECT_LT(many.evidence().posterior(0).pull.value, one.evidence().posterior(0).pull.value);
+  EXPECT_LT(many.evidence().classBelief(0).pull.value, one.evidence().classBelief(0).pull.value - 0.01);
+  EXPECT_LT(many.evidence().classBelief(0).pull.std, one.evidence().classBelief(0).pull.std);
 }
 
 TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
@@ -112,18 +113,10 @@ TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
   map.publish();
   // Property: readings seven standard deviations from the class change the class mean by less than one
   // standard deviation, but determine the estimate of their own cells.
-  EXPECT_GT(map.evidence().posterior(0).pull.value, -0.05);
   const double prior = map.model().prior(0).pull.value;
+  EXPECT_GT(map.evidence().classBelief(0).pull.value, prior - 0.05);
   EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);
   EXPECT_NEAR(map.ground({45, 45})->pull.value, prior, 0.05);
-}
-
-TEST(EvidenceField, BlockEstimateIsThatOfItsWeakestReadings) {
-  TraversabilityMap map = mapOf(wide());
-  for (int i = 0; i < 50; ++i) map.learn(weaker(30.5, 30.5, 0.0));
-  for (int i = 0; i < 3; ++i) map.learn(weaker(30.5, 30.5, 0.4));
-  map.publish();
-  EXPECT_LT(map.ground({30, 30})->pull.value, map.model().prior(0).pull.value - 0.2);
 }
 
 TEST(TraversabilityMap, RefusedAreaStaysBlocked) {

@@ -17,17 +17,18 @@ TEST(GaussianProcess, OnePlaceIsTheConjugateUpdate) {
   const GaussianProcess process({{.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025}},
                                 kVariation);
   // Closed form: a prior and a measurement of equal variance average with equal weights.
-  EXPECT_NEAR(process.at({0, 0}).pull.value, 0.05, 1e-12);
-  EXPECT_NEAR(process.at({0, 0}).pull.std, 0.05 * std::sqrt(0.5), 1e-12);
-  EXPECT_EQ(process.at({5, 0}).pull.value, 0.0);
-  EXPECT_EQ(process.at({5, 0}).pull.std, 0.05);
+  EXPECT_NEAR(process.learned({0, 0}).departure.pull.value, 0.05, 1e-12);
+  EXPECT_NEAR(process.learned({0, 0}).departure.pull.std, 0.05 * std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(process.learned({5, 0}).departure.pull.value, 0.0);
+  EXPECT_EQ(process.learned({5, 0}).departure.pull.std, 0.05);
 }
 
 TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
   std::vector<PlaceEvidence> many(20, {.place = {0, 0}, .pull = 0.1, .sinkage = 0.0, .variance = 0.0025});
   const double k = sparseKernel(2.0, 4.0);
   // Property: a place 2 m away that is known exactly reduces the variance by the share k^2 at most.
-  EXPECT_GE(GaussianProcess(many, kVariation).at({2, 0}).pull.std, 0.05 * std::sqrt(1.0 - k * k));
+  EXPECT_GE(GaussianProcess(many, kVariation).learned({2, 0}).departure.pull.std,
+            0.05 * std::sqrt(1.0 - k * k));
 }
 
 }  // namespace spreading_test

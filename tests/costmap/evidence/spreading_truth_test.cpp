@@ -71,7 +71,7 @@ TEST(Spreading, GaussianProcessIsMoreAccurateThanThePriorAndCalibrated) {
     const GaussianProcess gaussian(drive, kVariation);
     for (int i = 0; i < 50; ++i) {
       const maps::Point p{place(random), 0.25 * (place(random) - 10.0)};
-      process.add(truth.at(p), gaussian.at(p).pull);
+      process.add(truth.at(p), gaussian.learned(p).departure.pull);
       prior.add(truth.at(p), {0.0, kVariation.pull_std});
     }
   }
@@ -162,7 +162,7 @@ TEST(Spreading, WeakPlaceProbabilitiesAreCalibrated) {
     std::vector<PlaceEvidence> drive;
     for (std::size_t i = 0; i + 1 < places.size(); ++i)
       drive.push_back({places[i], truth[i] + noise(random), 0.0, kNoise * kNoise});
-    own.add(GaussianProcess(drive, kVariation).at(places.back()).pull, truth.back());
+    own.add(GaussianProcess(drive, kVariation).learned(places.back()).departure.pull, truth.back());
   }
   // Property: on ground drawn from the assumed kernel the prediction is calibrated, and optimistic by at
   // most 0.02. The standard error of the smallest bin is 0.014.
@@ -184,8 +184,8 @@ TEST(Spreading, WeakPlaceProbabilitiesAreConservativeForOtherCovariance) {
     const GaussianProcess process(drive, kVariation), matched(drive, longer);
     for (int i = 0; i < 50; ++i) {
       const maps::Point p{along(random), beside(random)};
-      waves.add(process.at(p).pull, truth.at(p));
-      fitted.add(matched.at(p).pull, truth.at(p));
+      waves.add(process.learned(p).departure.pull, truth.at(p));
+      fitted.add(matched.learned(p).departure.pull, truth.at(p));
     }
   }
   // The waves have the correlation J0(2 pi d/10 m), 0.47 at 2.5 m, where the kernel has 0.17. The

@@ -212,7 +212,10 @@ TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
       EXPECT_TRUE(seen->bound);
       EXPECT_LE(seen->pull.value, prior);
       const double departure = gradient - ground->steady(0, {slip, false}).gradient;
-      EXPECT_NEAR(seen->pull.value, prior + std::min(departure, 0.0), 1e-9);
+      // Closed form: P(i) + D f(i) = g
+      const double share = ground->steady(0, {slip, false}).torque_over_load_radius /
+                           ground->reference(0, false).torque_over_load_radius;
+      EXPECT_NEAR(seen->pull.value, prior + std::min(departure / share, 0.0), 1e-9);
       reading.slip = 0.85;
       EXPECT_FALSE(observer.observe(0, reading)->bound);
     }

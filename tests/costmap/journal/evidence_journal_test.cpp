@@ -97,7 +97,7 @@ TEST_F(EvidenceJournalTest, MigratesAJournalOfRelease010) {
     ASSERT_EQ(b.size(), 1U);
     EXPECT_EQ(b[0].line, 7);
     EXPECT_EQ(b[0].reading.z_m, -2500.5);
-    EXPECT_TRUE(b[0].observation.pull_may_raise);
+    EXPECT_EQ(b[0].observation.trust, Trust::Once);
     // Property: rows of format 3 have no shared error and can only lower an estimate.
     EXPECT_TRUE(std::isnan(b[0].observation.shared_std));
     ASSERT_EQ(a.size(), 1U);

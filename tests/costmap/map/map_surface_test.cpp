@@ -110,7 +110,8 @@ WheelObservation drive(std::mt19937& random, const maps::Grid& grid) {
                 grid.south_west.y_m + uniform(random, 0.0, grid.height * grid.resolution_m)};
   seen.pull = {uniform(random, 0.05, 0.4), 0.05};
   seen.sinkage = {uniform(random, 0.05, 0.4), 0.05};
-  seen.pull_may_raise = seen.sinkage_may_raise = true;
+  seen.trust = Trust::Once;
+  seen.sinkage_verified = true;
   return seen;
 }
 

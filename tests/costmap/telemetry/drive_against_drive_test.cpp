@@ -48,6 +48,25 @@ int allowed(const TraversabilityMap& map) {
   return cells;
 }
 
+// Number of cells that are allowed after both drives, not after the sound drive, and that the true soil does not
+// hold at slip 0.8, by more than the error of the model.
+int freedWrongly(const TraversabilityMap& both, const TraversabilityMap& sound) {
+  constexpr double kModel = 0.02;  // error of the model of a wheel
+  const auto truth = groundOf(weakSand(), 4);
+  const double most = 0.5 * (truth->steady(0, {.slip = 0.8}).gradient +
+                             truth->steady(0, {.slip = 0.8, .in_rut = true}).gradient);
+  int cells = 0;
+  for (int row = 0; row < kRoverSide; ++row)
+    for (int column = 0; column < kRoverSide; ++column)
+      for (double gradient = most + kModel; gradient < 0.3; gradient += 0.01) {
+        const auto isAllowed = [&](const TraversabilityMap& map) {
+          return map.model().state(0, *map.ground({column, row}), gradient).refusal == Refusal::None;
+        };
+        cells += isAllowed(both) && !isAllowed(sound) ? 1 : 0;
+      }
+  return cells;
+}
+
 struct Fault {
   const char* name;
   std::function<double(double slip, double other)> read;  // other: slip of the class, or gradient
@@ -55,9 +74,8 @@ struct Fault {
 
 class OneFaultyDrive : public ::testing::TestWithParam<Fault> {};
 
-// Property: a faulty drive restores at most 5 % of the cells that a sound drive with few readings refused;
-// the result is bit-identical in either order. (If the readings of all drives counted as one drive, it would
-// restore 84, 86, 7 and 89 %.)
+// Property: a faulty drive behind a sound one allows no cell that the true soil does not hold; the result is
+// bit-identical in either order.
 TEST_P(OneFaultyDrive, DoesNotRaiseWhatASoundDriveLowered) {
   TraversabilityMap sound = sand(), both = sand(), turned = sand();
   const Drive first = soundDrive(sound, 1);
@@ -68,11 +86,10 @@ TEST_P(OneFaultyDrive, DoesNotRaiseWhatASoundDriveLowered) {
   addDrive(sound, tableOf(first, false));
   ASSERT_LT(allowed(sound), allowed(sand()));
   addDrive(both, tableOf(first, false));
-  const DriveReport report = addDrive(both, tableOf(second, false));
-  EXPECT_GT(report.raising, 0U);
+  addDrive(both, tableOf(second, false));
   addDrive(turned, tableOf(second, false));
   addDrive(turned, tableOf(first, false));
-  EXPECT_LE(allowed(both) - allowed(sound), (allowed(sand()) - allowed(sound)) / 20);
+  EXPECT_EQ(freedWrongly(both, sound), 0);
   for (int row = 0; row < kRoverSide; ++row)
     for (int column = 0; column < kRoverSide; ++column) {
       const Estimate one = both.ground({column, row})->pull, other = turned.ground({column, row})->pull;
@@ -115,7 +132,7 @@ TEST_P(GentleDrive, UnverifiedDriveAllowsNoCellAgain) {
       row[kTime] += 1e5;
       row[kSlip] = GetParam().read(row[kSlip], std::tan(row[kSlope]));
     }
-    EXPECT_EQ(addDrive(map, tableOf(second, false)).raising, 0U);
+    addDrive(map, tableOf(second, false));
     const auto after = isAllowed(map);
     int freed = 0;
     for (std::size_t i = 0; i < after.size(); ++i) freed += after[i] && !before[i] ? 1 : 0;
@@ -148,18 +165,16 @@ TEST(DriveAgainstDrive, JournalReplayDistinguishesDrives) {
       ASSERT_EQ(map.ground({column, row})->pull.value, again.ground({column, row})->pull.value);
 }
 
-// Property: slip that is read too small from half way on raises no estimate, and the finding states the
-// reason and the remedy.
-TEST(DriveAgainstDrive, SlipBiasFromMidDriveRaisesNothing) {
+// Property: slip that is read too small from half way on raises no estimate, and the finding states the cause
+// and what settles it.
+TEST(DriveAgainstDrive, SlipBiasFromMidDriveIsNamedAndRaisesNothing) {
   TraversabilityMap map = sand();
   const TraversabilityMap before = sand();
   Drive drive = soundDrive(map, 1);
   for (std::size_t i = drive.rows.size() / 2; i < drive.rows.size(); ++i) drive.rows[i][kSlip] -= 0.1;
   const DriveReport report = addDrive(map, tableOf(drive, false));
-  EXPECT_EQ(report.raising, 0U);
-  EXPECT_TRUE(std::ranges::any_of(report.findings, [](const std::string& line) {
-    return line.find("no row may raise an estimate: slip on level ground steps on the way") == 0;
-  }));
+  EXPECT_TRUE(std::ranges::any_of(
+      report.findings, [](const std::string& line) { return line.find("slip steps on the way") == 0; }));
   for (int row = 0; row < kRoverSide; ++row)
     for (int column = 0; column < kRoverSide; ++column)
       ASSERT_LE(map.ground({column, row})->pull.value, before.ground({column, row})->pull.value);

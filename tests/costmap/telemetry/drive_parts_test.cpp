@@ -91,7 +91,7 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
 }
 
 // Property: without settle(), without sensor bias and with non-decreasing time, the result is independent of
-// the division into parts. Pinned: the result differs from that of the whole file by up to 0.035 in drawbar
+// the division into parts. Pinned: the result differs from that of the whole file by up to 0.06 in drawbar
 // pull over load in either direction, because sensor errors and class strength are estimated later.
 TEST(DriveParts, UnsettledPartsAreIndependentOfDivision) {
   for (const unsigned seed : {1U, 2U, 3U}) {
@@ -112,7 +112,7 @@ TEST(DriveParts, UnsettledPartsAreIndependentOfDivision) {
     EXPECT_TRUE(bytesOf(few) == bytesOf(many)) << seed;
     for (int row = 0; row < kRoverSide; ++row)
       for (int column = 0; column < kRoverSide; ++column)
-        EXPECT_NEAR(few.ground({column, row})->pull.value, whole.ground({column, row})->pull.value, 0.035);
+        EXPECT_NEAR(few.ground({column, row})->pull.value, whole.ground({column, row})->pull.value, 0.06);
   }
 }
 

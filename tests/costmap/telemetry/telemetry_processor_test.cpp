@@ -79,27 +79,6 @@ TEST(TelemetryProcessor, SuspectedPullBoundsThePlace) {
   EXPECT_LT(results[9].observation->here.most_pull, testGround()->prior(0).pull.value - 0.2);
 }
 
-TEST(TelemetryProcessor, ObservationsMayNotRaiseBeforeSensorsAreValidated) {
-  for (const auto& result : resultsOf(quiet(60))) {
-    ASSERT_TRUE(result.observation);
-    EXPECT_FALSE(result.observation->pull_may_raise);
-    EXPECT_FALSE(result.observation->sinkage_may_raise);
-  }
-}
-
-// Property: torque from an unproven sensor never yields a higher pull than slip and slope do.
-TEST(TelemetryProcessor, UnvalidatedTorqueNeverIncreasesThePull) {
-  terramech::Telemetry with = quiet(20), without = quiet(20);
-  for (terramech::Telemetry* t : {&with, &without}) column(*t, "slip").assign(20, 0.6);
-  column(with, "torque_Nm").assign(20, 6.0);
-  column(without, "torque_Nm").assign(20, NAN);
-  const auto a = resultsOf(with), b = resultsOf(without);
-  for (std::size_t i = 0; i < 20; ++i) {
-    ASSERT_TRUE(a[i].observation && b[i].observation);
-    EXPECT_LE(a[i].observation->pull.value, b[i].observation->pull.value + 1e-12);
-  }
-}
-
 TEST(TelemetryProcessor, MissingInputsAreNamed) {
   terramech::Telemetry t = quiet(3);
   for (const char* name : {"slope_rad", "torque_Nm", "sinkage_m"}) column(t, name).assign(3, NAN);

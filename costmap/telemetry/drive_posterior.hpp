@@ -1,0 +1,143 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <talus/costmap/ground/ground_model.hpp>
+#include <talus/maps/grid/grid.hpp>
+
+namespace talus::costmap {
+
+/// Slip sensor: what it reads, without its offset, at a true slip.
+struct SlipSensor {
+  /// Linear: scale * slip. Knee: the part of slips beyond `knee` times `scale`. Uphill: times `scale` on climbs.
+  /// ByGradient: less `scale` times the gradient of a climb. OfClass: the slip of the class on the gradient.
+  /// Unrelated: a constant, whatever the ground does.
+  enum class Kind : std::uint8_t { Linear, Knee, Uphill, ByGradient, OfClass, Unrelated };
+  Kind kind = Kind::Linear;
+  double scale = 1.0, knee = 0.0;
+
+  /// Returns the reading at a slip on a gradient; `of_class` is the slip of the class there.
+  double read(double slip, double gradient, double of_class) const noexcept;
+  /// Returns the slip at which a gradient gives a reading; meaningless for OfClass and Unrelated.
+  double slipOf(double read, double gradient) const noexcept;
+  /// Returns the change of the slip for a change of the reading.
+  double amplification(double slip, double gradient) const noexcept {
+    return (slipOf(read(slip, gradient, 0.0) + 0.01, gradient) - slip) / 0.01;
+  }
+  /// Returns true if the reading depends on the ground.
+  bool informs() const noexcept { return kind != Kind::OfClass && kind != Kind::Unrelated; }
+};
+
+/// Posterior of the sensors of one drive and of the ground of each terrain class.
+struct DriveEstimate {
+  static constexpr int kParts = 8;  ///< number of parts of equal length into which a drive is divided
+  /// Probability of a slip that depends on the ground below which readings are not used (ours) [-].
+  static constexpr double kLeastInforming = 0.02;
+
+  /// Ground of one class. Departures of drawbar pull over load DP/W at the reference slip from the class [-].
+  struct OfClass {
+    Estimate departure;  ///< mean and standard deviation over all hypotheses
+    Estimate if_sound;   ///< for a sound sensor
+    /// Departure by the likelihood alone, for sensors whose slip depends on the ground, and its standard
+    /// deviation; infinite: not driven.
+    double read = 0.0, shared_std = 0.0;
+    double at = 0.0;  ///< departure for the sensor `sensor`
+  };
+  std::vector<OfClass> classes;
+  SlipSensor sensor;            ///< most probable sensor whose slip depends on the ground
+  double offset = 0.0;          ///< its reading at zero slip [-]
+  int changed_from = kParts;    ///< part of the drive from which the sensor changed; kParts: none
+  double changed_offset = 0.0;  ///< offset from there on [-]
+  bool changed_informs = true;  ///< true if the slip depends on the ground from there on
+  std::string hypothesis;       ///< most probable kind of sensor, as text
+  double probability = 0.0;     ///< probability of this kind [-]
+  double informing = 0.0;       ///< probability that the slip depends on the ground [-]
+  bool twice = false;           ///< true if a second, independent slip was measured
+  double slope_offset = 0.0;    ///< measured gradient = slope_offset + slope_scale * gradient of the map
+  double slope_scale = 1.0;
+  int displaced_from = kParts;  ///< part of the drive from which the pose is displaced; kParts: none
+  std::size_t moments = 0;      ///< number of moments of the drive
+
+  /// Returns the part, 0 to kParts - 1, of the moment with a number.
+  int partOf(std::size_t moment) const noexcept;
+  bool displaced(std::size_t moment) const noexcept { return partOf(moment) >= displaced_from; }
+  /// Returns true if the slip of the moment with a number may depend on the ground at its pose.
+  bool informs(std::size_t moment) const noexcept {
+    return informing > kLeastInforming && (changed_informs || partOf(moment) < changed_from) &&
+           !displaced(moment);
+  }
+  /// Returns the slip for a reading of the moment with a number on a gradient.
+  double slip(std::size_t moment, double read, double gradient) const noexcept {
+    return sensor.slipOf(read - (partOf(moment) < changed_from ? offset : changed_offset), gradient);
+  }
+  /// Returns the gradient of the ground for a measured gradient.
+  double gradient(double measured) const noexcept { return (measured - slope_offset) / slope_scale; }
+};
+
+/// Bayes estimate of the sensors of a drive and of the strength of its ground. Let wheels on ground of a class
+/// have the pull P(i) at slip i, with the thrust H(i), both over load, and f = H(i)/H(0.5). Ground that departs
+/// from the class by D at the reference slip 0.5 has, on a slope of gradient g, the slip i(g, D) with
+///   P(i) + D f(i) = g                                                                                    (1)
+/// A sensor (SlipSensor) with offset b reads b + read(i) + e, e normal with the variance
+///   (t^2 p^2 + 0.02^2) (f/P')^2 + 0.015^2 + (0.01/P')^2                                                  (2)
+/// where p is the standard deviation of the class between places and t its share in this drive. Each kind of
+/// sensor is one hypothesis with a prior probability; for each, D (normal, mean_std), t and the sensor's
+/// parameters are summed over a grid, and b is integrated. Classes share the sensor. A square with sides of 2/3
+/// of the correlation length counts as one reading. A second slip, measured independently, is a second reading
+/// with an error of 0.03 and of the scatter of the positions. A linear sensor of scale s near 1 is not distinguished from ground whose shear
+/// modulus is s times that of its class: for the sound sensor, D includes P(0.5/s) - P(0.5).
+///
+/// Measured gradients are compared with those of the map, which gives the offset and scale of the slope sensor,
+/// and the part of the drive from which they are unrelated: there the pose is displaced. All numbers ours.
+class DrivePosterior {
+ public:
+  explicit DrivePosterior(const GroundModel& model) : model_(model) {}
+
+  /// Wheels of a rover at one time, on ground of one class. NaN: unknown.
+  struct Moment {
+    int class_index = 0;
+    int rutted = 0, wheels = 0;  ///< number of wheels in a rut, and number of all wheels
+    maps::Point place;
+    double gradient = 0.0;      ///< gradient along the heading, measured [-]
+    double map_gradient = 0.0;  ///< gradient along the heading by the map [-]
+    double slip = 0.0;          ///< median slip of the wheels [-]
+    double second_slip = 0.0;   ///< median second slip, independent of `slip` [-]
+    double second_std = 0.0;    ///< standard deviation of `second_slip` by the scatter of positions [-]
+  };
+  /// Adds a moment; a moment without a gradient or a slip is ignored.
+  void take(const Moment& moment);
+
+  /// Returns the estimate from all moments so far.
+  DriveEstimate fitted() const;
+
+  std::size_t moments() const noexcept { return moments_; }
+
+ private:
+  // Key of moments that are summed: class, wheels in a rut, wheels, chunk of moments, column and row of the
+  // square, step of the gradient.
+  using Key = std::tuple<int, int, int, std::size_t, int, int, int>;
+  struct Sum {
+    double count = 0.0, gradient = 0.0, slip = 0.0, second = 0.0;
+    double seconds = 0.0;  // number of moments with a second slip
+  };
+  // Sums over pairs of gradients of the map and measured, in one square.
+  struct Slope {
+    double count = 0.0, map = 0.0, measured = 0.0;
+  };
+  using Place = std::tuple<std::size_t, int, int, int>;
+
+  void fitSlopes(DriveEstimate& out) const;
+
+  const GroundModel& model_;
+  std::size_t moments_ = 0;
+  std::map<Key, Sum> sums_;
+  std::map<Place, Slope> slopes_;
+  double seconds_ = 0.0, second_std_ = 0.0;  // number of moments with a second slip, and its greatest error
+};
+
+}  // namespace talus::costmap
