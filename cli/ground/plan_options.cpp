@@ -60,7 +60,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
       ->check(notNegative())
       ->capture_default_str();
   command.add_flag("--no-proof", options.no_proof,
-                   "do not look for other corridors, nor for a tight lower bound: quicker, for loops");
+                   "do not search a lower bound, nor its region for a cheaper route: quicker, for loops");
   command.add_flag(
       "--whole-field", options.whole_field,
       "read and search the whole map at full resolution instead of a corridor around a coarse route");

@@ -33,10 +33,7 @@ std::array<Direction, kHeadings + 1> headingTable() noexcept {
   return table;
 }
 
-const std::array<Direction, kHeadings + 1>& headings() noexcept {
-  static const auto table = headingTable();
-  return table;
-}
+const std::array<Direction, kHeadings + 1> kTable = headingTable();
 
 double cross(const Direction& a, const Direction& b) noexcept {
   return a.x * b.y - a.y * b.x;
@@ -63,7 +60,7 @@ void makeConvex(ByHeading& limits) noexcept {
   std::array<Direction, kHeadings> ends;
   for (std::size_t k = 0; k < kHeadings; ++k) {
     const double length = 1.0 / limits[k];
-    ends[k] = {headings()[k].x * length, headings()[k].y * length};
+    ends[k] = {kTable[k].x * length, kTable[k].y * length};
   }
   const auto end = [&ends](std::size_t k) { return ends[k % kHeadings]; };
   std::array<std::size_t, kHeadings + 1> hull;
@@ -80,7 +77,7 @@ void makeConvex(ByHeading& limits) noexcept {
   for (std::size_t i = 1; i < size; ++i) {
     const Direction a = end(hull[i - 1]), b = end(hull[i]);
     for (std::size_t k = hull[i - 1] + 1; k < hull[i]; ++k) {
-      const Direction& h = headings()[k % kHeadings];
+      const Direction& h = kTable[k % kHeadings];
       limits[k % kHeadings] = std::min(limits[k % kHeadings], cross(h, {b.x - a.x, b.y - a.y}) / cross(a, b));
     }
   }
@@ -89,7 +86,7 @@ void makeConvex(ByHeading& limits) noexcept {
 }  // namespace
 
 Direction DirectionalCostBounds::heading(int k) noexcept {
-  return headings()[static_cast<std::size_t>(k)];
+  return kTable[static_cast<std::size_t>(k)];
 }
 
 // Directions within a quarter turn at which the gradient along or across passes a table node or reaches its
@@ -188,9 +185,8 @@ void DirectionalCostBounds::addPieces(const TravelCurve& curve, double steepness
 // at the sector boundaries.
 template <typename Each>
 void DirectionalCostBounds::forEachPart(const Direction& climb, Each each) const {
-  const auto& table = headings();
-  const auto ahead = [&table](const Direction& d, int beyond) {
-    const Direction& end = table[static_cast<std::size_t>(beyond) + 1];
+  const auto ahead = [](const Direction& d, int beyond) {
+    const Direction& end = kTable[static_cast<std::size_t>(beyond) + 1];
     return cross(end, d) > 0.0 && end.x * d.x + end.y * d.y > -0.5;  // a piece spans at most a quarter turn
   };
   Direction last{-climb.x, -climb.y};
@@ -207,7 +203,7 @@ void DirectionalCostBounds::forEachPart(const Direction& climb, Each each) const
     Direction begin = from;
     double begin_J = cost(from);
     for (; ahead(to, sector); sector = (sector + 1) % kHeadings) {
-      const Direction& end = headings()[static_cast<std::size_t>(sector) + 1];
+      const Direction& end = kTable[static_cast<std::size_t>(sector) + 1];
       const double end_J = cost(end);
       each(sector, begin, end, begin_J, end_J, bend);
       begin = end;
@@ -233,7 +229,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const
   most.fill(kInfinity);
   double highest = 0.0;
   for (std::size_t k = 0; k < kHeadings; ++k) {
-    gauge[k] = static_cast<double>(cost_.costPerMetre(cell, headings()[k]));
+    gauge[k] = static_cast<double>(cost_.costPerMetre(cell, kTable[k]));
     if (std::isfinite(gauge[k])) highest = std::max(highest, gauge[k]);
   }
   if (std::ranges::none_of(gauge, [](double limit) { return std::isinf(limit); })) return gauge;
@@ -244,8 +240,8 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::gaugeOf(CellCode cell, const
         const auto keepBelow = [&](const Direction& d, double cost_J) {
           highest = std::max(highest, cost_J);
           // d is a positive combination of the two headings of its sector.
-          const double of_next = cross(headings()[k], d) / std::sin(kSector),
-                       of_k = cross(d, headings()[k + 1]) / std::sin(kSector);
+          const double of_next = cross(kTable[k], d) / std::sin(kSector),
+                       of_k = cross(d, kTable[k + 1]) / std::sin(kSector);
           const auto lower = [cost_J](double& limit, double share, double rest_J) {
             if (share > kLittle)
               limit = std::min(limit, std::max((cost_J - rest_J) / share, kFalls * cost_J));
@@ -272,7 +268,7 @@ DirectionalCostBounds::Gauge DirectionalCostBounds::lackOf(const Gauge& gauge, c
                          double bend) {
     const auto k = static_cast<std::size_t>(sector);
     if (sector != of) {
-      const Direction &h = headings()[k], &next = headings()[k + 1];
+      const Direction &h = kTable[k], &next = kTable[k + 1];
       const double next_J = gauge[(k + 1) % kHeadings];
       fall = {(gauge[k] * next.y - next_J * h.y) * scale, (next_J * h.x - gauge[k] * next.x) * scale};
       of = sector;
@@ -298,13 +294,23 @@ DirectionalCostBounds::Reflected DirectionalCostBounds::reflected(CellCode cell)
           south, steeper_north};
 }
 
+std::uint32_t DirectionalCostBounds::numberOf(const Reflected& reflected) {
+  const double x = reflected.cell.dzDx(), y = reflected.cell.dzDy();
+  const bool closed = x * x + y * y > steepest_ * steepest_;
+  const std::uint32_t number = numbers_.of(closed ? CellCode({.curve = CellCode::kBlocked}) : reflected.cell);
+  if (number == known_.size()) {
+    asked_.push_back(0);
+    if (!compute(reflected.cell, known_.emplace_back())) known_.back().fill(-1.0F);
+  }
+  asked_[number] |= static_cast<std::uint8_t>(1U << reflected.kind());
+  return number;
+}
+
 bool DirectionalCostBounds::of(CellCode cell, Limits& limits) {
   const Reflected of = reflected(cell);
-  const auto [known, fresh] = known_.try_emplace(of.cell.bits());
-  if (fresh && !compute(of.cell, known->second)) known->second.fill(-1.0F);
-  if (known->second.front() < 0.0F) return false;
-  for (int k = 0; k < kHeadings; ++k)
-    limits[static_cast<std::size_t>(k)] = known->second[of.heading(k, kHeadings)];
+  const Limits& known = reflectedLimits(numberOf(of));
+  if (known.front() < 0.0F) return false;
+  limits = turned(known, of);
   return true;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <deque>
 #include <vector>
 
-#include <talus/costmap/cost/travel_cost.hpp>
+#include <talus/planner/bound/code_numbers.hpp>
 
 namespace talus::planner {
 
@@ -30,7 +31,8 @@ class DirectionalCostBounds {
   using Limits = std::array<float, kHeadings>;  ///< limits [J/m], > 0, counter-clockwise from east
 
   /// `cost` must outlive the object.
-  explicit DirectionalCostBounds(const costmap::TravelCost& cost) : cost_(cost) {}
+  explicit DirectionalCostBounds(const costmap::TravelCost& cost)
+      : cost_(cost), steepest_(1.001 * std::hypot(cost.limits().max_along, cost.limits().max_across)) {}
 
   /// Sets the limits of a cell. Returns false if the cell allows no heading.
   bool of(costmap::CellCode cell, Limits& limits);
@@ -39,6 +41,14 @@ class DirectionalCostBounds {
   struct Reflected {
     costmap::CellCode cell;
     bool west = false, south = false, steeper_north = false;
+
+    /// Returns the index, 0 to 7, of the combination of reflections, and the combination with an index.
+    unsigned kind() const noexcept {
+      return (west ? 1U : 0U) + (south ? 2U : 0U) + (steeper_north ? 4U : 0U);
+    }
+    static Reflected ofKind(unsigned kind) noexcept {
+      return {{}, (kind & 1U) != 0, (kind & 2U) != 0, (kind & 4U) != 0};
+    }
 
     /// Returns the heading of the reflected cell, of `headings`, a power of two >= 8, to which heading k belongs.
     std::size_t heading(int k, int headings) const noexcept {
@@ -51,6 +61,20 @@ class DirectionalCostBounds {
 
   /// Returns the reflection of a cell code.
   static Reflected reflected(costmap::CellCode cell) noexcept;
+
+  /// Returns the number, from 0, of the limits of a reflected cell code, which are computed at the first request.
+  std::uint32_t numberOf(const Reflected& reflected);
+  /// Returns the limits with a number; the first one is negative if the cell allows no heading.
+  const Limits& reflectedLimits(std::uint32_t number) const noexcept { return known_[number]; }
+
+  /// Calls each(limits) for every cell code that was requested and allows some heading.
+  template <typename Each>
+  void forEachRequested(Each each) const {
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      for (unsigned kind = 0; kind < 8; ++kind)
+        if ((asked_[i] >> kind & 1U) != 0 && known_[i].front() >= 0.0F)
+          each(turned(known_[i], Reflected::ofKind(kind)));
+  }
 
   /// Returns the unit vector of heading k, 0 <= k <= kHeadings.
   static costmap::Direction heading(int k) noexcept;
@@ -81,8 +105,17 @@ class DirectionalCostBounds {
   const costmap::TravelCost& cost_;
   std::vector<costmap::Direction> nodes_;  // directions within a quarter turn from the steepest ascent
   std::vector<Piece> pieces_;              // pieces of half a turn
-  std::unordered_map<std::uint32_t, Limits>
-      known_;  // by bits of the reflected cell code; negative: no heading
+  static Limits turned(const Limits& reflected, const Reflected& by) noexcept {
+    Limits limits;
+    for (int k = 0; k < kHeadings; ++k)
+      limits[static_cast<std::size_t>(k)] = reflected[by.heading(k, kHeadings)];
+    return limits;
+  }
+
+  double steepest_;                  // largest gradient that some heading allows
+  CodeNumbers numbers_;              // of reflected cell codes
+  std::deque<Limits> known_;         // by number; negative: no heading
+  std::vector<std::uint8_t> asked_;  // by number: bit mask of the kinds of reflections requested
 };
 
 }  // namespace talus::planner

@@ -4,94 +4,95 @@
 #include <numbers>
 
 #include <talus/planner/bound/fitted_octagon.hpp>
+#include <talus/planner/bound/lanes.hpp>
 
 namespace talus::planner {
 namespace {
 
 constexpr std::size_t kParts = DirectionalCostBounds::kHeadings / 8;  // limits of one sector of the octagon
 constexpr int kProjections = 2, kRaises = 4, kFullRaises = 3;
-constexpr double kDiagonal = std::numbers::sqrt2 / 2;
-constexpr double kEven = 0.92387;  // cos(pi/8): equal weights of this share of a limit are below the limit
-constexpr double kLeastOfEven = 0.25;     // smallest weight as a share of these equal weights
-constexpr double kRounding = 1.0 - 1e-6;  // weights are floats
+constexpr float kDiagonal = static_cast<float>(std::numbers::sqrt2 / 2);
+constexpr float kEven = 0.92387F;  // cos(pi/8): equal weights of this share of a limit are below the limit
+constexpr float kLeastOfEven = 0.25F;      // smallest weight as a share of these equal weights
+constexpr float kRounding = 1.0F - 4e-6F;  // sums of floats
 
-using Weights = std::array<double, 8>;
+float more(float a, float b) noexcept {
+  return a < b ? b : a;
+}
 
 // Heading j of a sector is p[j] e + q[j] f, where e and f are the headings at the ends of the sector.
 struct Mix {
-  std::array<double, kParts + 1> p{}, q{}, inverse_p{};
+  Lanes p{}, q{}, inverse_p{};
   Mix() noexcept {
     constexpr double part = std::numbers::pi / 4 / kParts;
-    for (std::size_t j = 0; j <= kParts; ++j) {
-      p[j] = std::sin(static_cast<double>(kParts - j) * part) / kDiagonal;
-      q[j] = std::sin(static_cast<double>(j) * part) / kDiagonal;
-      inverse_p[j] = 1.0 / p[j];
+    for (std::size_t j = 0; j < kParts; ++j) {
+      const double of = std::sin(static_cast<double>(kParts - j) * part) * std::numbers::sqrt2;
+      p[j] = static_cast<float>(of);
+      q[j] = static_cast<float>(std::sin(static_cast<double>(j) * part) * std::numbers::sqrt2);
+      inverse_p[j] = static_cast<float>(1.0 / of);
     }
   }
 };
 
-const Mix& mix() noexcept {
-  static const Mix made;
-  return made;
-}
+const Mix kMix;  // in no function, because loops must not check that it is made
 
-// Limits of the sectors, with those at both ends.
-using Sectors = std::array<std::array<double, kParts + 1>, 8>;
-
-Sectors sectorsOf(const DirectionalCostBounds::Limits& limits) noexcept {
-  Sectors sectors;
-  for (std::size_t k = 0; k < 8; ++k)
-    for (std::size_t j = 0; j <= kParts; ++j)
-      sectors[k][j] = static_cast<double>(limits[(k * kParts + j) % limits.size()]);
-  return sectors;
-}
+// Limits of the sectors counter-clockwise and clockwise from each heading.
+struct Sectors {
+  std::array<Lanes, 8> left, right;
+  explicit Sectors(const DirectionalCostBounds::Limits& limits) noexcept {
+    for (std::size_t k = 0; k < 8; ++k)
+      for (std::size_t j = 0; j < kParts; ++j) {
+        left[k][j] = limits[k * kParts + j];
+        right[k][j] = limits[(k * kParts + limits.size() - j) % limits.size()];
+      }
+  }
+};
 
 // Moves the weights of a sector towards the nearest ones below each of its limits in turn.
-void project(const std::array<double, kParts + 1>& limits, double& left, double& right) noexcept {
-  for (std::size_t j = 0; j <= kParts; ++j) {
-    const double p = mix().p[j], q = mix().q[j];
-    const double over = std::max(0.0, p * left + q * right - limits[j]) / (p * p + q * q);
-    left = std::max(0.0, left - p * over);
-    right = std::max(0.0, right - q * over);
+void project(const Lanes& limits, float& left, float& right) noexcept {
+  for (std::size_t j = 0; j < kParts; ++j) {
+    const float p = kMix.p[j], q = kMix.q[j];
+    const float over = more(0.0F, p * left + q * right - limits[j]) / (p * p + q * q);
+    left = more(0.0F, left - p * over);
+    right = more(0.0F, right - q * over);
   }
 }
 
 // Largest factor, at most 1, of the weights of a sector for which they are below its limits.
-double ratioOf(const std::array<double, kParts + 1>& limits, double left, double right) noexcept {
-  double most = 1.0;
-  for (std::size_t j = 0; j <= kParts; ++j)
-    most = std::max(most, (mix().p[j] * left + mix().q[j] * right) / limits[j]);
-  return 1.0 / most;
+float ratioOf(const Lanes& limits, float left, float right) noexcept {
+  Lanes ratio;
+  for (std::size_t j = 0; j < kParts; ++j) ratio[j] = limits[j] / (kMix.p[j] * left + kMix.q[j] * right);
+  return less(1.0F, leastOf(ratio));
 }
 
 // Largest weight of heading k that the limits, its neighbours and convexity permit.
-double mostAt(std::size_t k, const Sectors& sectors, const Weights& weights) noexcept {
-  const double left = weights[(k + 1) % 8], right = weights[(k + 7) % 8];
-  double most = (left + right) * kDiagonal;
+float mostAt(std::size_t k, const Sectors& sectors, const Octagon& weights) noexcept {
+  const float left = weights[(k + 1) % 8], right = weights[(k + 7) % 8];
+  Lanes most;
   for (std::size_t j = 0; j < kParts; ++j)
-    most = std::min({most, (sectors[k][j] - mix().q[j] * left) * mix().inverse_p[j],
-                     (sectors[(k + 7) % 8][kParts - j] - mix().q[j] * right) * mix().inverse_p[j]});
-  return most;
+    most[j] = less(sectors.left[k][j] - kMix.q[j] * left, sectors.right[k][j] - kMix.q[j] * right) *
+              kMix.inverse_p[j];
+  return less((left + right) * kDiagonal, leastOf(most));
 }
 
 // Raises each weight by half of the increase permitted, all at once, then one after the other by all of it.
-void raise(const Sectors& sectors, Weights& weights) noexcept {
+void raise(const Sectors& sectors, Octagon& weights) noexcept {
   for (int round = 0; round < kRaises; ++round) {
-    const Weights before = weights;
+    const Octagon before = weights;
     for (std::size_t k = 0; k < 8; ++k)
-      weights[k] += 0.5 * std::max(0.0, mostAt(k, sectors, before) - before[k]);
+      weights[k] += 0.5F * more(0.0F, mostAt(k, sectors, before) - before[k]);
   }
   for (int round = 0; round < kFullRaises; ++round)
-    for (std::size_t k = 0; k < 8; ++k) weights[k] = std::max(weights[k], mostAt(k, sectors, weights));
+    for (std::size_t k = 0; k < 8; ++k) weights[k] = more(weights[k], mostAt(k, sectors, weights));
 }
 
 // Lowers weights above (sum of the neighbours) / sqrt(2) until none is left; equal weights are convex, too.
-void makeConvex(Weights& weights) noexcept {
+void makeConvex(Octagon& weights) noexcept {
   for (int pass = 0; pass < 16; ++pass) {
     bool lowered = false;
     for (std::size_t k = 0; k < 8; ++k) {
-      const double most = (weights[(k + 7) % 8] + weights[(k + 1) % 8]) * kDiagonal;
-      if (!(weights[k] > most * (1.0 + 1e-7))) continue;
+      const float most = (weights[(k + 7) % 8] + weights[(k + 1) % 8]) * kDiagonal;
+      if (!(weights[k] > most * (1.0F + 2e-7F))) continue;
       weights[k] = most;
       lowered = true;
     }
@@ -103,48 +104,46 @@ void makeConvex(Weights& weights) noexcept {
 }  // namespace
 
 Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted) {
-  const double even = kEven * static_cast<double>(*std::ranges::min_element(limits));
-  const Sectors sectors = sectorsOf(limits);
-  Weights weights, ratio;
-  for (std::size_t k = 0; k < 8; ++k)
-    weights[k] = std::max(static_cast<double>(wanted[k]), kLeastOfEven * even);
+  const float even = kEven * *std::ranges::min_element(limits);
+  const Sectors sectors(limits);
+  Octagon weights, ratio;
+  for (std::size_t k = 0; k < 8; ++k) weights[k] = more(wanted[k], kLeastOfEven * even);
   for (int sweep = 0; sweep < kProjections; ++sweep)
     for (std::size_t k = 0; k < 8; ++k)
-      if (ratioOf(sectors[k], weights[k], weights[(k + 1) % 8]) < 1.0)
-        project(sectors[k], weights[k], weights[(k + 1) % 8]);
-  for (std::size_t k = 0; k < 8; ++k) ratio[k] = ratioOf(sectors[k], weights[k], weights[(k + 1) % 8]);
-  for (std::size_t k = 0; k < 8; ++k) weights[k] *= std::min(ratio[k], ratio[(k + 7) % 8]);
+      if (ratioOf(sectors.left[k], weights[k], weights[(k + 1) % 8]) < 1.0F)
+        project(sectors.left[k], weights[k], weights[(k + 1) % 8]);
+  for (std::size_t k = 0; k < 8; ++k) ratio[k] = ratioOf(sectors.left[k], weights[k], weights[(k + 1) % 8]);
+  for (std::size_t k = 0; k < 8; ++k) weights[k] *= less(ratio[k], ratio[(k + 7) % 8]);
   raise(sectors, weights);
   makeConvex(weights);
   // Octagons below the limits can be mixed; the share of equal weights keeps every weight positive.
-  const double least = *std::ranges::min_element(weights), missing = kLeastOfEven * even - least,
-               share = missing > 0.0 ? missing / (even - least) : 0.0;
+  const float least = *std::ranges::min_element(weights), missing = kLeastOfEven * even - least,
+              share = missing > 0.0F ? missing / (even - least) : 0.0F;
   Octagon octagon;
-  for (std::size_t k = 0; k < 8; ++k)
-    octagon[k] = static_cast<float>((weights[k] + share * (even - weights[k])) * kRounding);
+  for (std::size_t k = 0; k < 8; ++k) octagon[k] = (weights[k] + share * (even - weights[k])) * kRounding;
   return octagon;
 }
 
 Octagon FittedOctagons::of(costmap::CellCode cell) {
   const auto reflected = DirectionalCostBounds::reflected(cell);
-  const auto [at, fresh] = known_.try_emplace(reflected.cell.bits());
-  if (fresh) at->second = fitted(reflected.cell);
+  const std::uint32_t number = limits_.numberOf(reflected);
+  while (known_.size() <= number)
+    known_.push_back(fitted(limits_.reflectedLimits(static_cast<std::uint32_t>(known_.size()))));
   Octagon octagon;
-  for (int k = 0; k < 8; ++k) octagon[static_cast<std::size_t>(k)] = at->second[reflected.heading(k, 8)];
+  for (int k = 0; k < 8; ++k) octagon[static_cast<std::size_t>(k)] = known_[number][reflected.heading(k, 8)];
   return octagon;
 }
 
-Octagon FittedOctagons::fitted(costmap::CellCode cell) {
+Octagon FittedOctagons::fitted(const DirectionalCostBounds::Limits& limits) {
   Octagon wanted;
   wanted.fill(std::numeric_limits<float>::infinity());
-  DirectionalCostBounds::Limits limits;
-  if (!limits_.of(cell, limits)) return wanted;
+  if (limits.front() < 0.0F) return wanted;
   // Refused headings have high limits, which must not lower their neighbours.
   for (std::size_t k = 0; k < 8; ++k) {
     wanted[k] = limits[k * kParts];
     for (std::size_t j = 1; j < kParts; ++j)
       for (const std::size_t i : {k * kParts + j, k * kParts + limits.size() - j})
-        wanted[k] = std::min(wanted[k], static_cast<float>(kEven) * limits[i % limits.size()]);
+        wanted[k] = std::min(wanted[k], kEven * limits[i % limits.size()]);
   }
   return fittedOctagon(limits, wanted);
 }

@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
+#include <vector>
 
 #include <talus/planner/bound/directional_cost_bounds.hpp>
 #include <talus/planner/field/grid_heading.hpp>
@@ -43,10 +43,10 @@ class FittedOctagons {
   static constexpr double kLeastShare = 0.05;
 
  private:
-  Octagon fitted(costmap::CellCode cell);
+  Octagon fitted(const DirectionalCostBounds::Limits& limits);
 
   DirectionalCostBounds limits_;
-  std::unordered_map<std::uint32_t, Octagon> known_;  // by bits of the reflected cell code
+  std::vector<Octagon> known_;  // by the number of the limits
 };
 
 }  // namespace talus::planner

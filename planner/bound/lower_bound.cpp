@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <unordered_set>
 #include <utility>
 
 #include <talus/common/constants.hpp>
@@ -16,11 +15,13 @@ namespace talus::planner {
 namespace {
 
 constexpr auto kFar = static_cast<float>(kInfinity);
-constexpr double kLeastGain = 5e-3;  // smallest relative gain of a round for which another one follows
-// Work: nodes that each search of the mesh may take, and cells fitted in the rounds of level 2; a constant and
-// a share of the cells of the map.
-constexpr std::size_t kNodes = 500'000;
-constexpr double kNodesPerCell = 0.2;
+constexpr double kLeastGain =
+    0.1;  // smallest share of the gap that a round closes for which another one follows
+// Work of level 2: cells fitted in a round, a constant and a share of the cells of the map, and rounds.
+constexpr std::size_t kFitted = 100'000, kShare = 10;
+constexpr int kFitRounds = 5;
+// Work of level 3: cells of its region, and nodes taken and cells checked.
+constexpr std::size_t kMeshCells = 60'000, kMeshWork = 3'000'000;
 
 // Index of a corner in a cornerField().
 std::size_t cornerIndex(const maps::Grid& grid, maps::Cell corner) noexcept {
@@ -69,12 +70,12 @@ std::optional<Octagon> risesIn(const std::vector<float>& values, const maps::Gri
 
 // Returns the lower bound [J] on a uniform map whose limit for each heading is the lowest of all cells; on a
 // uniform map the optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
-double planeBound_J(const costmap::CostGrid& map, DirectionalCostBounds& of, const Segment& places,
-                    double tolerance_m, double enough_J) {
+double planeBound_J(const DirectionalCostBounds& of, const Segment& places, double tolerance_m,
+                    double enough_J) {
   constexpr int kHeadings = DirectionalCostBounds::kHeadings;
   const double length_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
   const costmap::Direction way = directionOf(places);
-  DirectionalCostBounds::Limits limits, least;
+  DirectionalCostBounds::Limits least;
   least.fill(std::numeric_limits<float>::infinity());
   // Returns the cost [J/m] of the direction `way`, composed of the headings i and j; infinite if `way` does
   // not lie between them.
@@ -92,18 +93,16 @@ double planeBound_J(const costmap::CostGrid& map, DirectionalCostBounds& of, con
       for (int j = 0; j < kHeadings; ++j) all = std::min(all, price(i, j));
     return all;
   };
-  std::unordered_set<std::uint32_t> seen;
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column) {
-      const costmap::CellCode code = map.at({column, row});
-      if (!seen.insert(code.bits()).second || !of.of(code, limits)) continue;
-      bool lower = false;
-      for (std::size_t k = 0; k < limits.size(); ++k) {
-        lower = lower || limits[k] < least[k];
-        least[k] = std::min(least[k], limits[k]);
-      }
-      if (lower && !(over() * length_m > enough_J)) return 0.0;
+  bool enough = true;
+  of.forEachRequested([&](const DirectionalCostBounds::Limits& limits) {
+    bool lower = false;
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      lower = lower || limits[k] < least[k];
+      least[k] = std::min(least[k], limits[k]);
     }
+    enough = enough && (!lower || over() * length_m > enough_J);
+  });
+  if (!enough) return 0.0;
   const double metre_J = over();
   return std::isfinite(metre_J) ? metre_J * length_m : 0.0;
 }
@@ -112,80 +111,143 @@ double planeBound_J(const costmap::CostGrid& map, DirectionalCostBounds& of, con
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                               double goal_tolerance_m, const StopCheck& stop, double known_J) {
-  way_.clear();
+  to_goal_.clear();
   const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
   if (straight_J >= (1.0 - kEven) * known_J) return straight_J;
-  if (map != map_) {
-    map_ = map;
-    to_goal_.clear();
-    octagons_.emplace(map->cost());
-  }
   const auto starts = cornersAround(map->grid(), places.from, 0.0);
-  if (to_goal_.empty() || !(goal_ == places.to) || tolerance_m_ != goal_tolerance_m) {
-    goal_ = places.to;
-    tolerance_m_ = goal_tolerance_m;
-    to_goal_ = cornerField(map_, octagonOf(), cornersAround(map->grid(), goal_, tolerance_m_), stop);
-  }
-  if (to_goal_.empty()) return straight_J;
-  double bound_J = std::max(straight_J, leastAt(to_goal_, map->grid(), starts));
-  bound_J = std::max(bound_J, planeBound_J(*map_, octagons_->limits(), places, tolerance_m_, bound_J));
+  if (!prepare(map, places.to, goal_tolerance_m, stop)) return straight_J;
+  double bound_J = std::max(straight_J, leastAt(level_1_, map->grid(), starts));
+  bound_J = std::max(bound_J, planeBound_J(octagons_->limits(), places, tolerance_m_, bound_J));
   if (bound_J >= (1.0 - kEven) * known_J) return std::min(known_J, bound_J);
   return std::min(known_J, std::max(bound_J, narrowed_J(places, starts, known_J, stop)));
+}
+
+bool LowerBound::prepare(const std::shared_ptr<const costmap::CostGrid>& map, maps::Point goal,
+                         double goal_tolerance_m, const StopCheck& stop) {
+  if (map != map_) {
+    map_ = map;
+    level_1_.clear();
+    octagons_.emplace(map->cost());
+  }
+  if (level_1_.empty() || !(goal_ == goal) || tolerance_m_ != goal_tolerance_m) {
+    goal_ = goal;
+    tolerance_m_ = goal_tolerance_m;
+    level_1_ = cornerField(map_, octagonOf(), cornersAround(map->grid(), goal_, tolerance_m_), stop);
+  }
+  to_goal_ = level_1_;
+  return !to_goal_.empty();
+}
+
+double LowerBound::toGoal_J(maps::Point place) const noexcept {
+  const auto cell = map_ ? map_->grid().cellAt(place) : std::nullopt;
+  if (to_goal_.empty() || !cell) return 0.0;
+  const maps::Grid& grid = map_->grid();
+  const auto corners = cornersOf(grid, *cell);
+  const double x = (place.x_m - grid.south_west.x_m) / grid.resolution_m - cell->column,
+               y = (place.y_m - grid.south_west.y_m) / grid.resolution_m - cell->row;
+  const auto part = [&](std::size_t corner, double share) {
+    return share > 0.0 ? share * static_cast<double>(to_goal_[corners[corner]]) : 0.0;
+  };
+  return part(0, (1.0 - x) * (1.0 - y)) + part(1, x * (1.0 - y)) + part(2, x * y) + part(3, (1.0 - x) * y);
 }
 
 OctagonOf LowerBound::octagonOf() {
   return [this](maps::Cell cell) { return octagons_->of(map_->at(cell)); };
 }
 
-// Removes the cells of a region in which no corner lies on a route of at most `known_J`.
-void LowerBound::narrow(std::vector<bool>& region, const std::vector<float>& from_start,
-                        double known_J) const {
-  const maps::Grid& grid = map_->grid();
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) {
-      bool inside = false;
-      for (const std::size_t k : cornersOf(grid, {column, row}))
-        inside = inside || static_cast<double>(from_start[k]) + static_cast<double>(to_goal_[k]) <= known_J;
-      if (!inside) region[grid.index({column, row})] = false;
-    }
+// Returns the lowest cost [J] of a route of level 1 or 2 through a corner of a cell.
+double LowerBound::throughCell_J(maps::Cell cell) const {
+  float least = kFar;
+  for (const std::size_t k : cornersOf(map_->grid(), cell))
+    least = std::min(least, from_start_[k] + to_goal_[k]);
+  return static_cast<double>(least);
+}
+
+template <typename Each>
+void LowerBound::forEachInside(Each each) const {
+  for (int row = 0; row < map_->grid().height; ++row)
+    for (int column = 0; column < map_->grid().width; ++column)
+      if (const std::size_t at = map_->grid().index({column, row}); inside_[at])
+        each(maps::Cell{column, row}, at);
+}
+
+// Returns the largest cost, at most `known_J`, such that at most `cells` cells are on routes of at most this cost.
+double LowerBound::costFor(std::size_t cells, double least_J, double known_J) const {
+  constexpr std::size_t kBins = 1000;
+  const double most_J = std::isfinite(known_J) ? known_J : 2.0 * least_J, bin_J = (most_J - least_J) / kBins;
+  std::array<std::size_t, kBins + 1> count{};
+  forEachInside([&](maps::Cell cell, std::size_t) {
+    ++count[static_cast<std::size_t>(
+        std::clamp((throughCell_J(cell) - least_J) / bin_J, 0.0, double{kBins}))];
+  });
+  std::size_t bins = 0;
+  for (std::size_t sum = count[0]; bins < kBins && sum <= cells; sum += count[bins]) ++bins;
+  return bins == kBins ? known_J : least_J + static_cast<double>(bins) * bin_J;
 }
 
 double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
                               const StopCheck& stop) {
   const maps::Grid& grid = map_->grid();
-  auto from_start = cornerField(map_, octagonOf(), starts, stop, RouteSense::FromStart);
-  if (from_start.empty()) return 0.0;
-  std::vector<bool> region(grid.size(), true);
-  narrow(region, from_start, known_J);
-  const std::size_t quota =
-      kNodes + static_cast<std::size_t>(kNodesPerCell * static_cast<double>(grid.size()));
-  const SubSolution::Parts parts{map_, places, tolerance_m_, known_J, cheapestMetre_J(*map_)};
-  SubSolution solution(parts, octagons_->limits(), region, quota, stop);
-  way_ = solution.way();
-  for (std::uint32_t k = 0; k < from_start.size(); ++k)
-    from_start[k] = solution.fromStart(k) < SubSolution::kFar ? solution.fromStart(k) : kFar;
+  const auto ends = cornersAround(grid, goal_, tolerance_m_);
+  from_start_ = cornerField(map_, octagonOf(), starts, stop, RouteSense::FromStart);
+  if (from_start_.empty()) return 0.0;
+  inside_.assign(grid.size(), true);
+  std::vector<std::uint32_t> fit_of(grid.size(), 0);  // position in `fits`; 0: none
+  std::vector<Octagon> fits(1);
   const auto fitted = [&](maps::Cell cell) {
     Octagon octagon;
     octagon.fill(kFar);
-    DirectionalCostBounds::Limits limits;
-    if (!region[grid.index(cell)] || !octagons_->limits().of(map_->at(cell), limits)) return octagon;
-    const auto rises = risesIn(from_start, grid, cell);
-    return rises ? fittedOctagon(limits, *rises) : octagons_->of(map_->at(cell));
+    const std::size_t at = grid.index(cell);
+    if (!inside_[at]) return octagon;
+    return fit_of[at] != 0 ? fits[fit_of[at]] : octagons_->of(map_->at(cell));
   };
-  const auto ends = cornersAround(grid, goal_, tolerance_m_);
-  const auto cells = static_cast<std::size_t>(std::ranges::count(region, true));
-  double bound_J = 0.0;
-  for (std::size_t work = 0; work == 0 || work + cells <= quota; work += cells) {
-    from_start = cornerField(map_, fitted, starts, stop, RouteSense::FromStart);
-    if (from_start.empty()) return bound_J;
-    const double before_J = std::exchange(bound_J, std::max(bound_J, leastAt(from_start, grid, ends)));
-    if (bound_J >= (1.0 - kEnough) * known_J) return bound_J;
-    if (bound_J < (1.0 + kLeastGain) * before_J) break;
+  double bound_J = leastAt(from_start_, grid, ends);
+  for (int round = 0;; ++round) {
+    forEachInside([&](maps::Cell cell, std::size_t at) { inside_[at] = throughCell_J(cell) <= known_J; });
+    if (round == kFitRounds || bound_J >= (1.0 - kEnough) * known_J) break;
+    const double most_J = costFor(kFitted + grid.size() / kShare, bound_J, known_J);
+    bool stopped = false;
+    forEachInside([&](maps::Cell cell, std::size_t at) {
+      if ((at & 0xffffU) == 0) stopped = stopped || stop();
+      if (stopped) return;
+      DirectionalCostBounds::Limits limits;
+      if (throughCell_J(cell) > most_J || !octagons_->limits().of(map_->at(cell), limits)) return;
+      const auto rises = risesIn(from_start_, grid, cell);
+      if (!rises) return;
+      if (fit_of[at] == 0) {
+        fit_of[at] = static_cast<std::uint32_t>(fits.size());
+        fits.emplace_back();
+      }
+      fits[fit_of[at]] = fittedOctagon(limits, *rises);
+    });
+    auto raised = cornerField(map_, fitted, starts, stop, RouteSense::FromStart);
+    if (raised.empty()) return bound_J;
+    from_start_ = std::move(raised);
+    const double gap_J = known_J - bound_J;
+    bound_J = std::max(bound_J, leastAt(from_start_, grid, ends));
+    const bool last = known_J - bound_J > (1.0 - kLeastGain) * gap_J;
+    if (last || round % 2 == 1) {
+      raised = cornerField(map_, fitted, ends, stop);
+      if (raised.empty()) return bound_J;
+      to_goal_ = std::move(raised);
+    }
+    if (last) break;
   }
-  narrow(region, from_start, known_J);
-  if (static_cast<std::size_t>(std::ranges::count(region, true)) > quota) return bound_J;
-  solution.solve(std::move(region), quota);
-  return std::max(bound_J, provenBy(solution, parts).bound_J);
+  fits = {};
+  SubSolution::Parts parts{map_, places, tolerance_m_, 0.0, cheapestMetre_J(*map_), from_start_, {}};
+  std::size_t work = 0;
+  for (std::size_t cells = kMeshCells; bound_J < (1.0 - kEnough) * known_J && work < kMeshWork; cells *= 2) {
+    parts.most_J = costFor(cells, bound_J, known_J);
+    parts.region.assign(grid.size(), false);
+    forEachInside(
+        [&](maps::Cell cell, std::size_t at) { parts.region[at] = throughCell_J(cell) <= parts.most_J; });
+    const SubSolution solution(parts, octagons_->limits(), kMeshWork - work, stop);
+    work += solution.work();
+    const double proven_J = provenBy(solution, parts).bound_J;
+    bound_J = std::max(bound_J, proven_J);
+    if (parts.most_J >= known_J || proven_J < (1.0 - kEven) * parts.most_J || stop()) break;
+  }
+  return bound_J;
 }
 
 }  // namespace talus::planner

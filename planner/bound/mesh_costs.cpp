@@ -15,10 +15,12 @@ std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
 
 }  // namespace
 
-MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits)
+MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits,
+                     const std::vector<bool>& region)
     : map_(std::move(map)),
       mesh_(map_->grid()),
       limits_(limits),
+      region_(region),
       slot_of_(map_->grid().size(), kNone),
       recent_(kCodes) {}
 

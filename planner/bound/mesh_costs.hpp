@@ -18,11 +18,10 @@ namespace talus::planner {
 /// thread-safe.
 class MeshCosts {
  public:
-  /// `limits` are those of the map's cost function and must outlive the object.
-  MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits);
-
-  /// Closes all cells except those of the region, given by index of the cell; empty opens all cells.
-  void keepTo(std::vector<bool> region) { region_ = std::move(region); }
+  /// `limits` are those of the map's cost function. Cells outside `region`, by index of the cell, are closed; empty:
+  /// none. Both must outlive the object.
+  MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits,
+            const std::vector<bool>& region);
 
   /// Slot number of a cell without a slot.
   static constexpr std::uint32_t kNone = 0xffffffffU;
@@ -55,7 +54,7 @@ class MeshCosts {
   std::shared_ptr<const costmap::CostGrid> map_;
   CellMesh mesh_;
   DirectionalCostBounds& limits_;
-  std::vector<bool> region_;            // by index of the cell; empty: all cells
+  const std::vector<bool>& region_;
   std::vector<std::uint32_t> slot_of_;  // slot by cell index
   std::vector<Slot> slots_;
   std::vector<TriangleCosts> prices_;

@@ -22,8 +22,20 @@ MeshSearch::MeshSearch(MeshCosts& prices, const Options& options)
       queue_(kUnits, kReach),
       unit_J_(0.5 * options.cheapest_J * prices.mesh().grid().resolution_m / (1U << kUnits)) {}
 
-double MeshSearch::restFrom(std::uint32_t node) const {
-  return options_.cheapest_J * distance_m(prices_.mesh().placeOf(node), options_.other);
+float MeshSearch::restIn(maps::Cell cell) const noexcept {
+  if (options_.rest == nullptr || !prices_.mesh().grid().contains(cell)) return kFar;
+  const CellMesh::Nodes nodes = prices_.mesh().nodesOf(cell);
+  const std::vector<float>& corners = *options_.rest;
+  return std::min({corners[nodes[0]], corners[nodes[1]], corners[nodes[2]], corners[nodes[3]]});
+}
+
+double MeshSearch::rest(std::uint32_t node) const noexcept {
+  if (options_.rest == nullptr) return 0.0;
+  const maps::Cell at = prices_.mesh().positionOf(node);
+  if (node >= prices_.mesh().corners()) return static_cast<double>(restIn(at));
+  return static_cast<double>(
+      std::min({restIn(at), restIn({at.column - 1, at.row}), restIn({at.column, at.row - 1}),
+                restIn({at.column - 1, at.row - 1})}));
 }
 
 bool MeshSearch::lower(std::uint32_t node, float value) {
@@ -42,7 +54,7 @@ bool MeshSearch::run(std::uint64_t end, std::size_t quota, const StopCheck& stop
   queue_.run(
       [&](std::uint32_t node) {
         if (!(values_[node] < expanded_[node])) return;
-        if (static_cast<double>(values_[node]) + restFrom(node) > options_.most_J) {
+        if (static_cast<double>(values_[node]) + rest(node) > options_.most_J) {
           changeAround(node);
           return;
         }

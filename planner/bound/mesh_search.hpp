@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <talus/planner/bound/mesh_costs.hpp>
@@ -23,8 +24,11 @@ class MeshSearch {
     /// Direction of the motions: from a node to the opposite side, or from the side to the node.
     Way way = Way::FromNode;
     double cheapest_J;  ///< lower bound of the cost per metre on the whole map, > 0
-    maps::Point other;  ///< the other end of the routes: the goal of a search from the start, and vice versa
-    double most_J;      ///< cost limit [J]: nodes that lie on no route of at most this cost are not expanded
+    /// Lower bounds of the costs between the other end of the routes and the corners [J] by node number, linear
+    /// along cell sides; null: 0. Must outlive the search.
+    const std::vector<float>* rest = nullptr;
+    /// Cost limit [J]: nodes that lie on no route of at most this cost are not expanded.
+    double most_J = std::numeric_limits<double>::infinity();
   };
 
   MeshSearch(MeshCosts& prices, const Options& options);
@@ -46,6 +50,9 @@ class MeshSearch {
   /// Expands nodes up to the queue key `end`, or until `quota` nodes have been expanded in total. Returns
   /// false if a stop ended the search.
   bool run(std::uint64_t end, std::size_t quota, const StopCheck& stop);
+  /// Returns a lower bound [J] of the cost between the other end of the routes and every point of a cell: the lowest
+  /// of Options::rest at its corners.
+  float restIn(maps::Cell cell) const noexcept;
   /// Returns true if no node is queued.
   bool done() const noexcept { return queue_.queued() == 0; }
   /// Returns the number of expansions.
@@ -81,7 +88,7 @@ class MeshSearch {
     }
   };
 
-  double restFrom(std::uint32_t node) const;
+  double rest(std::uint32_t node) const noexcept;
   void expand(std::uint32_t node);
   void fromCorner(maps::Cell cell, std::size_t corner);
   void fromMiddle(maps::Cell cell);

@@ -15,35 +15,24 @@ constexpr int kMostRounds = 60;
 constexpr float kSlack = 5e-4F;   // relative tolerance of a triangle's limits
 constexpr double kWithin = 1.02;  // nodes within this multiple of the known cost are searched
 
-MeshSearch::Options optionsOf(const SubSolution::Parts& parts, MeshSearch::Way way) {
-  return {.way = way,
-          .cheapest_J = parts.cheapest_J,
-          .other = way == MeshSearch::Way::FromNode ? parts.places.from : parts.places.to,
-          .most_J = kWithin * parts.known_J + parts.cheapest_J * parts.map->grid().resolution_m};
-}
-
 }  // namespace
 
-SubSolution::SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::vector<bool> region,
-                         std::size_t quota, const StopCheck& stop)
+SubSolution::SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::size_t quota,
+                         const StopCheck& stop)
     : parts_(parts),
       stop_(stop),
-      prices_(parts.map, limits),
-      from_start_(prices_, optionsOf(parts, MeshSearch::Way::ToNode)),
-      to_goal_(prices_, optionsOf(parts, MeshSearch::Way::FromNode)) {
-  prices_.keepTo(std::move(region));
+      quota_(quota),
+      prices_(parts.map, limits, parts.region),
+      from_start_(prices_, {.way = MeshSearch::Way::ToNode, .cheapest_J = parts.cheapest_J}),
+      to_goal_(
+          prices_,
+          {.cheapest_J = parts.cheapest_J, .rest = &parts.from_start, .most_J = kWithin * parts.most_J}) {
   seedStart();
   from_start_.run(MeshSearch::kEnd, quota, stop_);
-}
-
-void SubSolution::solve(std::vector<bool> region, std::size_t quota) {
-  prices_.keepTo(std::move(region));
   parts_.goal_tolerance_m > 0.0 ? seedDisc() : seedPlane();
-  while (!to_goal_.done()) {
-    if (to_goal_.taken() > quota) return;
-    if (!to_goal_.run(MeshSearch::kEnd, to_goal_.taken() + kBand, stop_) || !settle(false)) return;
-  }
-  complete_ = settle(true);
+  while (!to_goal_.done() && work() < quota)
+    if (!to_goal_.run(MeshSearch::kEnd, to_goal_.taken() + kBand, stop_) || !settle(false)) break;
+  settle(true);
 }
 
 const TriangleCosts* SubSolution::pricesOf(maps::Cell cell) const noexcept {
@@ -97,9 +86,9 @@ bool SubSolution::settle(bool all) {
   if (all)
     for (std::size_t slot = 0; slot < prices_.slots(); ++slot)
       to_goal_.change(static_cast<std::uint32_t>(slot));
-  const std::uint64_t end = all ? MeshSearch::kEnd : to_goal_.front();
+  const std::uint64_t end = to_goal_.done() ? MeshSearch::kEnd : to_goal_.front();
   for (int round = 0; round < kMostRounds && lowerExcess(all); ++round)
-    if (!to_goal_.run(end, ~std::size_t{0}, stop_)) return false;
+    if (!to_goal_.run(end, quota_, stop_) || work() >= quota_) return false;
   return true;
 }
 
@@ -107,7 +96,9 @@ bool SubSolution::settle(bool all) {
 // front has not passed completely are included only if `all` is true.
 bool SubSolution::lowerExcess(bool all) {
   std::vector<std::pair<std::uint32_t, std::size_t>> over;
-  for (const std::uint32_t slot : to_goal_.takeChanged()) {
+  const std::vector<std::uint32_t> changed = to_goal_.takeChanged();
+  checked_ += changed.size();
+  for (const std::uint32_t slot : changed) {
     const CellMesh::Nodes nodes = mesh().nodesOf(prices_.cellOf(slot));
     for (std::size_t k = 0; k < 4; ++k) {
       const std::uint32_t first = nodes[k], second = nodes[CellMesh::next(k)],

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <talus/planner/bound/mesh_costs.hpp>
-#include <talus/planner/bound/mesh_route.hpp>
 #include <talus/planner/bound/mesh_search.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/stop_check.hpp>
@@ -24,12 +23,10 @@ namespace talus::planner {
 /// cost. There, along headings from a side to the opposite node, the function decreases by more than the
 /// cost. The end values of such a side are capped relative to the opposite node (a lower cap of one end
 /// permits a higher cap of the other end), and the affected nodes are searched again. Of the admissible pairs
-/// of caps, the pair closest to the values of a search from the start is used, because that search satisfies
-/// the same limits. Caps are added behind the front of the search after every kBand nodes, so that the search
-/// continues from valid values.
-///
-/// Both searches stay in a region that no route of at most the known cost leaves; the region of the second may
-/// be smaller.
+/// of caps, the pair closest to the values of a search from the start is used, because that search satisfies the
+/// same limits.
+/// Caps are added behind the front of the search after every kBand nodes, so that the search continues from
+/// valid values and may end anywhere.
 class SubSolution {
  public:
   /// Input of the search.
@@ -38,25 +35,22 @@ class SubSolution {
     /// Start and goal of the routes [m].
     Segment places;
     double goal_tolerance_m = 0.0;  ///< permitted distance of the end of a route from the goal [m]
-    /// Cost of a known route [J]; more expensive routes are ignored; infinite if none is known.
-    double known_J;
-    double cheapest_J;  ///< lower bound of the cost per metre on the whole map [J/m], > 0
+    double most_J;                  ///< more expensive routes are ignored [J]; may be infinite
+    double cheapest_J;              ///< lower bound of the cost per metre on the whole map [J/m], > 0
+    /// Lower bounds of the costs from the start to the corners of the mesh [J], linear along cell sides (cornerField()).
+    std::vector<float> from_start;
+    /// Cells that no route of at most most_J leaves, by index of the cell; empty: all cells.
+    std::vector<bool> region;
   };
 
-  /// Runs the search from the start for at most `quota` nodes. `region` is true for the cells of the region,
-  /// by index of the cell; empty: all cells. `limits` are those of the map's cost function and must outlive
-  /// the object.
-  SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::vector<bool> region, std::size_t quota,
-              const StopCheck& stop);
+  /// Takes nodes and checks cells at most `quota` times in all. `limits` are those of the map's cost function; both must outlive the object.
+  SubSolution(const Parts& parts, DirectionalCostBounds& limits, std::size_t quota, const StopCheck& stop);
 
-  /// Runs the search from the goal in `region`, for at most `quota` nodes.
-  void solve(std::vector<bool> region, std::size_t quota);
+  /// Returns a lower bound of the costs from the start to every point of a cell.
+  float fromStartIn(maps::Cell cell) const noexcept { return to_goal_.restIn(cell); }
 
-  /// Returns false if a stop or a quota ended a search.
-  bool complete() const noexcept { return complete_; }
-
-  /// Returns the cost from the start to a node [J] by the first search; kFar for a node not reached.
-  float fromStart(std::uint32_t node) const noexcept { return from_start_.at(node); }
+  /// Returns the number of nodes taken and cells checked.
+  std::size_t work() const noexcept { return from_start_.taken() + to_goal_.taken() + checked_; }
 
   static constexpr float kFar = MeshSearch::kFar;  ///< value of a node that was not reached
 
@@ -70,10 +64,6 @@ class SubSolution {
   /// for cells that allow no heading.
   const TriangleCosts* pricesOf(maps::Cell cell) const noexcept;
 
-  /// Returns the near-optimal route from start to goal over all headings, without costs of turns
-  /// (meshRoute()).
-  Polyline way() const { return meshRoute(MotionCost(parts_.map), from_start_, mesh(), parts_.places); }
-
  private:
   void seedDisc();
   void seedPlane();
@@ -82,11 +72,11 @@ class SubSolution {
   bool lowerExcess(bool all);
   void cap(std::uint32_t slot, std::size_t triangle);
 
-  Parts parts_;
+  const Parts& parts_;
   StopCheck stop_;
+  std::size_t quota_, checked_ = 0;
   MeshCosts prices_;
   MeshSearch from_start_, to_goal_;
-  bool complete_ = false;
 };
 
 }  // namespace talus::planner

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <talus/planner/bound/sub_solution_check.hpp>
 #include <talus/planner/route/cells_within.hpp>
@@ -54,7 +56,7 @@ std::optional<double> valueAt(const SubSolution& u, Point place) {
   const std::array<double, 4> along{x, y, -x, -y};
   const double second = 0.5 * out + along[k], first = out - second;
   const std::uint32_t a = nodes[k], b = nodes[CellMesh::next(k)], m = nodes[CellMesh::kMiddle];
-  if (!u.inner(a) || !u.inner(b) || !u.inner(m)) return std::nullopt;
+  if (!u.inner(a) && !u.inner(b) && !u.inner(m)) return std::nullopt;
   return first * value(u, a) + second * value(u, b) + (1.0 - out) * value(u, m);
 }
 
@@ -71,25 +73,26 @@ std::optional<double> atGoal(const SubSolution& u, const SubSolution::Parts& par
 }  // namespace
 
 Proof provenBy(const SubSolution& u, const SubSolution::Parts& parts) {
-  if (!u.complete()) return {};
   const maps::Grid& grid = u.mesh().grid();
+  const auto goal = atGoal(u, parts);
+  if (!goal) return {};
   double worst = 1.0;
+  std::vector<std::pair<double, double>> ways;  // cost before a side, value of the solution there
+  if (const auto start = valueAt(u, parts.places.from)) ways.emplace_back(0.0, *start);
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const TriangleCosts* limits = u.pricesOf({column, row});
       if (limits == nullptr) continue;
       const CellMesh::Nodes nodes = u.mesh().nodesOf({column, row});
       worst = std::max(worst, worstIn(u, nodes, *limits));
-      for (const std::uint32_t node : nodes) {
-        if (u.inner(node) || u.at(node) >= SubSolution::kFar) continue;
-        const double before_J =
-            parts.cheapest_J * (distance_m(u.mesh().placeOf(node), parts.places.from) - grid.resolution_m);
-        if (value(u, node) + before_J < parts.known_J) return {};
-      }
+      const auto before_J = static_cast<double>(u.fromStartIn({column, row}));
+      for (const std::uint32_t node : nodes)
+        if (!u.inner(node) && u.at(node) < SubSolution::kFar) ways.emplace_back(before_J, value(u, node));
     }
-  const auto start = valueAt(u, parts.places.from), goal = atGoal(u, parts);
-  if (!start || !goal || !std::isfinite(worst)) return {};
-  return {std::max(0.0, (std::min(*start, parts.known_J) - *goal) / worst), worst};
+  double bound_J = parts.most_J;
+  for (const auto& [before_J, value_J] : ways)
+    bound_J = std::min(bound_J, before_J + (value_J - *goal) / worst);
+  return std::isfinite(bound_J) ? Proof{std::max(0.0, bound_J), worst} : Proof{};
 }
 
 }  // namespace talus::planner

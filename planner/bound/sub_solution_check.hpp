@@ -15,11 +15,10 @@ struct Proof {
 ///
 /// Proof (ours, not from the literature). For all triangles of the solution u and all 64 headings, let w be
 /// the largest ratio of the decrease of u per metre to the limit of the cell. Then u / w satisfies all
-/// limits; therefore a route that stays on these triangles costs at least (u(start) - u(goal)) / w. A route
-/// that leaves these triangles crosses a side with two outer nodes (nodes that the search did not expand). On
-/// this side u + d >= K, where d is the cost of the straight line from the start at the lowest cost per
-/// metre, and K is the cost of a known route. The route costs at least d before the side and at least (u -
-/// u(goal)) / w after the side.
+/// limits; therefore a route costs at least (u(p) - u(goal)) / w behind a place p after which it stays on these
+/// triangles. If it does not stay on them from the start on, p is on a side with two outer nodes (nodes that the
+/// search did not expand), and the route costs at least the lower bound from the start before p. A search that
+/// ended early thus extends the bounds from the start by the part near the goal that it reached.
 Proof provenBy(const SubSolution& solution, const SubSolution::Parts& parts);
 
 }  // namespace talus::planner

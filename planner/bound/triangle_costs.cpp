@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <talus/planner/bound/lanes.hpp>
 #include <talus/planner/bound/triangle_costs.hpp>
 
 namespace talus::planner {
@@ -60,15 +61,6 @@ constexpr std::size_t headingOf(std::size_t triangle, std::size_t k) noexcept {
   return (kQuarter * triangle + k) % kHeadingCount;
 }
 
-float less(float a, float b) noexcept {
-  return a < b ? a : b;
-}
-
-float leastOf(const std::array<float, kEighth>& values) noexcept {
-  return less(less(less(values[0], values[4]), less(values[1], values[5])),
-              less(less(values[2], values[6]), less(values[3], values[7])));
-}
-
 // Headings as columns.
 struct Headings {
   std::array<float, kHeadingCount> x, y;
@@ -97,7 +89,7 @@ float TriangleCosts::first(std::size_t triangle, const Values& values, Way way) 
   const auto& fan = cornerFan();
   const float* price = prices.data() + headingOf(triangle, turnOf(way));
   const float rise = values.middle - values.second;
-  std::array<float, kEighth> least;
+  Lanes least;
   for (std::size_t i = 0; i < kEighth; ++i)
     least[i] = values.second + fan.share[i] * rise + price[i] * fan.length[i];
   return less(leastOf(least), values.middle + price[kEighth] * fan.length[kEighth]);
@@ -107,7 +99,7 @@ float TriangleCosts::second(std::size_t triangle, const Values& values, Way way)
   const auto& fan = cornerFan();
   const float* price = prices.data() + headingOf(triangle, 3 * kEighth + turnOf(way));
   const float rise = values.middle - values.first;
-  std::array<float, kEighth> least;
+  Lanes least;
   for (std::size_t i = 0; i < kEighth; ++i)
     least[i] = values.first + fan.share[i] * rise + price[kEighth - i] * fan.length[i];
   return less(leastOf(least), values.middle + price[0] * fan.length[kEighth]);
@@ -117,7 +109,7 @@ float TriangleCosts::middle(std::size_t triangle, const Values& values, Way way)
   const auto& fan = middleFan();
   const float* price = prices.data() + headingOf(triangle, 5 * kEighth + turnOf(way));
   const float rise = values.second - values.first;
-  std::array<float, kEighth> least;
+  Lanes least;
   for (std::size_t i = 0; i < kEighth; ++i) {
     const std::size_t j = i + kEighth;
     least[i] = less(values.first + fan.share[i] * rise + price[i] * fan.length[i],

@@ -10,8 +10,6 @@
 #include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/many_headings.hpp>
-#include <talus/planner/grid/other_corridors.hpp>
 #include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
@@ -75,7 +73,7 @@ bool FieldPlanner::prepareField(const MotionCost& cost, const Stage& stage) {
 }
 
 // Descends the field. A field of an older map version is either searched around the change only, or repaired
-// if a repair takes less work or other corridors are needed.
+// if a repair takes less work or the route is proven.
 Polyline FieldPlanner::roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop) {
   const MotionCost cost(problem.map);
   if (field_map_ != edges_->mapPointer()) {
@@ -97,14 +95,13 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
   Polyline rough;
   if (prepareField(cost, stage)) rough = roughRoute(problem, {stage.from, stage.to}, stop);
-  const bool on_grid = !rough.empty();
-  if (!on_grid) {
+  if (rough.empty()) {
     Plan beyond = beyondTheGrid(problem, stage, stop);
     if (beyond.status != RouteStatus::Found) return beyond;
     rough = std::move(beyond.points);
   }
   Plan plan = finished(problem, stage, std::move(rough), stop);
-  if (problem.prove) tryOtherCorridors(problem, stage, stop, on_grid, plan);
+  if (problem.prove) tryOverPoints(problem, stage, stop, plan);
   return withoutTipping(std::move(plan));
 }
 
@@ -141,6 +138,11 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   if (stop()) return cancelledPlan(stop);
   const MotionCost cost(problem.map);
   const Segment places{stage.from, stage.to};
+  if (bound_.prepare(problem.map, stage.to, stage.tolerance_m, stop)) {
+    Plan found = failedPlan(RouteStatus::Found, {});
+    found.points = overPoints(problem, stage, kInfinity, stop);
+    if (!found.points.empty()) return found;
+  }
   HeadingSets& headings = headingsOf(problem);
   Reach reach(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
   if (!reach.complete()) return cancelledPlan(stop);
@@ -165,10 +167,10 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
                         .cells_to_goal = to_goal.cells(),
                         .last = found.last,
                         .first = stage.to};
-    // Reach joins both sets by cell adjacency alone; tryLifting() tests for a route in many headings.
+    // Reach joins both sets by cell adjacency alone; tryLifting() tests for a route over points of cells.
     const auto opens = [&](const costmap::CostGrid& lifted) {
       const MotionCost free(std::shared_ptr<const costmap::CostGrid>(std::shared_ptr<const void>(), &lifted));
-      return !manyHeadingsRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();
+      return !pointRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();
     };
     tryLifting(*plan.obstruction, *problem.map, problem.hazards, opens, stop);
     plan.reason = text(*plan.obstruction, places);
@@ -201,55 +203,28 @@ Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyl
   return cost.along(again) <= cost.along(ended) ? again : ended;
 }
 
-// Near-optimal routes over all headings. The route of the bound's search is returned if drivable. Otherwise
-// its drivable beginning is continued in 32 headings, and the cheapest route in 32 headings is returned as
-// well.
-std::vector<Polyline> FieldPlanner::manyHeadings(const Problem& problem, const Stage& stage, double most_J,
-                                                 const StopCheck& stop) const {
-  if (problem.map->grid().size() > kManyHeadingsCells) return {};
-  const MotionCost cost(problem.map);
-  Polyline way = bound_.way();
-  std::size_t last = 0;
-  while (last + 2 < way.size() && std::isfinite(cost.along({way[last], way[last + 1], way[last + 2]})))
-    ++last;
-  if (way.size() > 1 && last + 2 == way.size()) return {std::move(way)};
-  std::vector<Polyline> ways{
-      manyHeadingsRoute(cost, {stage.from, stage.to}, stage.tolerance_m, most_J, stop)};
-  if (last == 0) return ways;
-  way.resize(last + 1);
-  const Polyline rest =
-      manyHeadingsRoute(cost, {way.back(), stage.to}, stage.tolerance_m, most_J - cost.along(way), stop);
-  if (rest.size() < 2) return ways;
-  way.insert(way.end(), rest.begin() + 1, rest.end());
-  ways.push_back(std::move(way));
-  return ways;
-}
-
-void FieldPlanner::tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop,
-                                     bool on_grid, Plan& plan) {
-  if (problem.map->grid().size() > kCorridorCells || stop()) return;
+// Searches the points of cells in the region of the lower bound, and settles the vertices of both routes.
+void FieldPlanner::tryOverPoints(const Problem& problem, const Stage& stage, const StopCheck& stop,
+                                 Plan& plan) {
   const AddedTime proof(plan.proof_s);
-  const auto leaves = [&plan](double gap) { return plan.lower_bound_J < (1.0 - gap) * plan.cost_J; };
-  if (!leaves(kProven)) return;
+  if (stop() || plan.lower_bound_J >= (1.0 - kProven) * plan.cost_J) return;
   const MotionCost cost(problem.map);
-  const Segment places{stage.from, stage.to};
   const auto take = [&](Polyline points) {
     const double cost_J = cost.along(points);
     if (points.size() < 2 || !(cost_J < plan.cost_J)) return;
     plan.points = std::move(points);
     plan.cost_J = cost_J;
   };
-  std::vector<Polyline> others;
-  if (on_grid) others = otherCorridors(cost, problem.map, *field_, places, plan.points, {}, stop);
-  for (Polyline& way : manyHeadings(problem, stage, plan.cost_J, stop)) others.push_back(std::move(way));
-  for (Polyline& rough : others)
-    if (rough.size() > 1) take(refined(problem, stage, std::move(rough), stop));
-  if (leaves(kLarge) && problem.map->grid().size() <= kPointCells) {
-    Polyline way = pointRoute(cost, places, stage.tolerance_m, kSettled * plan.cost_J, stop);
-    if (way.size() > 1) take(refined(problem, stage, withSettledVertices(cost, std::move(way), stop), stop));
-    take(withoutCloseVertices(cost, withSettledVertices(cost, plan.points, stop)));
-  }
+  Polyline way = overPoints(problem, stage, kSettled * plan.cost_J, stop);
+  if (way.size() > 1) take(refined(problem, stage, withSettledVertices(cost, std::move(way), stop), stop));
+  take(withoutCloseVertices(cost, withSettledVertices(cost, plan.points, stop)));
   plan.lower_bound_J = std::min(plan.lower_bound_J, plan.cost_J);
+}
+
+Polyline FieldPlanner::overPoints(const Problem& problem, const Stage& stage, double most_J,
+                                  const StopCheck& stop) const {
+  return pointRoute(MotionCost(problem.map), {stage.from, stage.to}, stage.tolerance_m, most_J, stop,
+                    [this](maps::Point at) { return bound_.toGoal_J(at); });
 }
 
 Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough,
@@ -263,8 +238,7 @@ Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline
     const AddedTime proof(plan.proof_s);
     return bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J);
   };
-  plan.lower_bound_J = std::min(
-      plan.cost_J, problem.prove ? proven_J() : straightBound_J(*problem.map, ends, stage.tolerance_m));
+  plan.lower_bound_J = std::min(plan.cost_J, problem.prove ? proven_J() : 0.0);
   return plan;
 }
 

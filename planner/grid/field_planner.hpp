@@ -17,11 +17,8 @@ namespace talus::planner {
 /// grid do not connect start and goal, the planner tries arbitrary headings. The status NoRoute is then
 /// proven (Reach); the status NoneFound is no proof.
 ///
-/// If Problem::prove is set and the cost differs from the lower bound, further candidates are refined, and
-/// the cheapest route is returned. The candidates are routes through other corridors (otherCorridors) on maps
-/// of up to kCorridorCells, the cheapest route in 32 headings (manyHeadingsRoute) on maps of up to
-/// kManyHeadingsCells, and, for gaps above kLarge, the cheapest route over points of cells (pointRoute) on
-/// maps of up to kPointCells.
+/// If Problem::prove is set and the cost differs from the lower bound, the cheapest route over points of cells
+/// (pointRoute) in the region of the lower bound is refined as well, and the cheaper route is returned.
 ///
 /// Intermediate results for a map and a goal are kept: for another start to the same goal, only the path
 /// along the field and the refinement are computed. Deterministic for any number of threads, unless a time
@@ -53,17 +50,11 @@ class FieldPlanner {
   Plan beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop);
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
-  void tryOtherCorridors(const Problem& problem, const Stage& stage, const StopCheck& stop, bool on_grid,
-                         Plan& plan);
-  std::vector<Polyline> manyHeadings(const Problem& problem, const Stage& stage, double most_J,
-                                     const StopCheck& stop) const;
+  void tryOverPoints(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
+  Polyline overPoints(const Problem& problem, const Stage& stage, double most_J, const StopCheck& stop) const;
   Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
-  static constexpr std::size_t kCorridorCells = 4'000'000;      // largest map searched for several corridors
-  static constexpr std::size_t kManyHeadingsCells = 1'000'000;  // largest map searched in 32 headings
-  static constexpr std::size_t kPointCells = 250'000;           // largest map searched over points of cells
-  static constexpr double kProven = 1e-3;  // smallest relative gap for which other corridors are searched
-  static constexpr double kLarge = 0.05;   // smallest relative gap for which points of cells are searched
+  static constexpr double kProven = 1e-3;  // smallest relative gap for which points of cells are searched
   // Cost limit of the search over points of cells, as a multiple of the cost of the best route. It exceeds 1
   // because the vertices found by the search are not yet moved to their best positions.
   static constexpr double kSettled = 1.05;

@@ -32,6 +32,7 @@ struct Fineness {
 constexpr Fineness kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
 constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
 
+constexpr std::size_t kMostTaken = 2'000'000;  // points
 constexpr float kNotReached = std::numeric_limits<float>::infinity();
 
 // A point of a cell: on a side (0 to 3) or inside (side -1).
@@ -65,20 +66,19 @@ struct SpotLeg {
 
 class PointSearch {
  public:
-  PointSearch(const MotionCost& cost, Fineness fineness, double most_J)
+  PointSearch(const MotionCost& cost, Fineness fineness, double most_J, const Rest& rest)
       : cost_(cost),
         map_(cost.map()),
         grid_(map_.grid()),
         most_J_(most_J),
-        cheapest_J_(cheapestMetre_J(map_)),
+        rest_of_(rest),
         side_points_(fineness.side),
         inner_points_(fineness.inner * fineness.inner),
         spots_(allSpots(fineness)),
         crossings_(map_.cost(), side_points_),
-        inner_(4 * static_cast<std::size_t>(side_points_) * static_cast<std::size_t>(grid_.width + 1) *
-               static_cast<std::size_t>(grid_.height + 1)),
-        labels_(inner_ + grid_.size() * static_cast<std::size_t>(inner_points_), kNotReached),
-        from_(labels_.size(), kNoNode) {
+        per_cell_(4 * side_points_ + inner_points_),
+        slot_of_(static_cast<std::size_t>(grid_.width + 1) * static_cast<std::size_t>(grid_.height + 1),
+                 kNoNode) {
     for (const Spot& from : spots_) addLegs(from);
   }
 
@@ -99,6 +99,7 @@ class PointSearch {
       if (static_cast<double>(least) >= most_J_) break;
       if (least > labels_[node] + rest(place(node))) continue;
       if ((++taken & 0xfffU) == 0 && stop()) return {};
+      if (taken > kMostTaken) break;
       expand(node);
     }
     return route();
@@ -115,26 +116,31 @@ class PointSearch {
     }
   }
 
-  float rest(Point at) const {
-    return static_cast<float>(std::max(0.0, distance_m(at, places_.to) - tolerance_m_) * cheapest_J_ * 0.999);
-  }
+  float rest(Point at) const { return static_cast<float>(rest_of_(at)); }
   // Each side point has two nodes: one reached on a heading that both adjacent cells allow, and a "loose"
   // node reached on a heading that only the crossed cell allows. A loose node may only be left on a heading
   // that both cells allow.
-  std::uint32_t loose() const { return static_cast<std::uint32_t>(inner_ / 2); }
-  std::size_t held(Cell cell) const {
-    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid_.width + 1) +
-           static_cast<std::size_t>(cell.column);
+  std::uint32_t loose() const { return static_cast<std::uint32_t>(2 * side_points_); }
+  bool isLoose(std::uint32_t node) const {
+    const int k = static_cast<int>(node % static_cast<std::uint32_t>(per_cell_));
+    return k >= 2 * side_points_ && k < 4 * side_points_;
   }
-  std::uint32_t nodeOf(Cell cell, const Spot& spot) const {
-    if (spot.side < 0)
-      return static_cast<std::uint32_t>(inner_ + grid_.index(cell) * static_cast<std::size_t>(inner_points_) +
-                                        static_cast<std::size_t>(spot.number));
-    const Cell holder{cell.column + (spot.side == kEastSide ? 1 : 0),
-                      cell.row + (spot.side == kNorthSide ? 1 : 0)};
-    const std::size_t axis = spot.side >= kSouthSide ? 1 : 0;
-    return static_cast<std::uint32_t>((2 * held(holder) + axis) * static_cast<std::size_t>(side_points_) +
-                                      static_cast<std::size_t>(spot.number));
+  // The nodes of a cell: those of its west and south side, the same loose, and those inside. They are created when
+  // one of them is asked for.
+  std::uint32_t nodeOf(Cell cell, const Spot& spot) {
+    if (spot.side == kEastSide) ++cell.column;
+    if (spot.side == kNorthSide) ++cell.row;
+    std::uint32_t& slot =
+        slot_of_[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid_.width + 1) +
+                 static_cast<std::size_t>(cell.column)];
+    if (slot == kNoNode) {
+      slot = static_cast<std::uint32_t>(cells_.size());
+      cells_.push_back(cell);
+      labels_.resize(cells_.size() * static_cast<std::size_t>(per_cell_), kNotReached);
+      from_.resize(labels_.size(), kNoNode);
+    }
+    const int first = spot.side < 0 ? 4 * side_points_ : spot.side >= kSouthSide ? side_points_ : 0;
+    return slot * static_cast<std::uint32_t>(per_cell_) + static_cast<std::uint32_t>(first + spot.number);
   }
   bool insideMap(Cell cell, const Spot& spot) const {
     return spot.side < 0 || grid_.contains(beyond(cell, spot.side));
@@ -154,16 +160,11 @@ class PointSearch {
   // Returns the cell of a node and the index of the node's point in spots_. A point on a side belongs to two
   // cells; the cell east or north of the side is returned.
   std::pair<Cell, std::size_t> whereIs(std::uint32_t node) const {
-    if (node >= inner_) {
-      const auto k = static_cast<int>(node - inner_), per = inner_points_;
-      return {{(k / per) % grid_.width, (k / per) / grid_.width},
-              static_cast<std::size_t>(4 * side_points_ + k % per)};
-    }
-    if (node >= loose()) node -= loose();
-    const auto k = static_cast<int>(node) % side_points_, edge = static_cast<int>(node) / side_points_;
-    const int holder = edge / 2, side = edge % 2 == 1 ? kSouthSide : kWestSide;
-    return {{holder % (grid_.width + 1), holder / (grid_.width + 1)},
-            static_cast<std::size_t>(side * side_points_ + k)};
+    const Cell cell = cells_[node / static_cast<std::uint32_t>(per_cell_)];
+    const int k = static_cast<int>(node % static_cast<std::uint32_t>(per_cell_)), side = 2 * side_points_;
+    if (k >= 2 * side) return {cell, static_cast<std::size_t>(k)};
+    const int west_or_south = k % side < side_points_ ? kWestSide : kSouthSide;
+    return {cell, static_cast<std::size_t>(west_or_south * side_points_ + k % side_points_)};
   }
   Point place(std::uint32_t node) const {
     const auto [cell, spot] = whereIs(node);
@@ -214,7 +215,7 @@ class PointSearch {
     const bool free = crossings_.free(code);
     const double turn_J = map_.cost().turn(code).cost_J;
     const float label = labels_[node];
-    const bool must_share = node >= loose() && node < inner_;
+    const bool must_share = isLoose(node);
     for (const SpotLeg& leg : legs_[spot]) {
       const Spot& to = spots_[leg.to];
       if (to.side < 0 ? free : !grid_.contains(beyond(cell, to.side))) continue;
@@ -252,12 +253,15 @@ class PointSearch {
   const MotionCost& cost_;
   const costmap::CostGrid& map_;
   const maps::Grid& grid_;
-  double most_J_, cheapest_J_;
+  double most_J_;
+  const Rest& rest_of_;
   int side_points_, inner_points_;
   std::vector<Spot> spots_;
   EdgeCrossings crossings_;
   std::vector<std::vector<SpotLeg>> legs_;  // by spot
-  std::size_t inner_;                       // first node inside a cell
+  int per_cell_;                            // nodes
+  std::vector<std::uint32_t> slot_of_;      // by cell, with a column and a row beyond the map
+  std::vector<Cell> cells_;                 // by slot
   std::vector<float> labels_;
   std::vector<std::uint32_t> from_;
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,
@@ -272,10 +276,15 @@ class PointSearch {
 }  // namespace
 
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
-                    const StopCheck& stop) {
+                    const StopCheck& stop, const Rest& rest) {
   const std::size_t cells = cost.map().grid().size();
+  const double metre_J = 0.999 * cheapestMetre_J(cost.map());
+  const Rest straight = [&](Point at) {
+    return std::max(0.0, distance_m(at, places.to) - tolerance_m) * metre_J;
+  };
   const auto found = [&](Fineness fineness) {
-    Polyline way = offSides(cost, PointSearch(cost, fineness, most_J).between(places, tolerance_m, stop));
+    Polyline way = offSides(
+        cost, PointSearch(cost, fineness, most_J, rest ? rest : straight).between(places, tolerance_m, stop));
     return std::isfinite(cost.along(way)) ? way : Polyline{};
   };
   if (cells > kFineCells) return found(kCoarse);

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <functional>
+
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
+
+/// Estimate of the cost [J] from a place to the goal.
+using Rest = std::function<double(maps::Point)>;
 
 /// Returns the cheapest route from `places.from` to `places.to`, or to within `tolerance_m` of it, over fixed
 /// points of cells: 7 points on each side, and 9 points inside each cell that does not allow some heading, so
@@ -13,9 +18,9 @@ namespace talus::planner {
 /// the first search found no route. A leg crosses one cell or a part of one cell at its exact cost. The cost
 /// of a turn at a point is that of the cheapest leg to this point. The search finds corridors that grids with
 /// few headings miss, especially where cells allow few headings; the route is meant to be refined. The method
-/// is A* with a straight-line lower bound. Routes that cost `most_J` [J] or more are not searched. The result
+/// is A* with the estimate `rest`, or a straight-line lower bound without it. Routes that cost `most_J` [J] or more are not searched. The result
 /// is empty if there is no cheaper route, or after a stop.
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
-                    const StopCheck& stop = {});
+                    const StopCheck& stop = {}, const Rest& rest = {});
 
 }  // namespace talus::planner

@@ -93,8 +93,7 @@ Plan TubePlanner::finished(const Problem& leg, Polyline way, const StopCheck& st
     const AddedTime proof(plan.proof_s);
     return straightBoundOver_J(*leg.map, ends, leg.goal_tolerance_m, plan.cost_J, stop);
   };
-  plan.lower_bound_J =
-      std::min(plan.cost_J, leg.prove ? proven_J() : straightBound_J(*leg.map, ends, leg.goal_tolerance_m));
+  plan.lower_bound_J = std::min(plan.cost_J, leg.prove ? proven_J() : 0.0);
   return withoutTipping(std::move(plan));
 }
 

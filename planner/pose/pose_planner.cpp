@@ -200,7 +200,7 @@ Plan PosePlanner::plan(const Problem& problem) {
       const AddedTime proof(whole.proof_s);
       return bound_(problem.map, ends, tolerance_m, StopCheck(problem.watch, time.left_s()), leg.cost_J);
     };
-    const double bound_J = problem.prove ? proven_J() : straightBound_J(*problem.map, ends, tolerance_m);
+    const double bound_J = problem.prove ? proven_J() : 0.0;
     whole.lower_bound_J += std::min(bound_J, leg.cost_J);
     asked.start = stops[i];
     asked.start_heading_rad = endOf(leg.path).heading_rad;

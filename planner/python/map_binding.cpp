@@ -189,7 +189,7 @@ void addPlan(py::class_<PythonMap>& map) {
             progress);
       },
       "A route over all that is known now; the GIL is released, Ctrl-C ends it. progress: called with 0 "
-      "to 1. prove: also the best lower bound and other corridors, which takes longer.",
+      "to 1. prove: also the best lower bound and a search over points of cells, which takes longer.",
       py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("planner") = "", py::arg("tolerance_m") = 0.0,
       py::arg("via") = std::vector<Pair>{}, py::arg("start_heading_rad") = py::none(),
       py::arg("goal_heading_rad") = py::none(), py::arg("max_risk") = py::none(),

@@ -27,9 +27,8 @@ struct Problem {
   double time_limit_s = std::numeric_limits<double>::infinity();  ///< time limit of planning, > 0
   std::uint64_t seed = 1;  ///< seed of random numbers; equal seeds give equal routes
   int threads = 1;         ///< number of threads, >= 1; does not affect the result
-  /// True: the planner also computes an improved lower bound and searches other corridors (routes on other
-  /// sides of obstacles), which takes several times as long as the cost-to-go field. False: the planner
-  /// computes a simple lower bound.
+  /// True: the planner also computes a lower bound and searches its region for a cheaper route, which takes
+  /// several times as long as the cost-to-go field. False: no lower bound.
   bool prove = false;
   /// Function that returns the hazard for which the rover may not enter a cell on any heading, used to
   /// describe an obstruction. If empty, every such cell is attributed to hazards. Must outlive planning.

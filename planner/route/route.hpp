@@ -128,7 +128,7 @@ struct RouteSummary {
   /// Proven lower bound of the cost of all routes between these points, same unit as cost.
   double lower_bound = 0.0;
   double gap = 0.0;  ///< proven optimality gap cost / lower_bound - 1 [-]
-  /// Time [s] for PlanRequest::prove: improved lower bound and search of other corridors.
+  /// Time [s] for PlanRequest::prove: improved lower bound and search over points of cells.
   double proof_s = 0.0;
   std::string planner;  ///< name of the planner
   /// Manoeuvres of a drive; empty for a polyline without arcs and turns in place.

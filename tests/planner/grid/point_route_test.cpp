@@ -7,7 +7,6 @@
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/many_headings.hpp>
 #include <talus/planner/grid/point_route.hpp>
 
 #include "steered_ground.hpp"
@@ -20,8 +19,8 @@ using testing::randomBand;
 using testing::randomMap;
 
 // Property: the route is allowed from end to end, costs at least the lower bound, and at most 2 % more than
-// the cheapest route in 32 headings.
-TEST(PointRoute, CostIsWithinTwoPercentOfThirtyTwoHeadings) {
+// the refined route of the grid.
+TEST(PointRoute, CostIsWithinTwoPercentOfTheRefinedRoute) {
   int found = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const auto map = randomMap({.width = 14, .height = 12, .seed = seed, .blocked = 0.15, .roughness = 0.2});
@@ -29,10 +28,10 @@ TEST(PointRoute, CostIsWithinTwoPercentOfThirtyTwoHeadings) {
     const Segment places{{0.5, 0.5}, {13.4, 11.3}};
     if (!cost.allowed(places.from) || !cost.allowed(places.to)) continue;
     const Polyline route = pointRoute(cost, places, 0.0, kInfinity);
-    const Polyline other = manyHeadingsRoute(cost, places, 0.0, kInfinity);
-    if (!other.empty()) {
+    const Plan other = FieldPlanner().plan({.map = map, .start = places.from, .goal = places.to});
+    if (other.status == RouteStatus::Found) {
       ASSERT_FALSE(route.empty()) << seed;
-      EXPECT_LE(cost.along(route), 1.02 * cost.along(other)) << seed;
+      EXPECT_LE(cost.along(route), 1.02 * other.cost_J) << seed;
     }
     if (route.empty()) continue;
     ++found;
