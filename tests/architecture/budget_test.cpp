@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 701},    {"terramech", 22702}, {"maps", 7637},     {"costmap", 14523},
-                           {"planner", 24056}, {"cli", 15194},       {"examples", 1703}, {"tests", 62715}};
+                           {"planner", 24056}, {"cli", 15194},       {"examples", 1703}, {"tests", 62716}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
