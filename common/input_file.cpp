@@ -15,6 +15,38 @@
 #include <talus/common/input_file.hpp>
 
 namespace talus {
+namespace {
+
+thread_local std::vector<InputFile>* manifest = nullptr;
+
+void record(const std::string& path, const std::string& role, bool used) {
+  if (manifest == nullptr) return;
+  const auto known = std::ranges::find(*manifest, path, &InputFile::path);
+  if (known == manifest->end())
+    manifest->push_back({.path = path, .role = role, .used = used});
+  else if (known->role.empty())
+    known->role = role;
+}
+
+}  // namespace
+
+InputRecord::InputRecord() {
+  if (manifest == nullptr) manifest = &files_;
+}
+
+InputRecord::~InputRecord() {
+  if (manifest == &files_) manifest = nullptr;
+}
+
+std::vector<InputFile> filesRead() {
+  if (manifest == nullptr) return {};
+  for (InputFile& file : *manifest) {
+    std::error_code error;
+    if (file.sha256.empty()) file.sha256 = sha256OfFile(file.path);
+    if (const auto size = std::filesystem::file_size(file.path, error); !error) file.size = size;
+  }
+  return *manifest;
+}
 
 std::string sha256OfFile(const std::string& path) {
 #ifdef TALUS_NETTLE
@@ -37,7 +69,8 @@ std::string sha256OfFile(const std::string& path) {
 #endif
 }
 
-void checkInput(const std::string& path) {
+void checkInput(const std::string& path, const std::string& role, bool used) {
+  record(path, role, used);
 #ifdef TALUS_NETTLE
   const std::string sums = path + ".sha256";
   std::error_code error;
@@ -58,8 +91,6 @@ void checkInput(const std::string& path) {
   if (sha256OfFile(path) != stated)
     throw InputError({path, "is not the file of " + sums + ": changed or damaged since",
                       "get it again, or remove that file"});
-#else
-  static_cast<void>(path);
 #endif
 }
 

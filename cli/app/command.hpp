@@ -9,6 +9,7 @@
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/common/input_file.hpp>
 
 namespace talus::cli {
 
@@ -41,6 +42,7 @@ CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
   command.callback([options, run, &command, &context] {
     for (const std::string& warning : oldNamesUsed(command)) context.warn(warning);
     checkNumbers(command);
+    const InputRecord manifest;
     checkOutputs(command, context.force);
     context.exit_code = run(*options, context);
   });

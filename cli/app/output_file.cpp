@@ -133,8 +133,8 @@ void checkOutput(const fs::path& path, const std::vector<std::string>& inputs) {
   if (fs::is_regular_file(status))
     for (const std::string& input : inputs)
       if (const std::string file = input.substr(input.find('=') + 1); fs::is_regular_file(file, error))
-        for (const std::string& part : maps::filesOpenedWith(file))
-          if (same(path, part)) refuse(path, "is a part of the input " + file);
+        for (const InputFile& part : maps::filesOpenedWith(file))
+          if (same(path, part.path)) refuse(path, "is a part of the input " + file);
   if (fs::is_regular_file(status) && isJournal(path)) refuse(path, "is an SQLite file, as a journal is");
   if (const fs::path journal = journalBehind(path); !journal.empty())
     refuse(path, "is a part of the journal " + journal.string());

@@ -208,9 +208,8 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
 int run(const DriveCommandOptions& options, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
+  checkInput(options.truth, "truth");
   Ground ground = readGround(options.ground, context);
-  ground.files.push_back(
-      {std::filesystem::path(options.truth).filename().string(), options.truth, "", "truth"});
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {

@@ -309,7 +309,7 @@ int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const C
 bool isRouteOf(const std::string& mission, const std::string& path) {
   try {
     const auto inputs = readRoute(path).inputs;
-    return std::ranges::any_of(inputs, [&](const planner::RouteInput& input) {
+    return std::ranges::any_of(inputs, [&](const InputFile& input) {
       std::error_code error;
       return input.role == "mission" && (std::filesystem::equivalent(input.path, mission, error) ||
                                          input.sha256 == sha256OfFile(mission));
@@ -322,7 +322,7 @@ bool isRouteOf(const std::string& mission, const std::string& path) {
 // Mission files may come from other sources: without --force, their outputs overwrite only their own routes.
 void checkMissionOutput(const PlanOptions& options) {
   std::vector<std::string> inputs;
-  for (const planner::RouteInput& input : filesOf(options.ground)) inputs.push_back(input.path);
+  for (const InputFile& input : filesOf(options.ground)) inputs.push_back(input.path);
   checkOutput(options.output, inputs);
   if (std::filesystem::exists(options.output) && !isRouteOf(options.ground.mission, options.output))
     throw InputError({options.output, "exists, is named by the mission alone and is no route of this mission",

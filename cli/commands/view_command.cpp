@@ -70,12 +70,11 @@ Scene mapScene(const ViewOptions& options, const std::string& path, const Contex
 
 // Candidate paths of the map. By file name: the folder of the route and the current folder. By the path given
 // to `talus plan`: the current folder, the folder of the route and all its parents.
-std::vector<fs::path> placesOf(const planner::RouteInput& map, const fs::path& route) {
+std::vector<fs::path> placesOf(const InputFile& map, const fs::path& route) {
   std::error_code error;
   const fs::path folder = fs::absolute(route, error).parent_path();
-  std::vector<fs::path> places{folder / map.file, fs::path(".") / map.file};
-  if (map.path.empty()) return places;
-  places.emplace_back(map.path);
+  const fs::path name = fs::path(map.path).filename();
+  std::vector<fs::path> places{folder / name, fs::path(".") / name, map.path};
   for (fs::path above = folder;; above = above.parent_path()) {
     places.push_back(above / map.path);
     if (above == above.parent_path()) return places;
@@ -87,7 +86,7 @@ std::vector<fs::path> placesOf(const planner::RouteInput& map, const fs::path& r
 std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
                                    const Context& context) {
   if (file.inputs.empty()) return std::nullopt;
-  const planner::RouteInput& input = file.inputs.front();
+  const InputFile& input = file.inputs.front();
   std::string other;
   for (const fs::path& path : placesOf(input, route_path)) {
     std::error_code error;
@@ -97,7 +96,8 @@ std::optional<std::string> findMap(const RouteFile& file, const std::string& rou
   }
   if (!other.empty())
     context.warn(other + " is not the file that the route was planned on: its checksum differs");
-  context.warn("the map " + input.file + " of the route was not found; the page shows no map; pass --map");
+  context.warn("the map " + fs::path(input.path).filename().string() +
+               " of the route was not found; the page shows no map; pass --map");
   return std::nullopt;
 }
 

@@ -248,12 +248,31 @@ void warnOfRover(const terramech::Rover& rover, const Context& context) {
   for (const std::string& assumed : terramech::slopeAssumptions(rover)) context.warn(assumed);
 }
 
+// All files read, those that the options name first, with their roles. A file that an option names and that was not
+// read is unused.
+std::vector<InputFile> manifestOf(const GroundOptions& options) {
+  std::vector<InputFile> named = filesOf(options), read = filesRead();
+  for (InputFile& file : named) {
+    const auto found = std::ranges::find(read, file.path, &InputFile::path);
+    file.used = found != read.end();
+    if (!file.used) continue;
+    std::tie(file.size, file.sha256) = std::tie(found->size, found->sha256);
+    read.erase(found);
+  }
+  named.insert(named.end(), read.begin(), read.end());
+  return named;
+}
+
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
-  Ground ground{readBuiltMap(path, context), filesOf(options)};
+  const InputRecord record;
+  Ground ground{readBuiltMap(path, context), {}};
   checkSameRover(options, ground.map.model().rover(), path);
   if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
+  ground.files = manifestOf(options);
+  const auto& before = ground.map.elevation().files;
+  ground.files.insert(ground.files.end(), before.begin(), before.end());
   ground.load_s = since_s(begin);
   warnOfRover(ground.map.model().rover(), context);
   return ground;
@@ -332,10 +351,10 @@ void addGroundChoices(CLI::App& command, GroundOptions& options) {
   addPolicy(command, options.policy);
 }
 
-std::vector<planner::RouteInput> filesOf(const GroundOptions& options) {
-  std::vector<planner::RouteInput> files;
+std::vector<InputFile> filesOf(const GroundOptions& options) {
+  std::vector<InputFile> files;
   const auto add = [&](const std::string& path, const char* role) {
-    files.push_back({std::filesystem::path(path).filename().string(), path, "", role});
+    if (std::ranges::count(files, path, &InputFile::path) == 0) files.push_back({.path = path, .role = role});
   };
   add(options.dem.path, "elevation");
   const LayerOptions& layers = options.layers;
@@ -357,6 +376,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
+  const InputRecord record;
   maps::ElevationMap dem = readMap(options.dem, context);
   const Assumed& assumed = assumedOn(dem);
   warnOfAssumptions(options, assumed, context);
@@ -377,6 +397,8 @@ Ground readGround(const GroundOptions& options, const Context& context) {
          fmt::format("planes over more than {:.3g} m hide the steps and slopes that rover '{}' meets",
                      widest_m, parts.rover.name),
          "leave it out, or make it smaller"});
+  std::vector<InputFile> files = manifestOf(options);
+  dem.files = files;
   costmap::MapLayers content{std::move(dem),
                              std::move(layers.classes),
                              std::move(layers.rock_abundance),
@@ -390,7 +412,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
         std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
         {.footprint_radius_m = options.footprint_m, .threads = context.workers()}, context.watch("costmap"));
   });
-  return {std::move(map), filesOf(options), load_s, since_s(begin)};
+  return {std::move(map), std::move(files), load_s, since_s(begin)};
 }
 
 }  // namespace talus::cli

@@ -40,15 +40,15 @@ void addGroundChoices(CLI::App& command, GroundOptions& options);
 /// A traversability map, with its files and computing times.
 struct Ground {
   costmap::TraversabilityMap map;
-  std::vector<planner::RouteInput> files;  ///< result of filesOf(), for the provenance
+  std::vector<InputFile> files;  ///< the manifest: files of the options first, then all others read
   /// Time for reading the files.
   double load_s = 0.0;
   /// Time for building the map.
   double build_s = 0.0;
 };
 
-/// Returns the files that the options name, without SHA-256; the first is the map.
-std::vector<planner::RouteInput> filesOf(const GroundOptions& options);
+/// Returns the files that the options name, each with its role; the first is the map.
+std::vector<InputFile> filesOf(const GroundOptions& options);
 
 /// Returns the default soil and the default rover for the body of the map.
 std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map);

@@ -8,7 +8,6 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/route/provenance.hpp>
-#include <talus/common/input_file.hpp>
 
 namespace talus::cli {
 namespace {
@@ -68,6 +67,7 @@ std::vector<std::pair<std::string, std::string>> provenanceOf(const ordered_json
                                    {"rover", "rover"},
                                    {"soils", "soil"},
                                    {"seed", "seed"},
+                                   {"reading", "map read"},
                                    {"version", "version"}})
     if (inputs.contains(key)) facts.emplace_back(label, textOf(inputs.at(key)));
   if (inputs.contains("files") && inputs.at("files").is_array())
@@ -82,10 +82,10 @@ planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
                               .seed = context.seed,
                               .rover = ground.map.model().rover().name,
                               .soils = {},
+                              .reading = ground.map.elevation().reading,
                               .command = callText(context.argv)};
   for (const costmap::GroundClass& one : ground.map.model().parts().classes)
     origin.soils.push_back(one.soil.name);
-  for (planner::RouteInput& file : origin.files) file.sha256 = sha256OfFile(file.path);
   return origin;
 }
 

@@ -210,15 +210,17 @@ json member(const json& object, const char* key) {
   return object.is_object() && object.contains(key) ? object.at(key) : json();
 }
 
-std::vector<planner::RouteInput> inputsOf(const json& properties) {
-  std::vector<planner::RouteInput> inputs;
+std::vector<InputFile> inputsOf(const json& properties) {
+  std::vector<InputFile> inputs;
   for (const json& file : member(member(properties, "inputs"), "files")) {
     const auto text = [&](const char* key) {
       const json value = member(file, key);
       return value.is_string() ? value.get<std::string>() : "";
     };
     if (text("file").empty() || text("sha256").empty()) continue;
-    inputs.push_back({text("file"), text("path"), text("sha256"), text("role")});
+    inputs.push_back({.path = text("path").empty() ? text("file") : text("path"),
+                      .role = text("role"),
+                      .sha256 = text("sha256")});
   }
   return inputs;
 }

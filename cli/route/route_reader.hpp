@@ -12,7 +12,7 @@ namespace talus::cli {
 struct RouteFile {
   planner::Route route;
   /// Input files of the route.
-  std::vector<planner::RouteInput> inputs;
+  std::vector<InputFile> inputs;
   std::vector<std::pair<std::string, std::string>> provenance{};  ///< the result of provenanceOf()
 };
 

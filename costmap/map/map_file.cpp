@@ -257,6 +257,8 @@ MapText textOf(const TraversabilityMap& map) {
   MapText text{.grid = map.grid(),
                .coordinate_system = {},
                .source = map.elevation().source,
+               .reading = map.elevation().reading,
+               .files = map.elevation().files,
                .footprint_radius_m = map.surface().footprintRadius_m(),
                .ground = map.model().parts(),
                .refused = map.surface().refused()};
@@ -315,6 +317,8 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   requireMemory(40.0 * static_cast<double>(text.grid.size()), reading.name);
   MapLayers layers;
   layers.elevation.source = text.source;
+  layers.elevation.reading = text.reading;
+  layers.elevation.files = text.files;
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
   layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);

@@ -58,6 +58,8 @@ MapLayers MapShift::layers(const MapSurface& surface) const {
   layers.elevation = {.elevation_m = shifted(elevation.elevation_m, kUnseen),
                       .georeference = elevation.georeference,
                       .source = elevation.source,
+                      .reading = elevation.reading,
+                      .files = elevation.files,
                       .notes = elevation.notes};
   layers.classes = shifted(surface.classes(), GroundSite::kNoClass);
   layers.declared = shifted(surface.declared(), Hazard::None);

@@ -265,6 +265,19 @@ void visitRefused(V& v, R& refused) {
   }
 }
 
+template <typename V, typename F>
+void visitFiles(V& v, F& files) {
+  v.count("files", files);
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const std::string at = "file." + std::to_string(k) + '.';
+    v(at + "path", files[k].path);
+    v(at + "role", files[k].role);
+    v(at + "size", files[k].size);
+    v(at + "sha256", files[k].sha256);
+    v(at + "used", files[k].used);
+  }
+}
+
 std::string classPrefix(std::size_t i) {
   return "class." + std::to_string(i) + ".";
 }
@@ -275,6 +288,8 @@ std::string written(const MapText& text) {
   Writer v;
   visitGrid(v, text.grid);
   v("source", text.source);
+  v.added("reading", text.reading);
+  visitFiles(v, text.files);
   v("footprint_radius_m", text.footprint_radius_m);
   v("crs", text.coordinate_system.has_value());
   if (text.coordinate_system) visitCoordinates(v, *text.coordinate_system);
@@ -292,6 +307,8 @@ MapText parsed(const std::string& lines, const std::string& name) {
   MapText text;
   visitGrid(v, text.grid);
   v("source", text.source);
+  v.added("reading", text.reading);
+  visitFiles(v, text.files);
   v("footprint_radius_m", text.footprint_radius_m);
   bool has_crs = false;
   v("crs", has_crs);

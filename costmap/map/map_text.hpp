@@ -17,6 +17,8 @@ struct MapText {
   maps::Grid grid;
   std::optional<maps::CoordinateSystem> coordinate_system;
   std::string source;
+  std::string reading{};           ///< ElevationMap::reading
+  std::vector<InputFile> files{};  ///< ElevationMap::files
   double footprint_radius_m = 0.0;
   /// Rover, terrain classes and policy.
   GroundModel::Parts ground;

@@ -21,6 +21,7 @@
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/gdal_handle.hpp>
+#include <talus/maps/raster/source_files.hpp>
 
 namespace talus::maps {
 namespace {
@@ -152,14 +153,14 @@ void refuseMisread(GDALDataset& dataset, const std::string& path) {
 void refuseUnusedImages(GDALDataset& dataset, const std::string& path) {
   if (driverOf(dataset) != "GTiff") return;
   GDALRasterBand& band = *dataset.GetRasterBand(1);
-  const std::vector<std::string> files = listedFiles(dataset);
-  const auto beside = [&](const char* ending) { return std::ranges::count(files, path + ending) > 0; };
-  int used = 1 + (beside(".ovr") ? 0 : band.GetOverviewCount());
+  const std::vector<InputFile> files = filesOf(dataset, path);
+  const auto beside = [&](const char* role) { return std::ranges::count(files, role, &InputFile::role) > 0; };
+  int used = 1 + (beside("overviews") ? 0 : band.GetOverviewCount());
   const bool masked = (band.GetMaskFlags() & GMF_PER_DATASET) != 0;
-  if (beside(".msk") && !masked)
+  if (beside("mask") && !masked)
     throw InputError({path + ".msk", "lacks INTERNAL_MASK_FLAGS, by which GDAL knows a mask",
                       "write it again with gdal_translate -mask, or remove it"});
-  if (masked && !beside(".msk")) used += 1 + band.GetMaskBand()->GetOverviewCount();
+  if (masked && !beside("mask")) used += 1 + band.GetMaskBand()->GetOverviewCount();
   const GdalErrors quiet;
   constexpr const char* kTiff[] = {"GTiff", nullptr};
   const std::string next = "GTIFF_DIR:" + std::to_string(used + 1) + ":" + path;
@@ -314,10 +315,11 @@ void refuseForeignBytes(const std::string& path) {
 // Calls `each` for every source raster of a VRT.
 template <typename Each>
 void forSources(GDALDataset& dataset, const std::string& path, Each each) {
-  for (const std::string& file : listedFiles(dataset))
-    if (const Dataset source{
-            file == path ? nullptr : GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)})
-      each(*source, file);
+  for (const InputFile& file : filesOf(dataset, path))
+    if (const Dataset source{file.role == "source"
+                                 ? GDALDataset::Open(file.path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)
+                                 : nullptr})
+      each(*source, file.path);
 }
 
 // True if a block of a GeoTIFF has no place in the file, and no value stands for no data.

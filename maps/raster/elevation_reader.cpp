@@ -23,6 +23,7 @@
 #include <talus/maps/raster/numpy_raster.hpp>
 #include <talus/maps/raster/raster_band.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
+#include <talus/maps/raster/source_files.hpp>
 #include <talus/maps/raster/warp.hpp>
 
 namespace talus::maps {
@@ -149,9 +150,9 @@ PixelBox wholeOf(GDALDataset& file) {
 
 // Names, sizes and modification times of all files of a raster. All files are listed because the data may
 // change while the label does not.
-std::string stateOf(GDALDataset& raster) {
+std::string stateOf(GDALDataset& raster, const std::string& path) {
   std::ostringstream state;
-  for (const std::string& file : listedFiles(raster)) {
+  for (const auto& [file, role, size, sha256, used] : filesOf(raster, path)) {
     std::error_code error;
     state << file << ' ' << std::filesystem::file_size(file, error) << ' '
           << std::filesystem::last_write_time(file, error).time_since_epoch().count() << '\n';
@@ -263,9 +264,9 @@ class HeightReader {
     static std::mutex mutex;
     static Known last;
     static std::shared_ptr<const LostCells> lost;
-    const Known asked{stateOf(file_), band_, box, code_.nodata};
+    const Known asked{stateOf(file_, path_), band_, box, code_.nodata};
     const std::lock_guard lock(mutex);
-    if (!lost || asked.files.empty() || asked != last) {
+    if (!lost || asked != last) {
       lost = std::make_shared<const LostCells>(lostCells(file_, band_, box, code_.nodata, path_));
       last = asked;
     }

@@ -14,7 +14,7 @@
 
 namespace talus::maps {
 
-void requireReadableFile(const std::string& path) {
+void requireReadableFile(const std::string& path, const std::string& role) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw InputError({path, "no such file", "check the path"});
@@ -26,7 +26,7 @@ void requireReadableFile(const std::string& path) {
     throw InputError({path, std::string("cannot be read: ") + std::strerror(errno), "check its permissions"});
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0)
     throw InputError({path, "is empty", "fetch it again"});
-  checkInput(path);
+  checkInput(path, role);
 }
 
 std::string lower(std::string text) {

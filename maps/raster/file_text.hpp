@@ -7,9 +7,9 @@
 /// Checks of files and text functions that are independent of the file format.
 namespace talus::maps {
 
-/// Checks that a file can be read, and calls checkInput(). @throws InputError unless the path is a readable,
+/// Checks that a file can be read, and calls checkInput() with its role. @throws InputError unless the path is a readable,
 /// non-empty regular file
-void requireReadableFile(const std::string& path);
+void requireReadableFile(const std::string& path, const std::string& role = "");
 
 /// Returns the text with ASCII letters in lower case.
 std::string lower(std::string text);

@@ -91,15 +91,14 @@ std::vector<std::string> vectorFormats() {
   return {std::begin(kVectorDrivers), std::end(kVectorDrivers) - 1};
 }
 
-std::vector<std::string> filesOpenedWith(const std::string& path) {
+std::vector<InputFile> filesOpenedWith(const std::string& path) {
   registerDrivers();
   const GdalErrors quiet;
-  std::vector<std::string> files;
+  std::vector<InputFile> files{{.path = path}};
   if (const Dataset file{GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY)})
-    files = listedFiles(*file);
-  std::erase(files, path);
-  for (const std::string& one : std::vector<std::string>(files)) files.push_back(one + ".sha256");
-  files.push_back(path + ".sha256");
+    files = filesOf(*file, path);
+  for (std::size_t i = 0, count = files.size(); i < count; ++i)
+    files.push_back({.path = files[i].path + ".sha256", .role = "checksum"});
   return files;
 }
 
@@ -131,7 +130,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   if (errors.anyWarning() && GDALGetDriverShortName(dataset->GetDriver()) == std::string_view("GTiff"))
     throw InputError({path, "GDAL warns of its structure: " + errors.last(),
                       "fetch it again, or write it again with gdal_translate"});
-  sourceFiles(*dataset, path);
+  checkFiles(*dataset, path);
   refuseDamaged(*dataset, path);
   return withFractions(std::move(dataset), path);
 }
@@ -146,7 +145,7 @@ Dataset openVector(const std::string& path) {
   if (!dataset)
     throw InputError({path, "GDAL opens no vector file of the allowed formats: " + errors.last(),
                       "give a GeoPackage, GeoJSON, GPX, KML or shapefile"});
-  sourceFiles(*dataset, path);
+  checkFiles(*dataset, path);
   return dataset;
 }
 

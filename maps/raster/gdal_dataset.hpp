@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <talus/common/input_file.hpp>
 #include <talus/maps/raster/gdal_handle.hpp>
 
 class GDALDataset;
@@ -21,7 +22,7 @@ void registerDrivers();
 std::vector<std::string> rasterFormats();
 
 /// Opens a raster file for reading with a driver of rasterFormats(). Rejects network paths, archives, and
-/// files outside the folder of `path` (sourceFiles()). A virtual raster (VRT) is accepted only if `allow_vrt`.
+/// files outside the folder of `path` (checkFiles()). A virtual raster (VRT) is accepted only if `allow_vrt`.
 /// @throws InputError if the file is missing, a directory, unreadable, truncated, without a raster, or a TIFF
 /// of whose structure GDAL warns
 Dataset openRaster(const std::string& path, bool allow_vrt = false);
@@ -33,9 +34,8 @@ std::vector<std::string> vectorFormats();
 /// InputError
 Dataset openVector(const std::string& path);
 
-/// Returns the files that GDAL opens with a raster or vector file (not itself), and the checksum files of all; empty
-/// for other files.
-std::vector<std::string> filesOpenedWith(const std::string& path);
+/// Returns a file, filesOf() it if it is a raster or vector file, and the checksum files of all.
+std::vector<InputFile> filesOpenedWith(const std::string& path);
 
 /// Sets the limit of GDAL's pixel cache for the whole process [bytes]. Default: 5 % of the physical memory.
 void limitPixelCache(std::int64_t bytes);

@@ -1,5 +1,4 @@
 #include <cpl_error.h>
-#include <cpl_string.h>
 #include <gdal_priv.h>
 
 #include <talus/maps/raster/gdal_handle.hpp>
@@ -8,11 +7,6 @@ namespace talus::maps {
 
 void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
   if (dataset != nullptr) dataset->ReleaseRef();
-}
-
-std::vector<std::string> listedFiles(GDALDataset& dataset) {
-  const CPLStringList files(dataset.GetFileList());
-  return {files.List(), files.List() + files.size()};
 }
 
 GdalErrors::GdalErrors() {

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 class GDALDataset;
 
@@ -15,9 +14,6 @@ struct CloseDataset {
 /// An owned reference to a GDAL dataset. The dataset closes when its last reference is released; a virtual
 /// raster derived from the dataset holds a reference, too.
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-
-/// Returns GDAL's list of the existing files of a dataset.
-std::vector<std::string> listedFiles(GDALDataset& dataset);
 
 /// Suppresses GDAL's error output of this thread during the lifetime of the object, and keeps it. Errors of an
 /// inner object of the same thread are not kept by the outer one.

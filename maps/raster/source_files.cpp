@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <system_error>
 
 #include <cpl_minixml.h>
+#include <cpl_string.h>
 #include <gdal_priv.h>
 
 #include <talus/common/input_error.hpp>
@@ -23,61 +25,68 @@ fs::path folderOf(const fs::path& file) {
   return fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
 }
 
-// Gathers the files of a dataset and of the sources of a virtual raster.
+struct Side {
+  std::string_view ending, role;
+};
+// Files that belong to FILE.tif as FILE.tif.msk, and as FILE.prj.
+constexpr Side kAppended[] = {{".msk", "mask"}, {".aux.xml", "auxiliary"}, {".ovr", "overviews"}};
+constexpr Side kReplacing[] = {
+    {".prj", "CRS"}, {".tfw", "place"}, {".wld", "place"}, {".hdr", "label"}, {".lbl", "label"}};
+
+std::string roleOf(const std::string& file, bool is_virtual) {
+  const std::string name = lower(file);
+  for (const auto& sides : {std::span<const Side>(kAppended), std::span<const Side>(kReplacing)})
+    for (const auto& [ending, role] : sides)
+      if (name.ends_with(ending)) return std::string(role);
+  return is_virtual ? "source" : "data";
+}
+
+bool isVirtual(GDALDataset& dataset) {
+  return GDALGetDriverShortName(dataset.GetDriver()) == std::string_view("VRT");
+}
+
+// Checks the files of a dataset and of the sources of a virtual raster.
 class Sources {
  public:
-  explicit Sources(const std::string& path) : given_(folderOf(path)) {
+  explicit Sources(const std::string& path) : first_(path), given_(folderOf(path)) {
     std::error_code error;
     target_ = fs::weakly_canonical(path, error).parent_path();
-    files.push_back(path);
   }
 
   void add(GDALDataset& dataset, const std::string& path) {
     if (open_.size() >= kMostLevels)
       throw InputError({path, "is named through more than eight other files", "name the rasters directly"});
     open_.push_back(path);
-    const std::vector<std::string> listed = listedFiles(dataset);
-    for (const std::string& file : listed)
-      if (file != path) take(file);
-    const bool is_virtual = GDALGetDriverShortName(dataset.GetDriver()) == std::string_view("VRT");
-    if (is_virtual) requirePlainNames(dataset, path);
-    for (const char* ending : {".msk", ".aux.xml"}) requireUsed(path, ending, listed);
-    for (const std::string& file : listed)
-      if (is_virtual && file != path) addSource(file, path);
+    const std::vector<InputFile> files = filesOf(dataset, path);
+    for (const InputFile& file : files)
+      if (file.path != path) take(file);
+    if (isVirtual(dataset)) requirePlainNames(dataset, path);
+    for (const InputFile& file : files)
+      if (file.role == "source") addSource(file.path, path);
     open_.pop_back();
   }
 
-  std::vector<std::string> files;
-
  private:
   // Takes a file that lies in the folder of the raster.
-  void take(const std::string& file) {
-    if (std::ranges::find(files, file) != files.end()) return;
+  void take(const InputFile& file) {
+    if (!file.used && (file.role == "mask" || file.role == "auxiliary"))
+      throw InputError({file.path,
+                        "belongs to the raster by its name, and GDAL does not use it, as when it is damaged",
+                        "write it again, or remove it"});
+    if (!file.used) return checkInput(file.path, file.role, false);
     std::error_code error;
-    const fs::path folder = fs::canonical(file, error).parent_path();
+    const fs::path folder = fs::canonical(file.path, error).parent_path();
     if (error || (folder != given_ && folder != target_))
-      throw InputError({files.front(),
-                        "names '" + file.substr(0, 80) + "', which is no file of its own folder",
+      throw InputError({first_, "names '" + file.path.substr(0, 80) + "', which is no file of its own folder",
                         "put the files into one folder and name them without a path"});
-    requireReadableFile(file);
-    if (file.ends_with(".aux.xml")) requireXml(file);
-    files.push_back(file);
+    requireReadableFile(file.path, file.role);
+    if (file.role == "auxiliary") requireXml(file.path);
   }
 
   static void requireXml(const std::string& file) {
     const GdalErrors errors;
     const CPLXMLTreeCloser tree(CPLParseXMLFile(file.c_str()));
     if (!tree) throw InputError({file, "is no XML: " + errors.last(), "write it again, or remove it"});
-  }
-
-  static void requireUsed(const std::string& path, const char* ending,
-                          const std::vector<std::string>& listed) {
-    const std::string side = path + ending;
-    std::error_code error;
-    if (fs::exists(side, error) && std::ranges::count(listed, side) == 0)
-      throw InputError({side,
-                        "belongs to the raster by its name, and GDAL does not use it, as when it is damaged",
-                        "write it again, or remove it"});
   }
 
   // Sources are compared with GDAL's list by their names alone; /vsi, subdatasets and pixel functions are not
@@ -116,16 +125,30 @@ class Sources {
     if (source) add(*source, file);
   }
 
+  const std::string& first_;
   fs::path given_, target_;  // folders of the file as named and of its target
   std::vector<std::string> open_;
 };
 
 }  // namespace
 
-std::vector<std::string> sourceFiles(GDALDataset& dataset, const std::string& path) {
-  Sources sources(path);
-  sources.add(dataset, path);
-  return std::move(sources.files);
+std::vector<InputFile> filesOf(GDALDataset& dataset, const std::string& path) {
+  std::vector<InputFile> files{{.path = path}};
+  const CPLStringList listed(dataset.GetFileList());
+  for (const std::string file : std::span(listed.List(), static_cast<std::size_t>(listed.size())))
+    if (file != path) files.push_back({.path = file, .role = roleOf(file, isVirtual(dataset))});
+  const auto beside = [&](const fs::path& side, std::string_view role) {
+    std::error_code error;
+    if (fs::is_regular_file(side, error) && std::ranges::count(files, side.string(), &InputFile::path) == 0)
+      files.push_back({.path = side.string(), .role = std::string(role), .used = false});
+  };
+  for (const auto& [ending, role] : kAppended) beside(path + std::string(ending), role);
+  for (const auto& [ending, role] : kReplacing) beside(fs::path(path).replace_extension(ending), role);
+  return files;
+}
+
+void checkFiles(GDALDataset& dataset, const std::string& path) {
+  Sources(path).add(dataset, path);
 }
 
 void requireRegularNeighbours(const std::string& path) {

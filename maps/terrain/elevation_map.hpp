@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <talus/common/input_file.hpp>
 #include <talus/maps/geodesy/georeference.hpp>
 #include <talus/maps/grid/grid.hpp>
 
@@ -18,6 +19,10 @@ struct ElevationMap {
   /// Conversion to latitude and longitude; nullopt: x and y are local metres.
   std::optional<Georeference> georeference{};
   std::string source{};  ///< path of the map file, as the user stated it
+  /// How the numbers of the file became heights, one line: "heights = raw x 0.001 + 1500 m (file), ..."; empty
+  /// if the map was not read from a raster.
+  std::string reading{};
+  std::vector<InputFile> files{};  ///< files from which the map was made, if they were recorded
   /// Decisions of the file reader that the user should know, one line each.
   std::vector<std::string> notes{};
 

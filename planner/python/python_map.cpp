@@ -213,8 +213,11 @@ std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads)
   const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
   const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
   file.attr("close")();
-  map->files_ = {{std::filesystem::path(path).filename().string(), path,
-                  digest.attr("hexdigest")().cast<std::string>()}};
+  map->files_ = map->map().elevation().files;
+  map->files_.insert(map->files_.begin(), {.path = path,
+                                           .role = "map",
+                                           .size = std::filesystem::file_size(path),
+                                           .sha256 = digest.attr("hexdigest")().cast<std::string>()});
   return map;
 }
 
@@ -227,7 +230,9 @@ void PythonMap::save(const std::string& path) const {
 void PythonMap::writeRoute(const Route& route, const std::string& path) const {
   if (route.status != RouteStatus::Found)
     throw py::value_error("route: its status is " + std::string(name(route.status)) + ", must be found");
-  const auto document = routeGeoJson(route, map().elevation(), {.files = files_, .seed = settings_.seed});
+  const auto document =
+      routeGeoJson(route, map().elevation(),
+                   {.files = files_, .seed = settings_.seed, .reading = map().elevation().reading});
   writeFile(path, document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 

@@ -58,7 +58,7 @@ class PythonMap {
  private:
   std::shared_ptr<Session> session_;
   PlannerSettings settings_{};
-  std::vector<RouteInput> files_;  // files from which the map was read
+  std::vector<InputFile> files_;  // files from which the map was read
 };
 
 }  // namespace talus::planner

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -73,13 +74,18 @@ Json obstructionJson(const Obstruction& why) {
 
 Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
-  for (const RouteInput& input : origin.files) {
-    files.push_back({{"file", input.file}, {"path", input.path}, {"sha256", input.sha256}});
+  for (const InputFile& input : origin.files) {
+    files.push_back({{"file", std::filesystem::path(input.path).filename().string()},
+                     {"path", input.path},
+                     {"sha256", input.sha256},
+                     {"size", input.size}});
     if (!input.role.empty()) files.back()["role"] = input.role;
+    if (!input.used) files.back()["used"] = false;
   }
   Json made{{"files", files}, {"seed", origin.seed}, {"version", TALUS_VERSION}};
   if (!origin.rover.empty()) made["rover"] = origin.rover;
   if (!origin.soils.empty()) made["soils"] = origin.soils;
+  if (!origin.reading.empty()) made["reading"] = origin.reading;
   if (!origin.command.empty()) made["command"] = origin.command;
   return made;
 }

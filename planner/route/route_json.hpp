@@ -11,20 +11,13 @@
 
 namespace talus::planner {
 
-/// Input file of a route.
-struct RouteInput {
-  std::string file;      ///< file name without folder
-  std::string path{};    ///< path given to the planner, relative to its working folder; empty: unknown
-  std::string sha256{};  ///< SHA-256 of the file content, hexadecimal
-  std::string role{};    ///< what the file states: "elevation", "rover", "mission", ...; empty: unknown
-};
-
 /// Data with which a route can be computed again.
 struct RouteOrigin {
-  std::vector<RouteInput> files;     ///< files that the planner read
+  std::vector<InputFile> files;      ///< files that the planner read; paths as given to it
   std::uint64_t seed = 1;            ///< seed of the planner
   std::string rover{};               ///< name of the rover
   std::vector<std::string> soils{};  ///< names of the soils, one per terrain class of the map
+  std::string reading{};             ///< how the heights were read (ElevationMap); empty if unknown
   std::string command{};             ///< shell command that computes the route; empty if unknown
 };
 

@@ -64,7 +64,7 @@ TEST(RouteJson, ZeroLengthRouteIsALineAndUnknownValuesAreNull) {
 
 TEST(RouteJson, InputsAreListedWithTheirDigest) {
   const auto document =
-      routeGeoJson(exampleRoute(), exampleMap(), {.files = {{.file = "dem.tif", .sha256 = "ba7816bf"}}});
+      routeGeoJson(exampleRoute(), exampleMap(), {.files = {{.path = "dem.tif", .sha256 = "ba7816bf"}}});
   const auto& file = document["features"][0]["properties"]["inputs"]["files"][0];
   EXPECT_EQ(file["file"], "dem.tif");
   EXPECT_EQ(file["sha256"], "ba7816bf");
