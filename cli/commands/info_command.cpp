@@ -11,6 +11,7 @@
 #include <talus/cli/ground/map_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
 namespace {
@@ -80,6 +81,8 @@ nlohmann::ordered_json infoJson(const maps::ElevationMap& map, const maps::Terra
   out["x_m"] = {grid.south_west.x_m, grid.south_west.x_m + grid.width * grid.resolution_m};
   out["y_m"] = {grid.south_west.y_m, grid.south_west.y_m + grid.height * grid.resolution_m};
   out["footprint_cells"] = metrics.footprint_cells;
+  out["reading"] = map.reading;
+  out["files"] = planner::originJson({.files = filesRead()})["files"];
   return out;
 }
 
@@ -98,6 +101,7 @@ std::string infoText(const maps::ElevationMap& map, const nlohmann::ordered_json
          fmt::format("cells       {} x {} of {:.6g} m ({:.4g} x {:.4g} km)\n", grid.width, grid.height,
                      grid.resolution_m, grid.width * grid.resolution_m / 1000,
                      grid.height * grid.resolution_m / 1000) +
+         (map.reading.empty() ? "" : fmt::format("read        {}\n", map.reading)) +
          fmt::format("CRS         {}{}\n", facts["crs"].get<std::string>(),
                      map.georeference ? " (" + map.georeference->body() + ")" : " metres") +
          fmt::format("extent      {}\n", maps::extent(grid)) + latitudes(map) +

@@ -2,11 +2,13 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -139,6 +141,14 @@ void refuseMisread(GDALDataset& dataset, const std::string& path) {
       refuse("holds pixels of SAMPLE_TYPE " + type + " and SAMPLE_BITS " +
              pds3Keyword(path, "SAMPLE_BITS", "IMAGE"));
     if (wholeNumber(pds3Keyword(path, "LINE_SUFFIX_BYTES", "IMAGE")) > 0) refuse("has LINE_SUFFIX_BYTES");
+    const auto map = [&](const char* key) { return std::atof(pds3Keyword(path, key).c_str()); };
+    // Pixels per degree times the size of a pixel [km or m] is a degree on the sphere, within 2 % on ellipsoids.
+    const double degree = map("MAP_SCALE") * map("MAP_RESOLUTION"),
+                 own = map("A_AXIS_RADIUS") * std::numbers::pi / 180.0;
+    const auto near = [&](double length) { return std::abs(degree - length) <= 0.02 * length; };
+    if (degree > 0.0 && own > 0.0 && !near(own) && !near(1000.0 * own))
+      throw InputError(
+          {path, "states a MAP_SCALE and a MAP_RESOLUTION of different pixels", "correct one of them"});
   }
   if (driverOf(dataset) == "PDS4") {
     char** xml = dataset.GetMetadata("xml:PDS4");

@@ -18,10 +18,9 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
-#include <talus/maps/raster/elevation_values.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
-#include <talus/maps/raster/raster_band.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
 #include <talus/maps/raster/source_files.hpp>
 #include <talus/maps/raster/warp.hpp>
@@ -144,10 +143,6 @@ PixelBox around(const PixelBox& box, int width, int height, GDALDataset& file) {
           end(box.row, box.height, height, file.GetRasterYSize()) - row};
 }
 
-PixelBox wholeOf(GDALDataset& file) {
-  return {0, 0, file.GetRasterXSize(), file.GetRasterYSize()};
-}
-
 // Names, sizes and modification times of all files of a raster. All files are listed because the data may
 // change while the label does not.
 std::string stateOf(GDALDataset& raster, const std::string& path) {
@@ -164,37 +159,40 @@ std::string stateOf(GDALDataset& raster, const std::string& path) {
 // are made here, before any mean or resampling mixes the cells.
 class HeightReader {
  public:
-  HeightReader(const Selection& from, const std::string& path, const ReadOptions& options,
-               std::vector<std::string>& notes)
-      : file_(*from.file),
+  HeightReader(const Selection& from, const std::string& path, const ReadOptions& options)
+      : heights(Kind::Height_m, *from.file, from.band, path, options),
+        file_(*from.file),
         band_(from.band),
-        code_(heightCode(file_, band_, path, options, notes)),
         path_(path),
-        keep_zeros_(options.keep_zeros),
-        asked_nodata_(options.nodata.has_value()),
-        notes_(notes) {}
+        options_(options) {}
 
   /// Means of the known among factor x factor pixels of a box, in file order. Blocks at the last column, and at
   /// the first row if `from_below`, else at the last row, have fewer pixels.
   std::vector<float> read(const PixelBox& box, int factor, bool from_below) {
-    if (!asked_nodata_) declareMarks(box, factor);
-    std::vector<float> heights;
+    if (!options_.nodata) {
+      eachStrip(box, factor, false, [&](const PixelBox& strip) {
+        kept_ = pixels(strip);
+        heights.search(kept_);
+      });
+      heights.found();
+    }
+    std::vector<float> means;
     std::shared_ptr<const LostCells> lost;
     eachStrip(box, factor, from_below, [&](const PixelBox& strip) {
-      std::vector<float> values = pixels(strip);
-      if (!keep_zeros_ && code_.nodata != 0.0 && std::ranges::count(values, 0.0F) > 0) {
-        if (!lost) lost = lostOf(searched(box));
-        blank(*lost, strip, values);
-      }
-      decodeHeights(values, code_, path_);
-      if (factor == 1 && heights.empty())
-        heights = std::move(values);
+      RawPixels raw = pixels(strip);
+      if (!options_.keep_zeros && !lost && raw.holdZero()) lost = lostOf(searched(box));
+      std::vector<float> values = heights.of(std::move(raw));
+      if (lost) blank(*lost, strip, values);
+      if (factor == 1 && means.empty())
+        means = std::move(values);
       else
-        appendMeans(values, strip, factor, from_below, heights);
+        appendMeans(values, strip, factor, from_below, means);
     });
-    if (lost && lost->count > 0) notes_.push_back(lostNote(*lost, "--keep-zeros"));
-    return heights;
+    if (lost && lost->count > 0) heights.notes.push_back(lostNote(*lost, "--keep-zeros"));
+    return means;
   }
+
+  Quantity heights;
 
  private:
   // Calls `each` for strips of whole blocks from the first row to the last.
@@ -210,39 +208,9 @@ class HeightReader {
   }
 
   // Pixels of a strip; the last strip is kept until it is asked for again.
-  std::vector<float> pixels(const PixelBox& strip) {
-    if (!kept_.empty() && strip == kept_box_) return std::exchange(kept_, {});
-    return readPixels(file_, band_, strip, path_);
-  }
-
-  // Recognises customary no-data values that the file does not declare: those below all other values.
-  void declareMarks(const PixelBox& box, int factor) {
-    float least = std::numeric_limits<float>::infinity();
-    std::array<std::size_t, std::size(kCustomaryMarks)> counts{};
-    eachStrip(box, factor, false, [&](const PixelBox& strip) {
-      kept_ = pixels(strip);
-      kept_box_ = strip;
-      for (const float v : kept_) {
-        if (!(v >= -1e30F)) continue;
-        const auto mark = std::ranges::find(kCustomaryMarks, v);
-        if (mark == std::end(kCustomaryMarks))
-          least = std::min(least, v);
-        else
-          ++counts[static_cast<std::size_t>(mark - std::begin(kCustomaryMarks))];
-      }
-    });
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      const double mark = static_cast<double>(kCustomaryMarks[i]);
-      if (counts[i] == 0 || kCustomaryMarks[i] >= least || code_.nodata == mark ||
-          std::ranges::count(code_.marks, mark) > 0)
-        continue;
-      if (code_.nodata)
-        code_.marks.push_back(mark);
-      else
-        code_.nodata = mark;
-      notes_.push_back(std::to_string(counts[i]) + " cells of " + std::to_string(static_cast<long>(mark)) +
-                       " treated as no data although the file does not declare it (--nodata corrects it)");
-    }
+  RawPixels pixels(const PixelBox& strip) {
+    RawPixels kept = std::exchange(kept_, {});
+    return kept.box() == strip ? std::move(kept) : RawPixels(file_, band_, strip, path_);
   }
 
   // Pixels searched for lost data: the whole file, or the box extended on each side by its own size.
@@ -258,16 +226,16 @@ class HeightReader {
       std::string files;
       int band = 0;
       PixelBox box;
-      std::optional<double> nodata;
+      std::string reading;
       bool operator==(const Known&) const = default;
     };
     static std::mutex mutex;
     static Known last;
     static std::shared_ptr<const LostCells> lost;
-    const Known asked{stateOf(file_, path_), band_, box, code_.nodata};
+    const Known asked{stateOf(file_, path_), band_, box, heights.reading()};
     const std::lock_guard lock(mutex);
     if (!lost || asked != last) {
-      lost = std::make_shared<const LostCells>(lostCells(file_, band_, box, code_.nodata, path_));
+      lost = std::make_shared<const LostCells>(heights.lostZeros(file_, band_, box));
       last = asked;
     }
     return lost;
@@ -295,12 +263,9 @@ class HeightReader {
 
   GDALDataset& file_;
   int band_;
-  HeightConversion code_;
   const std::string& path_;
-  bool keep_zeros_, asked_nodata_;
-  std::vector<std::string>& notes_;
-  std::vector<float> kept_;
-  PixelBox kept_box_;
+  const ReadOptions& options_;
+  RawPixels kept_{};
 };
 
 // Pixels of the file that cover cells of a grid in another frame, with a margin for interpolation.
@@ -376,7 +341,7 @@ std::vector<float> resampled(const Selection& chosen, HeightReader& reader, cons
   const Dataset square = warp(
       *heights,
       {.wkt = chosen.from.georeference->system().wkt, .grid = cells, .method = chosen.from.resampling}, path);
-  return readPixels(*square, 1, {0, 0, cells.width, cells.height}, path);
+  return Quantity().of({*square, 1, {0, 0, cells.width, cells.height}, path});
 }
 
 // Heights of the cells of the file, in file order.
@@ -430,11 +395,13 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   const Selection chosen = select(path, options, map.notes);
   const auto& [file, band, from, box, grid] = chosen;
   refuseSize(grid, options, path);
-  HeightReader reader(chosen, path, options, map.notes);
+  HeightReader reader(chosen, path, options);
   std::vector<float> values =
       from.resampling.empty() ? asStored(chosen, reader, options) : resampled(chosen, reader, options, path);
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
   map.georeference = from.georeference;
+  map.reading = reader.heights.reading();
+  map.notes.insert(map.notes.end(), reader.heights.notes.begin(), reader.heights.notes.end());
   if (!options.keep_holes) fillHoles(map.elevation_m, map.notes);
   if (validFraction(map.elevation_m) == 0.0)
     throw InputError({path, "holds no data in any cell" + std::string(options.window ? " of the window" : ""),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <mutex>
 #include <new>
@@ -108,7 +109,7 @@ void limitPixelCache(std::int64_t bytes) {
 
 Dataset openRaster(const std::string& path, bool allow_vrt) {
   registerDrivers();
-  requireReadableFile(path);
+  requireReadableFile(path, "cells");
   requireRegularNeighbours(path);
   const GdalErrors errors;
   constexpr const char* kVirtual[] = {"VRT", nullptr};
@@ -125,8 +126,9 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
                       "give a GeoTIFF or another raster"});
   if (dataset->GetRasterCount() == 0 || dataset->GetRasterXSize() == 0 || dataset->GetRasterYSize() == 0)
     throw InputError({path, "holds no raster band", "name one of its subdatasets (gdalinfo lists them)"});
-  // GDAL reads the CRS of a TIFF later: what it warns of on opening is the structure. Of other formats it may
-  // be a convention.
+  // Of a TIFF GDAL warns of its structure and its place; of other formats also of conventions.
+  std::array<double, 6> unused{};
+  dataset->GetGeoTransform(unused.data());
   if (errors.anyWarning() && GDALGetDriverShortName(dataset->GetDriver()) == std::string_view("GTiff"))
     throw InputError({path, "GDAL warns of its structure: " + errors.last(),
                       "fetch it again, or write it again with gdal_translate"});
@@ -137,7 +139,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
 
 Dataset openVector(const std::string& path) {
   registerDrivers();
-  requireReadableFile(path);
+  requireReadableFile(path, "places");
   requireRegularNeighbours(path);
   const GdalErrors errors;
   constexpr unsigned kHow = GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;

@@ -19,8 +19,8 @@
 #include <talus/maps/grid/pixel_cover.hpp>
 #include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
-#include <talus/maps/raster/raster_band.hpp>
 #include <talus/maps/terrain/place.hpp>
 
 namespace talus::maps {
@@ -56,13 +56,12 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
   return other.SetFromUserInput(wkt.c_str()) == OGRERR_NONE && crs.IsSame(&other, relaxed) != FALSE;
 }
 
-// Copies a band to memory as 32-bit floats with a margin of one NaN pixel, because values beyond a file are
-// unknown, by the scale and offset of the band. No-data pixels become NaN. The copy has a CRS only if the CRS differs from that of the map;
-// otherwise its geotransform is relative to the south-west corner of the map.
-Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std::string& path) {
+// Copies the values of a band to memory with a margin of one NaN pixel, because values beyond a file are
+// unknown. The copy has a CRS only if the CRS differs from that of the map; otherwise its geotransform is relative
+// to the south-west corner of the map.
+Dataset inMemory(Quantity& quantity, GDALDataset& file, int band, const ElevationMap& map,
+                 const std::string& path, const LostCells& lost = {}) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
-  if (GDALDataTypeIsComplex(file.GetRasterBand(band)->GetRasterDataType()) != FALSE)
-    throw InputError({path, "contains complex numbers", "choose a band of real numbers"});
   requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
   Dataset copy(driverNamed("MEM").Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
   if (!copy) throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
@@ -78,23 +77,14 @@ Dataset inMemory(GDALDataset& file, int band, const ElevationMap& map, const std
     copy->SetGeoTransform(c.data());
   }
   if (elsewhere) copy->SetSpatialRef(crs);
-  std::vector<float> row(static_cast<std::size_t>(width) + 2, std::numeric_limits<float>::quiet_NaN());
-  std::vector<std::uint8_t> known(static_cast<std::size_t>(width));
-  GDALRasterBand& from = *file.GetRasterBand(band);
-  GDALRasterBand& mask = *from.GetMaskBand();
-  const double scale = from.GetScale(), offset = from.GetOffset();
   for (int y = -1; y <= height; ++y) {
-    const bool rim = y < 0 || y == height;
-    if (rim)
-      std::ranges::fill(row, std::numeric_limits<float>::quiet_NaN());
-    else if (from.RasterIO(GF_Read, 0, y, width, 1, row.data() + 1, width, 1, GDT_Float32, 0, 0, nullptr) !=
-                 CE_None ||
-             mask.RasterIO(GF_Read, 0, y, width, 1, known.data(), width, 1, GDT_Byte, 0, 0, nullptr) !=
-                 CE_None)
-      throw InputError({path, "row " + number(y) + " cannot be read", "the file is damaged or truncated"});
-    for (std::size_t x = 0; !rim && x < known.size(); ++x)
-      row[x + 1] = known[x] == 0 ? std::numeric_limits<float>::quiet_NaN()
-                                 : static_cast<float>(static_cast<double>(row[x + 1]) * scale + offset);
+    std::vector<float> row(static_cast<std::size_t>(width), kNoValue);
+    if (const PixelBox line{0, y, width, 1}; y >= 0 && y < height) {
+      row = quantity.of({file, band, line, path});
+      blank(lost, line, row);
+    }
+    row.insert(row.begin(), kNoValue);
+    row.push_back(kNoValue);
     if (copy->GetRasterBand(1)->RasterIO(GF_Write, 0, y + 1, width + 2, 1, row.data(), width + 2, 1,
                                          GDT_Float32, 0, 0, nullptr) != CE_None)
       throw InputError({path, "does not fit into memory", "cut it to the map with gdalwarp"});
@@ -231,7 +221,8 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
                         "name the band of classes"});
     return ranks.rank(static_cast<std::uint8_t>(v));
   };
-  Dataset ranks_of_file = inMemory(*file, band, map, source.path);
+  Quantity numbers(Kind::Classes, *file, band, source.path);
+  Dataset ranks_of_file = inMemory(numbers, *file, band, map, source.path);
   changePixels(*ranks_of_file, source.path, ranked);
   const Raster<float> weakest = greatest(*ranks_of_file, map, source.path);
   Raster<std::uint8_t> classes(map.grid(), kNoClass);
@@ -248,9 +239,11 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
   Dataset file = openRaster(source.path);
-  if (source.band && (*source.band < 1 || *source.band > file->GetRasterCount()))
-    throw InputError({source.path, "has no band " + std::to_string(*source.band), "name one that it has"});
-  Dataset band = inMemory(*file, source.band.value_or(1), map, source.path);
+  const int number_of_band = source.band.value_or(1);
+  if (number_of_band < 1 || number_of_band > file->GetRasterCount())
+    throw InputError({source.path, "has no band " + std::to_string(number_of_band), "name one that it has"});
+  Quantity joules(Kind::Added_J_per_m, *file, number_of_band, source.path);
+  Dataset band = inMemory(joules, *file, number_of_band, map, source.path);
   AddedJoules added;
   // Unknown and impassable pixels are represented by values beyond any cost, because the maximum ignores NaN.
   constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
@@ -277,22 +270,6 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
   return added;
 }
 
-namespace {
-
-// Sets the lost cells to NaN in a copy with a margin of one pixel.
-void makeUnknown(GDALDataset& copy, const LostCells& lost, const std::string& path) {
-  std::vector<float> unknown(static_cast<std::size_t>(copy.GetRasterXSize()),
-                             std::numeric_limits<float>::quiet_NaN());
-  for (const CellRun& run : lost.runs) {
-    const int count = run.last - run.first + 1;
-    if (copy.GetRasterBand(1)->RasterIO(GF_Write, run.first + 1, run.row + 1, count, 1, unknown.data(), count,
-                                        1, GDT_Float32, 0, 0, nullptr) != CE_None)
-      throw InputError({path, "cannot be held in memory", ""});
-  }
-}
-
-}  // namespace
-
 RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
   Dataset file = openRaster(source.path);
@@ -303,11 +280,9 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
                                          .words = {"rock", "abundance", "_ra"},
                                          .others = {"slope", "dem"}},
                                         notes);
-  Dataset band = inMemory(*file, number_of_band, map, source.path);
-  const LostCells lost =
-      lostCells(*file, number_of_band, {0, 0, file->GetRasterXSize(), file->GetRasterYSize()}, std::nullopt,
-                source.path, true);
-  makeUnknown(*band, lost, source.path);
+  Quantity shares(Kind::Rocks, *file, number_of_band, source.path);
+  const LostCells lost = shares.lostZeros(*file, number_of_band, wholeOf(*file));
+  Dataset band = inMemory(shares, *file, number_of_band, map, source.path, lost);
   changePixels(*band, source.path, [&](float v) {
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(number_of_band),

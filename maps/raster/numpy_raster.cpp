@@ -129,7 +129,7 @@ bool isNumpyFile(const std::string& path) {
 }
 
 Dataset openNumpyRaster(const std::string& path, std::vector<std::string>& notes) {
-  requireReadableFile(path);
+  requireReadableFile(path, "cells");
   const GdalErrors errors;
   const Arrays arrays =
       path.ends_with(".npz") ? readArchive(path) : Arrays{{"elevation", parseNumpy(slurp(path, path), path)}};

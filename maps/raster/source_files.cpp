@@ -1,12 +1,16 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <string_view>
 #include <system_error>
 
+#include <cpl_conv.h>
 #include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/file_text.hpp>
@@ -60,6 +64,7 @@ class Sources {
     const std::vector<InputFile> files = filesOf(dataset, path);
     for (const InputFile& file : files)
       if (file.path != path) take(file);
+    if (std::ranges::count(files, "auxiliary", &InputFile::role) > 0) requireAgreement(dataset, path);
     if (isVirtual(dataset)) requirePlainNames(dataset, path);
     for (const InputFile& file : files)
       if (file.role == "source") addSource(file.path, path);
@@ -81,6 +86,38 @@ class Sources {
                         "put the files into one folder and name them without a path"});
     requireReadableFile(file.path, file.role);
     if (file.role == "auxiliary") requireXml(file.path);
+  }
+
+  // What the raster states alone, and what it states with its auxiliary file, must not differ.
+  static void requireAgreement(GDALDataset& dataset, const std::string& path) {
+    const CPLConfigOptionSetter alone("GDAL_PAM_ENABLED", "NO", false);
+    const GdalErrors quiet;
+    const Dataset own(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    const auto refuseIf = [&](bool differs, const char* what) {
+      if (differs)
+        throw InputError({path + ".aux.xml",
+                          std::string("states another ") + what + " than the raster itself",
+                          "remove it, or correct one of them with gdal_edit.py"});
+    };
+    if (!own) return;
+    std::array<double, 6> a{}, b{};
+    refuseIf(
+        own->GetGeoTransform(a.data()) == CE_None && dataset.GetGeoTransform(b.data()) == CE_None && a != b,
+        "place");
+    const OGRSpatialReference *c = own->GetSpatialRef(), *d = dataset.GetSpatialRef();
+    refuseIf(c != nullptr && d != nullptr && c->IsSame(d) == 0, "CRS");
+    for (int i = 1; i <= std::min(own->GetRasterCount(), dataset.GetRasterCount()); ++i) {
+      GDALRasterBand &band = *own->GetRasterBand(i), &with = *dataset.GetRasterBand(i);
+      int stated = 0;
+      const double nodata = band.GetNoDataValue(&stated), other = with.GetNoDataValue();
+      refuseIf(stated != 0 && nodata != other && !(std::isnan(nodata) && std::isnan(other)), "no-data value");
+      const double scale = band.GetScale(&stated);
+      refuseIf(stated != 0 && scale != with.GetScale(), "scale");
+      const double offset = band.GetOffset(&stated);
+      refuseIf(stated != 0 && offset != with.GetOffset(), "offset");
+      const std::string unit = band.GetUnitType();
+      refuseIf(!unit.empty() && unit != with.GetUnitType(), "unit");
+    }
   }
 
   static void requireXml(const std::string& file) {

@@ -2,8 +2,8 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
-#include <talus/maps/raster/raster_band.hpp>
 #include <talus/maps/raster/zip_directory.hpp>
 
 #include "raster_fixture.hpp"
@@ -62,7 +62,8 @@ TEST(NumpyRaster, ArrayRowsAreRasterRows) {
   const Dataset raster = openNumpyRaster(folder.write("z.npy", npy("2, 3", {1, 2, 3, 4, 5, 6})), notes);
   ASSERT_EQ(raster->GetRasterXSize(), 3);
   ASSERT_EQ(raster->GetRasterYSize(), 2);
-  EXPECT_THAT(readPixels(*raster, 1, {.width = 3, .height = 2}, "z"), testing::ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(Quantity().of({*raster, 1, {.width = 3, .height = 2}, "z"}),
+              testing::ElementsAre(1, 2, 3, 4, 5, 6));
   std::array<double, 6> transform{};
   EXPECT_NE(raster->GetGeoTransform(transform.data()), CE_None);
 }

@@ -119,14 +119,42 @@ TEST_F(SourceFiles, SideFileThatGdalDoesNotUseIsRejected) {
   EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.aux.xml: is no XML"));
 }
 
-// Property: a checksum beside any file of a raster or vector is compared, also beside sources and masks.
+TEST_F(SourceFiles, AuxiliaryFileMustAgreeWithTheRaster) {
+  write({.rows = kHill, .nodata = -1, .scale = 0.5, .unit = "m"}, folder_ / "map.tif");
+  const auto with = [&](const std::string& band, const std::string& more = "") {
+    folder_.write("map.tif.aux.xml", "<PAMDataset>" + more + "<PAMRasterBand band=\"1\">" + band +
+                                         "</PAMRasterBand></PAMDataset>");
+    return opened("map.tif");
+  };
+  EXPECT_EQ(with("<Description>dem</Description><NoDataValue>-1</NoDataValue>"), "accepted");
+  EXPECT_EQ(with("<Scale>0.5</Scale><UnitType>m</UnitType>"), "accepted");
+  EXPECT_THAT(with("", "<GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform>"),
+              HasSubstr("another place than the raster"));
+  // GDAL prefers what the TIFF itself states of its bands.
+  for (const char* band : {"<Scale>2</Scale>", "<UnitType>ft</UnitType>", "<NoDataValue>7</NoDataValue>"}) {
+    const std::string answer = with(band);
+    EXPECT_TRUE(answer != "accepted" || readElevation(folder_ / "map.tif").reading ==
+                                            "heights = raw x 0.5 m, unit 'm' (file), no-data -1 (file)")
+        << answer;
+  }
+}
+
+// Property: the manifest holds every file of a raster or vector, and a checksum beside any of them is compared, also
+// beside sources and masks.
 TEST_F(SourceFiles, ChecksumOfEveryFileIsCompared) {
   if (sha256OfFile("/dev/null").empty()) GTEST_SKIP() << "built without nettle";
   const auto expectAllChecked = [&](const std::string& name, const auto& read) {
+    const InputRecord manifest;
     ASSERT_EQ(refusal([&] { read(); }), "accepted") << name;
-    std::vector<std::string> beside;
+    std::vector<std::string> beside, listed;
     for (const auto& entry : fs::directory_iterator(fs::path(folder_ / name).parent_path()))
       beside.push_back(entry.path().string());
+    for (const InputFile& file : filesRead()) {
+      listed.push_back(file.path);
+      EXPECT_EQ(file.size, fs::file_size(file.path)) << file.path;
+      EXPECT_EQ(file.sha256, sha256OfFile(file.path)) << file.path;
+    }
+    EXPECT_THAT(listed, testing::UnorderedElementsAreArray(beside));
     for (const std::string& file : beside) {
       folder_.write(fs::path(file).filename().string() + ".sha256", sha256OfFile(file) + "  file\n");
       EXPECT_EQ(refusal([&] { read(); }), "accepted") << file;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/maps/raster/raster_band.hpp>
+#include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/warp.hpp>
 
 #include "raster_fixture.hpp"
@@ -11,7 +11,7 @@ namespace warp_test {
 using testing::HasSubstr;
 
 std::vector<float> pixels(GDALDataset& raster) {
-  return readPixels(raster, 1, {.width = raster.GetRasterXSize(), .height = raster.GetRasterYSize()}, "test");
+  return Quantity().of({raster, 1, wholeOf(raster), "test"});
 }
 
 // The plane 100 + 2 column + 3 row, rows from the north, pixels of 10 m.
