@@ -24,7 +24,7 @@
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
-#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {
 namespace {

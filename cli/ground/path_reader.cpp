@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,7 +9,6 @@
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/maps/vector/geojson.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
@@ -46,9 +46,13 @@ std::vector<Point> readCsv(const std::string& path) {
 
 // Returns the map coordinates in the properties x_m, y_m of a route file. Without these properties the list
 // is empty.
-std::vector<Point> ownMetres(const json& document) {
+std::vector<Point> ownMetres(const std::string& path) {
   std::vector<Point> points;
-  if (document.value("type", "") != "FeatureCollection" || !document.contains("features")) return points;
+  std::ifstream file(path);
+  const json document = json::parse(file, nullptr, false);
+  if (!document.is_object() || document.value("type", "") != "FeatureCollection" ||
+      !document.contains("features"))
+    return points;
   const json& features = document["features"];
   if (!features.is_array() || features.empty() || !features[0].contains("properties")) return points;
   const json& properties = features[0]["properties"];
@@ -60,30 +64,6 @@ std::vector<Point> ownMetres(const json& document) {
     points.push_back({x[i].get<double>(), y[i].get<double>()});
   }
   return points;
-}
-
-// Returns the positions of a line or of a single-part track; null for other geometries.
-const json* positionsOf(const json& geometry, const std::string& path) {
-  const json& positions = geometry["coordinates"];
-  const std::string type = geometry.value("type", "");
-  if (!positions.is_array() || (type != "LineString" && type != "MultiLineString")) return nullptr;
-  if (type == "LineString") return &positions;
-  if (positions.size() != 1 || !positions.front().is_array())
-    throw InputError(
-        {path, fmt::format("contains a line of {} parts", positions.size()), "join them to one"});
-  return &positions.front();
-}
-
-std::vector<Point> lineOf(const json& document, const maps::ElevationMap& map, const std::string& path) {
-  const maps::PositionReader read(document, map, path);
-  for (const json& geometry : maps::geometries(document)) {
-    const json* positions = positionsOf(geometry, path);
-    if (positions == nullptr) continue;
-    std::vector<Point> points;
-    for (const json& position : *positions) points.push_back(read(position));
-    return points;
-  }
-  throw InputError({path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m"});
 }
 
 // Tolerance between the coordinates of an unedited line and its x_m, y_m: programs write degrees with few
@@ -111,9 +91,8 @@ void requireSame(const std::vector<Point>& line, const std::vector<Point>& own, 
   }
 }
 
-std::vector<Point> readLine(const std::string& path, const maps::ElevationMap& map) {
-  const json document = maps::readVector(path, map);
-  std::vector<Point> line = lineOf(document, map, path), own = ownMetres(document);
+std::vector<Point> drawnPath(const std::string& path, const maps::ElevationMap& map) {
+  std::vector<Point> line = maps::readLine(path, map), own = ownMetres(path);
   if (own.empty()) return line;
   requireSame(line, own, map.grid(), path);
   return own;
@@ -151,7 +130,7 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   const bool table = extension == ".csv" || extension == ".txt";
-  std::vector<Point> points = table ? readCsv(path) : readLine(path, map);
+  std::vector<Point> points = table ? readCsv(path) : drawnPath(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
   maps::requireFewPositions(points.size(), path);
   requireNear(points, map.grid(), path);

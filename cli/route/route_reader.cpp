@@ -12,7 +12,7 @@
 #include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 
 namespace talus::cli {

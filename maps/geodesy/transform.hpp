@@ -2,8 +2,7 @@
 
 #include <memory>
 
-#include <talus/maps/geodesy/ellipsoid.hpp>
-#include <talus/maps/geodesy/projection.hpp>
+#include <talus/maps/geodesy/georeference.hpp>
 #include <talus/maps/grid/grid.hpp>
 
 namespace talus::maps {

@@ -22,8 +22,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
-#include <talus/maps/raster/gdal_handle.hpp>
-#include <talus/maps/raster/source_files.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::maps {
 namespace {

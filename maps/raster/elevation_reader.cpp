@@ -22,8 +22,6 @@
 #include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
-#include <talus/maps/raster/source_files.hpp>
-#include <talus/maps/raster/warp.hpp>
 
 namespace talus::maps {
 namespace {

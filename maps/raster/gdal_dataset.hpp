@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -8,12 +9,72 @@
 #include <vector>
 
 #include <talus/common/input_file.hpp>
-#include <talus/maps/raster/gdal_handle.hpp>
 
 class GDALDataset;
 class GDALDriver;
 
+/// Checks of files and text functions that are independent of the file format.
 namespace talus::maps {
+
+/// Checks that a file can be read, and calls checkInput() with its role. @throws InputError unless the path is a readable,
+/// non-empty regular file
+void requireReadableFile(const std::string& path, const std::string& role = "");
+
+/// Returns the text with ASCII letters in lower case.
+std::string lower(std::string text);
+
+/// Returns a number as text with at most six significant digits, for messages.
+std::string number(double value);
+
+/// Returns the little-endian unsigned integer in the `count` <= 8 bytes from index `at`.
+std::uint64_t littleEndian(const std::string& bytes, std::size_t at, std::size_t count);
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const noexcept;
+};
+
+/// An owned reference to a GDAL dataset. The dataset closes when its last reference is released; a virtual
+/// raster derived from the dataset holds a reference, too.
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// Suppresses GDAL's error output of this thread during the lifetime of the object, and keeps it. Errors of an
+/// inner object of the same thread are not kept by the outer one.
+class GdalErrors {
+ public:
+  GdalErrors();
+  GdalErrors(const GdalErrors&) = delete;
+  GdalErrors& operator=(const GdalErrors&) = delete;
+  ~GdalErrors();
+
+  /// Returns the first line of GDAL's last failure, or else of its last warning; "unknown error" if GDAL has
+  /// reported neither.
+  std::string last() const;
+  /// Returns true if an error of class CE_Failure or worse was reported since construction.
+  bool any() const { return failed_; }
+  /// Returns true if a warning or an error was reported since construction.
+  bool anyWarning() const { return !last_.empty(); }
+
+ private:
+  std::string last_{};
+  bool failed_ = false;
+};
+
+/// Returns the files of an open raster or vector file with their roles, the named file first: those that GDAL
+/// lists, and those that belong to it by their names and that GDAL does not use. Neither sizes nor checksums.
+std::vector<InputFile> filesOf(GDALDataset& dataset, const std::string& path);
+
+/// Checks and records (checkInput()) filesOf() an open raster or vector file and of each source of a virtual raster
+/// (VRT). Throws InputError if
+///   - a file lies in another folder than `path` or the target of `path` (a link may not leave the folder), or
+///     is not a regular file; or a VRT names a source by anything but a plain file name;
+///   - a mask or auxiliary file that belongs to the raster by its name is not used by GDAL, as when
+///     it is damaged, or an auxiliary file is no XML;
+///   - a file differs from its checksum (checkInput()).
+void checkFiles(GDALDataset& dataset, const std::string& path);
+
+/// Throws InputError if a file beside `path` that GDAL may open with it by its name is not a regular file:
+/// opening a FIFO would wait for ever.
+void requireRegularNeighbours(const std::string& path);
 
 /// Registers the allowed GDAL drivers (file formats), once per process, and removes all other drivers.
 void registerDrivers();

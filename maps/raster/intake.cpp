@@ -12,10 +12,8 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/maps/raster/complete_file.hpp>
-#include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
-#include <talus/maps/raster/source_files.hpp>
 
 namespace talus::maps {
 namespace {

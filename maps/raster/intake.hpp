@@ -9,7 +9,7 @@
 
 #include <talus/maps/grid/grid.hpp>
 #include <talus/maps/grid/lost_zeros.hpp>
-#include <talus/maps/raster/read_options.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
 
 class GDALDataset;
 class GDALRasterBand;

@@ -16,8 +16,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/maps/grid/pixel_cover.hpp>
-#include <talus/maps/raster/file_text.hpp>
+#include <talus/maps/grid/cover.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/layer_reader.hpp>

@@ -3,12 +3,180 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <talus/maps/sites/crater_field.hpp>
-#include <talus/maps/sites/dune_field.hpp>
 #include <talus/maps/sites/landscape.hpp>
-#include <talus/maps/sites/value_noise.hpp>
 
 namespace talus::maps {
+namespace {
+
+constexpr double kReach = 3.0;  // extent of the ejecta [radii]
+constexpr int kBinCells = 32;
+
+// Depth below the rim and height of the rim above the surroundings [diameters]. Fresh craters: depth 0.2, rim
+// 0.036 [pike_1977]. Degradation reduces the depth of small craters to a few hundredths
+// [fassett_thomson_2014].
+double depth(double age) {
+  return 0.2 - 0.16 * age;
+}
+double rim(double age) {
+  return 0.036 * (1 - 0.75 * age);
+}
+
+// Smooth minimum of two numbers, rounded over a width of about w.
+double smoothMinimum(double a, double b, double w) {
+  const double d = (a - b) / w;
+  return std::min(a, b) - w * std::log1p(std::exp(-std::abs(d)));
+}
+
+}  // namespace
+
+double Crater::height_m(double distance_m) const {
+  const double r = distance_m / radius_m;
+  if (r >= kReach) return 0.0;
+  const double diameter_m = 2 * radius_m;
+  // Paraboloid inside the rim. Ejecta thickness outside decreases with the cube of the distance
+  // [mcgetchin_1973].
+  const double bowl = depth(age) * (r * r - 1) + rim(age);
+  const double cube = std::pow(std::max(r, 0.5), -3.0) - std::pow(kReach, -3.0);
+  const double ejecta = rim(age) * cube;
+  return diameter_m * smoothMinimum(bowl, ejecta, 0.004 + 0.016 * age) * std::min(1.0, 4 * (kReach - r));
+}
+
+double Crater::freshness(double distance_m) const {
+  const double r = distance_m / radius_m;
+  if (r >= kReach) return 0.0;
+  return (1 - age) * std::min(1.0, std::pow(std::max(r, 0.3), -2.0)) * std::min(1.0, kReach - r);
+}
+
+std::vector<Crater> craterField(const Grid& grid, const CraterOptions& options) {
+  // Margin for craters outside the grid whose rim or ejecta extend into the grid. Ejecta of the largest
+  // craters beyond one diameter (of 1.5) are neglected.
+  const double margin_m = options.greatest_diameter_m;
+  const double width_m = grid.width * grid.resolution_m + 2 * margin_m;
+  const double height_m = grid.height * grid.resolution_m + 2 * margin_m;
+  const double least = 1 / std::pow(options.least_diameter_m, 2);
+  const double greatest = 1 / std::pow(options.greatest_diameter_m, 2);
+  const auto count =
+      static_cast<std::size_t>(options.density * width_m * height_m * std::max(0.0, least - greatest));
+  RandomSequence random(options.seed);
+  std::vector<Crater> craters(count);
+  for (Crater& c : craters) {
+    c.centre = {grid.south_west.x_m - margin_m + width_m * random(),
+                grid.south_west.y_m - margin_m + height_m * random()};
+    c.radius_m = 0.5 / std::sqrt(greatest + (least - greatest) * random());
+    c.age = std::cbrt(random());
+  }
+  std::stable_sort(craters.begin(), craters.end(),
+                   [](const Crater& a, const Crater& b) { return a.radius_m > b.radius_m; });
+  return craters;
+}
+
+CraterBins::CraterBins(const Grid& grid, std::vector<Crater> craters)
+    : craters_(std::move(craters)),
+      south_west_(grid.south_west),
+      side_m_(kBinCells * grid.resolution_m),
+      columns_((grid.width + kBinCells - 1) / kBinCells),
+      rows_((grid.height + kBinCells - 1) / kBinCells),
+      bins_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
+  for (std::size_t i = 0; i < craters_.size(); ++i) enter(i);
+}
+
+int CraterBins::place(double offset_m, int count) const {
+  return static_cast<int>(std::clamp(std::floor(offset_m / side_m_), 0.0, count - 1.0));
+}
+
+std::size_t CraterBins::index(int column, int row) const {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+         static_cast<std::size_t>(column);
+}
+
+std::size_t CraterBins::bin(Point p) const {
+  return index(place(p.x_m - south_west_.x_m, columns_), place(p.y_m - south_west_.y_m, rows_));
+}
+
+void CraterBins::enter(std::size_t crater) {
+  const Crater& c = craters_[crater];
+  const double reach = kReach * c.radius_m;
+  const double x = c.centre.x_m - south_west_.x_m;
+  const double y = c.centre.y_m - south_west_.y_m;
+  if (x + reach < 0 || y + reach < 0 || x - reach > columns_ * side_m_ || y - reach > rows_ * side_m_) return;
+  for (int row = place(y - reach, rows_); row <= place(y + reach, rows_); ++row)
+    for (int column = place(x - reach, columns_); column <= place(x + reach, columns_); ++column)
+      bins_[index(column, row)].push_back(crater);
+}
+
+DuneField::DuneField(const DuneOptions& options)
+    : options_(options), bend_(options.seed), supply_(mixed(options.seed)) {}
+
+Sand DuneField::at(double x_m, double y_m) const {
+  const double along = x_m * std::cos(options_.wind_rad) + y_m * std::sin(options_.wind_rad);
+  const double across = y_m * std::cos(options_.wind_rad) - x_m * std::sin(options_.wind_rad);
+  const double w = options_.wavelength_m;
+  // The crest line varies across the wind only, so that slip faces keep the angle of repose.
+  const double phase =
+      along / w + 0.45 * bend_(across / (3.0 * w), 0.5) + 0.15 * bend_(across / (0.9 * w), 7.5);
+  const double dune = std::floor(phase);
+  // The sand supply varies along the crest, independently for each dune.
+  const double supply = 0.45 + 1.2 * supply_(across / (4 * w), 1.7 * dune + 0.5);
+  const double crest_m = options_.height_m * std::clamp(supply, 0.0, 1.0);
+  if (crest_m <= 0) return {};
+  const double lee_m = crest_m / std::tan(options_.repose_rad);
+  const double stoss_m = 0.92 * w - lee_m;
+  const double s = (phase - dune) * w;
+  if (s > stoss_m + lee_m) return {};
+  if (s > stoss_m) return {.height_m = crest_m * (stoss_m + lee_m - s) / lee_m, .slip_face = true};
+  // Cosine profile of the stoss slope.
+  const double t = s / stoss_m;
+  return {.height_m = crest_m * (0.5 - 0.5 * std::cos(std::numbers::pi * t)), .slip_face = false};
+}
+
+namespace {
+
+constexpr double kPatch_m = 8.0;  // side of a square with constant abundance
+constexpr int kSizes = 12;        // number of diameter intervals, in geometric progression
+
+// Random integer with the given mean: floor(mean) or floor(mean) + 1.
+int chance(double mean, RandomSequence& random) {
+  return static_cast<int>(mean + random());
+}
+
+}  // namespace
+
+double Rock::height_m(double distance_m) const {
+  const double r = distance_m / radius_m;
+  return r < 1 ? radius_m * std::sqrt(1 - r * r) : 0.0;
+}
+
+double rockDecay_per_m(double total_share) {
+  return 1.79 + 0.152 / total_share;
+}
+
+std::vector<Rock> rockField(const Grid& grid, const std::function<double(Point)>& abundance,
+                            const RockOptions& options) {
+  std::vector<Rock> rocks;
+  RandomSequence random(options.seed);
+  const double width_m = grid.width * grid.resolution_m;
+  const double height_m = grid.height * grid.resolution_m;
+  const double step = std::pow(options.greatest_diameter_m / options.least_diameter_m, 1.0 / kSizes);
+  for (double y = 0; y < height_m; y += kPatch_m)
+    for (double x = 0; x < width_m; x += kPatch_m) {
+      const Point corner{grid.south_west.x_m + x, grid.south_west.y_m + y};
+      const double k = abundance({corner.x_m + kPatch_m / 2, corner.y_m + kPatch_m / 2});
+      if (k <= 0) continue;
+      const double q = rockDecay_per_m(k);
+      double d = options.least_diameter_m;
+      for (int i = 0; i < kSizes; ++i, d *= step) {
+        // Area fraction of the rocks in this diameter interval, and the radius of a rock.
+        const double share = k * (std::exp(-q * d) - std::exp(-q * d * step));
+        const double radius_m = 0.5 * d * std::sqrt(step);
+        const int count =
+            chance(share * kPatch_m * kPatch_m / (std::numbers::pi * radius_m * radius_m), random);
+        for (int n = 0; n < count; ++n)
+          rocks.push_back({{corner.x_m + kPatch_m * random(), corner.y_m + kPatch_m * random()}, radius_m});
+      }
+    }
+  return rocks;
+}
+
 namespace {
 
 double shorterSide(const Grid& grid) {

@@ -6,9 +6,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/common/parallel_rows.hpp>
 #include <talus/maps/sites/landscape.hpp>
-#include <talus/maps/sites/rock_field.hpp>
 #include <talus/maps/sites/site_generator.hpp>
-#include <talus/maps/sites/value_noise.hpp>
 
 namespace talus::maps {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <talus/common/progress_monitor.hpp>
-#include <talus/maps/sites/site_options.hpp>
+#include <talus/maps/sites/landscape.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 
 namespace talus::maps {

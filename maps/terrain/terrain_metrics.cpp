@@ -6,9 +6,7 @@
 #include <vector>
 
 #include <talus/common/parallel_rows.hpp>
-#include <talus/maps/terrain/footprint.hpp>
-#include <talus/maps/terrain/partial_plane.hpp>
-#include <talus/maps/terrain/plane_kernel.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 #include <talus/maps/terrain/step_height.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
 

@@ -2,19 +2,18 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <optional>
 #include <set>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <ogr_geometry.h>
 #include <ogr_spatialref.h>
 
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/geojson.hpp>
 
@@ -33,22 +32,6 @@ std::string typeOf(const json& object) {
 
 // nlohmann::json needs up to 28 bytes per byte of text ("{},{}"), plus memory for the names in open objects.
 constexpr double kMemoryPerByte = 32.0;
-
-void collect(const json& object, std::vector<std::reference_wrapper<const json>>& out) {
-  const std::string type = typeOf(object);
-  const auto list = [&](const char* key) {
-    if (const auto found = object.find(key); found != object.end() && found->is_array())
-      for (const json& item : *found) collect(item, out);
-  };
-  if (type == "FeatureCollection")
-    list("features");
-  else if (type == "GeometryCollection")
-    list("geometries");
-  else if (type == "Feature" && object.contains("geometry"))
-    collect(object["geometry"], out);
-  else if (!type.empty() && object.contains("coordinates"))
-    out.emplace_back(object);
-}
 
 const json* memberOf(const json& object, const char* name) {
   if (!object.is_object()) return nullptr;
@@ -134,6 +117,95 @@ class OnceEach {
   std::vector<std::set<std::string>> names_;
 };
 
+// Makes GDAL's geometries, in map coordinates [m], of those of a document.
+class Geometries {
+ public:
+  Geometries(const json& document, const ElevationMap& map, const std::string& path)
+      : places_(isLocal(document) ? nullptr : map.places()), path_(path) {}
+
+  std::unique_ptr<OGRGeometry> of(const json& object) const {
+    const std::string type = typeOf(object);
+    if (type == "GeometryCollection")
+      return parts<OGRGeometryCollection>(object, "geometries", &Geometries::of);
+    if (type == "MultiPolygon") return parts<OGRMultiPolygon>(object, "coordinates", &Geometries::polygon);
+    if (type == "MultiLineString") return parts<OGRMultiLineString>(object, "coordinates", &Geometries::line);
+    if (type == "MultiPoint") return parts<OGRMultiPoint>(object, "coordinates", &Geometries::point);
+    const json* at = memberOf(object, "coordinates");
+    if (type == "Polygon") return polygon(list(at));
+    if (type == "LineString") return line(list(at));
+    if (type == "Point") return point(list(at));
+    if (object.is_null()) return nullptr;
+    throw InputError(
+        {path_,
+         type.empty() ? "has a geometry without a \"type\"" : "'" + type.substr(0, 40) + "' is no geometry",
+         "see RFC 7946"});
+  }
+
+ private:
+  const json& list(const json* found) const {
+    if (found == nullptr || !found->is_array())
+      throw InputError({path_, "a geometry has no list of its positions", "see RFC 7946"});
+    return *found;
+  }
+
+  template <class Whole, class Part>
+  std::unique_ptr<OGRGeometry> parts(const json& object, const char* name, Part part) const {
+    auto whole = std::make_unique<Whole>();
+    for (const json& one : list(memberOf(object, name)))
+      if (auto made = (this->*part)(one)) whole->addGeometryDirectly(made.release());
+    return whole;
+  }
+
+  std::unique_ptr<OGRGeometry> point(const json& position) const {
+    const Point p = at(position);
+    return std::make_unique<OGRPoint>(p.x_m, p.y_m);
+  }
+  std::unique_ptr<OGRGeometry> line(const json& positions) const {
+    auto made = std::make_unique<OGRLineString>();
+    fill(list(&positions), *made);
+    return made;
+  }
+  std::unique_ptr<OGRGeometry> polygon(const json& rings) const {
+    auto made = std::make_unique<OGRPolygon>();
+    for (const json& positions : list(&rings)) {
+      auto ring = std::make_unique<OGRLinearRing>();
+      fill(list(&positions), *ring);
+      made->addRingDirectly(ring.release());
+    }
+    return made;
+  }
+  void fill(const json& positions, OGRSimpleCurve& curve) const {
+    curve.setNumPoints(static_cast<int>(positions.size()));
+    int i = 0;
+    for (const json& position : positions) {
+      const Point p = at(position);
+      curve.setPoint(i++, p.x_m, p.y_m);
+    }
+  }
+
+  Point at(const json& position) const {
+    const bool numbers =
+        position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
+    if (!numbers)
+      throw InputError({path_, "a position is not an array of numbers", "write [longitude, latitude]"});
+    const double x = position[0];
+    const double y = position[1];
+    if (!plausible(x) || !plausible(y))
+      throw InputError({path_, "position " + position.dump() + ": " + kPlausible, "correct the position"});
+    if (places_ == nullptr) return {x, y};
+    if (std::abs(x) > 360 || std::abs(y) > 90)
+      throw InputError({path_, "position " + position.dump() + " is not a longitude and latitude",
+                        "write degrees, or \"crs\": \"local\" beside \"type\" for map metres"});
+    const Point point = places_->forward({y * kDegree, x * kDegree});
+    if (std::isnan(point.x_m))
+      throw InputError({path_, "position " + position.dump() + " is outside the range of the map's CRS", ""});
+    return point;
+  }
+
+  const Georeference* places_;  // null: positions are map coordinates
+  const std::string& path_;
+};
+
 }  // namespace
 
 json readGeoJson(const std::string& path) {
@@ -154,34 +226,23 @@ bool namesProjectedCrs(const json& document) {
   return crs && systemNamed(*crs).IsProjected() != 0;
 }
 
-std::vector<std::reference_wrapper<const json>> geometries(const json& document) {
-  std::vector<std::reference_wrapper<const json>> out;
-  collect(document, out);
-  return out;
-}
-
-PositionReader::PositionReader(const json& document, const ElevationMap& map, std::string path)
-    : georeference_(isLocal(document) ? nullptr : map.places()), path_(std::move(path)) {
-  checkCrs(document, map.georeference, path_);
-}
-
-Point PositionReader::operator()(const json& position) const {
-  const bool numbers =
-      position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
-  if (!numbers)
-    throw InputError({path_, "a position is not an array of numbers", "write [longitude, latitude]"});
-  const double x = position[0];
-  const double y = position[1];
-  if (!plausible(x) || !plausible(y))
-    throw InputError({path_, "position " + position.dump() + ": " + kPlausible, "correct the position"});
-  if (georeference_ == nullptr) return {x, y};
-  if (std::abs(x) > 360 || std::abs(y) > 90)
-    throw InputError({path_, "position " + position.dump() + " is not a longitude and latitude",
-                      "write degrees, or \"crs\": \"local\" beside \"type\" for map metres"});
-  const Point point = georeference_->forward({y * kDegree, x * kDegree});
-  if (std::isnan(point.x_m))
-    throw InputError({path_, "position " + position.dump() + " is outside the range of the map's CRS", ""});
-  return point;
+void visitGeoJson(const json& document, const ElevationMap& map, const std::string& path,
+                  const FeatureVisitor& visit) {
+  const GdalErrors quiet;  // of rings that are not closed
+  checkCrs(document, map.georeference, path);
+  const Geometries geometries(document, map, path);
+  const auto one = [&](const json& object) {
+    if (typeOf(object) != "Feature") return visit("", geometries.of(object).get());
+    const json *properties = memberOf(object, "properties"), *drawn = memberOf(object, "geometry");
+    const json* name = properties == nullptr ? nullptr : memberOf(*properties, "name");
+    visit(name != nullptr && name->is_string() ? name->get<std::string>() : "",
+          drawn == nullptr ? nullptr : geometries.of(*drawn).get());
+  };
+  if (typeOf(document) != "FeatureCollection") return one(document);
+  const json* features = memberOf(document, "features");
+  if (features == nullptr || !features->is_array())
+    throw InputError({path, "has no list \"features\"", "see RFC 7946"});
+  for (const json& feature : *features) one(feature);
 }
 
 }  // namespace talus::maps

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 
 namespace talus::maps {
 
@@ -17,24 +16,11 @@ nlohmann::json readGeoJson(const std::string& path);
 /// Returns true if the member "crs" of the document (GeoJSON before RFC 7946) names a system in metres.
 bool namesProjectedCrs(const nlohmann::json& document);
 
-/// Returns the geometries of a FeatureCollection, Feature, GeometryCollection or geometry, in order, as
-/// references into the document.
-std::vector<std::reference_wrapper<const nlohmann::json>> geometries(const nlohmann::json& document);
-
-/// Converts positions of a GeoJSON document to map coordinates. Longitudes and latitudes [deg] are projected
-/// with the georeference of the map. If the map has no georeference or the document has "crs": "local",
-/// positions are map coordinates [m] already.
-class PositionReader {
- public:
-  PositionReader(const nlohmann::json& document, const ElevationMap& map, std::string path);
-
-  /// Returns the map coordinates of a position. @throws InputError unless the position has two or three
-  /// numbers in range
-  Point operator()(const nlohmann::json& position) const;
-
- private:
-  const Georeference* georeference_;  // georeference of the map; null: positions are map coordinates
-  std::string path_;
-};
+/// Calls `visit` for each feature of a document, or for its geometry. Longitudes and latitudes [deg] are projected
+/// with the georeference of the map; if the map has none or the document states "crs": "local", positions are map
+/// coordinates [m]. @throws InputError for a geometry that is none of RFC 7946, or a position that is not two or more
+/// numbers in range
+void visitGeoJson(const nlohmann::json& document, const ElevationMap& map, const std::string& path,
+                  const FeatureVisitor& visit);
 
 }  // namespace talus::maps

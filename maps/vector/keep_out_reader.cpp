@@ -1,25 +1,20 @@
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/maps/grid/polygon_cover.hpp>
+#include <talus/maps/grid/cover.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
 #include <talus/maps/terrain/place.hpp>
-#include <talus/maps/vector/geojson.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 
 namespace talus::maps {
 namespace {
-
-using nlohmann::json;
 
 // Memory of GDAL's geometry, the ring and its edges per byte of a position of 16 bytes.
 constexpr double kMemoryPerDrawnByte = 8.0;
@@ -30,14 +25,6 @@ class KeepOutReader {
  public:
   KeepOutReader(const std::string& path, const ElevationMap& map)
       : path_(path), keep_out_{.mask = Raster<std::uint8_t>(map.grid())} {}
-
-  void drawDocument(const json& document, const ElevationMap& map) {
-    read_.emplace(document, map, path_);
-    if (typeOf(document) == "FeatureCollection")
-      for (const json& feature : listOf(document, "features")) drawFeature(feature);
-    else
-      drawFeature(document);
-  }
 
   void drawFeature(const std::string& name, const OGRGeometry* drawn) {
     begin(name);
@@ -60,56 +47,15 @@ class KeepOutReader {
     throw InputError({path_, owner_ + reason, remedy});
   }
 
-  static std::string typeOf(const json& object) {
-    if (!object.is_object()) return "";
-    const auto type = object.find("type");
-    return type != object.end() && type->is_string() ? type->get<std::string>() : "";
-  }
-
-  const json& listOf(const json& object, const char* name) const {
-    const auto found = object.find(name);
-    if (found == object.end() || !found->is_array())
-      refuse(std::string("has no list \"") + name + "\"", "see RFC 7946");
-    return *found;
-  }
-
   void begin(const std::string& name) {
     feature_ =
         "feature " + std::to_string(++features_) + (name.empty() ? "" : " '" + name.substr(0, 40) + "'");
     owner_ = feature_ + ": ";
   }
 
-  static std::string nameOf(const json& feature) {
-    const auto properties = feature.find("properties");
-    if (properties == feature.end() || !properties->is_object()) return "";
-    const auto name = properties->find("name");
-    return name != properties->end() && name->is_string() ? name->get<std::string>() : "";
-  }
-
-  void drawFeature(const json& feature) {
-    const bool is_feature = typeOf(feature) == "Feature";
-    begin(is_feature ? nameOf(feature) : "");
-    if (!is_feature) return drawGeometry(feature);
-    if (!feature.contains("geometry")) refuse("has no geometry", "write its polygon, or remove it");
-    drawGeometry(feature["geometry"]);
-  }
-
   [[noreturn]] void refuseType(const std::string& type) const {
     refuse(type.empty() ? "has no geometry" : type.substr(0, 40) + " is no Polygon and keeps nothing out",
            "write it as a Polygon, or remove it");
-  }
-
-  void drawGeometry(const json& geometry) {
-    const std::string type = typeOf(geometry);
-    if (type == "GeometryCollection") {
-      for (const json& part : listOf(geometry, "geometries")) drawGeometry(part);
-    } else if (type == "Polygon") {
-      draw(listOf(geometry, "coordinates"));
-    } else if (type == "MultiPolygon") {
-      for (const json& rings : listOf(geometry, "coordinates")) draw(rings);
-    } else {
-      refuseType(type);
-    }
   }
 
   void drawGeometry(const OGRGeometry& geometry) {
@@ -126,12 +72,9 @@ class KeepOutReader {
     }
   }
 
-  [[noreturn]] void refuseShortRing() const {
-    refuse("a ring of a polygon has fewer than four positions", "close it on its first position");
-  }
-
   Ring ring(const OGRLinearRing& positions) const {
-    if (positions.getNumPoints() < 4) refuseShortRing();
+    if (positions.getNumPoints() < 4)
+      refuse("a ring of a polygon has fewer than four positions", "close it on its first position");
     Ring out(static_cast<std::size_t>(positions.getNumPoints()));
     for (int i = 0; i < positions.getNumPoints(); ++i) {
       const Point at{positions.getX(i), positions.getY(i)};
@@ -147,20 +90,6 @@ class KeepOutReader {
     Polygon polygon = outside(ring(*rings.getExteriorRing()));
     for (int i = 0; i < rings.getNumInteriorRings(); ++i)
       polygon.holes.push_back(ring(*rings.getInteriorRing(i)));
-    draw(polygon);
-  }
-
-  Ring ring(const json& positions) const {
-    if (!positions.is_array() || positions.size() < 4) refuseShortRing();
-    Ring out;
-    for (const json& position : positions) out.push_back((*read_)(position));
-    return out;
-  }
-
-  void draw(const json& rings) {
-    if (!rings.is_array() || rings.empty()) refuse("a polygon has no ring", "see RFC 7946");
-    Polygon polygon = outside(ring(rings.front()));
-    for (std::size_t i = 1; i < rings.size(); ++i) polygon.holes.push_back(ring(rings[i]));
     draw(polygon);
   }
 
@@ -189,7 +118,6 @@ class KeepOutReader {
   }
 
   const std::string& path_;
-  std::optional<PositionReader> read_{};
   KeepOut keep_out_;
   std::string feature_, owner_;
   std::vector<std::string> beside_;
@@ -201,9 +129,8 @@ class KeepOutReader {
 
 KeepOut readKeepOut(const std::string& path, const ElevationMap& map) {
   KeepOutReader reader(path, map);
-  const auto document = visitVector(
-      path, map, [&](const std::string& name, const OGRGeometry* drawn) { reader.drawFeature(name, drawn); });
-  if (document) reader.drawDocument(*document, map);
+  visitVector(path, map,
+              [&](const std::string& name, const OGRGeometry* drawn) { reader.drawFeature(name, drawn); });
   return std::move(reader).drawn(map.source);
 }
 

@@ -14,7 +14,6 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/spatial_reference.hpp>
 #include <talus/maps/vector/geojson.hpp>
@@ -22,12 +21,6 @@
 
 namespace talus::maps {
 namespace {
-
-using nlohmann::json;
-
-// A position of 16 bytes needs about 120 bytes as JSON, and temporarily memory for its text.
-constexpr double kMemoryPerWkbByte = 12.0;
-constexpr std::size_t kWkbBytesPerPosition = 16;
 
 bool beginsAsJson(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -122,44 +115,66 @@ class FeatureReader {
   std::size_t features_ = 0;
 };
 
-json asJson(const OGRGeometry& drawn) {
-  const char* options[] = {"COORDINATE_PRECISION=17", nullptr};
-  const std::unique_ptr<char, decltype(&CPLFree)> text(
-      OGR_G_ExportToJsonEx(OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&drawn)),
-                           const_cast<char**>(options)),
-      CPLFree);
-  return text ? json::parse(text.get(), nullptr, false) : json();
+// The points and lines of a geometry, in order.
+void gather(const OGRGeometry& drawn, std::vector<const OGRGeometry*>& found) {
+  const OGRwkbGeometryType type = wkbFlatten(drawn.getGeometryType());
+  if (type == wkbMultiPoint || type == wkbGeometryCollection)
+    for (const OGRGeometry* part : *drawn.toGeometryCollection()) gather(*part, found);
+  else
+    found.push_back(&drawn);
 }
 
 }  // namespace
 
-std::optional<json> visitVector(const std::string& path, const ElevationMap& map,
-                                const FeatureVisitor& visit) {
+void visitVector(const std::string& path, const ElevationMap& map, const FeatureVisitor& visit) {
   requireReadableFile(path);
   if (beginsAsJson(path))
-    if (json document = readGeoJson(path); !map.georeference || !namesProjectedCrs(document)) return document;
+    if (const nlohmann::json document = readGeoJson(path); !map.georeference || !namesProjectedCrs(document))
+      return visitGeoJson(document, map, path, visit);
   const Dataset file = openVector(path);
   FeatureReader reader(map, path, visit);
   for (OGRLayer* layer : file->GetLayers())
     if (!isCopy(layer->GetName())) reader.read(*layer);
   if (reader.features() == 0)
     throw InputError({path, "contains no feature", "draw the places, lines or areas in it"});
-  return std::nullopt;
 }
 
-json readVector(const std::string& path, const ElevationMap& map) {
-  json features = json::array();
-  std::size_t bytes = 0;
-  auto document = visitVector(path, map, [&](const std::string& name, const OGRGeometry* drawn) {
-    bytes += drawn == nullptr ? 0 : drawn->WkbSize();
-    requireFewPositions(bytes / kWkbBytesPerPosition, path);
-    requireMemory(kMemoryPerWkbByte * static_cast<double>(bytes), path);
-    features.push_back({{"type", "Feature"},
-                        {"properties", {{"name", name}}},
-                        {"geometry", drawn == nullptr ? json() : asJson(*drawn)}});
+Point readPoint(const std::string& path, const ElevationMap& map) {
+  std::optional<Point> first;
+  visitVector(path, map, [&](const std::string&, const OGRGeometry* drawn) {
+    std::vector<const OGRGeometry*> parts;
+    if (drawn != nullptr && !first) gather(*drawn, parts);
+    for (const OGRGeometry* part : parts)
+      if (wkbFlatten(part->getGeometryType()) == wkbPoint && !first)
+        first = {part->toPoint()->getX(), part->toPoint()->getY()};
   });
-  if (document) return std::move(*document);
-  return {{"type", "FeatureCollection"}, {"crs", "local"}, {"features", std::move(features)}};
+  if (!first) throw InputError({path, "holds no Point", "draw a point feature"});
+  return *first;
+}
+
+std::vector<Point> readLine(const std::string& path, const ElevationMap& map) {
+  std::vector<Point> points;
+  visitVector(path, map, [&](const std::string&, const OGRGeometry* drawn) {
+    std::vector<const OGRGeometry*> parts;
+    if (drawn != nullptr && points.empty()) gather(*drawn, parts);
+    for (const OGRGeometry* part : parts) {
+      if (!points.empty()) return;
+      if (wkbFlatten(part->getGeometryType()) == wkbMultiLineString) {
+        const OGRMultiLineString& lines = *part->toMultiLineString();
+        if (lines.getNumGeometries() != 1)
+          throw InputError({path, "contains a line of " + std::to_string(lines.getNumGeometries()) + " parts",
+                            "join them to one"});
+        part = lines.getGeometryRef(0);
+      }
+      if (wkbFlatten(part->getGeometryType()) != wkbLineString) continue;
+      const OGRLineString& line = *part->toLineString();
+      requireFewPositions(static_cast<std::size_t>(line.getNumPoints()), path);
+      for (int i = 0; i < line.getNumPoints(); ++i) points.push_back({line.getX(i), line.getY(i)});
+    }
+  });
+  if (points.empty())
+    throw InputError({path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m"});
+  return points;
 }
 
 void requireFewPositions(std::size_t positions, const std::string& path) {

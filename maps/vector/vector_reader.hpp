@@ -2,10 +2,8 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <string>
-
-#include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include <talus/maps/terrain/elevation_map.hpp>
 
@@ -17,22 +15,22 @@ namespace talus::maps {
 /// two-dimensional and has no curves; null for a feature without a geometry.
 using FeatureVisitor = std::function<void(const std::string& name, const OGRGeometry* drawn)>;
 
-/// Reads a vector file feature by feature. For a GeoJSON file that is in longitude and latitude, or that is
-/// read for a map without a CRS, returns the document. For any other file, calls `visit` for each feature,
-/// with one feature in memory at a time, and returns nullopt. @throws InputError in the cases of readVector()
-std::optional<nlohmann::json> visitVector(const std::string& path, const ElevationMap& map,
-                                          const FeatureVisitor& visit);
+/// Calls `visit` for each feature of a vector file, with one feature in memory at a time (of GeoJSON in longitude and
+/// latitude or map metres: the document). @throws InputError if the file is missing or damaged, has no feature, has no
+/// CRS although the map has a CRS, or belongs to another body
+void visitVector(const std::string& path, const ElevationMap& map, const FeatureVisitor& visit);
+
+/// Returns the first point of a vector file in map coordinates [m]. @throws InputError if there is none, or in the
+/// cases of visitVector()
+Point readPoint(const std::string& path, const ElevationMap& map);
+
+/// Returns the first line of a vector file in map coordinates [m]. @throws InputError if there is none, if it has
+/// several parts or more than a million positions, or in the cases of visitVector()
+std::vector<Point> readLine(const std::string& path, const ElevationMap& map);
 
 /// Checks that a file has at most a million positions of points or of a line. @throws InputError for more
 /// positions
 void requireFewPositions(std::size_t positions, const std::string& path);
-
-/// Returns a vector file as GeoJSON. A GeoJSON document in longitude and latitude is returned unchanged.
-/// Features of other formats, and of GeoJSON in a projected CRS, are converted to map coordinates ("crs":
-/// "local"), each with its name. @throws InputError if the file is missing or damaged, has no feature, has no
-/// CRS although the map has a CRS, belongs to another body, or exceeds the memory budget or a million
-/// positions
-nlohmann::json readVector(const std::string& path, const ElevationMap& map);
 
 /// Returns true if the file name has the ending of a vector format (.geojson, .gpkg, .kml ...).
 bool isNamedAsVector(const std::string& path);

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <talus/common/constants.hpp>
-#include <talus/maps/sites/value_noise.hpp>
+#include <talus/maps/sites/landscape.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>
 

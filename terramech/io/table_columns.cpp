@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -135,6 +134,12 @@ void TableColumns::nameLookalikes(const TableFile& table) const {
 void TableColumns::apply(std::vector<std::string>& fields, bool whole) const {
   if (decimal_commas_)
     for (std::string& field : fields) withPoint(field);
+  // A cell "5%" of a quantity without unit is a fraction, also in a column that is converted from percent.
+  for (std::size_t k = 0; k < std::min(own_, fields.size()); ++k)
+    if (double value = 0.0; fields[k].ends_with('%') && unitOf(header_[k]).empty() &&
+                            parseNumber(fields[k].substr(0, fields[k].size() - 1), value))
+      fields[k] =
+          shortest(std::ranges::count(conversions_, k, &Conversion::column) > 0 ? value : 0.01 * value);
   for (const Conversion& c : conversions_)
     if (double value = 0.0; c.column < fields.size() && parseNumber(fields[c.column], value))
       fields[c.column] = shortest(value * c.factor);

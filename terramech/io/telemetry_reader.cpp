@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -11,6 +10,8 @@
 #include <system_error>
 #include <unordered_map>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
@@ -58,12 +59,6 @@ constexpr Rule kRules[] = {
 // Smaller magnitudes are rounding errors of 0, for example of tan(0), and are replaced by 0; plausible() uses
 // the same limit.
 constexpr double kDust = 1e-15;
-
-std::string shown(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -195,8 +190,8 @@ class Table {
     if (sinkage_ == kNone) return "";
     const double radius = radius_ != kNone && !std::isnan(values_[radius_]) ? values_[radius_] : radius_m_;
     if (radius <= 0.0 || !(values_[sinkage_] >= 2.0 * radius)) return "";
-    return "sinkage_m = " + shown(values_[sinkage_]) + ", must be < the wheel's diameter, " +
-           shown(2.0 * radius);
+    return "sinkage_m = " + fmt::format("{:g}", values_[sinkage_]) + ", must be < the wheel's diameter, " +
+           fmt::format("{:g}", 2.0 * radius);
   }
 
   /// Fills `numbers` from `words` if every non-empty field is a number and some field is not empty.

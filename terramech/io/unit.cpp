@@ -1,4 +1,3 @@
-
 #include <talus/common/constants.hpp>
 #include <talus/terramech/io/unit.hpp>
 
@@ -21,8 +20,9 @@ constexpr Unit kUnits[] = {
     {"kNm", 't', 1e3},                                                                            // torque
     {"mps", 'v', 1.0},   {"mmps", 'v', 1e-3},     {"cmps", 'v', 1e-2}, {"kmph", 'v', 1.0 / 3.6},  // speed
     {"m_s", 'v', 1.0},   {"mm_s", 'v', 1e-3},     {"cm_s", 'v', 1e-2}, {"km_h", 'v', 1.0 / 3.6},
-    {"kg", 'm', 1.0},    {"g", 'm', 1e-3},        {"t", 'm', 1e3},                           // mass
-    {"s", 's', 1.0},     {"ms", 's', 1e-3},       {"min", 's', 60.0},  {"h", 's', 3600.0},   // time
+    {"kg", 'm', 1.0},    {"g", 'm', 1e-3},        {"t", 'm', 1e3},  // mass
+    {"s", 's', 1.0},     {"ms", 's', 1e-3},       {"us", 's', 1e-6},   {"ns", 's', 1e-9},
+    {"min", 's', 60.0},  {"h", 's', 3600.0},                                                 // time
     {"W", 'w', 1.0},     {"mW", 'w', 1e-3},       {"kW", 'w', 1e3},                          // power
     {"J", 'e', 1.0},     {"kJ", 'e', 1e3},        {"MJ", 'e', 1e6},    {"Wh", 'e', 3600.0},  // energy
     {"m_s2", 'g', 1.0},  {"g0", 'g', 9.80665},                                               // acceleration

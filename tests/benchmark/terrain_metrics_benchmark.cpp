@@ -14,7 +14,7 @@
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/geotiff_writer.hpp>
 #include <talus/maps/sites/site_generator.hpp>
-#include <talus/maps/terrain/plane_kernel.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace {

@@ -3,7 +3,7 @@
 
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
-#include <talus/maps/raster/numpy_array.hpp>
+#include <talus/maps/raster/numpy_raster.hpp>
 
 #include "targets.hpp"
 

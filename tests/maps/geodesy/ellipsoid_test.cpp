@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/maps/geodesy/ellipsoid.hpp>
+#include <talus/maps/geodesy/georeference.hpp>
 
 namespace talus::maps {
 namespace ellipsoid_test {

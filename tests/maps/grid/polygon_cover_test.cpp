@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/maps/grid/polygon_cover.hpp>
+#include <talus/maps/grid/cover.hpp>
 
 namespace talus::maps {
 namespace polygon_cover_test {

@@ -1,6 +1,5 @@
 #include <filesystem>
 
-#include <talus/maps/raster/file_text.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 #include "raster_fixture.hpp"

@@ -3,7 +3,7 @@
 #include <refused.hpp>
 
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/numpy_array.hpp>
+#include <talus/maps/raster/numpy_raster.hpp>
 
 namespace talus::maps {
 namespace numpy_array_test {

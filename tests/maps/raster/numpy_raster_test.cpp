@@ -4,7 +4,6 @@
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
-#include <talus/maps/raster/zip_directory.hpp>
 
 #include "raster_fixture.hpp"
 #include "requirement.hpp"

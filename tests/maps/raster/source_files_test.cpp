@@ -6,7 +6,6 @@
 #include <talus/common/input_file.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/source_files.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 
 #include "raster_fixture.hpp"

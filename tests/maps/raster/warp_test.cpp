@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/maps/raster/intake.hpp>
-#include <talus/maps/raster/warp.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
 
 #include "raster_fixture.hpp"
 

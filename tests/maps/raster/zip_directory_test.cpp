@@ -1,7 +1,7 @@
 #include <refused.hpp>
 
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/zip_directory.hpp>
+#include <talus/maps/raster/numpy_raster.hpp>
 
 #include "raster_fixture.hpp"
 

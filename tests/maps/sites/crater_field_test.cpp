@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <talus/maps/sites/crater_field.hpp>
+#include <talus/maps/sites/landscape.hpp>
 
 namespace talus::maps {
 namespace crater_field_test {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <talus/maps/sites/dune_field.hpp>
+#include <talus/maps/sites/landscape.hpp>
 
 namespace talus::maps {
 namespace dune_field_test {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include <talus/maps/sites/value_noise.hpp>
+#include <talus/maps/sites/landscape.hpp>
 
 namespace talus::maps {
 namespace value_noise_test {

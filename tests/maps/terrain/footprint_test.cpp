@@ -2,7 +2,7 @@
 #include <set>
 #include <utility>
 
-#include <talus/maps/terrain/footprint.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace talus::maps {
 namespace footprint_test {

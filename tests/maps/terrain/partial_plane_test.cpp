@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include <talus/maps/terrain/partial_plane.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace talus::maps {
 namespace partial_plane_test {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include <talus/maps/terrain/plane_kernel.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace talus::maps {
 namespace plane_kernel_test {

@@ -1,6 +1,7 @@
 #include <fstream>
 
 #include <nlohmann/json.hpp>
+#include <ogr_geometry.h>
 
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
@@ -24,79 +25,116 @@ ElevationMap lunarMap() {
   return map;
 }
 
-TEST(GeoJson, GeometriesOfAnyNestingAreFoundInOrder) {
-  const json document = json::parse(R"({"type":"FeatureCollection","features":[
-    {"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}},
-    {"type":"Feature","geometry":null},
-    {"type":"Feature","geometry":{"type":"GeometryCollection","geometries":[
-      {"type":"Point","coordinates":[3,4]},{"type":"LineString","coordinates":[[5,6],[7,8]]}]}}]})");
-  const auto found = geometries(document);
-  ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0].get()["coordinates"], json({1, 2}));
-  EXPECT_EQ(found[1].get()["coordinates"], json({3, 4}));
-  EXPECT_EQ(found[2].get()["type"], "LineString");
+// The names of the features of a document and their geometries in well-known text.
+std::vector<std::string> visited(const json& document, const ElevationMap& map) {
+  std::vector<std::string> found;
+  visitGeoJson(document, map, "p.geojson", [&](const std::string& name, const OGRGeometry* drawn) {
+    found.push_back(name + (drawn == nullptr ? "" : drawn->exportToWkt()));
+  });
+  return found;
 }
 
-// Property: an object without a type, or with a type that is not text, is no geometry.
-TEST(GeoJson, ObjectsWithoutTypeAreNoGeometry) {
-  EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":[{"coordinates":[1,2]},
-    {"type":7,"coordinates":[1,2]}, 3, null, "x"]})"))
-                  .empty());
-  EXPECT_TRUE(geometries(json::parse(R"({"type":"Feature","geometry":{"coordinates":[1,2]}})")).empty());
-  EXPECT_TRUE(geometries(json::parse(R"({"type":"FeatureCollection","features":{}})")).empty());
+// The only point of a document.
+Point pointOf(const json& document, const ElevationMap& map) {
+  Point point;
+  visitGeoJson(document, map, "p.geojson", [&](const std::string&, const OGRGeometry* drawn) {
+    point = {drawn->toPoint()->getX(), drawn->toPoint()->getY()};
+  });
+  return point;
+}
+
+json pointAt(const json& position) {
+  return {{"type", "Point"}, {"coordinates", position}};
+}
+
+TEST(GeoJson, GeometriesOfEveryTypeAreVisitedInOrder) {
+  const json document = json::parse(R"({"type":"FeatureCollection","crs":"local","features":[
+    {"type":"Feature","properties":{"name":"a"},"geometry":{"type":"Point","coordinates":[1,2]}},
+    {"type":"Feature","properties":{"name":7},"geometry":null},
+    {"type":"Feature","geometry":{"type":"GeometryCollection","geometries":[
+      {"type":"MultiPoint","coordinates":[[3,4,9]]},{"type":"LineString","coordinates":[[5,6],[7,8]]}]}},
+    {"type":"MultiLineString","coordinates":[[[1,2],[3,4]]]},
+    {"type":"MultiPolygon","coordinates":[[[[0,0],[1,0],[0,1],[0,0]]]]}]})");
+  EXPECT_THAT(
+      visited(document, lunarMap()),
+      testing::ElementsAre("aPOINT (1 2)", "", "GEOMETRYCOLLECTION (MULTIPOINT (3 4),LINESTRING (5 6,7 8))",
+                           "MULTILINESTRING ((1 2,3 4))", "MULTIPOLYGON (((0 0,1 0,0 1,0 0)))"));
+}
+
+// Property: what is no geometry is refused, because a keep-out area would be lost.
+TEST(GeoJson, WhatIsNoGeometryIsRejected) {
+  for (const char* text : {R"({"coordinates":[1,2]})", R"({"type":7,"coordinates":[1,2]})", "3", R"("x")",
+                           R"({"type":"Feature","geometry":{"coordinates":[1,2]}})",
+                           R"({"type":"Feature","geometry":{"type":"Polgon","coordinates":[]}})",
+                           R"({"type":"Feature","geometry":{"type":"Polygon"}})",
+                           R"({"type":"Feature","geometry":{"type":"Polygon","coordinates":[7]}})",
+                           R"({"type":"Feature","geometry":{"type":"GeometryCollection","geometries":{}}})"})
+    EXPECT_THROW(
+        visited({{"type", "FeatureCollection"}, {"features", json::array({json::parse(text)})}}, lunarMap()),
+        InputError)
+        << text;
+  EXPECT_THAT(
+      refusal([] { visited(json::parse(R"({"type":"FeatureCollection","features":{}})"), lunarMap()); }),
+      HasSubstr("has no list \"features\""));
 }
 
 TEST(GeoJson, DegreesAreConvertedByTheMapGeoreference) {
   const ElevationMap map = lunarMap();
   const json position = {0.03, -0.01, 12.0};
-  const Point p = PositionReader(json{{"type", "Point"}}, map, "p.geojson")(position);
+  const Point p = pointOf(pointAt(position), map);
   const Point expected = map.georeference->forward({-0.01 * kDegree, 0.03 * kDegree});
   EXPECT_EQ(p, expected);
 }
 
 TEST(GeoJson, LocalCoordinatesAreMetresIfDeclaredOrWithoutMapCrs) {
   const ElevationMap map = lunarMap();
-  for (const char* text :
-       {R"({"type":"Point","crs":"local"})", R"({"type":"Feature","properties":{"crs":"local"}})",
-        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"crs":"local"}}]})"})
-    EXPECT_EQ(PositionReader(json::parse(text), map, "")(json{700.0, 800.0}), (Point{700, 800})) << text;
+  for (
+      const char* text :
+      {R"({"type":"Point","crs":"local","coordinates":[700,800]})",
+       R"({"type":"Feature","properties":{"crs":"local"},"geometry":{"type":"Point","coordinates":[700,800]}})",
+       R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"crs":"local"},
+            "geometry":{"type":"Point","coordinates":[700,800]}}]})"})
+    EXPECT_EQ(pointOf(json::parse(text), map), (Point{700, 800})) << text;
   ElevationMap yard = map;
   yard.georeference.reset();
-  EXPECT_EQ(PositionReader(json{{"type", "Point"}}, yard, "")(json{700.0, 800.0}), (Point{700, 800}));
+  EXPECT_EQ(pointOf(pointAt({700.0, 800.0}), yard), (Point{700, 800}));
 }
 
 // Property: of the CRS names of GeoJSON 2008, those in degrees are accepted and others rejected; all are
 // rejected if the map has no CRS.
 TEST(GeoJson, NonDegreeCrsIsRejected) {
   const auto named = [](const std::string& name) {
-    return json{{"type", "Point"}, {"crs", {{"type", "name"}, {"properties", {{"name", name}}}}}};
+    return json{{"type", "Point"},
+                {"coordinates", {1, 2}},
+                {"crs", {{"type", "name"}, {"properties", {{"name", name}}}}}};
   };
   const ElevationMap map = lunarMap();
   ElevationMap yard = map;
   yard.georeference.reset();
   for (const char* name : {"urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326"}) {
-    EXPECT_NO_THROW(PositionReader(named(name), map, "p.geojson")) << name;
-    EXPECT_THAT(refusal([&] { PositionReader(named(name), yard, "p.geojson"); }),
-                HasSubstr("and the map has none"));
+    EXPECT_NO_THROW(visited(named(name), map)) << name;
+    EXPECT_THAT(refusal([&] { visited(named(name), yard); }), HasSubstr("and the map has none"));
   }
-  EXPECT_THAT(refusal([&] { PositionReader(named("urn:ogc:def:crs:EPSG::32633"), map, "p.geojson"); }),
+  EXPECT_THAT(refusal([&] { visited(named("urn:ogc:def:crs:EPSG::32633"), map); }),
               HasSubstr("not longitude and latitude"));
   const std::string file = testing::TempDir() + "crs.prj";
   std::ofstream(file)
       << R"(GEOGCS["x",DATUM["d",SPHEROID["s",1737400,0]],PRIMEM["p",0],UNIT["degree",0.0174533]])";
   for (const std::string& name : {file, std::string("http://localhost/4326"), std::string()})
-    EXPECT_THROW(PositionReader(named(name), map, "p.geojson"), InputError) << name;
+    EXPECT_THROW(visited(named(name), map), InputError) << name;
   for (const char* strange : {"7", "[]", "{}", R"({"properties":{"name":3}})"}) {
-    const json document{{"type", "Point"}, {"crs", json::parse(strange)}};
-    EXPECT_THROW(PositionReader(document, map, "p.geojson"), InputError) << strange;
-    EXPECT_THROW(PositionReader(document, yard, "p.geojson"), InputError) << strange;
+    const json document{{"type", "Point"}, {"coordinates", {1, 2}}, {"crs", json::parse(strange)}};
+    EXPECT_THROW(visited(document, map), InputError) << strange;
+    EXPECT_THROW(visited(document, yard), InputError) << strange;
   }
-  EXPECT_NO_THROW(PositionReader(json{{"type", "Point"}, {"crs", nullptr}}, yard, "p.geojson"));
+  EXPECT_NO_THROW(visited(json{{"type", "Point"}, {"coordinates", {1, 2}}, {"crs", nullptr}}, yard));
 }
 
 TEST(GeoJson, InvalidPositionsAreRejected) {
   const ElevationMap map = lunarMap();
-  const PositionReader read(json{{"type", "Point"}}, map, "p.geojson");
+  const auto read = [&](const json& positions) {
+    visited({{"type", "MultiPoint"}, {"coordinates", json::array({positions})}}, map);
+  };
   for (const char* text : {"7", "[]", "[1]", R"(["1",2])", "[1,null]", "{}", "null"})
     EXPECT_THAT(refusal([&] { read(json::parse(text)); }),
                 HasSubstr("p.geojson: a position is not an array of numbers"))

@@ -59,7 +59,7 @@ TEST(KeepOutReader, InvalidFilesAreRejected) {
   EXPECT_THAT(line(""), HasSubstr("is empty"));
   EXPECT_THAT(line("{"), HasSubstr("is not JSON"));
   EXPECT_THAT(line("[1]"), HasSubstr("is not GeoJSON"));
-  EXPECT_THAT(line(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("Point is no Polygon"));
+  EXPECT_THAT(line(R"({"type":"Point","coordinates":[0,0]})"), HasSubstr("POINT is no Polygon"));
   EXPECT_THAT(line(R"({"type":"FeatureCollection","features":[]})"), HasSubstr("holds no Polygon"));
   EXPECT_THAT(line(R"({"type":"Polygon","coordinates":[[[0,0],[1,1]]]})"),
               HasSubstr("fewer than four positions"));
@@ -102,11 +102,11 @@ TEST(KeepOutReader, EveryFeatureClosesCellsOrIsRejected) {
   EXPECT_THAT(told(polygon("[" + ring + "],[" + ring + "]")),
               HasSubstr("feature 2: the holes of a polygon cover all of it"));
   EXPECT_THAT(told(R"({"type":"LineString","coordinates":[)" + ring + "]}"),
-              HasSubstr("feature 2: LineString is no Polygon"));
-  EXPECT_THAT(told(R"({"type":"Point","coordinates":[500001,4999971]})"), HasSubstr("feature 2: Point"));
+              HasSubstr("feature 2: LINESTRING is no Polygon"));
+  EXPECT_THAT(told(R"({"type":"Point","coordinates":[500001,4999971]})"), HasSubstr("feature 2: POINT"));
   EXPECT_THAT(told(R"({"type":"GeometryCollection","geometries":[)" + polygon("[" + ring + "]") +
                    R"(,{"type":"Point","coordinates":[500001,4999971]}]})"),
-              HasSubstr("feature 2: Point"));
+              HasSubstr("feature 2: POINT"));
   EXPECT_THAT(told("null"), HasSubstr("feature 2: has no geometry"));
   EXPECT_THAT(told(polygon("[[500001,4999971],[500020,4999990],[500010,4999980],[500001,4999971]]")),
               HasSubstr("feature 2: a polygon encloses no ground"));

@@ -1,1 +1,0 @@
-#include <talus/maps/grid/grid.hpp>
