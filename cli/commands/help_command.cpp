@@ -6,7 +6,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/option_pages.hpp>
 #include <talus/cli/ground/file_formats.hpp>
-#include <talus/cli/ground/mission_text.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>

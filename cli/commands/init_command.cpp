@@ -11,7 +11,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/mission_text.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 

@@ -64,7 +64,13 @@ CellBox cellsOf(const Window& window, const FramedRaster& from, const std::strin
                     {static_cast<int>(std::ceil(column(std::max(a.x_m, b.x_m), -kRounding))) - 1,
                      static_cast<int>(std::ceil(row(std::max(a.y_m, b.y_m), -kRounding))) - 1}};
   if (box.width() > 0 && box.height() > 0) return box;
-  throw InputError({path, "the window lies outside the map", "it " + extent(grid)});
+  const auto isDegrees = [](const Place& place) {
+    const auto* p = std::get_if<Point>(&place);
+    return p != nullptr && std::abs(p->x_m) <= 360.0 && std::abs(p->y_m) <= 360.0;
+  };
+  const bool degrees = from.georeference && isDegrees(window.first) && isDegrees(window.second);
+  throw InputError({path, "the window lies outside the map",
+                    "it " + extent(grid) + (degrees ? "; latitudes and longitudes take the suffix d" : "")});
 }
 
 Grid part(const Grid& grid, const CellBox& box) {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <utility>
 
@@ -10,8 +9,8 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
 
@@ -73,17 +72,10 @@ bool isNear(double offset, double radius) {
   return radius > 0 && std::abs(offset - radius) < 0.01 * radius;
 }
 
-std::string_view driverOf(GDALDataset& file) {
-  return file.GetDriver() == nullptr ? "" : GDALGetDriverShortName(file.GetDriver());
-}
-
-// Word behind Zunits in a side file of an ArcInfo raster: a unit, or units in a metre; empty for none.
+// Unit behind Zunits in a side file of an ArcInfo raster, or units in a metre; empty for none.
 std::string zUnits(const std::string& path) {
-  std::ifstream file(path);
-  for (std::string key, value; file >> key;)
-    if (lower(key) == "zunits" && file >> value && lower(value) != "no" && lower(value) != "none")
-      return value;
-  return "";
+  const std::string unit = wordBehind("zunits", path);
+  return lower(unit) == "no" || lower(unit) == "none" ? "" : unit;
 }
 
 bool holdsOneOf(const std::string& text, const std::vector<std::string_view>& words) {
@@ -159,6 +151,9 @@ Quantity::Quantity(Kind kind, GDALDataset& file, int band_number, const std::str
   GDALRasterBand& band = *file.GetRasterBand(band_number);
   const OGRSpatialReference* crs = file.GetSpatialRef();
   const double radius_m = crs == nullptr || kind != Kind::Height_m ? 0.0 : crs->GetSemiMajor();
+  radius_m_ = radius_m;
+  if (std::array<double, 6> c{}; crs != nullptr && file.GetGeoTransform(c.data()) == CE_None)
+    cell_m_ = std::abs(c[1]) * (crs->IsGeographic() != 0 ? kDegree * radius_m : crs->GetLinearUnits());
   const double scale = band.GetScale(), offset = band.GetOffset();
   if (!(std::abs(scale) >= 1e-6 && std::abs(scale) <= 1e6) || !std::isfinite(offset))
     throw InputError({path,
@@ -285,7 +280,8 @@ void Quantity::search(const RawPixels& pixels) {
     if (!(v >= -kBeyondAnyNumber)) continue;
     const auto mark = std::ranges::find(kCustomary, v);
     if (mark == kCustomary.end())
-      lowest_ = std::min(lowest_, v);
+      lowest_ = std::min(lowest_, v),
+      highest_ = std::max(highest_, v < kBeyondAnyNumber && !isMark(v) ? v : lowest_);
     else
       ++customary_[static_cast<std::size_t>(mark - kCustomary.begin())];
   }
@@ -298,6 +294,15 @@ void Quantity::found() {
     notes.push_back(std::to_string(customary_[i]) + " cells of " +
                     number(static_cast<double>(kCustomary[i])) +
                     " treated as no data although the file does not declare it (--nodata corrects it)");
+  }
+  // Radii: single precision stores them in steps of up to 0.25 m, which fine cells would show as slopes.
+  constexpr double kStep_m = 0.25, kFewest = 50.0;
+  const auto height = [&](float raw) { return static_cast<double>(raw) * scale_ + offset_; };
+  if (isNear(height(lowest_), radius_m_) && isNear(height(highest_), radius_m_) &&
+      cell_m_ >= kFewest * kStep_m) {
+    offset_ -= radius_m_;
+    from_ += ", less the body's radius";
+    notes.emplace_back("elevations are radii: the body's radius subtracted; steps of up to 0.25 m");
   }
 }
 

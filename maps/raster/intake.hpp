@@ -91,7 +91,8 @@ class Quantity {
   /// Looks for customary no-data values (-9999, -32768, -32767, -99999) that nothing states. Of heights, they mean no
   /// data below all other numbers of the boxes that were searched.
   void search(const RawPixels& pixels);
-  /// Ends the search.
+  /// Ends the search. Heights that are all within 1 % of the radius of the body are radii, from which R is subtracted,
+  /// on cells of 12.5 m or more.
   void found();
 
   /// Returns the values of pixels. Numbers equal to a no-data value, outside the valid range, or beyond 1e30 in
@@ -131,8 +132,9 @@ class Quantity {
   double least_ = -std::numeric_limits<double>::infinity(),
          greatest_ = std::numeric_limits<double>::infinity();
   std::vector<Mark> marks_{};
-  float lowest_ =
-      std::numeric_limits<float>::infinity();  // of the numbers searched that are no customary mark
+  double radius_m_ = 0.0, cell_m_ = 0.0;  // of the body and of a pixel; 0: unknown
+  // Ends of the numbers searched that are no customary mark.
+  float lowest_ = std::numeric_limits<float>::infinity(), highest_ = -lowest_;
   std::array<std::size_t, 4> customary_{};
   std::size_t masked_ = 0, read_ = 0;
 };

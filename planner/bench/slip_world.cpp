@@ -7,7 +7,7 @@
 #include <string>
 
 #include <talus/common/constants.hpp>
-#include <talus/maps/sites/landscape.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>
 

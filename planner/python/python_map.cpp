@@ -214,10 +214,8 @@ std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads)
   const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
   file.attr("close")();
   map->files_ = map->map().elevation().files;
-  map->files_.insert(map->files_.begin(), {.path = path,
-                                           .role = "map",
-                                           .size = std::filesystem::file_size(path),
-                                           .sha256 = digest.attr("hexdigest")().cast<std::string>()});
+  map->files_.insert(map->files_.begin(), {path, "map", std::filesystem::file_size(path),
+                                           digest.attr("hexdigest")().cast<std::string>()});
   return map;
 }
 

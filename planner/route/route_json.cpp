@@ -75,10 +75,8 @@ Json obstructionJson(const Obstruction& why) {
 Json originJson(const RouteOrigin& origin) {
   Json files = Json::array();
   for (const InputFile& input : origin.files) {
-    files.push_back({{"file", std::filesystem::path(input.path).filename().string()},
-                     {"path", input.path},
-                     {"sha256", input.sha256},
-                     {"size", input.size}});
+    const std::string name = std::filesystem::path(input.path).filename();
+    files.push_back({{"file", name}, {"path", input.path}, {"sha256", input.sha256}, {"size", input.size}});
     if (!input.role.empty()) files.back()["role"] = input.role;
     if (!input.used) files.back()["used"] = false;
   }

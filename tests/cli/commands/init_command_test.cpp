@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/mission_text.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"

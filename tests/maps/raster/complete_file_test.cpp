@@ -4,7 +4,6 @@
 #include <functional>
 #include <set>
 
-#include <talus/maps/raster/complete_file.hpp>
 #include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/layer_reader.hpp>
@@ -393,6 +392,15 @@ TEST(TextGrid, ClassAndRockGridsAreValidatedEqually) {
   const std::string junk = folder.write("j.asc", header + "0 1 road 1\n0 1 1 1\n0 0 0 0\n");
   EXPECT_THROW(readTerrainClasses({.path = junk}, dem), InputError);
   EXPECT_THROW(readRockAbundance({.path = junk}, dem), InputError);
+}
+
+// GDAL reads lines of pixels without the bytes behind them.
+TEST(CompleteFile, PaddedLinesOfEhdrAreRejected) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("p.bil", std::string(160, '\0'));
+  folder.write("p.hdr", "NROWS 5\nNCOLS 6\nNBITS 32\nPIXELTYPE FLOAT\nTOTALROWBYTES 32\n");
+  EXPECT_THAT(refusal([&] { openRaster(path); }),
+              HasSubstr("has lines of 32 bytes (TOTALROWBYTES), which GDAL reads"));
 }
 
 }  // namespace complete_file_test

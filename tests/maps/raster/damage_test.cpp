@@ -309,7 +309,6 @@ TEST(Damage, DamagedStatementIsRefusedOrHarmless) {
   std::mt19937 random(11);
   std::map<std::string, int> sums;
   const std::vector<Dialect> all = dialects();
-  const GdalQuiet quiet;
   std::vector<std::map<std::string, std::string>> whole;  // files of each dialect
   for (const Dialect& dialect : all) {
     const TemporaryFolder folder;
@@ -342,8 +341,11 @@ TEST(Damage, DamagedStatementIsRefusedOrHarmless) {
       name = statement.name;
       folder.write(chosen->first, damaged(bytes, statement, way, random));
     }
+    testing::internal::CaptureStderr();
     std::string fault,
         outcome = refusal([&] { fault = faultOf(readElevation(path, optionsOf(dialect)), dialect.step_m); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(outcome.find('\n'), outcome.npos);
     const bool refused = outcome != "accepted";
     ++sums[refused                    ? "refused"
            : fault.empty()            ? "right"

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include <talus/maps/raster/elevation_reader.hpp>
-#include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/intake.hpp>
 
 #include "raster_fixture.hpp"
 
@@ -156,7 +156,8 @@ TEST(Intake, Pds3LabelIsHonouredOrRefused) {
   EXPECT_DOUBLE_EQ(valid("UNKNOWN_CONSTANT = 0.25\r\n"), 1.0 - 1.0 / 576);
   EXPECT_DOUBLE_EQ(valid("VALID_MINIMUM = 0.0995\r\n"), 1.0 - 100.0 / 576);
   // Closed form: 20 m of the sphere of 1737.4 km are 1/1516.17 degrees.
-  const std::string scale = "A_AXIS_RADIUS = 1737.4 <km>\r\nMAP_SCALE = 20 <METERS/PIXEL>\r\nMAP_RESOLUTION = ";
+  const std::string scale =
+      "A_AXIS_RADIUS = 1737.4 <km>\r\nMAP_SCALE = 20 <METERS/PIXEL>\r\nMAP_RESOLUTION = ";
   EXPECT_EQ(valid(scale + "1516.17 <PIXEL/DEG>\r\n"), 1.0);
   EXPECT_THAT(refusal([&] { valid(scale + "758.1 <PIXEL/DEG>\r\n"); }), HasSubstr("of different pixels"));
   EXPECT_THAT(refusal([&] { valid("LINE_SUFFIX_BYTES = 4\r\n"); }),
@@ -171,14 +172,30 @@ TEST(Intake, Pds3LabelIsHonouredOrRefused) {
 // Closed form: value = number x scale + offset; the line says so.
 TEST(Intake, ElevationIsNumberTimesScalePlusOffset) {
   const TemporaryFolder folder;
-  const RasterFile file{.rows = {{-1, 0, 10}, {7, 2e30, 7}, {7, 7, 7}}, .nodata = -1.0, .scale = 0.5, .offset = 100.0};
+  const RasterFile file{
+      .rows = {{-1, 0, 10}, {7, 2e30, 7}, {7, 7, 7}}, .nodata = -1.0, .scale = 0.5, .offset = 100.0};
   const ElevationMap map = readElevation(write(file, folder / "s.tif"), {.keep_holes = true});
   EXPECT_TRUE(std::isnan(map.elevation_m[{0, 2}]));
   EXPECT_EQ((map.elevation_m[{1, 2}]), 100.0F);
   EXPECT_EQ((map.elevation_m[{2, 2}]), 105.0F);
   EXPECT_TRUE(std::isnan(map.elevation_m[{1, 1}]));
   EXPECT_EQ(map.reading, "heights = raw x 0.5 + 100 m (unit assumed), no-data -1 (file)");
-  EXPECT_THAT(refusal([&] { readElevation(write({.rows = {{2e5, 1}, {1, 1}}}, folder / "far.tif")); }),
+  EXPECT_THAT(refusal([&] {
+                readElevation(write({.rows = {{2e5, 1}, {1, 1}}}, folder / "far.tif"));
+              }),
+              HasSubstr("beyond 131072 m"));
+}
+
+// Radii are heights on cells of 20 m, where their steps of 0.125 m do not show, not on cells of 1 m.
+TEST(Intake, RadiiAreHeightsOnWideCells) {
+  const TemporaryFolder folder;
+  RasterFile file{.rows = {{1737500, 1737501}, {1737502, 1737503}}, .crs = "+proj=eqc +R=1737400"};
+  file.transform = std::array<double, 6>{0, 20, 0, 0, 0, -20};
+  const ElevationMap map = readElevation(write(file, folder / "radii.tif"));
+  EXPECT_EQ((map.elevation_m[{0, 1}]), 100.0F);
+  EXPECT_THAT(map.notes, Contains(HasSubstr("elevations are radii")));
+  file.transform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+  EXPECT_THAT(refusal([&] { readElevation(write(file, folder / "fine.tif")); }),
               HasSubstr("beyond 131072 m"));
 }
 
@@ -192,7 +209,8 @@ TEST(Intake, StatementsOfTheUnitMustAgree) {
   RasterFile file{.rows = kHill, .crs = "EPSG:32610+6360"};
   EXPECT_NEAR(stepOf(write(file, folder / "v.tif")), 1200.0F / 3937.0F, 1e-5F);
   file.unit = "m";
-  EXPECT_THAT(refusal([&] { stepOf(write(file, folder / "both.tif")); }), HasSubstr("and in 'US survey foot'"));
+  EXPECT_THAT(refusal([&] { stepOf(write(file, folder / "both.tif")); }),
+              HasSubstr("and in 'US survey foot'"));
   const std::string grid = folder.write("z.asc",
                                         "ncols 3\nnrows 3\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n"
                                         "1 2 3\n1 2 3\n1 2 3\n");

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <talus/maps/sites/landscape.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::maps {
 namespace dune_field_test {

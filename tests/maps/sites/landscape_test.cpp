@@ -5,7 +5,7 @@
 
 #include <refused.hpp>
 
-#include <talus/maps/sites/landscape.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::maps {
 namespace landscape_test {

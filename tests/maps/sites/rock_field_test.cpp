@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <talus/maps/sites/landscape.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::maps {
 namespace rock_field_test {

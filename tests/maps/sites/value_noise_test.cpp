@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include <talus/maps/sites/landscape.hpp>
+#include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::maps {
 namespace value_noise_test {

@@ -6,7 +6,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/maps/vector/geojson.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 
 #include "raster_fixture.hpp"
 

@@ -53,6 +53,21 @@ TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
                   "drawbar_pull_N=Fx"));
 }
 
+// Closed form: 5 % is 0.05, also in a column of percent; a percent of newtons is no number. Times of clocks that count
+// nanoseconds since 1970 are exact to a quarter of a microsecond in double precision.
+TEST(TableColumns, PercentCellsAndNanosecondsAreRead) {
+  const test::TemporaryFile file{"load_N,slip,time_ns\n80,5%,1764000000123456789\n8%,0.1,1\n"};
+  TableFile table(file.path());
+  table.note = [](const std::string&) {};
+  const Telemetry read = readTelemetry(table);
+  EXPECT_THAT(read.at("slip"), ElementsAre(0.05));
+  EXPECT_NEAR(read.at("time_s").front(), 1764000000.123456789, 2.5e-7);
+  const test::TemporaryFile other{"slip_percent\n5%\n5\n"};
+  TableFile percents(other.path());
+  percents.columns = {{.known = "slip", .name = "slip_percent"}};
+  EXPECT_THAT(readTelemetry(percents).at("slip"), ElementsAre(0.05, 0.05));
+}
+
 // Property: a column in another unit is rejected without a mapping, because an unnoticed conversion could be
 // wrong.
 TEST(TableColumns, OtherUnitWithoutMappingIsRejected) {
