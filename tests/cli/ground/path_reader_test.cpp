@@ -73,8 +73,9 @@ TEST(PathReader, InvalidPathsAreRejectedWithOneLine) {
         {"b.csv", "x_m,y_m\n1,2\n3,inf\n", "b.csv:3"},
         {"c.csv", "x_m,y_m\n", "contains no point"},
         {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no line"},
-        {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})", "contains no line"},
-        {"f.json", R"({"type":"LineString"})", "contains no line"},
+        {"e.json", R"({"type":"FeatureCollection","features":[7,{"properties":[]}]})",
+         "has a geometry without a \"type\""},
+        {"f.json", R"({"type":"LineString"})", "has no list of its positions"},
         {"g.json", R"({"type":"LineString","crs":"local","coordinates":[["a",2]]})", "g.json"},
         {"h.json", R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":
             {"x_m":[1,"b"],"y_m":[1,2]},"geometry":null}]})",
