@@ -306,6 +306,8 @@ bool holdsName(const char* const* drivers, std::string_view name) {
   return false;
 }
 
+void refuseDamagedClassic(const std::string& path);
+
 // Reopens an ASCII grid as Float64. By default, GDAL infers an integer type from the first values and reads
 // "inf" and "nan" as 0.
 Dataset withFractions(Dataset file, const std::string& path) {
@@ -383,6 +385,7 @@ Dataset openRaster(const std::string& path, bool allow_vrt) {
   registerDrivers();
   requireReadableFile(path, "cells");
   requireRegularNeighbours(path);
+  refuseDamagedClassic(path);  // libnetcdf ends the program over a damaged header
   const GdalErrors errors;
   constexpr const char* kVirtual[] = {"VRT", nullptr};
   constexpr unsigned kHow = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
@@ -659,9 +662,10 @@ class ClassicHeader {
   }
   // Length of a list. A length above kMost sets the failure state of the stream.
   std::uintmax_t length() {
-    number(4);  // tag of the list
+    const std::uintmax_t tag = number(4);
     const std::uintmax_t count = number(countBytes());
-    if (count > kMost) file_.setstate(std::ios::failbit);
+    const bool known = tag == 0 ? count == 0 : tag >= 10 && tag <= 12;
+    if (count > kMost || !known) file_.setstate(std::ios::failbit);
     return file_ ? count : 0;
   }
   void skip(std::uintmax_t bytes) { file_.seekg(static_cast<std::streamoff>(padded(bytes)), std::ios::cur); }
@@ -693,6 +697,7 @@ class ClassicHeader {
       if (axes > kMost) file_.setstate(std::ios::failbit);
       for (; axes > 0 && file_; --axes) {
         const std::uintmax_t id = number(countBytes());
+        if (id >= dimensions_.size()) file_.setstate(std::ios::failbit);
         const std::uintmax_t extent = id < dimensions_.size() ? dimensions_[id] : 0;
         by_record = by_record || extent == 0;
         count *= std::max<std::uintmax_t>(extent, 1);
@@ -722,6 +727,10 @@ class ClassicHeader {
   std::vector<std::uintmax_t> dimensions_;
   std::vector<Variable> variables_;
 };
+
+void refuseDamagedClassic(const std::string& path) {
+  ClassicHeader(path).end();
+}
 
 // Rejects a text file that ends with a digit or a point: its last number may be incomplete.
 void refuseOpenEnd(const std::string& path) {
