@@ -33,9 +33,9 @@ def hills() -> Floats:
 
 
 def soils() -> npt.NDArray[np.uint8]:
-    """Return class 1 everywhere except a band of class 2 across the route."""
+    """Return class 1 everywhere except a band of class 2 across the route, with ways round both ends."""
     classes = np.ones((HEIGHT, WIDTH), np.uint8)
-    classes[:, 84:112] = 2
+    classes[4:96, 84:112] = 2
     return classes
 
 

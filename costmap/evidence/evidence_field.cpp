@@ -41,7 +41,7 @@ maps::CellBox EvidenceField::count(const BlockLevel& where, const SavedBlock& re
   const auto contribute = [&](const BlockEvidence& block, int sign) {
     of_class.count(pullsOf(store_->bricks.counts(where)), prior.pull.value, places, sign);
     const double deeper = static_cast<double>(block.sinkage) - prior.sinkage.value;
-    if (block.sinkage_verified || deeper > 0.0) of_class.countSinkage(deeper, places, sign);
+    if (block.sinkage_verified) of_class.countSinkage(deeper, places, sign);
   };
   if (const BlockEvidence* known = store_->bricks.find(where)) contribute(*known, -1);
   for (const ReadingCount& reading : readings.counts)
@@ -96,7 +96,8 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
   const auto cell = grid.cellAt(observation.place);
   if (!cell) return std::nullopt;
   const int class_index = site_->classIndex(*cell);
-  if (class_index < 0) return std::nullopt;
+  if (class_index < 0 || !(std::isfinite(observation.pull.value) || observation.here.any()))
+    return std::nullopt;
   const bool sure = observation.pose_std_m <= 0.0 || standsOnOneClass(observation, class_index);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
   SavedBlock readings{.block = store_->topOf(*cell, class_index),
@@ -115,7 +116,6 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
     readings.counts.push_back(
         sinkageReading(observation.sinkage.value, sure && observation.sinkage_verified));
   for (ReadingCount& count : readings.counts) count.drive = observation.drive;
-  if (readings.counts.empty()) return std::nullopt;
   return readings;
 }
 
@@ -151,7 +151,7 @@ std::vector<ClassState> EvidenceField::states() const {
 
 ClassState EvidenceField::stateOf(int class_index) const {
   constexpr double kStep =
-      0.002;  // rounding step of class states, so that they are constant under small changes
+      0.005;  // rounding step of class states, so that they are constant under small changes
   return store_->classes[static_cast<std::size_t>(class_index)].state(kStep);
 }
 

@@ -73,7 +73,8 @@ GroundBelief classGround(const GroundModel& model, const GroundOfClass& of) {
   std::vector<Weighed> all;
   for (const ClassHypothesis& h : of.state.hypotheses)
     all.push_back(
-        {h.weight, {prior.pull.value + h.pull, std::hypot(ground.pull_std, h.own_std, h.shared_std)}});
+        {h.weight,
+         {prior.pull.value + h.pull, std::hypot(ground.pull_std, std::hypot(h.own_std, h.shared_std))}});
   return {.pull = decided(std::move(all)),
           .sinkage = {std::max(prior.sinkage.value + of.state.sinkage, 0.0), ground.sinkage_std}};
 }
@@ -115,8 +116,10 @@ LocalGround::LocalGround(const EvidenceStore& store, const BlockLevel& patch, co
   const GroundClass& ground = store.groundClass(of.class_index);
   const Variation variation{ground.pull_std, ground.sinkage_std,
                             store.model().parts().policy.correlation_length_m};
-  for (const ClassHypothesis& h : of.state.hypotheses)
-    hypotheses_.push_back({h, GaussianProcess(soundOf(blocks, h, prior.pull.value), variation)});
+  for (const ClassHypothesis& h : of.state.hypotheses) {
+    std::vector<PlaceEvidence> places = soundOf(blocks, h, prior.pull.value);
+    hypotheses_.push_back({h, places, GaussianProcess(places, variation)});
+  }
 }
 
 InferredGround LocalGround::at(const maps::Point& at) const {
@@ -125,12 +128,19 @@ InferredGround LocalGround::at(const maps::Point& at) const {
   std::vector<Weighed> all;
   bool any = false;
   double sinkage = -std::numeric_limits<double>::infinity();
-  for (const auto& [h, process] : hypotheses_) {
+  for (const auto& [h, places, process] : hypotheses_) {
     const LearnedPlace learned = process.learned(at);
     any |= learned.any;
+    const double mean = prior.pull.value + h.pull;
+    const auto own = std::ranges::find(places, at, &PlaceEvidence::place);
+    double other = 0.0;
+    if (own != places.end()) {
+      other = otherSoilProbability(own->pull - learned.departure.pull.value, own->variance);
+      all.push_back({other * h.weight, {mean + own->pull, std::sqrt(own->variance)}});
+    }
     all.push_back(
-        {h.weight,
-         {prior.pull.value + h.pull + learned.departure.pull.value,
+        {(1.0 - other) * h.weight,
+         {mean + learned.departure.pull.value,
           std::hypot(learned.departure.pull.std, (1.0 - learned.weight) * h.own_std, h.shared_std)}});
     if (learned.departure.sinkage.value > sinkage) {
       sinkage = learned.departure.sinkage.value;

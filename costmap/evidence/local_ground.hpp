@@ -39,9 +39,10 @@ GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
 ///
 /// A hypothesis of a class mean D with standard deviations (o, e) of the places not driven and of the sources
 /// gives the ground at a place the mean P0 + D + f and the variance
-///   var f + (1 - A)^2 o^2 + e^2                                                                          (2)
+///   var f + (1 - A)^2 o^2 + e^2                                                                         (B6)
 /// with the departure f of the process from D, its variance, and the sum A of the weights of the evidence.
-/// The estimate that decisions use is the hypothesis at the 2 % quantile of the mean.
+/// A place whose reading differs from that field is on another soil with a probability (0.02 before, differences
+/// of 0.3), and then has its own reading. The estimate that decisions use is the hypothesis at the 2 % quantile of the mean.
 class LocalGround {
  public:
   /// Collects the evidence that can affect the patch with the south-west block `patch`.
@@ -55,6 +56,7 @@ class LocalGround {
  private:
   struct Hypothesis {
     ClassHypothesis of_class;
+    std::vector<PlaceEvidence> places;
     GaussianProcess process;
   };
   const EvidenceStore& store_;

@@ -66,6 +66,14 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept {
   return (2.0 + std::cos(turn)) / 3.0 * (1.0 - d) + std::sin(turn) / (2.0 * std::numbers::pi);
 }
 
+double otherSoilProbability(double difference, double variance) noexcept {
+  constexpr double kOtherSoil = 0.02, kOtherStd = 0.3;
+  const double square = difference * difference;
+  const double own = (1.0 - kOtherSoil) * std::exp(-0.5 * square / variance) / std::sqrt(variance);
+  const double other = kOtherSoil * std::exp(-0.5 * square / (kOtherStd * kOtherStd)) / kOtherStd;
+  return other / (own + other);
+}
+
 GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Variation& variation)
     : evidence_(std::move(evidence)), variation_(variation) {
   const std::size_t n = evidence_.size();

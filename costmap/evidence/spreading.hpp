@@ -28,6 +28,11 @@ struct Variation {
 ///   k(d) = (2 + cos(2 pi d/l))/3 (1 - d/l) + sin(2 pi d/l)/(2 pi)
 double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 
+/// Returns the probability that a place is on another soil than its surroundings, which the class raster does not
+/// show (ours): 0.02 before the reading. `difference` is that of the reading from the expected value; differences
+/// have the variance `variance` on the same soil, and the standard deviation 0.3 on another one.
+double otherSoilProbability(double difference, double variance) noexcept;
+
 /// Estimate of the ground at a place by the Gaussian process.
 struct LearnedPlace {
   GroundBelief departure;  ///< departure from the class mean, with standard deviation

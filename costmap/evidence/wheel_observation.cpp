@@ -23,6 +23,12 @@ bool known(double value) noexcept {
   return std::isfinite(value);
 }
 
+// Returns the value reduced by the part that its error explains: v v^2/(v^2 + e^2).
+double beyondError(double value, double error) noexcept {
+  const double square = value * value;
+  return square > 0.0 ? value * square / (square + error * error) : 0.0;
+}
+
 // Mean of two estimates of one number, weighted by inverse variance.
 Estimate combined(const Estimate& a, const Estimate& b) noexcept {
   const double wa = 1.0 / (a.std * a.std), wb = 1.0 / (b.std * b.std);
@@ -74,11 +80,18 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
   const SteadyWheel straight =
       turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
-  if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0)
+  if (!departures.empty()) w.known = departures[static_cast<std::size_t>(read.class_index)];
+  // Share at the measured slip. The part of its difference from ground with the known departure on this slope
+  // that the slip error explains is removed; otherwise the error of a small slip would bias the departure.
+  if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
     w.share = straight.torque_over_load_radius / thrust;
-  if (!departures.empty()) {
-    w.known = departures[static_cast<std::size_t>(read.class_index)];
     w.expected.gradient += w.known * std::max(w.share, 0.0);
+    if (known(w.asked)) {
+      const double there =
+          model_.onSlope(read.class_index, w.asked - w.known, rut).torque_over_load_radius / thrust;
+      const double error = 0.5 * (more.torque_over_load_radius - less.torque_over_load_radius) / thrust;
+      w.share = there + beyondError(w.share - there, error);
+    }
   }
   const double z = r.sinkage_m / radius_m, t = r.torque_Nm / (radius_m * r.load_N);
   if (!known(t) || !(z >= 0.0 && z < 1.0)) return w;
@@ -117,7 +130,9 @@ double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
 // Departure D by P(i) + D f(i) = g with the share f of the thrust. `own`: departure of this wheel from the
 // other wheels by torque and sinkage; its standard deviation is half its value.
 Estimate WheelObserver::bySlope(const Wheel& w, const Balance& all, double own) const {
-  const double error = std::hypot(noise_.gradient, std::hypot(0.5 * own, w.steepness));
+  // The wheels of a moment share its slip and slope: together they count as one reading.
+  const double error =
+      std::hypot(noise_.gradient, std::hypot(0.5 * own, w.steepness)) * std::sqrt(all.wheels);
   return {std::min(w.known + (all.departure + own) / all.share, all.across + own), error / all.share};
 }
 
@@ -179,7 +194,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
   const auto usable = [](const ClassReading& c) { return known(c.reading.slip) && c.reading.load_N > 0.0; };
   std::vector<Wheel> wheels;
   double load = 0.0, felt_load = 0.0, felt = 0.0;
-  Balance all{.departure = 0.0, .across = 0.0, .share = 0.0};
+  Balance all{.departure = 0.0, .across = 0.0, .share = 0.0, .wheels = 0.0};
   for (const ClassReading& read : together) {
     if (!usable(read)) continue;
     const Wheel& w = wheels.emplace_back(expected(read, departures));
@@ -188,6 +203,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     all.standing |= read.reading.slip >= kStanding;
     all.departure += load_N * (w.asked - w.expected.gradient);
     all.across += load_N * weakerAcross(w);
+    all.wheels += 1.0;
     all.share += load_N * w.share;
     if (!known(w.from_torque)) continue;
     felt_load += load_N;

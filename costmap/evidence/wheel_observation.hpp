@@ -96,27 +96,17 @@ struct WheelObservation {
   bool estimates() const noexcept { return std::isfinite(pull.value) && pull.std > 0.0 && pull.std <= 0.5; }
 };
 
-/// Converts readings to observations, i.e. to estimates of undisturbed ground at the reference slip 0.5. The
-/// estimates of two methods are weighted by inverse variance:
+/// Converts readings to observations, i.e. to estimates of undisturbed ground at the reference slip 0.5.
 ///
 /// Slope: the wheels of a rover at constant speed together have the pull DP/W = tan(slope). The mobility
-/// curve of each wheel, for the class of its ground and for undisturbed ground or a rut, gives the gradient
-/// at which the wheel drives at its slip s. The slope minus the load-weighted mean of these gradients is the
-/// departure d from the class mean of the ground under all wheels at slip s. Ground with the fraction f of
-/// its class's thrust H departs by (1 - f) H(s) (GroundModel), and therefore at the reference slip by
-///   k d,  k = H(0.5)/H(s) in [1, 3]
-/// (ours; for soils drawn around mars_crusty and phi 37 deg the departure is within 0.02 of k d if strength
-/// varies, and up to a third less than k d if the shear modulus varies). The part of d that errors of the
-/// reading explain is not extrapolated: k multiplies only d - d e^2/(d^2 + e^2), where e is the standard
-/// deviation of d. The standard deviation of the result is k e. Other differences between soils of a class
-/// add 0.4 (k - 1) standard deviations of the class. If less than a third of the thrust is mobilised, k is 1,
-/// and the standard deviation of the class is added for the share of the thrust that is not mobilised. Such a
-/// reading raises no estimate unless the drive mobilised most of the thrust elsewhere (SensorProof). Beyond
-/// the reference slip a negative d is not reduced; a positive d is. Torque and sinkage distribute d over the
-/// wheels: a wheel that pulls less than the other wheels, as on the edge of a soft patch, is on weaker
-/// ground. If the slip of any wheel is at least 0.9, the rover may be stationary and pull less than the slope
-/// requires: the result is then an upper bound that does not exceed the class, unless the drawbar pull was
-/// measured.
+/// curve of each wheel, for the class of its ground and for undisturbed ground or a rut, gives the gradient P
+/// at which the wheel drives at its slip. With the share f of the thrust at that slip of the thrust at the
+/// reference slip, both load-weighted means over all wheels, the ground departs from its class at the
+/// reference slip by (slope - P)/f (B4). Below f = 0.15 the slip tells nothing, and only the sinkage is an
+/// estimate. Torque and sinkage distribute the departure over the wheels: a wheel that pulls less than the
+/// other wheels, as on the edge of a soft patch, is on weaker ground. If the slip of any wheel is at least 0.9,
+/// the rover may be stationary and pull less than the slope requires: the result is then an upper bound that
+/// does not exceed the class, unless the drawbar pull was measured.
 ///
 /// On ground with the gradients g along and c across the heading, a wheel at the slip angle beta has the pull
 /// g cos(beta) - c sin(beta) in its plane and the side force |g sin(beta) + c cos(beta)|, both over load.
@@ -126,12 +116,13 @@ struct WheelObservation {
 /// gradient across the heading is unknown, the slip angle is assumed to be 0, which underestimates the
 /// ground.
 ///
-/// Torque and sinkage: the drawbar pull of a wheel is a function of torque and sinkage (thesis Eq. 3.12).
-/// Both are extrapolated to the reference slip with the ratio of the class's values: the torque grows as
-/// shear is mobilised, and the sinkage grows as the wheel digs (ours; from slip 0.3 on within 0.11 of the
-/// forward model on dust, trap and drift classified as sand, whose pull is 0.2 to 0.36 lower). If little
+/// Torque and sinkage, without a slope: the drawbar pull of a wheel is a function of torque and sinkage (thesis
+/// Eq. 3.12). Both are extrapolated to the reference slip with the ratio of the class's values: the torque
+/// grows as shear is mobilised, and the sinkage grows as the wheel digs (ours; from slip 0.3 on within 0.11 of
+/// the forward model on dust, trap and drift classified as sand, whose pull is 0.2 to 0.36 lower). If little
 /// torque is mobilised, the torque of the class is used with twice the standard deviation of the class; the
-/// estimate then follows the sinkage, because a deeper wheel has a higher resistance.
+/// estimate then follows the sinkage, because a deeper wheel has a higher resistance. The result does not
+/// exceed the class.
 class WheelObserver {
  public:
   /// Keeps a reference to `model`, which must outlive this object.
@@ -158,6 +149,7 @@ class WheelObserver {
     double across = std::numeric_limits<double>::infinity();
     // thrust of the classes at the slips of the wheels over the thrust at the reference slip [-]
     double share = 1.0;
+    double wheels = 1.0;  // number of wheels
     bool standing = false;
   };
 

@@ -92,7 +92,7 @@ void reportDrive(const DriveEstimate& drive, const TraversabilityMap& map, Drive
 
 std::string othersFinding(std::size_t rows) {
   return std::to_string(rows) +
-         " rows: of another wheel or load than the map's rover has; they only lower estimates";
+         " rows: of another wheel or load than the map's rover has; they count as unverified";
 }
 
 }  // namespace
@@ -285,7 +285,6 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   intake.state_->put(telemetry, verdict, known);
   map.publishAll();
   DriveReport report = intake.report();
-  if (verdict.drive) report.informing = verdict.drive->informing;
   if (verdict.drive && report.raising > 0) reportDrive(*verdict.drive, map, report);
   return report;
 }

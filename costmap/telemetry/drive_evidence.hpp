@@ -12,21 +12,18 @@
 namespace talus::costmap {
 
 /// Estimated mean drawbar pull over load DP/W of one terrain class at slip 0.5, from the slips of a drive
-/// (SlipFit) [-].
+/// (DrivePosterior) [-].
 struct LearnedClass {
-  int class_number = 0;  ///< number of the terrain class
-  Estimate pull;         ///< DP/W if the offset and scale of the slip sensor are estimated as well
-  /// DP/W for a sensor whose offset has the standard deviation 0.03 and whose scale has the standard
-  /// deviation 5 %.
-  Estimate if_sound;
+  int class_number = 0;     ///< number of the terrain class
+  Estimate pull;            ///< DP/W over all hypotheses of the sensors (DrivePosterior)
+  Estimate if_sound;        ///< DP/W for a sound slip sensor
   double counted_on = 0.0;  ///< DP/W used for decisions [-]
 };
 
-/// Counts and findings of one drive whose telemetry was added to a map. A reading that "may raise an
-/// estimate" may increase an estimated DP/W; other readings may only lower it.
+/// Counts and findings of one drive whose telemetry was added to a map.
 struct DriveReport {
   std::size_t used = 0;  ///< number of rows that the map uses
-  /// Number of used rows that may raise an estimate, because their sensors are verified.
+  /// Number of used rows whose sensors are verified.
   std::size_t raising = 0;
   /// Number of rows rejected by the sensor checks, or whose position is not on the map.
   std::size_t rejected = 0;
@@ -36,16 +33,15 @@ struct DriveReport {
   /// Number of places without a terrain class that were declared impassable, because wheels indicated danger
   /// there.
   std::size_t unobserved = 0;
-  /// Number of rows whose wheel or load differs from that of the map's rover; such rows raise no estimate.
+  /// Number of rows whose wheel or load differs from that of the map's rover; such rows count as unverified.
   std::size_t others = 0;
   std::string first_reason;           ///< reason of the first rejected row; empty without rejected rows
   std::vector<std::string> findings;  ///< results of the sensor checks, one line each
-  /// One entry for each terrain class driven on; empty if no row may raise an estimate.
+  /// One entry for each terrain class driven on; empty if no row is verified.
   std::vector<LearnedClass> learned;
   double slip_offset = 0.0;  ///< estimated offset of the slip sensor: its reading at zero slip [-]
   /// Estimated scale of the slip sensor: change of the reading per change of slip [-].
   double slip_scale = 1.0;
-  double informing = 1.0;  ///< probability that the slip depends on the ground [-]
 };
 
 /// Options for adding telemetry, and default values for missing columns.
@@ -57,10 +53,9 @@ struct IntakeOptions {
 
 /// Adds the telemetry of one drive to a map in parts, while the telemetry is received. The state of the
 /// sensor checks is kept from one part to the next. A part must contain whole moments, i.e. the rows of all
-/// wheels at one time. The verification of a sensor takes effect from the next row on, and a bias of torque
-/// or sinkage from the next part on, whereas addDrive() evaluates the whole drive first. Until settle() is
-/// called, rows before a verification may only lower estimates, and an estimate may be higher or lower than
-/// that of addDrive(). Planners use the result after map.publish(). Not thread-safe.
+/// wheels at one time. The posterior of the drive is estimated from 32 moments on and again after each increase
+/// by a quarter, whereas addDrive() evaluates the whole drive first. Until settle() is called, rows before the
+/// first estimate count as unverified, and an estimate may be higher or lower than that of addDrive(). Planners use the result after map.publish(). Not thread-safe.
 class DriveIntake {
  public:
   /// Keeps references to `map` and `journal`. `journal` stores all rows; it may be null.
@@ -90,13 +85,13 @@ class DriveIntake {
 /// therefore depends only on the evidence and not on its division into files. A drive that the map already
 /// contains is not added again; if the file grew since, only the new rows are added. Required columns: x_m,
 /// y_m, load_N, slip. Optional columns: torque_Nm, sinkage_m, slope_rad, drawbar_pull_N, heading_rad, time_s,
-/// pass_index, z_m, pose_std_m. Without slope_rad, the slope of the map along the heading is used. If
+/// pass_index, z_m, pose_std_m, and for a second slip rim_speed_mps or wheel_rate_rad_s, and speed_mps or
+/// odometry_x_m and odometry_y_m. Without slope_rad, the slope of the map along the heading is used. If
 /// `journal` is not null, all rows are stored in the journal in one transaction. Throws InputError if a
 /// required column is missing.
 ///
 /// Suspected readings, and rows that the file's reader rejected, are used only if they indicate danger
-/// (DangerWatch), and only for the ground where the reading was taken. SensorProof decides which readings may
-/// raise an estimate; SensorProof requires heading_rad, slope_rad and varying slopes.
+/// (DangerWatch), and only for the ground where the reading was taken. DrivePosterior corrects the others.
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 

@@ -49,7 +49,7 @@ struct Curve {
     }
   }
 
-  // Least slip at which ground with a departure has the pull of a gradient (Eq. 1).
+  // Least slip at which ground with a departure has the pull of a gradient (B2).
   double slipOn(double gradient, double departure) const {
     const auto at = [&](std::size_t i) { return pull[i] + departure * share[i]; };
     std::size_t from = 0;
@@ -91,11 +91,11 @@ struct Hypotheses {
 Hypotheses hypotheses() {
   using Kind = SlipSensor::Kind;
   constexpr double kShape = 0.2, kSound = 0.015, kOffset = 0.1, kStep = 0.05;
-  constexpr int kLeast = -46, kMost = 14;
+  constexpr int kLow = -46, kTop = 14;
   Hypotheses h;
   std::vector<std::pair<std::size_t, double>> sound;
   double of_shape = 0.0;
-  for (int i = kLeast; i <= kMost; ++i) {
+  for (int i = kLow; i <= kTop; ++i) {
     const double log_scale = kStep * i, off = log_scale / kShape, density = std::exp(-0.5 * off * off);
     if (density > 1e-3) {
       sound.emplace_back(h.sensors.size(), density);
@@ -115,10 +115,10 @@ Hypotheses hypotheses() {
     }
   }
   int scales = 0;
-  for (int i = kLeast; i <= 2; ++i) ++scales;
-  for (int i = kLeast; i <= 2; ++i)
-    h.all.push_back({"scale", 0.05 / scales, 0.03, static_cast<std::size_t>(i - kLeast), 0, kParts, false});
-  const auto add = [&](const char* kind, double prior, std::vector<SlipSensor> of_kind) {
+  for (int i = kLow; i <= 2; ++i) ++scales;
+  for (int i = kLow; i <= 2; ++i)
+    h.all.push_back({"scale", 0.05 / scales, 0.03, static_cast<std::size_t>(i - kLow), 0, kParts, false});
+  const auto add = [&](const char* kind, double prior, const std::vector<SlipSensor>& of_kind) {
     for (const SlipSensor& one : of_kind) {
       h.all.push_back(
           {kind, prior / static_cast<double>(of_kind.size()), 0.03, h.sensors.size(), 0, kParts, false});
@@ -165,7 +165,7 @@ struct Reading {
   int part = 0;
   double weight = 0.0, gradient = 0.0, slip = 0.0, scatter = 0.0, second = 0.0, seconds = 0.0,
          second_variance = 0.0, of_class = 0.0;
-  std::array<double, kVariations.size()> variance{};  // of the slip (Eq. 2)
+  std::array<double, kVariations.size()> variance{};  // of the slip (B3)
 };
 
 // All moments on ground of one class.
@@ -201,70 +201,84 @@ struct OfClass {
     double greatest = -std::numeric_limits<double>::infinity();
   };
 
+  // Sums of the likelihood over the first parts, of one sensor at the given slips.
+  using Parts = std::array<Parabola, kParts + 1>;
+  Parts partsOf(const SlipSensor& sensor, const std::vector<double>& slips, std::size_t t) const {
+    Parts until{};
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      const Reading& r = readings[k];
+      const double variance =
+          sensor.kind == SlipSensor::Kind::OfClass     ? kComputedErrors[t] * kComputedErrors[t]
+          : sensor.kind == SlipSensor::Kind::Unrelated ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
+                                                       : r.variance[t];
+      const double w = r.weight / variance;
+      until[static_cast<std::size_t>(r.part) + 1].add(w,
+                                                      r.slip - sensor.read(slips[k], r.gradient, r.of_class),
+                                                      w * r.scatter + r.weight * std::log(variance));
+    }
+    for (std::size_t k = 0; k < kParts; ++k) until[k + 1] += until[k];
+    return until;
+  }
+
+  // Logarithm of the likelihood of the second slips, if they are `scale` times the given slips.
+  double bySecond(double scale, const std::vector<double>& slips, std::size_t t) const {
+    double log = 0.0;
+    for (std::size_t k = 0; k < readings.size(); ++k)
+      if (const Reading& r = readings[k]; r.seconds > 0.0) {
+        const double off = r.second - scale * slips[k], variance = r.variance[t] + r.second_variance;
+        log -= 0.5 * kEvidence * r.weight * (off * off / variance + std::log(variance));
+      }
+    return log;
+  }
+
+  // Part of the strength at the reference slip that the shear modulus of a hypothesis makes.
+  double shapeOf(const Hypothesis& one, const Hypotheses& h) const {
+    const Curve& fresh = curves.begin()->second;
+    return one.of_shape
+               ? fresh.pullAt(kReferenceSlip / h.sensors[one.sensor].scale) - fresh.pullAt(kReferenceSlip)
+               : 0.0;
+  }
+
+  // One hypothesis with one departure and variation: its departure, log-likelihood and offsets.
+  struct Term {
+    std::size_t hypothesis;
+    double departure, log, offset, changed;
+  };
+  static Term termOf(const Hypothesis& one, const std::vector<Parts>& until) {
+    const auto from = static_cast<std::size_t>(one.from);
+    const Parabola& first = until[one.sensor][from];
+    Term term{0, 0.0, first.marginal(one.offset_std), first.offset(one.offset_std), 0.0};
+    if (one.from == kParts) return term;
+    const Parabola &all = until[one.after][kParts], &before = until[one.after][from];
+    const Parabola rest{all.a - before.a, all.f - before.f, all.q - before.q};
+    const double std = one.after == one.sensor ? one.offset_std : 0.3;
+    term.log += rest.marginal(std);
+    term.changed = rest.offset(std);
+    return term;
+  }
+
   Table table(const std::vector<double>& departures, const Hypotheses& h) const {
-    struct Term {
-      std::size_t hypothesis;
-      double departure, log, offset, changed;
-    };
     std::vector<Term> terms;
     Table out{.sums = std::vector<Sums>(h.all.size())};
     std::vector<double> slips(readings.size());
-    std::vector<std::array<Parabola, kParts + 1>> until(h.sensors.size());  // sums of the first parts
-    const Curve& fresh = curves.begin()->second;
     for (const double departure : departures) {
       for (std::size_t k = 0; k < readings.size(); ++k)
         slips[k] = readings[k].curve->slipOn(readings[k].gradient, departure);
-      const double of_prior = logPrior(departure / mean_std);
       for (std::size_t t = 0; t < kVariations.size(); ++t) {
-        // Logarithm of the likelihood of the second slips, if they are `scale` times those of the class.
-        const auto bySecond = [&](double scale) {
-          double log = 0.0;
-          for (std::size_t k = 0; k < readings.size(); ++k)
-            if (const Reading& r = readings[k]; r.seconds > 0.0) {
-              const double off = r.second - scale * slips[k], variance = r.variance[t] + r.second_variance;
-              log -= 0.5 * kEvidence * r.weight * (off * off / variance + std::log(variance));
-            }
-          return log;
-        };
         std::vector<double> by_second;
-        for (std::size_t s = 0; s < h.sensors.size(); ++s) {
-          const SlipSensor& sensor = h.sensors[s];
-          by_second.push_back(bySecond(sensor.kind == SlipSensor::Kind::Linear ? sensor.scale : 1.0));
-          std::array<Parabola, kParts> parts{};
-          for (std::size_t k = 0; k < readings.size(); ++k) {
-            const Reading& r = readings[k];
-            const double variance =
-                sensor.kind == SlipSensor::Kind::OfClass     ? kComputedErrors[t] * kComputedErrors[t]
-                : sensor.kind == SlipSensor::Kind::Unrelated ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
-                                                             : r.variance[t];
-            const double w = r.weight / variance;
-            parts[static_cast<std::size_t>(r.part)].add(
-                w, r.slip - sensor.read(slips[k], r.gradient, r.of_class),
-                w * r.scatter + r.weight * std::log(variance));
-          }
-          until[s][0] = {};
-          for (std::size_t k = 0; k < kParts; ++k) (until[s][k + 1] = until[s][k]) += parts[k];
+        std::vector<Parts> until;
+        for (const SlipSensor& sensor : h.sensors) {
+          by_second.push_back(
+              bySecond(sensor.kind == SlipSensor::Kind::Linear ? sensor.scale : 1.0, slips, t));
+          until.push_back(partsOf(sensor, slips, t));
         }
-        const double by_class = bySecond(1.0);
+        const double by_class = bySecond(1.0, slips, t), of_prior = logPrior(departure / mean_std);
         for (std::size_t i = 0; i < h.all.size(); ++i) {
-          const Hypothesis& one = h.all[i];
-          const auto from = static_cast<std::size_t>(one.from);
-          double log = of_prior + (one.of_shape ? by_second[one.sensor] : by_class) +
-                       until[one.sensor][from].marginal(one.offset_std),
-                 changed = 0.0;
-          if (one.from < kParts) {
-            const Parabola &all = until[one.after][kParts], &before = until[one.after][from];
-            const Parabola rest{all.a - before.a, all.f - before.f, all.q - before.q};
-            const double std = one.after == one.sensor ? one.offset_std : 0.3;
-            log += rest.marginal(std);
-            changed = rest.offset(std);
-          }
-          const double shape = one.of_shape ? fresh.pullAt(kReferenceSlip / h.sensors[one.sensor].scale) -
-                                                  fresh.pullAt(kReferenceSlip)
-                                            : 0.0;
-          out.greatest = std::max(out.greatest, log);
-          terms.push_back(
-              {i, departure + shape, log, until[one.sensor][from].offset(one.offset_std), changed});
+          Term& term = terms.emplace_back(termOf(h.all[i], until));
+          term.hypothesis = i;
+          term.departure = departure + shapeOf(h.all[i], h);
+          term.log += of_prior + (h.all[i].of_shape ? by_second[h.all[i].sensor] : by_class);
+          out.greatest = std::max(out.greatest, term.log);
         }
       }
     }
@@ -315,6 +329,89 @@ std::vector<double> grid(double low, double high, int points) {
   std::vector<double> out;
   for (int i = 0; i < points; ++i) out.push_back(low + (high - low) * i / (points - 1));
   return out;
+}
+
+// Readings of one class, by wheels in ruts, part and gradient.
+template <typename SumsOfMoments>
+OfClass gathered(const GroundModel& model, const SumsOfMoments& sums, std::size_t index, double second_std,
+                 const DriveEstimate& out) {
+  struct Weighed {
+    double weight = 0.0, gradient = 0.0, slip = 0.0, squares = 0.0, second = 0.0, seconds = 0.0;
+  };
+  std::map<std::pair<int, int>, double> of_square;
+  for (const auto& [key, sum] : sums)
+    if (std::get<0>(key) == static_cast<int>(index))
+      of_square[{std::get<4>(key), std::get<5>(key)}] += sum.count;
+  std::map<std::tuple<int, int, int, int>, Weighed> bins;
+  for (const auto& [key, sum] : sums) {
+    const auto& [of_class, rutted, wheels, chunk, x, y, step] = key;
+    if (of_class != static_cast<int>(index)) continue;
+    const double weight = sum.count / of_square[{x, y}], slip = sum.slip / sum.count;
+    const double gradient = out.gradient(sum.gradient / sum.count);
+    Weighed& w = bins[{rutted, wheels, out.partOf(chunk * kChunk),
+                       static_cast<int>(std::floor(gradient / kGradientStep))}];
+    w.weight += weight;
+    w.gradient += weight * gradient;
+    w.slip += weight * slip;
+    w.squares += weight * slip * slip;
+    if (!out.twice || sum.seconds == 0.0) continue;
+    w.seconds += weight;
+    w.second += weight * sum.second / sum.seconds;
+  }
+  OfClass one{.index = index, .mean_std = model.parts().classes[index].mean_std};
+  for (const auto& [key, w] : bins) {
+    const double slip = w.slip / w.weight;
+    one.add(model, std::get<0>(key), std::get<1>(key),
+            {.part = std::get<2>(key),
+             .weight = w.weight,
+             .gradient = w.gradient / w.weight,
+             .slip = slip,
+             .scatter = std::max(w.squares / w.weight - slip * slip, 0.0),
+             .second = w.seconds > 0.0 ? w.second / w.seconds : 0.0,
+             .seconds = w.seconds,
+             .second_variance = kSecondNoise * kSecondNoise + second_std * second_std});
+  }
+  return one;
+}
+
+bool anyHypothesis(std::size_t) noexcept {
+  return true;
+}
+
+// Sets the kind of sensor, and the most probable sensor whose slip depends on the ground; returns the number of
+// its hypothesis.
+std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, DriveEstimate& out) {
+  std::map<std::string, double> kinds;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    kinds[h.all[i].kind] += weights[i];
+    if (!h.sensors[h.all[i].sensor].informs()) continue;
+    out.informing += weights[i];
+    if (weights[i] > weights[best]) best = i;
+  }
+  for (const auto& [kind, weight] : kinds)
+    if (weight > out.probability) {
+      out.probability = weight;
+      out.hypothesis = kind;
+    }
+  out.sensor = h.sensors[h.all[best].sensor];
+  out.changed_from = h.all[best].from;
+  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].informs();
+  return best;
+}
+
+// Strength of one class over the hypotheses.
+DriveEstimate::OfClass strengthBy(const Hypotheses& h, const std::vector<double>& weights,
+                                  const OfClass::Table& table, double mean_std) {
+  const auto isSound = [&](std::size_t i) { return std::string_view(h.all[i].kind) == "sound"; };
+  const auto informs = [&](std::size_t i) { return h.sensors[h.all[i].sensor].informs(); };
+  const Estimate read = departureBy(weights, table, informs);
+  const double q2 = kPriorVariance * mean_std * mean_std,
+               left = std::max(1.0 / (read.std * read.std) - 1.0 / q2, 0.01 / q2);
+  return {.departure = departureBy(weights, table, anyHypothesis),
+          .if_sound = departureBy(weights, table, isSound),
+          .read = read.value / (read.std * read.std * left),
+          .shared_std = 1.0 / std::sqrt(left)};
 }
 
 }  // namespace
@@ -436,7 +533,6 @@ void DrivePosterior::fitSlopes(DriveEstimate& out) const {
 
 DriveEstimate DrivePosterior::fitted() const {
   static const Hypotheses h = hypotheses();
-  const std::size_t classes = model_.parts().classes.size();
   DriveEstimate out{.moments = moments_};
   for (const GroundClass& ground : model_.parts().classes)
     out.classes.push_back({.departure = {0.0, ground.mean_std},
@@ -445,100 +541,32 @@ DriveEstimate DrivePosterior::fitted() const {
   fitSlopes(out);
   out.twice = seconds_ > 0.5 * static_cast<double>(moments_) && second_std_ < kMostSecondStd;
   std::vector<OfClass> driven;
-  for (std::size_t c = 0; c < classes; ++c) {
-    struct Weighed {
-      double weight = 0.0, gradient = 0.0, slip = 0.0, squares = 0.0, second = 0.0, seconds = 0.0;
-    };
-    std::map<std::pair<int, int>, double> of_square;
-    for (const auto& [key, sum] : sums_)
-      if (std::get<0>(key) == static_cast<int>(c))
-        of_square[{std::get<4>(key), std::get<5>(key)}] += sum.count;
-    std::map<std::tuple<int, int, int, int>, Weighed> bins;
-    for (const auto& [key, sum] : sums_) {
-      const auto& [of_class, rutted, wheels, chunk, x, y, step] = key;
-      if (of_class != static_cast<int>(c)) continue;
-      const double weight = sum.count / of_square[{x, y}], slip = sum.slip / sum.count;
-      const double gradient = out.gradient(sum.gradient / sum.count);
-      Weighed& w = bins[{rutted, wheels, out.partOf(chunk * kChunk),
-                         static_cast<int>(std::floor(gradient / kGradientStep))}];
-      w.weight += weight;
-      w.gradient += weight * gradient;
-      w.slip += weight * slip;
-      w.squares += weight * slip * slip;
-      if (!out.twice || sum.seconds == 0.0) continue;
-      w.seconds += weight;
-      w.second += weight * sum.second / sum.seconds;
-    }
-    if (bins.empty()) continue;
-    OfClass& one = driven.emplace_back(OfClass{.index = c, .mean_std = model_.parts().classes[c].mean_std});
-    for (const auto& [key, w] : bins) {
-      const double slip = w.slip / w.weight;
-      one.add(model_, std::get<0>(key), std::get<1>(key),
-              {.part = std::get<2>(key),
-               .weight = w.weight,
-               .gradient = w.gradient / w.weight,
-               .slip = slip,
-               .scatter = std::max(w.squares / w.weight - slip * slip, 0.0),
-               .second = w.seconds > 0.0 ? w.second / w.seconds : 0.0,
-               .seconds = w.seconds,
-               .second_variance = kSecondNoise * kSecondNoise + second_std_ * second_std_});
-    }
-  }
+  for (std::size_t c = 0; c < out.classes.size(); ++c)
+    if (OfClass one = gathered(model_, sums_, c, second_std_, out); !one.readings.empty())
+      driven.push_back(std::move(one));
   if (driven.empty()) return out;
   std::vector<OfClass::Table> tables;
   std::vector<double> weights;
-  const auto any = [](std::size_t) { return true; };
   // The second grid lies around the posterior by the first.
   for (const bool fine : {false, true}) {
     std::vector<OfClass::Table> next;
     for (std::size_t k = 0; k < driven.size(); ++k) {
       const double q = driven[k].mean_std;
-      std::vector<double> departures = grid(-8.0 * q, 8.0 * q, 49);
-      if (fine) {
-        const Estimate at = departureBy(weights, tables[k], any);
-        const double reach = 5.0 * std::max(at.std, 0.15 * q);
-        departures = grid(at.value - reach, at.value + reach, 41);
-      }
-      next.push_back(driven[k].table(departures, h));
+      const Estimate at = fine ? departureBy(weights, tables[k], anyHypothesis) : Estimate{0.0, 1.6 * q};
+      const double reach = 5.0 * std::max(at.std, 0.15 * q);
+      next.push_back(driven[k].table(grid(at.value - reach, at.value + reach, fine ? 41 : 49), h));
     }
     tables = std::move(next);
     weights = weighed(tables, h);
   }
-  const auto informs = [&](std::size_t i) { return h.sensors[h.all[i].sensor].informs(); };
-  std::map<std::string, double> kinds;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    kinds[h.all[i].kind] += weights[i];
-    out.informing += informs(i) ? weights[i] : 0.0;
-  }
-  for (const auto& [kind, weight] : kinds)
-    if (weight > out.probability) {
-      out.probability = weight;
-      out.hypothesis = kind;
-    }
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    if (informs(i) && weights[i] > weights[best]) best = i;
-  out.sensor = h.sensors[h.all[best].sensor];
-  out.changed_from = h.all[best].from;
-  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].informs();
+  const std::size_t best = nameSensor(h, weights, out);
   for (std::size_t k = 0; k < driven.size(); ++k) {
     DriveEstimate::OfClass& of = out.classes[driven[k].index];
-    of.departure = departureBy(weights, tables[k], any);
-    of.if_sound = departureBy(weights, tables[k],
-                              [&](std::size_t i) { return std::string_view(h.all[i].kind) == "sound"; });
-    const Estimate read = departureBy(weights, tables[k], informs);
-    const double q2 = kPriorVariance * driven[k].mean_std * driven[k].mean_std,
-                 left = std::max(1.0 / (read.std * read.std) - 1.0 / q2, 0.01 / q2);
-    of.shared_std = 1.0 / std::sqrt(left);
-    of.read = read.value / (read.std * read.std * left);
+    of = strengthBy(h, weights, tables[k], driven[k].mean_std);
     const OfClass::Sums& sums = tables[k].sums[best];
-    of.at = sums.first / sums.weight;
+    of.at = sums.first / sums.weight - driven[k].shapeOf(h.all[best], h);
     out.offset += sums.offset / sums.weight / static_cast<double>(driven.size());
     out.changed_offset += sums.changed / sums.weight / static_cast<double>(driven.size());
-    if (h.all[best].of_shape) {
-      const Curve& fresh = driven[k].curves.begin()->second;
-      of.at -= fresh.pullAt(kReferenceSlip / out.sensor.scale) - fresh.pullAt(kReferenceSlip);
-    }
   }
   return out;
 }

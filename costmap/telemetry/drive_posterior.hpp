@@ -82,15 +82,16 @@ struct DriveEstimate {
 /// Bayes estimate of the sensors of a drive and of the strength of its ground. Let wheels on ground of a class
 /// have the pull P(i) at slip i, with the thrust H(i), both over load, and f = H(i)/H(0.5). Ground that departs
 /// from the class by D at the reference slip 0.5 has, on a slope of gradient g, the slip i(g, D) with
-///   P(i) + D f(i) = g                                                                                    (1)
+///   P(i) + D f(i) = g                                                                                   (B2)
 /// A sensor (SlipSensor) with offset b reads b + read(i) + e, e normal with the variance
-///   (t^2 p^2 + 0.02^2) (f/P')^2 + 0.015^2 + (0.01/P')^2                                                  (2)
+///   (t^2 p^2 + 0.02^2) (f/P')^2 + 0.015^2 + (0.01/P')^2                                                 (B3)
 /// where p is the standard deviation of the class between places and t its share in this drive. Each kind of
 /// sensor is one hypothesis with a prior probability; for each, D (normal, mean_std), t and the sensor's
 /// parameters are summed over a grid, and b is integrated. Classes share the sensor. A square with sides of 2/3
 /// of the correlation length counts as one reading. A second slip, measured independently, is a second reading
-/// with an error of 0.03 and of the scatter of the positions. A linear sensor of scale s near 1 is not distinguished from ground whose shear
-/// modulus is s times that of its class: for the sound sensor, D includes P(0.5/s) - P(0.5).
+/// with an error of 0.03 and of the scatter of the positions. A linear sensor of scale s near 1 is not
+/// distinguished from ground whose shear modulus is s times that of its class: for the sound sensor, D includes
+/// P(0.5/s) - P(0.5).
 ///
 /// Measured gradients are compared with those of the map, which gives the offset and scale of the slope sensor,
 /// and the part of the drive from which they are unrelated: there the pose is displaced. All numbers ours.

@@ -13,8 +13,12 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestStdShare =
     2.0;  // in units of the class's mean_std: a drive with a greater standard deviation is not verified (ours)
+// Least thrust, relative to that at the reference slip, at which readings of sensors that are not verified tell
+// about the strength of the ground: below, an offset of the slip outweighs it (ours).
+constexpr double kMobilised = 0.5;
 constexpr double kVerified =
     0.9;  // probability that the slip depends on the ground, of a verified drive (ours)
+constexpr double kNoStrength = 1.0;    // standard deviation of a pull that tells nothing
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
 constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
@@ -127,6 +131,8 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
     others_ += moment.readings.size();
   else if (fitted_)
     correct(sound, number, verdict, seen);
+  for (auto& one : seen)
+    if (one && one->trust == Trust::Unverified && one->share < kMobilised) one->pull.std = kNoStrength;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Result& result = all[sound_at[i]];
     if (seen[i]) {
@@ -209,7 +215,10 @@ void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
                                 .map_gradient = rows.mapGradient(first)};
   std::vector<double> slips, second;
   for (const ClassReading& read : sound.read) {
-    if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing) return;
+    // On a test stand, and on a rover that crabs, the pull is not that of the slope.
+    if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing ||
+        std::isfinite(read.reading.drawbar_pull_N))
+      return;
     moment.rutted += read.reading.pass > 1 ? 1 : 0;
     slips.push_back(read.reading.slip);
   }
@@ -262,7 +271,7 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const D
     const bool verified = drive.informing > kVerified && of.shared_std <= largest;
     if (!std::isfinite(of.shared_std)) continue;  // no moment of the class was fitted
     if (!drive.informs(number)) {
-      seen[i] = boundAlone(*seen[i]);
+      seen[i]->pull.std = kNoStrength;
       continue;
     }
     seen[i] = corrected[i];

@@ -769,21 +769,21 @@ void forSources(GDALDataset& dataset, const std::string& path, Each each) {
       each(*source, file.path);
 }
 
-// True if a block of a GeoTIFF has no place in the file, and no value stands for no data.
+// True if a block of a GeoTIFF lies in its header, or has no place and no value stands for no data.
 bool lost(GDALRasterBand& band) {
-  if (int stated = 0; band.GetNoDataValue(&stated), stated != 0) return false;
-  int width = 0, height = 0;
+  int width = 0, height = 0, stated = 0;
+  band.GetNoDataValue(&stated);
   band.GetBlockSize(&width, &height);
   for (int row = 0; row * height < band.GetYSize(); ++row)
-    for (int column = 0; column * width < band.GetXSize(); ++column)
-      if (const std::string block = "BLOCK_OFFSET_" + std::to_string(column) + "_" + std::to_string(row);
-          band.GetMetadataItem(block.c_str(), "TIFF") == nullptr)
-        return true;
+    for (int column = 0; column * width < band.GetXSize(); ++column) {
+      const std::string block = "BLOCK_OFFSET_" + std::to_string(column) + "_" + std::to_string(row);
+      const char* const at = band.GetMetadataItem(block.c_str(), "TIFF");
+      if (at == nullptr ? stated == 0 : std::strtoull(at, nullptr, 10) < 8) return true;
+    }
   return false;
 }
 
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
-
 // True if a word is a number for GDAL, which accepts a decimal comma.
 bool isNumber(std::string_view word) {
   if (word.size() > kLongest) return false;

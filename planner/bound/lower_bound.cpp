@@ -214,10 +214,8 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
       if (throughCell_J(cell) > most_J || !octagons_->limits().of(map_->at(cell), limits)) return;
       const auto rises = risesIn(from_start_, grid, cell);
       if (!rises) return;
-      if (fit_of[at] == 0) {
-        fit_of[at] = static_cast<std::uint32_t>(fits.size());
-        fits.emplace_back();
-      }
+      if (fit_of[at] == 0) fit_of[at] = static_cast<std::uint32_t>(fits.size());
+      fits.resize(std::max<std::size_t>(fits.size(), fit_of[at] + std::size_t{1}));
       fits[fit_of[at]] = fittedOctagon(limits, *rises);
     });
     auto raised = cornerField(map_, fitted, starts, stop, RouteSense::FromStart);

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 760},    {"terramech", 22702}, {"maps", 7446},     {"costmap", 14548},
-                           {"planner", 24511}, {"cli", 15187},       {"examples", 1703}, {"tests", 63468}};
+const Budget kBudgets[] = {{"common", 760},    {"terramech", 22702}, {"maps", 7446},     {"costmap", 13611},
+                           {"planner", 24055}, {"cli", 15187},       {"examples", 1703}, {"tests", 61632}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

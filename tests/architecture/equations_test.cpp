@@ -32,7 +32,7 @@ std::set<int> cited(const std::string& where, const std::string& letter) {
 TEST(Equations, EveryCitedNumberIsOnThePage) {
   for (const auto& [letter, page] : {std::pair{"B", "belief.md"}, std::pair{"T", "effects.md"}}) {
     const auto known = defined(std::string(TALUS_SOURCE_DIR "/docs/") + page, letter);
-    ASSERT_GT(known.size(), 10U) << page;
+    ASSERT_GT(known.size(), 5U) << page;
     for (const std::string folder : {"terramech", "costmap", "cli", "tests", "docs"})
       for (const auto& file : files(folder, {".hpp", ".cpp", ".md"}))
         for (const int number : cited(text(file), letter))

@@ -16,8 +16,9 @@ namespace {
 
 using costmap::Direction;
 
-// The route is replanned if the cost of its remainder exceeds this multiple of its cost when planned.
-constexpr double kDearer = 1.3;
+// The route is replanned if the cost of its remainder exceeds this multiple of its cost when planned: more than
+// the noise of estimates on ground as its class changes it (ours).
+constexpr double kDearer = 2.0;
 // Depth that a wheel digs on the spot per metre of rim travel (ours; Spirit sank to the hub in some metres).
 constexpr double kDugPerMetre = 0.05;
 

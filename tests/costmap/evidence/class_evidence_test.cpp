@@ -23,9 +23,13 @@ SourcePull pullOf(std::uint16_t drive, Trust trust, double departure, double sha
   return {.source = {drive, trust}, .weight = 1e9, .pull = kPrior + departure, .shared = shared};
 }
 
-// Number of places as which one block with such a pull counts.
+// Number of places as which one block with such a pull counts: less with the probability that it is on another
+// soil, 0.02 with departures of 0.3.
 double weightOf(const SourcePull& pull) {
-  return kP * kP / (kP * kP + pull.variance());
+  const double y = pull.pull - kPrior, v = kP * kP + kQ * kQ + pull.variance() + pull.shared * pull.shared;
+  const double own = 0.98 * std::exp(-0.5 * y * y / v) / std::sqrt(v),
+               other = 0.02 * std::exp(-0.5 * y * y / 0.09) / 0.3;
+  return kP * kP / (kP * kP + pull.variance()) * own / (own + other);
 }
 
 double meanOf(const ClassState& state) {
@@ -56,7 +60,11 @@ TEST(ClassEvidence, HypothesesEqualBruteForce) {
     constexpr int kBlocks = 7;
     for (int b = 0; b < kBlocks; ++b) evidence.count(pulls, kPrior, 1.0, 1);
     const ClassState state = evidence.state();
-    const double places = kBlocks * weightOf(pulls[0]);
+    double places = 0.0;
+    std::vector<double> error;  // variance of the error of each drive
+    for (const SourcePull& one : pulls) places = std::max(places, kBlocks * weightOf(one));
+    for (const SourcePull& one : pulls)
+      error.push_back(one.shared * one.shared + kP * kP / (kBlocks * weightOf(one)) - kP * kP / places);
     const double faulty[] = {0.5, 0.07, 0.001};
     std::vector<std::pair<double, double>> expected;  // probability and mean of D
     double sum = 0.0;
@@ -67,7 +75,7 @@ TEST(ClassEvidence, HypothesesEqualBruteForce) {
         const double p = faulty[static_cast<int>(pulls[static_cast<std::size_t>(d)].source.trust)];
         const double y = pulls[static_cast<std::size_t>(d)].pull - kPrior;
         if ((set >> d & 1U) != 0) {
-          const double v = std::pow(2.0 * kQ, 2) + std::pow(pulls[static_cast<std::size_t>(d)].shared, 2);
+          const double v = std::pow(2.0 * kQ, 2) + error[static_cast<std::size_t>(d)];
           weight *= p * std::exp(-0.5 * y * y / v) / std::sqrt(v);
         } else {
           weight *= 1.0 - p;
@@ -78,10 +86,10 @@ TEST(ClassEvidence, HypothesesEqualBruteForce) {
       Eigen::MatrixXd covariance(n, n);
       Eigen::VectorXd y(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const SourcePull& one = pulls[static_cast<std::size_t>(sound[static_cast<std::size_t>(i)])];
-        y(i) = one.pull - kPrior;
+        const auto drive = static_cast<std::size_t>(sound[static_cast<std::size_t>(i)]);
+        y(i) = pulls[drive].pull - kPrior;
         for (Eigen::Index j = 0; j < n; ++j)
-          covariance(i, j) = kQ * kQ + kP * kP / places + (i == j ? one.shared * one.shared : 0.0);
+          covariance(i, j) = kQ * kQ + kP * kP / places + (i == j ? error[drive] : 0.0);
       }
       double mean = 0.0;
       if (n > 0) {

@@ -29,6 +29,7 @@ TEST(GoalChoice, ResultIsTheCheapestOfTheSingleGoalPlans) {
                       .start = {20.5, 20.5},
                       .goal = {3.5, 4.5},
                       .other_goals = {{36.5, 5.5}, {20.5, 33.5}, {8.5, 30.5}},
+                      .prove = true,
                       .kinematics = {.turning_radius_m = 1.5}};
       if (seed % 2 == 0) problem.via = {{25.5, 25.5}};
       const Plan any = NamedPlanner(planner).plan(problem);

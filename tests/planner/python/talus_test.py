@@ -169,8 +169,10 @@ class MapTest(Refusals):
             for key, values in its["properties"].items():
                 if key != "inputs":
                     self.assertEqual(ours["properties"][key], values, key)
-            read = {"file": "driven.ot", "path": str(folder / "driven.ot"), "sha256": hashlib.sha256((folder / "driven.ot").read_bytes()).hexdigest()}
-            self.assertEqual(ours["properties"]["inputs"]["files"], [read])
+            stored = (folder / "driven.ot").read_bytes()
+            files = {file["role"]: file for file in ours["properties"]["inputs"]["files"]}
+            self.assertEqual(files["map"], {"file": "driven.ot", "path": str(folder / "driven.ot"), "role": "map", "size": len(stored), "sha256": hashlib.sha256(stored).hexdigest()})
+            self.assertEqual(files["elevation"]["file"], pathlib.Path(hill).name)
             run("view", folder / "ours.geojson", "-o", folder / "ours.html")
 
     def test_files_that_cannot_be_are_one_line(self):
