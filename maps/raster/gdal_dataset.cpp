@@ -860,7 +860,7 @@ void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path) {
     });
   if (driverOf(dataset) == "GTiff" && lost(*dataset.GetRasterBand(band)))
     throw InputError(
-        {path, "is cut short or half written: blocks are missing, and no value stands for no data",
+        {path, "is cut short or half written: blocks are in its header, or missing without a no-data value",
          "write it again, or state one with gdal_edit.py -a_nodata if they are meant to be empty"});
 }
 

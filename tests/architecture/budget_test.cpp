@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 760},    {"terramech", 22702}, {"maps", 7446},     {"costmap", 13611},
-                           {"planner", 24055}, {"cli", 15187},       {"examples", 1703}, {"tests", 61632}};
+                           {"planner", 24055}, {"cli", 15187},       {"examples", 1703}, {"tests", 61662}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -403,5 +403,35 @@ TEST(CompleteFile, PaddedLinesOfEhdrAreRejected) {
               HasSubstr("has lines of 32 bytes (TOTALROWBYTES), which GDAL reads"));
 }
 
+// Property: a block that lies in the header of a GeoTIFF is refused, whether or not a value stands for no data.
+TEST(CompleteFile, BlockInTheHeaderIsRejected) {
+  const TemporaryFolder folder;
+  const std::string cells(8 * 8 * 2, '\7');
+  const auto u16 = [](std::uint32_t v) {
+    return std::string{static_cast<char>(v), static_cast<char>(v >> 8U)};
+  };
+  const auto u32 = [&](std::uint32_t v) { return u16(v) + u16(v >> 16U); };
+  const auto tiff = [&](std::uint32_t offset, bool declared) {
+    std::string tags;
+    const auto tag = [&](std::uint32_t number, std::uint32_t type, std::uint32_t value) {
+      tags += u16(number) + u16(type) + u32(number == 42113 ? 4 : 1) + u32(value);
+    };
+    for (const std::uint32_t number : {256U, 257U}) tag(number, 3, 8);
+    tag(258, 3, 16), tag(259, 3, 1), tag(262, 3, 1), tag(273, 4, offset), tag(277, 3, 1), tag(278, 3, 8);
+    tag(279, 4, 128), tag(339, 3, 2);
+    if (declared) tag(42113, 2, 0x0039392D);  // "-99"
+    return folder.write(
+        "t.tif", std::string("II*\0", 4) + u32(8 + 128) + cells + u16(declared ? 11 : 10) + tags + u32(0));
+  };
+  for (const bool declared : {false, true}) {
+    EXPECT_EQ(refusal([&] { readElevation(tiff(8, declared), {.resolution_m = 1.0, .ignore_crs = true}); }),
+              "accepted");
+    for (const std::uint32_t offset : {0U, 4U})
+      EXPECT_THAT(
+          refusal([&] { readElevation(tiff(offset, declared), {.resolution_m = 1.0, .ignore_crs = true}); }),
+          HasSubstr("in its header"));
+  }
+}
+
 }  // namespace complete_file_test
 }  // namespace talus::maps
