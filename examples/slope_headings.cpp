@@ -20,18 +20,18 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // Headings from uphill, over across the slope with the uphill side on the left, to downhill.
 void print(const terramech::SlopeEquilibrium& equilibrium, double tilt_rad) {
-  std::printf("heading  slip    slip angle  body turn  energy   reserve: pull  side   holds\n");
+  std::printf("heading  slip    slip angle  body turn  energy    strength reserve  holds\n");
   for (int heading = 0; heading <= 180; heading += 15) {
     const double gradient = std::tan(tilt_rad), way = heading / kDegrees;
-    const terramech::SlopeState s =
-        equilibrium.at({.along = gradient * std::cos(way), .across = gradient * std::sin(way)});
+    const terramech::Gradient plane{.along = gradient * std::cos(way), .across = gradient * std::sin(way)};
+    const terramech::SlopeState s = equilibrium.at(plane);
     std::printf("%4d deg ", heading);
     if (s.holds())
-      std::printf("%6.3f  %6.1f deg  %5.1f deg  %6.0f J/m       %6.3f  %6.3f  %s\n", s.slip,
-                  s.slip_angle_rad * kDegrees, s.body_turn_rad * kDegrees, s.energy_J_per_m, s.pull_reserve,
-                  s.side_reserve, terramech::name(s.failure));
+      std::printf("%6.3f  %6.1f deg  %5.1f deg  %6.0f J/m            %6.3f  %s\n", s.slip,
+                  s.slip_angle_rad * kDegrees, s.body_turn_rad * kDegrees, s.energy_J_per_m,
+                  1.0 - equilibrium.leastStrength(plane), terramech::name(s.failure));
     else
-      std::printf("     -           -          -          -            -       -  %s\n",
+      std::printf("     -           -          -          -                 -  %s\n",
                   terramech::name(s.failure));
   }
 }

@@ -130,6 +130,23 @@ std::string riskText(double probability) {
   return fmt::format("immobilisation probability {:.2g}", probability);
 }
 
+// Place and remedy where a route is likely to fail.
+std::string warningText(const Route& route) {
+  constexpr double kLikely = 0.1;
+  const Profile margin = profile(route, &RouteVertex::drawbar_pull_margin);
+  if (margin.known() && margin.lowest < 0.0)
+    return fmt::format(
+        "the slope at {:.1f},{:.1f} requires more drawbar pull than is available at slip 0.5: "
+        "lower --risk, measure the ground, or choose another goal",
+        route.vertices[margin.lowest_at].x_m, route.vertices[margin.lowest_at].y_m);
+  if (!(route.vertices.back().immobilisation_risk > kLikely)) return "";
+  const auto worst = std::ranges::max_element(route.vertices, {}, &RouteVertex::hazard_per_m);
+  return fmt::format(
+      "immobilisation is likely, most at {:.1f},{:.1f}: lower --risk, measure the ground, or choose "
+      "another goal",
+      worst->x_m, worst->y_m);
+}
+
 std::string driveText(const Route& route) {
   if (!route.summary.drive) return "";
   const planner::RouteShape& d = *route.summary.drive;
@@ -166,6 +183,12 @@ std::string durationText(double seconds) {
   return fmt::format("{} d {:02} h", minutes / 1440, minutes % 1440 / 60);
 }
 
+// What 9 of 10 drives do not exceed; empty if it is not known.
+template <typename Text>
+std::string atMost(double p90, Text text) {
+  return p90 > 0.0 ? fmt::format(" (9 of 10 drives: at most {})", text(p90)) : "";
+}
+
 Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
@@ -177,11 +200,11 @@ Facts summaryOf(const Route& route) {
   const double risk = route.vertices.back().immobilisation_risk;
   Facts facts{{"route", statusText(route)},
               {"length", lengthText(s.length_m) + straightText(route)},
-              {"driving time",
-               fmt::format("{}, mean speed {:.3g} m/s", durationText(s.time_s), s.length_m / s.time_s)},
-              {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m; cost including time and risk {}",
-                                     energyText(s.energy_J), s.energy_J / 3600.0, s.energy_J / s.length_m,
-                                     energyText(s.cost))},
+              {"driving time", fmt::format("{}{}, mean speed {:.3g} m/s", durationText(s.time_s),
+                                           atMost(s.time_p90_s, durationText), s.length_m / s.time_s)},
+              {"energy", fmt::format("{}{} ({:.4g} Wh), {:.4g} J/m; cost including time and risk {}",
+                                     energyText(s.energy_J), atMost(s.energy_p90_J, energyText),
+                                     s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
               {"manoeuvres", driveText(route)},
               {"elevation", climbText(route)},
               {"slope", slopeText(route)},
@@ -189,7 +212,8 @@ Facts summaryOf(const Route& route) {
               {"wheel", wheelText(route)},
               {"drawbar-pull margin", marginText(route)},
               {"traversability", groundText(route)},
-              {"risk", riskText(risk)}};
+              {"risk", riskText(risk)},
+              {"warning", warningText(route)}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }

@@ -19,6 +19,7 @@ const char* const kTruthFormat =
     "    - {x_m: 40, y_m: 25, radius_m: 4, soil: mars_drift}\n"
     "  random:                           variation between worlds\n"
     "    spread: 0.1                     relative std of cohesion, tan(friction) and moduli\n"
+    "    as_believed: true               departures of the ground as the map believes (mean and places)\n"
     "    patches: 8                      number of random patches, away from start and goal\n"
     "    patch_radius_m: 3               mean patch radius; each varies by +-50 %\n"
     "    patch_soil: mars_drift\n"
@@ -65,9 +66,10 @@ planner::SoilPatch patchOf(const YamlFields& fields, const YamlFields& file, con
 
 void readRandom(const YamlFields& random, const YamlFields& file, const std::string& path,
                 planner::Truth& truth) {
-  random.only({"spread", "patches", "patch_radius_m", "patch_soil"});
+  random.only({"spread", "as_believed", "patches", "patch_radius_m", "patch_soil"});
   truth.spread = random.number("spread", 0.0);
   if (!(truth.spread >= 0.0 && truth.spread <= 1.0)) random.refuse("spread", "spread must lie in [0, 1]", "");
+  truth.as_believed = random.flag("as_believed", false);
   truth.random_patches = random.integer("patches", 0);
   if (truth.random_patches < 0 || truth.random_patches > 10000)
     random.refuse("patches", "patches must lie in [0, 10000]", "");

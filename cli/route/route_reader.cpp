@@ -186,7 +186,7 @@ planner::RouteShape shapeFrom(const Fields& drive) {
           .max_curvature_1_m = drive.number("max_curvature_1_m")};
 }
 
-// The field is absent in routes of version 0.1.0.
+// The field is absent in routes of older versions.
 double numberOr(const Fields& summary, const char* field) {
   return summary.has(field) ? summary.number(field) : std::nan("");
 }
@@ -195,6 +195,8 @@ planner::RouteSummary summaryFrom(const Fields& summary) {
   return {.cost = summary.number("cost"),
           .energy_J = summary.number("energy_J"),
           .time_s = summary.number("time_s"),
+          .energy_p90_J = numberOr(summary, "energy_p90_J"),
+          .time_p90_s = numberOr(summary, "time_p90_s"),
           .length_m = summary.number("length_m"),
           .max_slip = summary.number("max_slip"),
           .max_slope_rad = summary.number("max_slope_rad"),

@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include <talus/costmap/cost/cost_weights.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/costmap/cost/turn_price.hpp>
 
 namespace talus::costmap {
@@ -12,8 +13,7 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
     const auto& states = map.cost().states()[i];
     if (!states)
       throw std::domain_error("cost weights: the map's cost holds no energy, time and risk to weigh");
-    const auto& crossing = map.cost().crossings()[i];
-    grounds.push_back({priced(*states, crossing.get(), weights), states, crossing,
+    grounds.push_back({states->curve(weights), states,
                        reweighted(map.cost().turns()[i], weights.energy, weights.time_W)});
   }
   CostGrid::Content content = map.content();

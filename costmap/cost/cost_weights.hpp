@@ -3,7 +3,6 @@
 #include <memory>
 
 #include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/costmap/cost/cross_slope.hpp>
 
 namespace talus::costmap {
 

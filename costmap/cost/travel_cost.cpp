@@ -46,7 +46,6 @@ TravelCost::TravelCost(const Limits& limits, std::vector<TravelCurve> curves)
     : limits_(limits),
       curves_(std::move(curves)),
       states_(curves_.size()),
-      crossings_(curves_.size()),
       turns_(curves_.size()),
       steady_gradient_(steadyGradient(limits.stance.get())) {
   if (curves_.size() > CellCode::kUnknown)
@@ -60,7 +59,6 @@ TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grou
   uncertainty_ = std::move(uncertainty);
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     states_[i] = grounds[i].states;
-    crossings_[i] = grounds[i].crossing;
     turns_[i] = grounds[i].turns;
   }
 }

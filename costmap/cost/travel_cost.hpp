@@ -131,7 +131,15 @@ struct TravelCurve {
   }
 };
 
-class CrossSlope;
+class TravelStates;
+
+/// Weights of the cost function: cost = energy * energy_J + time_W * time_s + risk_J * hazard, where `hazard`
+/// is TravelState::risk_per_m.
+struct CostWeights {
+  double energy = 1.0;  ///< weight of energy, >= 0 [-]
+  double time_W = 1.0;  ///< weight of time, >= 0 [J/s]
+  double risk_J = 1e7;  ///< cost of the loss of the rover, >= 0 [J]
+};
 
 /// Cost of a turn by one radian, or of a change of direction, in addition to the cost of the path length.
 struct TurnCost {
@@ -151,14 +159,10 @@ struct TurnCosts {
   TurnCost at_vertex;
 };
 
-/// Cost curve of ground of one estimated strength, and the tabulated travel states from which the costs
-/// follow.
+/// Cost curve of ground of one estimated strength, and the travel states from which the costs follow.
 struct GroundCost {
   TravelCurve curve;
-  /// Travel states over the gradient along the heading; may be null if details are not needed (tests).
-  std::shared_ptr<const TravelTable> states;
-  /// Source of the curve's rows; null for a curve without rows.
-  std::shared_ptr<const CrossSlope> crossing{};
+  std::shared_ptr<const TravelStates> states;  ///< may be null if details are not needed (tests)
   TurnCosts turns{};  ///< costs of a turn by one radian on level ground; zeros if turning is free (tests)
 };
 
@@ -174,6 +178,15 @@ struct SlopeHold {
   /// Additional tilt until the rover tips; NaN also for a rover whose height of the centre of mass is
   /// unknown.
   double stability_margin_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Energy and time per horizontal metre on ground whose strength departs from its mean by deviate(k) standard
+/// deviations. A motion that fails there has the values of the least strength at which it does not.
+struct TravelForecast {
+  static constexpr int kDeviates = 9;
+  static constexpr double deviate(int k) noexcept { return -2.0 + 0.5 * k; }
+  std::array<float, kDeviates> energy_J_per_m{}, time_s_per_m{};
+  double fails_below = -10.0;  ///< departure below which the motion fails, in standard deviations
 };
 
 /// Correlation of the soil uncertainty between places of a route, and the consequence of insufficient drawbar
@@ -221,6 +234,13 @@ class TravelCost {
   /// Returns slip angle, side force and stability margin on the cell in a heading.
   SlopeHold hold(CellCode cell, Direction heading) const noexcept;
 
+  /// Returns energy and time of a horizontal metre over the strength of the ground; zeros without states.
+  TravelForecast forecast(CellCode cell, Direction heading) const noexcept;
+
+  /// Returns the gradient of the straight climb that requires the same strength as the plane of the cell in a
+  /// heading; without states the gradient along the heading.
+  double climb(CellCode cell, Direction heading) const noexcept;
+
   /// Returns the cost of a turn by one radian at a vertex of a route on this cell; 0 on cells without a cost
   /// curve. turns() returns the costs of turns by curve index.
   TurnCost turn(CellCode cell) const noexcept {
@@ -238,16 +258,16 @@ class TravelCost {
   const SoilUncertainty& uncertainty() const noexcept { return uncertainty_; }
   const std::vector<TravelCurve>& curves() const noexcept { return curves_; }
   /// Returns the travel states by curve index; null for a curve without states.
-  const std::vector<std::shared_ptr<const TravelTable>>& states() const noexcept { return states_; }
-  const std::vector<std::shared_ptr<const CrossSlope>>& crossings() const noexcept { return crossings_; }
+  const std::vector<std::shared_ptr<const TravelStates>>& states() const noexcept { return states_; }
 
  private:
-  TravelState detailAt(std::size_t curve, double place, double across) const noexcept;
+  const TravelStates* statesOf(CellCode cell) const noexcept {
+    return cell.curve() < states_.size() ? states_[cell.curve()].get() : nullptr;
+  }
 
   Limits limits_;
   std::vector<TravelCurve> curves_;
-  std::vector<std::shared_ptr<const TravelTable>> states_;
-  std::vector<std::shared_ptr<const CrossSlope>> crossings_;
+  std::vector<std::shared_ptr<const TravelStates>> states_;
   std::vector<TurnCosts> turns_;
   double steady_gradient_;  // gradient up to which the rover tips in no heading
   SoilUncertainty uncertainty_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 
@@ -33,8 +32,8 @@ struct TravelState {
   float slip = 0.0F;            ///< slip [-]; positive for driven, negative for braked wheels
   float sinkage_m = 0.0F;       ///< sinkage, per wheel
   float torque_Nm = 0.0F;       ///< torque, per wheel
-  float energy_J_per_m = 0.0F;  ///< drive and hotel energy; expected value over the soil uncertainty
-  float time_s_per_m = 0.0F;    ///< driving time; expected value over the soil uncertainty
+  float energy_J_per_m = 0.0F;  ///< drive and hotel energy; expected value over the strengths that hold
+  float time_s_per_m = 0.0F;    ///< driving time; expected value over the strengths that hold
   /// Hazard rate of immobilisation [1/m]: the probability of immobilisation over d metres is 1 -
   /// exp(-risk_per_m d).
   float risk_per_m = 0.0F;
@@ -55,8 +54,5 @@ TravelState worse(const TravelState& a, const TravelState& b) noexcept;
 /// of both. The refusal is Tips if either state tips, otherwise that of `a`, or that of `b` if `a` is
 /// allowed.
 TravelState between(const TravelState& a, const TravelState& b, float share) noexcept;
-
-/// States of a cost curve, tabulated over the gradient along the heading at the nodes of TravelCurve.
-using TravelTable = std::array<TravelState, 512>;
 
 }  // namespace talus::costmap

@@ -112,7 +112,7 @@ struct WheelObservation {
 /// g cos(beta) - c sin(beta) in its plane and the side force |g sin(beta) + c cos(beta)|, both over load.
 /// Pull and side force are compared with those of the class at that slip angle. If the side force over load
 /// is at least 0.05 and is lower than that of the class by more than two standard deviations, the ground
-/// counts as weaker in proportion (CrossSlope), unless the pull gives a lower value. If the slip angle or the
+/// counts as weaker in proportion (SlopeEquilibrium), unless the pull gives a lower value. If the slip angle or the
 /// gradient across the heading is unknown, the slip angle is assumed to be 0, which underestimates the
 /// ground.
 ///

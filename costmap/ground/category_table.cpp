@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/costmap/ground/category_table.hpp>
 
 namespace talus::costmap {
@@ -13,7 +13,7 @@ namespace {
 using terramech::Category;
 
 constexpr int kJudgedHeadings =
-    24;                       // headings over 180 degrees, as CrossSlope::steepest(): left and right are
+    24;                       // headings over 180 degrees, as SlopeLattice::steepest(): left and right are
                               // symmetric
 constexpr int kSteps = 2898;  // greatest gradient of CellCode in steps: 2048 sqrt(2)
 
@@ -55,25 +55,18 @@ TravelState stateOn(const TravelCost& cost, CellCode plane) {
 
 }  // namespace
 
-double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept {
-  const terramech::Gradient gradient{cell.dzDx() * heading.x + cell.dzDy() * heading.y,
-                                     cell.dzDy() * heading.x - cell.dzDx() * heading.y};
-  const bool known = cell.curve() < cost.crossings().size() && cost.crossings()[cell.curve()];
-  return known ? cost.crossings()[cell.curve()]->climb(gradient) : gradient.along;
-}
-
 Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept {
   const double length = std::hypot(cell.dzDx(), cell.dzDy());
   if (!(length > 0.0)) return {};
   const Direction up{cell.dzDx() / length, cell.dzDy() / length};
   constexpr double kClearly = 1.0 / 32.0;  // gradient difference of two rows
   Direction found = up;
-  double most = climbAt(cost, cell, up) + kClearly;
+  double most = cost.climb(cell, up) + kClearly;
   for (int k = 1; k < kJudgedHeadings; ++k) {
     const double c = std::cos(k * std::numbers::pi / kJudgedHeadings),
                  s = std::sin(k * std::numbers::pi / kJudgedHeadings);
     const Direction tried{c * up.x - s * up.y, s * up.x + c * up.y};
-    if (const double climb = climbAt(cost, cell, tried); climb > most) {
+    if (const double climb = cost.climb(cell, tried); climb > most) {
       most = climb;
       found = tried;
     }
@@ -95,7 +88,7 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   const TravelCost cost(limits, std::vector{ground});
   const auto judgedAt = [&](int step) {
     return judged(model, belief, stateOn(cost, planeOf(step)),
-                  ground.crossing->steepest(step * CellCode::kStep));
+                  ground.states->steepest(step * CellCode::kStep));
   };
   // First step with a category at least `least`, by bisection: categories are monotone in the gradient.
   const auto boundOf = [&](Category least) {
@@ -112,7 +105,7 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   const std::array bounds{boundOf(Category::Marginal), boundOf(Category::Dangerous)};
   entries_.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) {
-    RankedCategory now = model.category(belief, ground.crossing->steepest(step * CellCode::kStep));
+    RankedCategory now = model.category(belief, ground.states->steepest(step * CellCode::kStep));
     for (const auto& [from, ranked] : bounds)
       if (step >= from && now.category < ranked.category) now = ranked;
     entries_.push_back(entryOf(now));

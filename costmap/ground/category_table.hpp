@@ -8,17 +8,12 @@
 
 namespace talus::costmap {
 
-/// Returns the equivalent climb of a cell in a heading: the gradient of the straight climb, without cross
-/// slope, that leaves the same reserve of soil strength as the plane of the cell in that heading. For ground
-/// without a soil, returns the gradient along the heading.
-double climbAt(const TravelCost& cost, CellCode cell, const Direction& heading) noexcept;
-
 /// Returns the heading that determines the category of a cell: straight uphill, or a heading across the slope
 /// if its equivalent climb is steeper by more than 1/32.
 Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept;
 
 /// Returns the category of ground with the estimate `belief` in one heading, and its probability. `state` is
-/// the result of TravelCost::detail() and `climb` the result of climbAt() for that heading. Ground that is
+/// the result of TravelCost::detail() and `climb` the result of TravelCost::climb() for that heading. Ground that is
 /// refused (has infinite cost) for a reason other than its category is dangerous.
 RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
                       double climb);

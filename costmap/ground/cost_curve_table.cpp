@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <talus/costmap/cost/cross_slope.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/costmap/ground/cost_curve_table.hpp>
 
 namespace talus::costmap {
@@ -17,11 +17,9 @@ constexpr std::size_t kNumbers = CellCode::kUnknown;
 // Returns a cost that refuses every heading, for classes whose prior was not requested.
 const GroundCost& refused() {
   static const GroundCost ground = [] {
-    auto states = std::make_shared<TravelTable>();
-    for (TravelState& state : *states) state.refusal = Refusal::Unknown;
-    TravelCurve curve;
-    curve.cost_J_per_m.fill(std::numeric_limits<float>::infinity());
-    return GroundCost{.curve = std::move(curve), .states = std::move(states)};
+    auto states = std::make_shared<const TabulatedStates>(
+        std::vector<TravelState>(TravelCurve::kBins, {.refusal = Refusal::Unknown}));
+    return GroundCost{.curve = states->curve({}), .states = std::move(states)};
   }();
   return ground;
 }
@@ -110,16 +108,12 @@ std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
 }
 
 GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m) const {
-  auto states = std::make_shared<TravelTable>(*ground.states);
-  for (TravelState& state : *states)
-    state.energy_J_per_m = static_cast<float>(static_cast<double>(state.energy_J_per_m) + added_J_per_m);
   const TravelPolicy& policy = model_->parts().policy;
-  TravelCurve curve = priced(*states, ground.crossing.get(),
-                             {.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J});
-  return {.curve = std::move(curve),
-          .states = std::move(states),
-          .crossing = ground.crossing,
-          .turns = ground.turns};
+  const auto states = dynamic_cast<const GroundStates&>(*ground.states).withAdded(added_J_per_m);
+  return {
+      .curve = states->curve({.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J}),
+      .states = states,
+      .turns = ground.turns};
 }
 
 std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {

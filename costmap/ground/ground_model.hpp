@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost/expected_travel.hpp>
 #include <talus/costmap/cost/travel_cost.hpp>
-#include <talus/costmap/cost/travel_policy.hpp>
+#include <talus/costmap/ground/ground_states.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 #include <talus/terramech/effects/effects.hpp>
@@ -29,23 +28,10 @@ struct GroundClass {
   double sinkage_std = 0.1;  ///< standard deviation of sinkage over wheel radius z/r between places [-]
 };
 
-/// Returns the mobility curve (slip, sinkage, torque and energy over the gradient) of a rover on the mean
-/// soil of a terrain class. Throws std::invalid_argument if MobilityCurve rejects the soil, the rover or an
-/// option.
-terramech::MobilityCurve mobilityOf(const GroundClass& ground, const terramech::Rover& rover,
-                                    const terramech::MobilityOptions& options = {});
-
-/// Returns the result of mobilityOf().reference(), i.e. the quantities at the reference slip 0.5, without
-/// computing the other points of the curve, a hundred times as fast.
+/// Returns the quantities of a wheel on fresh ground of the mean soil of a class at the reference slip 0.5.
+/// Throws std::invalid_argument if soil, rover or an option is out of range.
 terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
                                          const terramech::MobilityOptions& options = {});
-
-/// Estimated strength of ground: quantities of a wheel at the reference slip 0.5, each with standard
-/// deviation.
-struct GroundBelief {
-  Estimate pull;     ///< drawbar pull over load, DP/W [-]
-  Estimate sinkage;  ///< sinkage over wheel radius, z/r [-]
-};
 
 /// State of a driven wheel.
 struct SlippingWheel {
@@ -68,33 +54,16 @@ struct SteadyWheel {
   double hold = 0.0;  ///< side force that resists sideways motion, over load [-]
 };
 
-/// A category and its probability.
-struct RankedCategory {
-  terramech::Category category = terramech::Category::Unknown;
-  double probability = 0.0;
-};
-
-/// Ground model of one rover on one body: the mobility curve of each terrain class, and the cost of driving
-/// for any estimated strength of the ground. At the reference slip, a class has a thrust H = torque / (load *
-/// radius), a resistance R and a pull P = H - R, all over load. Let the estimated pull be P - d. Driving on
-/// this ground at a gradient g is modelled as driving on the class at the equivalent gradient
-///   g + d                                  for g <= P - d (up to the reference slip): the curve is shifted;
-///   P + (g - P + d) / f,  f = 1 - d / H    for g > P - d: ground with the fraction f of the class's thrust
-/// (ours; both are exact at the reference slip. For soils drawn from the standard deviations of mars_crusty,
-/// sandy_loam and dry_sand, the shift overestimates the pull at slip 0.8 by 0.02, 0.04, 0.01 on average, and
-/// the fraction f by 0.00, 0.01, 0.00. Below the reference slip, the shift underestimates the pull.) The
-/// standard deviation of the equivalent gradient is that of the pull times the derivative of the equivalent
-/// gradient with respect to P - d. Ground with a greater pull than its class is treated as a flatter slope of
-/// the class, but no flatter than level ground, and has no more reserve than its class. Cost and risk never
-/// decrease with the standard deviation of the pull nor, from level ground upwards, with the gradient
-/// (ExpectedTravel). Downhill, on ground weaker by d, the braking force over load of locked wheels is lower
-/// by d, or equals the fraction f of the class's braking force if that is lower. Weaker ground therefore
-/// never allows a motion that is refused (has infinite cost) on stronger ground. CrossSlope adds the effect
-/// of slopes across the heading.
+/// Ground model of one rover on one body: the lattice of equilibria of each terrain class, and the cost of
+/// driving for any estimated strength of the ground. At the reference slip, a class has a thrust H = torque /
+/// (load * radius), a resistance R and a pull P = H - R, all over load. Ground with the estimated pull P - d has
+/// the strength s = 1 - d / H: s times the shear stresses of its class, and its resistance
+/// (terramech::SlopeEquilibrium; ours, exact at the reference slip. For soils drawn from the standard deviations
+/// of mars_crusty, sandy_loam and dry_sand, it overestimates the pull at slip 0.8 by 0.00, 0.01, 0.00 on average).
+/// GroundStates has the forecast, the decision and the cost.
 ///
-/// Curves and cross slopes of a class are computed at the first use, because a class raster may declare
-/// hundreds of classes, of which few occur in a window. Logically immutable and thread-safe; copies share the
-/// computed classes.
+/// Lattices of a class are computed at the first use, because a class raster may declare hundreds of classes, of
+/// which few occur in a window. Logically immutable and thread-safe; copies share the computed classes.
 class GroundModel {
  public:
   /// Input of the model.
@@ -105,7 +74,7 @@ class GroundModel {
     std::vector<GroundClass> classes;
     /// Permissions and cost weights of the mission.
     TravelPolicy policy;
-    /// True if slopes across the heading add cost. False: CrossSlope::alongOnly(), for comparison only;
+    /// True if slopes across the heading add cost. False: they have no effect, for comparison only;
     /// unsafe for driving.
     bool prices_crossing = true;
   };
@@ -124,8 +93,7 @@ class GroundModel {
   const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
 
   /// Returns the quantities of a wheel that drives at constant slip on the soil of the class. The slip is
-  /// limited to the drivable range. The effect of the slip angle is computed for undisturbed ground, also in
-  /// a rut.
+  /// limited to that of the greatest pull.
   SteadyWheel steady(int class_index, const SlippingWheel& wheel) const;
   /// Returns the quantities of a wheel that drives straight up a slope of this gradient (rise over run),
   /// limited to the drivable gradients.
@@ -142,19 +110,19 @@ class GroundModel {
   /// classes: each quantity is the less favourable one of both classes.
   GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
 
-  /// Returns the effect of slopes across the heading on ground of a class.
-  const std::shared_ptr<const CrossSlope>& crossing(int class_index) const;
+  /// Returns the lattice of equilibria of a class.
+  const std::shared_ptr<const SlopeLattice>& lattice(int class_index) const;
 
-  /// Returns the travel state at a gradient along the heading (rise over run) without cross slope, as
-  /// tabulated by ground().
-  TravelState state(int class_index, const GroundBelief& belief, double gradient) const;
-
-  /// Returns the cost of one horizontal metre [J]; infinite if the motion is refused.
-  double cost_J_per_m(const TravelState& state) const noexcept;
+  /// Returns the travel state on a gradient along the heading (rise over run) without cross slope.
+  TravelState state(int class_index, const GroundBelief& belief, double gradient) const {
+    return states(class_index, class_index, belief)->onClimb(gradient);
+  }
 
   /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and
   /// the probability of that category under the uncertainty of `belief`.
-  RankedCategory category(const GroundBelief& belief, double gradient) const;
+  RankedCategory category(const GroundBelief& belief, double gradient) const {
+    return rules_->category.ranked(belief, gradient);
+  }
 
   /// Returns the limits of pitch and roll as gradients, and the tipping geometry of the rover.
   TravelCost::Limits limits() const;
@@ -165,35 +133,19 @@ class GroundModel {
     terramech::MobilityReference fresh, in_rut;  // quantities of one wheel on undisturbed ground and in a rut
     GroundBelief prior;
   };
-  struct ClassGround;
   struct Lazy;
   const Reference& referenceOf(int class_index) const noexcept {
     return references_[static_cast<std::size_t>(class_index)];
   }
-  const ClassGround& groundOf(int class_index) const;
-  ClassGround workedOut(const GroundClass& ground) const;
-
-  // `low` is the DP/W below which a slope is dangerous, and `high` is the DP/W above which it is safe.
-  struct Edges {
-    double low, high;
-  };
-  Edges edges(double gradient) const noexcept;
+  const terramech::SlopeEquilibrium& slope(int class_index) const;
+  double mostSlip(int class_index, bool in_rut) const;  // least slip at a maximum of the pull
+  std::shared_ptr<const GroundStates> states(int class_index, int other_class,
+                                             const GroundBelief& belief) const;
+  StrengthOfClass strengthOf(int class_index, const GroundBelief& belief) const;
   TurnCosts turns(int class_index, const TravelState& flat) const;  // `flat`: state on level ground
-  double criticalSinkage() const noexcept;
-  Estimate demand(int class_index, const Estimate& pull, double gradient) const noexcept;
-  static double weakProbability(const ClassGround& ground, const Estimate& pull, double gradient) noexcept;
-  static double unbrakedProbability(const ClassGround& ground, const Estimate& pull,
-                                    double gradient) noexcept;
-  // Required DP/W: maximum for driven wheels, minimum for braked wheels.
-  struct Demand {
-    double driven, braked;
-  };
-  Refusal refusal(const TravelState& state, double weak, const Demand& demand,
-                  const ClassGround& ground) const noexcept;
-  terramech::Category categoryAt(double pull, double sinkage, double gradient) const;
 
   Parts parts_;
-  double tan_margin_ = 0.0;
+  std::shared_ptr<const GroundRules> rules_;
   std::vector<Reference> references_;
   std::vector<std::shared_ptr<Lazy>> grounds_;
 };

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/ground/category_table.hpp>
 #include <talus/costmap/map/explanation.hpp>
 
@@ -126,7 +125,8 @@ std::string hazardText(const TraversabilityMap& map, maps::Cell cell, Hazard haz
 void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
   const int index = map.surface().classIndex(cell);
   out.causes.push_back({"terrain_class", static_cast<double>(map.surface().classNumber(cell)), kNotKnown,
-                        "class raster", index < 0 ? "no soil defined for this class" : ""});
+                        map.model().parts().classes.size() > 1 ? "class raster" : "soil of the map",
+                        index < 0 ? "no soil defined for this class" : ""});
   if (index < 0) return;
   const GroundClass& ground = map.model().parts().classes[static_cast<std::size_t>(index)];
   const GroundBelief prior = map.model().prior(index);
@@ -228,7 +228,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   }
   // Uses the cost and the gradient that planners read.
   const CellCode code = map.published()->at(cell);
-  const double along = seenBy(code, heading).along, climb = climbAt(map.published()->cost(), code, heading);
+  const double along = seenBy(code, heading).along, climb = map.published()->cost().climb(code, heading);
   const TravelState state = map.published()->cost().detail(code, heading);
   const RankedCategory here = judged(map.model(), *ground, state, climb);
   if (asked) out.category = here.category;

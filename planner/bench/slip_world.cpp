@@ -7,6 +7,7 @@
 #include <string>
 
 #include <talus/common/constants.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>
@@ -16,7 +17,6 @@ namespace {
 
 using costmap::CellCode;
 using costmap::TravelCurve;
-using costmap::TravelTable;
 
 constexpr double kSpeed_mps = 0.1;
 constexpr int kTerrains = 10;
@@ -155,22 +155,18 @@ double estimatedSlip(const SlipWorld& world, const Ground& ground, std::uint8_t 
 
 costmap::GroundCost estimatedCost(const SlipWorld& world, const Ground& ground, std::uint8_t seen,
                                   const SlipWorldOptions& options) {
-  costmap::GroundCost made;
-  auto states = std::make_shared<TravelTable>();
+  std::vector<costmap::TravelState> all;
   for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
     const double gradient = TravelCurve::gradient(bin);
     const double slip = estimatedSlip(world, ground, seen, gradient, options);
     const bool stands = slip >= 1.0;
     const double seconds = std::hypot(1.0, gradient) / (kSpeed_mps * (1.0 - slip));
-    made.curve.cost_J_per_m[static_cast<std::size_t>(bin)] =
-        stands ? std::numeric_limits<float>::infinity() : static_cast<float>(seconds);
-    (*states)[static_cast<std::size_t>(bin)] = {
-        .slip = static_cast<float>(gradient >= 0.0 ? slip : -slip),
-        .time_s_per_m = stands ? 0.0F : static_cast<float>(seconds),
-        .refusal = stands ? costmap::Refusal::Pull : costmap::Refusal::None};
+    all.push_back({.slip = static_cast<float>(gradient >= 0.0 ? slip : -slip),
+                   .time_s_per_m = stands ? 0.0F : static_cast<float>(seconds),
+                   .refusal = stands ? costmap::Refusal::Pull : costmap::Refusal::None});
   }
-  made.states = std::move(states);
-  return made;
+  auto states = std::make_shared<const costmap::TabulatedStates>(std::move(all));
+  return {.curve = states->curve({.energy = 0.0, .time_W = 1.0, .risk_J = 0.0}), .states = std::move(states)};
 }
 
 std::shared_ptr<const costmap::CostGrid> estimatedMap(const SlipWorld& world, const Ground& ground,

@@ -329,6 +329,8 @@ talus_code talus_plan(talus_session session, const talus_request* request, talus
       summary->lower_bound_J = route.summary.lower_bound;
       summary->energy_J = route.summary.energy_J;
       summary->time_s = route.summary.time_s;
+      summary->energy_p90_J = route.summary.energy_p90_J;
+      summary->time_p90_s = route.summary.time_p90_s;
       summary->length_m = route.summary.length_m;
       summary->max_slip = route.summary.max_slip;
       summary->max_slope_rad = route.summary.max_slope_rad;

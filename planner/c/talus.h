@@ -122,6 +122,7 @@ typedef struct talus_summary {
   double cost_J, lower_bound_J, energy_J, time_s, length_m; /* lower_bound_J: no route costs less */
   double max_slip, max_slope_rad;
   double immobilisation_risk; /* probability, 0 to 1 */
+  double energy_p90_J, time_p90_s; /* not exceeded with probability 0.9; energy_J and time_s are expected */
 } talus_summary;
 
 typedef struct talus_vertex {

@@ -155,6 +155,7 @@ class Annotator {
   }
 
   std::vector<RouteVertex> vertices;
+  TurnCost turns;  // energy and time of all turns and stops
 
  private:
   // Vertex at `at` with the properties of the cell that contains `inside`, for the heading.
@@ -250,6 +251,8 @@ class Annotator {
   void spend(const TurnCost& price, double times) {
     energy_J_ += price.energy_J * times;
     time_s_ += price.time_s * times;
+    turns.energy_J += price.energy_J * times;
+    turns.time_s += price.time_s * times;
   }
 
   double elevation(Point p) const {
@@ -319,6 +322,20 @@ void setRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& 
   for (std::size_t i = 0; i < risk.size(); ++i) route.vertices[i].immobilisation_risk = risk[i];
 }
 
+// Replaces energy and time by those of the drives that arrive, those of vertices in proportion. Turns are certain.
+void setForecast(Route& route, const costmap::CostGrid& map, const TurnCost& turns) {
+  const RouteForecast drive = routeForecast(route, map, riskOptions(map));
+  const auto set = [&](double RouteVertex::*of, double& total, double certain, const DriveEffort& effort) {
+    const double ratio = total > 0.0 && effort.mean > 0.0 ? (effort.mean + certain) / total : 1.0;
+    for (RouteVertex& vertex : route.vertices) vertex.*of *= ratio;
+    total *= ratio;
+    return std::max(effort.p90 + certain, total);
+  };
+  RouteSummary& made = route.summary;
+  made.energy_p90_J = set(&RouteVertex::energy_J, made.energy_J, turns.energy_J, drive.energy_J);
+  made.time_p90_s = set(&RouteVertex::time_s, made.time_s, turns.time_s, drive.time_s);
+}
+
 std::string text(maps::Point point) {
   std::array<char, 64> place{};
   std::snprintf(place.data(), place.size(), "%.2f,%.2f", point.x_m, point.y_m);
@@ -368,6 +385,7 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
   route.summary.proof_s = plan.proof_s;
   route.vertices = std::move(annotator.vertices);
+  setForecast(route, input.map, annotator.turns);
   setRisk(route, input.map, input.watch);
   return route;
 }

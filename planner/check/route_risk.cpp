@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -130,6 +131,37 @@ class Worlds {
   std::vector<double> u_;
 };
 
+// Energy and time of a stretch by the map; zeros outside of it.
+costmap::TravelForecast forecastOn(const Stretch& stretch, const Route& route, const costmap::CostGrid& map) {
+  const RouteVertex &to = route.vertices[stretch.vertex], &from = route.vertices[stretch.vertex - 1];
+  const auto cell = map.grid().cellAt({0.5 * (from.x_m + to.x_m), 0.5 * (from.y_m + to.y_m)});
+  if (!cell) return {};
+  costmap::TravelForecast forecast = map.cost().forecast(
+      map.at(*cell), {(to.x_m - from.x_m) / stretch.metres, (to.y_m - from.y_m) / stretch.metres});
+  for (auto* values : {&forecast.energy_J_per_m, &forecast.time_s_per_m})
+    for (float& value : *values)
+      value = std::isfinite(value) ? value * static_cast<float>(stretch.metres) : 0.0F;
+  return forecast;
+}
+
+// Value at u standard deviations: linear between the deviates, constant beyond.
+double valueAt(const std::array<float, costmap::TravelForecast::kDeviates>& values, double u) {
+  using costmap::TravelForecast;
+  constexpr double kStep = TravelForecast::deviate(1) - TravelForecast::deviate(0);
+  const double place =
+      std::clamp((u - TravelForecast::deviate(0)) / kStep, 0.0, TravelForecast::kDeviates - 1.0);
+  const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  const auto low = static_cast<double>(values[k]), high = static_cast<double>(values[k + 1]);
+  return low + (place - static_cast<double>(k)) * (high - low);
+}
+
+DriveEffort effortOf(std::vector<double> values) {
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(values.size()));
+  std::ranges::nth_element(values, nth);
+  return {mean, *nth};
+}
+
 // Probability of immobilisation after a length of too weak soil.
 double heldAfter(double metres, const RouteRiskOptions& options) {
   if (options.entrapment >= 1.0) return metres > 0.0 ? 1.0 : 0.0;
@@ -235,6 +267,35 @@ RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
   options.correlation_length_m = uncertainty.correlation_length_m;
   options.entrapment = uncertainty.entrapment;
   return options;
+}
+
+// Drives in pairs of opposite departures, whose errors cancel in the mean.
+RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
+                            const RouteRiskOptions& options) {
+  const std::vector<Stretch> way = stretches(route, options);
+  if (way.empty()) return {};
+  std::vector<costmap::TravelForecast> along;
+  for (const Stretch& stretch : way) along.push_back(forecastOn(stretch, route, map));
+  Worlds worlds(way, options.seed);
+  std::array<std::vector<double>, 2> energy_J, time_s;  // of drives that arrive, and that fail
+  const auto pairs = std::clamp<std::size_t>(4'000'000 / way.size(), 50, 500);
+  for (std::size_t pair = 0; pair < pairs; ++pair) {
+    const std::vector<double>& departure = worlds.any();
+    for (const double sign : {1.0, -1.0}) {
+      double energy = 0.0, time = 0.0;
+      bool fails = false;
+      for (std::size_t k = 0; k < way.size(); ++k) {
+        const double u = sign * departure[k];
+        energy += valueAt(along[k].energy_J_per_m, u);
+        time += valueAt(along[k].time_s_per_m, u);
+        fails = fails || u < along[k].fails_below;
+      }
+      energy_J[fails ? 1 : 0].push_back(energy);
+      time_s[fails ? 1 : 0].push_back(time);
+    }
+  }
+  const std::size_t which = energy_J[0].empty() ? 1 : 0;
+  return {effortOf(std::move(energy_J[which])), effortOf(std::move(time_s[which]))};
 }
 
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,

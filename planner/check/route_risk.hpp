@@ -56,6 +56,21 @@ struct RouteRisk {
 std::vector<double> riskAlong(const Route& route, const RouteRiskOptions& options,
                               const ProgressMonitor& watch = {});
 
+/// Energy or time of a drive that arrives: its mean, and what it does not exceed with the probability 0.9.
+struct DriveEffort {
+  double mean = 0.0, p90 = 0.0;
+};
+
+/// Energy [J] and time [s] of the drives along a route that arrive, without turns.
+struct RouteForecast {
+  DriveEffort energy_J, time_s;
+};
+
+/// Returns the forecast of a route on a map from up to 1000 drives by the distribution of the strength of
+/// riskAlong() (costmap::TravelForecast). Drives that fail are left out, unless all do. Deterministic.
+RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
+                            const RouteRiskOptions& options);
+
 /// Returns an upper bound of riskAlong() for any correlation of the soil: the sum of the risks of the single
 /// stretches, at most 1. Deterministic, without random draws. Throws std::invalid_argument if an option is
 /// out of range.

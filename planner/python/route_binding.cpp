@@ -68,6 +68,8 @@ void bindRoute(py::module_& module) {
       .def_property_readonly("lower_bound_J", [](const Route& r) { return r.summary.lower_bound; })
       .def_property_readonly("energy_J", [](const Route& r) { return r.summary.energy_J; })
       .def_property_readonly("time_s", [](const Route& r) { return r.summary.time_s; })
+      .def_property_readonly("energy_p90_J", [](const Route& r) { return r.summary.energy_p90_J; })
+      .def_property_readonly("time_p90_s", [](const Route& r) { return r.summary.time_p90_s; })
       .def_property_readonly("length_m", [](const Route& r) { return r.summary.length_m; })
       .def_property_readonly("max_slip", [](const Route& r) { return r.summary.max_slip; })
       .def_property_readonly("max_slope_rad", [](const Route& r) { return r.summary.max_slope_rad; })

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/terramech/mobility/rover_stance.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
@@ -90,10 +91,10 @@ TravelCurve withoutSoil(const TravelCost::Limits& limits) {
 // unlimited if the cost has no states.
 double soilHoldsTo(const TravelCost& cost, std::size_t curve) {
   if (curve >= cost.states().size() || !cost.states()[curve]) return kNone;
-  const auto at = static_cast<std::size_t>(std::clamp(
+  const int at = std::clamp(
       TravelCurve::kBins / 2 + static_cast<int>(cost.limits().max_along * TravelCurve::kBinsPerUnit), 0,
-      TravelCurve::kBins - 1));
-  const auto margin = static_cast<double>((*cost.states()[curve])[at].pull_margin);
+      TravelCurve::kBins - 1);
+  const auto margin = static_cast<double>(cost.states()[curve]->at(0, at).pull_margin);
   return std::isfinite(margin) ? cost.limits().max_along + std::max(margin, 0.0) : kNone;
 }
 

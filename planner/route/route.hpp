@@ -92,8 +92,8 @@ struct RouteVertex {
   /// Available DP/W (drawbar pull over load) minus required DP/W = tan(slope) [-].
   double drawbar_pull_margin = kNotKnown;
   terramech::Category category = terramech::Category::Unknown;  ///< traversability category of the motion
-  double energy_J = 0.0;                                        ///< energy from the start to this vertex
-  double time_s = 0.0;  ///< driving time from the start to this vertex
+  double energy_J = 0.0;  ///< expected energy from the start to this vertex
+  double time_s = 0.0;  ///< expected driving time from the start to this vertex
   /// Probability of immobilisation between the start and this vertex, [0, 1].
   double immobilisation_risk = 0.0;
   /// Rate of immobilisation [1/m] after this vertex, if every metre of soil is independent.
@@ -118,8 +118,10 @@ struct RouteShape {
 /// Totals and extreme values of a route.
 struct RouteSummary {
   double cost = 0.0;           ///< value of the cost function [J]: energy + weighted time + weighted risk
-  double energy_J = 0.0;       ///< total energy
-  double time_s = 0.0;         ///< total driving time
+  double energy_J = 0.0;       ///< total energy, expected
+  double time_s = 0.0;         ///< total driving time, expected
+  double energy_p90_J = 0.0;   ///< energy that the drive does not exceed with the probability 0.9
+  double time_p90_s = 0.0;     ///< time that the drive does not exceed with the probability 0.9
   double length_m = 0.0;       ///< length in the map plane
   double max_slip = 0.0;       ///< largest magnitude of wheel slip [-]
   double max_slope_rad = 0.0;  ///< largest magnitude of the inclination along the heading

@@ -93,7 +93,7 @@ Json summaryJson(const Route& route) {
   Json made;
   made["status"] = std::string(name(route.status));
   if (route.vertices.empty()) {
-    for (const char* key : {"cost", "energy_J", "time_s", "length_m", "max_slip", "max_slope_rad",
+    for (const char* key : {"cost", "energy_J", "time_s", "energy_p90_J", "time_p90_s", "length_m", "max_slip", "max_slope_rad",
                             "lower_bound", "gap", "immobilisation_risk"})
       made[key] = nullptr;
     made["planner"] = s.planner;
@@ -103,6 +103,8 @@ Json summaryJson(const Route& route) {
   made["cost"] = s.cost;
   made["energy_J"] = s.energy_J;
   made["time_s"] = s.time_s;
+  made["energy_p90_J"] = s.energy_p90_J;
+  made["time_p90_s"] = s.time_p90_s;
   made["length_m"] = s.length_m;
   made["max_slip"] = s.max_slip;
   made["max_slope_rad"] = s.max_slope_rad;

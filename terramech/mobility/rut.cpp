@@ -10,4 +10,10 @@ Soil rutted(const Soil& soil) {
   return rut;
 }
 
+RefinedModel rutted(const RefinedModel& model) {
+  RefinedModel rut = model;
+  if (!knowsPasses(model.effects)) rut.soil = rutted(model.soil);
+  return rut;
+}
+
 }  // namespace talus::terramech

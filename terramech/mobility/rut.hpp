@@ -1,6 +1,7 @@
 #pragma once
 
 #include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
 
@@ -20,5 +21,8 @@ inline constexpr double kReloadShear = 2.0;
 /// sinkage and compaction resistance are smaller. Cohesion and friction angle are unchanged (ours: their
 /// increase is neglected).
 Soil rutted(const Soil& soil);
+/// Returns the model in the rut of an equal wheel: unchanged if it has a multipass effect, which then describes
+/// the second pass; otherwise on the soil in the rut.
+RefinedModel rutted(const RefinedModel& model);
 
 }  // namespace talus::terramech

@@ -7,6 +7,7 @@
 
 #include <talus/terramech/contact/shear_displacement.hpp>
 #include <talus/terramech/mobility/rover_stance.hpp>
+#include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 #include <talus/terramech/numerics/range.hpp>
@@ -15,6 +16,7 @@ namespace talus::terramech {
 namespace {
 
 constexpr double kSunk = 0.999;  // sinkage over radius, z/r, of a wheel sunk to its axle
+constexpr double kMostStrength = SlopeEquilibrium::kMostStrength, kStrengthError = 5e-4;
 
 /// Returns the force components along and across the direction of travel, for a wheel plane at angle beta to
 /// the right of that direction.
@@ -39,26 +41,49 @@ Planar demandOf(const Gradient& g) noexcept {
 
 class SlopeEquilibrium::Solver {
  public:
-  Solver(WheelForcesTable forces, const Rover& rover, const SlopeOptions& options)
-      : forces_(std::move(forces)), rover_(rover), options_(checked(options)), stance_(rover) {}
+  Solver(WheelForcesTable fresh, WheelForcesTable rut, const Rover& rover, const SlopeOptions& options)
+      : fresh_(std::move(fresh)),
+        rut_(std::move(rut)),
+        rover_(rover),
+        options_(checked(options)),
+        stance_(rover) {
+    for (std::size_t a = 0; a < even_in_rut_.size(); ++a)
+      for (int axle = 0; axle < stance_.wheels() / 2; ++axle)
+        even_in_rut_[a] +=
+            2.0 * rutOf(axle, WheelForcesTable::angleOf(static_cast<int>(a))).value / stance_.wheels();
+  }
 
-  SlopeState at(const Gradient& gradient) const noexcept;
-  std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
-  WheelOnSlope wheel(const WheelMotion& motion) const noexcept;
-  WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept {
-    return wheel({wheelLoad_N(rover_), slip, slip_angle_rad});
+  SlopeState at(const Gradient& gradient, double strength) const noexcept;
+  double leastStrength(const Gradient& gradient, double near) const noexcept;
+  std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state, double strength) const;
+  WheelOnSlope wheel(const WheelMotion& motion, double in_rut, double strength) const noexcept;
+  WheelOnSlope evenWheel(const WheelMotion& motion, bool in_rut) const noexcept {
+    return wheel({motion.load_N * wheelLoad_N(rover_), motion.slip, motion.slip_angle_rad},
+                 in_rut ? 1.0 : 0.0, 1.0);
   }
   const RoverStance& stance() const { return stance_; }
-  Solver withEvenLoads() const {
-    Rover even = rover_;
-    even.centre_of_mass_height_m = even.centre_of_mass_ahead_m = even.centre_of_mass_left_m = 0.0;
-    return {forces_, even, options_};
+  Solver withoutRuts() const {
+    Solver fresh = *this;
+    fresh.options_.ruts = false;
+    fresh.even_in_rut_.fill(0.0);
+    return fresh;
   }
 
  private:
   /// Unknowns: slip, slip angle, and the steering or slip difference that balances the yaw moment.
   struct Unknowns {
     double slip = 0.0, angle_rad = 0.0, difference = 0.0;
+  };
+
+  /// Plane and ground of one equilibrium.
+  struct Ground {
+    Planar demand;
+    double normal_N, strength;
+  };
+
+  /// Share of a wheel's width that rolls in the rut of the axle ahead, and its derivative by the slip angle.
+  struct RutShare {
+    double value = 0.0, by_angle = 0.0;
   };
 
   /// Residuals of the force balance along and across, divided by the normal force, and of the yaw moment over
@@ -69,26 +94,29 @@ class SlopeEquilibrium::Solver {
   };
 
   /// Result of a scan of the table's nodes under even loads: initial values at the first slip angle that
-  /// meets the demand, and the largest lateral force.
+  /// meets the demand.
   struct Scan {
     bool found = false, pulls = false;
     Unknowns start;
-    double most_side = 0.0;
   };
 
-  Balance balance(const Planar& demand, double normal_N, const Unknowns& u) const noexcept;
-  Scan scan(const Planar& demand) const noexcept;
-  bool solve(const Planar& demand, double normal_N, Unknowns& u) const noexcept;
+  RutShare rutOf(int axle, double angle_rad) const noexcept;
+  WheelRatios forces(const WheelMotion& motion, const RutShare& rut, double strength) const noexcept;
+  Balance balance(const Ground& ground, const Unknowns& u) const noexcept;
+  Scan scan(const Ground& ground) const noexcept;
+  bool solve(const Ground& ground, Unknowns& u) const noexcept;
   SlopeFailure gripOf(const SlopeState& state, const Unknowns& u) const noexcept;
-  void fill(const Planar& demand, double normal_N, const Unknowns& u, SlopeState& state) const noexcept;
+  void fill(const Ground& ground, const Unknowns& u, SlopeState& state) const noexcept;
   WheelMotion motionOf(int wheel, const Unknowns& u) const noexcept;
+  bool isSteady(const Unknowns& u) const noexcept;
   RoverStance::Loads shares(const Planar& demand) const noexcept;
   double normal_N(const Gradient& gradient) const noexcept;
 
-  WheelForcesTable forces_;
+  WheelForcesTable fresh_, rut_;
   Rover rover_;
   SlopeOptions options_;
   RoverStance stance_;
+  std::array<double, WheelForcesTable::kAngles> even_in_rut_{};  // mean share of all wheels, by angle node
 };
 
 const char* name(SlopeFailure failure) {
@@ -130,8 +158,41 @@ WheelMotion SlopeEquilibrium::Solver::motionOf(int wheel, const Unknowns& u) con
   return motion;
 }
 
-SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar& demand, double normal,
+/// The wheels of an axle at the distance d behind the front axle roll beside its ruts by d sin(body angle).
+SlopeEquilibrium::Solver::RutShare SlopeEquilibrium::Solver::rutOf(int axle,
+                                                                   double angle_rad) const noexcept {
+  if (axle == 0 || !options_.ruts) return {};
+  if (rover_.steering == Steering::AllWheel) return {.value = 1.0};
+  const double behind_m = stance_.position_m(0).x - stance_.position_m(2 * axle).x,
+               widths = behind_m / rover_.wheel.width_m, off = widths * std::sin(angle_rad),
+               share = std::exp(-2.0 * off * off);
+  return {.value = share, .by_angle = -4.0 * off * widths * std::cos(angle_rad) * share};
+}
+
+/// Forces of a wheel partly in a rut, on ground with `strength` times the shear stresses of its class.
+WheelRatios SlopeEquilibrium::Solver::forces(const WheelMotion& motion, const RutShare& rut,
+                                             double strength) const noexcept {
+  WheelRatios f = rut.value < 1.0 ? fresh_.at(motion) : rut_.at(motion);
+  if (rut.value > 0.0 && rut.value < 1.0) {
+    const WheelRatios in_rut = rut_.at(motion);
+    for (std::size_t c = 0; c < kWheelChannels; ++c) {
+      f.by_slip[c] += rut.value * (in_rut.by_slip[c] - f.by_slip[c]);
+      f.by_angle[c] +=
+          rut.value * (in_rut.by_angle[c] - f.by_angle[c]) + rut.by_angle * (in_rut.value[c] - f.value[c]);
+      f.value[c] += rut.value * (in_rut.value[c] - f.value[c]);
+    }
+  }
+  for (auto* part : {&f.value, &f.by_slip, &f.by_angle}) {
+    (*part)[kPullRatio] += (strength - 1.0) * (*part)[kTorqueRatio];
+    (*part)[kTorqueRatio] *= strength;
+    (*part)[kSideRatio] *= strength;
+  }
+  return f;
+}
+
+SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Ground& ground,
                                                                     const Unknowns& u) const noexcept {
+  const Planar& demand = ground.demand;
   const bool crabs = rover_.steering == Steering::AllWheel, skids = rover_.steering == Steering::Skid;
   // Body angle `turn` to the right of the direction of travel; the wheels turn with the body.
   const double turn = crabs ? 0.0 : u.angle_rad, c = std::cos(turn), s = std::sin(turn);
@@ -143,8 +204,8 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
     const double share = shares[static_cast<std::size_t>(k)];
     if (share <= 0.0) continue;
     WheelMotion motion = motionOf(k, u);
-    motion.load_N = share * normal;
-    const WheelRatios f = forces_.at(motion);
+    motion.load_N = share * ground.normal_N;
+    const WheelRatios f = forces(motion, rutOf(k / 2, turn), ground.strength);
     const double beta = motion.slip_angle_rad;
     const Planar force = turned(f.value[kPullRatio], f.value[kSideRatio], beta);
     const Planar by_slip = turned(f.by_slip[kPullRatio], f.by_slip[kSideRatio], beta);
@@ -173,7 +234,8 @@ SlopeEquilibrium::Solver::Balance SlopeEquilibrium::Solver::balance(const Planar
 /// Scans the slip angles of the table towards the uphill side. For each angle, finds the least slip that
 /// meets the demand along, and the lateral force there; selects the first angle whose lateral force meets the
 /// demand across.
-SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& demand) const noexcept {
+SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Ground& ground) const noexcept {
+  const Planar& demand = ground.demand;
   const double side = demand.y < 0.0 ? -1.0 : 1.0, wanted = std::abs(demand.y);
   constexpr int kRolling = (WheelForcesTable::kSlips - 1) / 2;
   Scan out;
@@ -182,13 +244,18 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
   for (int a = 0; a < WheelForcesTable::kAngles; ++a) {
     const double beta = WheelForcesTable::angleOf(a);
     const double c = std::cos(beta), s = std::sin(beta);
+    const double in_rut = even_in_rut_[static_cast<std::size_t>(a)];
+    const auto node = [&](WheelChannel channel, int k) {
+      const double fresh = fresh_.atNode(channel, k, a);
+      return fresh + in_rut * (rut_.atNode(channel, k, a) - fresh);
+    };
+    const auto pull = [&](int k) {
+      return node(kPullRatio, k) + (ground.strength - 1.0) * node(kTorqueRatio, k);
+    };
+    const auto hold_of = [&](int k) { return ground.strength * node(kSideRatio, k); };
     // Mirrored so that downhill is to the right and the lateral force acts to the left.
-    const auto along = [&](int k) {
-      return forces_.atNode(kPullRatio, k, a) * c + forces_.atNode(kSideRatio, k, a) * s;
-    };
-    const auto across = [&](int k) {
-      return -(forces_.atNode(kSideRatio, k, a) * c - forces_.atNode(kPullRatio, k, a) * s);
-    };
+    const auto along = [&](int k) { return pull(k) * c + hold_of(k) * s; };
+    const auto across = [&](int k) { return pull(k) * s - hold_of(k) * c; };
     const int step = along(kRolling) < demand.x ? 1 : -1;
     bool reached = false;
     double slip = 0.0, hold = 0.0;
@@ -203,8 +270,6 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
     }
     if (a == 0) out.pulls = reached && slip <= options_.max_slip;
     if (reached) {
-      if (slip <= options_.max_slip && beta <= options_.max_slip_angle_rad + 1e-9)
-        out.most_side = std::max(out.most_side, hold);
       if (!out.found && hold >= wanted) {
         const double share = last && hold > last_side ? (wanted - last_side) / (hold - last_side) : 1.0;
         out.start.slip = last ? last_slip + share * (slip - last_slip) : slip;
@@ -212,6 +277,12 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
             0.0 - side * (a == 0 ? 0.0 : beta - (1.0 - share) * WheelForcesTable::kAngleStep_rad);
         out.found = true;
       }
+    }
+    if (!out.found && last && !reached) {
+      // The pull suffices up to an angle within this step.
+      out.start.slip = 0.5 * (last_slip + options_.max_slip);
+      out.start.angle_rad = 0.0 - side * (beta - 0.5 * WheelForcesTable::kAngleStep_rad);
+      out.found = true;
     }
     last = reached;
     last_side = hold;
@@ -221,10 +292,10 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Planar& dema
 }
 
 /// Newton's method with steps limited to the table.
-bool SlopeEquilibrium::Solver::solve(const Planar& demand, double normal, Unknowns& u) const noexcept {
+bool SlopeEquilibrium::Solver::solve(const Ground& ground, Unknowns& u) const noexcept {
   constexpr double kClose = 1e-10, kSteepest = 1.04;
-  for (int iteration = 0; iteration < 25; ++iteration) {
-    const Balance b = balance(demand, normal, u);
+  for (int iteration = 0; iteration < 15; ++iteration) {
+    const Balance b = balance(ground, u);
     if (b.rest.cwiseAbs().maxCoeff() < kClose) return true;
     const Eigen::Vector3d step = -b.by.inverse() * b.rest;
     if (!step.allFinite()) return false;
@@ -237,8 +308,10 @@ bool SlopeEquilibrium::Solver::solve(const Planar& demand, double normal, Unknow
   return false;
 }
 
-void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const Unknowns& u,
+void SlopeEquilibrium::Solver::fill(const Ground& ground, const Unknowns& u,
                                     SlopeState& state) const noexcept {
+  const Planar& demand = ground.demand;
+  const double normal = ground.normal_N;
   const bool crabs = rover_.steering == Steering::AllWheel, skids = rover_.steering == Steering::Skid;
   state.slip = u.slip;
   state.slip_angle_rad =
@@ -256,28 +329,48 @@ void SlopeEquilibrium::Solver::fill(const Planar& demand, double normal, const U
     WheelMotion motion = motionOf(k, u);
     motion.load_N = shares[static_cast<std::size_t>(k)] * normal;
     if (motion.load_N <= 0.0) continue;
-    const WheelRatios f = forces_.at(motion);
+    const WheelRatios f = forces(motion, rutOf(k / 2, turn), ground.strength);
     const double torque = f.value[kTorqueRatio] * motion.load_N * radius;
     if (std::abs(torque) > std::abs(state.torque_Nm)) state.torque_Nm = torque;
-    state.sinkage_m = std::max(state.sinkage_m, f.value[kSinkageRatio] * radius);
+    // In a rut, too, a wheel sinks from the surface as far as its load requires on fresh ground (wong_2001).
+    state.sinkage_m = std::max(state.sinkage_m, fresh_.at(motion).value[kSinkageRatio] * radius);
     state.side_force_over_load = std::max(state.side_force_over_load, std::abs(f.value[kSideRatio]));
     // r omega over travel speed.
     const double rim = std::cos(motion.slip_angle_rad) / std::max(travelRatio(motion.slip), 1e-9);
     fastest = std::max(fastest, rim);
-    power_W_per_mps += std::max(torque, 0.0) * rim / radius;
+    power_W_per_mps += torque * rim / radius;
   }
   state.speed_mps = rover_.max_speed_mps / std::max(fastest, 1.0);
-  state.energy_J_per_m = power_W_per_mps + rover_.hotel_power_W / state.speed_mps;
-  // Pull reserve at the current slip angle, from nodes under even loads.
-  const double size = std::abs(u.angle_rad);
-  double most = -std::numeric_limits<double>::infinity(), least = -most;
-  for (double slip = -1.0; slip <= options_.max_slip + 1e-9; slip += WheelForcesTable::kSlipStep) {
-    const WheelRatios f = forces_.at({normal / stance_.wheels(), slip, size});
-    const double along = turned(f.value[kPullRatio], f.value[kSideRatio], size).x;
-    most = std::max(most, along);
-    least = std::min(least, along);
+  state.energy_J_per_m = std::max(power_W_per_mps, 0.0) + rover_.hotel_power_W / state.speed_mps;
+}
+
+double SlopeEquilibrium::Solver::leastStrength(const Gradient& gradient, double near) const noexcept {
+  Ground ground{demandOf(gradient), normal_N(gradient), 0.0};
+  const auto holds = [&](double strength) {
+    ground.strength = strength;
+    const Scan scanned = scan(ground);
+    Unknowns u = scanned.start;
+    return scanned.found && solve(ground, u) && isSteady(u);
+  };
+  double step = 0.02, low = std::clamp(near - step, 0.0, kMostStrength), high = low + 2.0 * step;
+  for (; high < kMostStrength && !holds(high); step *= 2.0) {
+    low = high;
+    high = std::min(high + step, kMostStrength);
   }
-  state.pull_reserve = std::min(most - demand.x, demand.x - least);
+  for (step = 0.04; low > 0.0 && holds(low); step *= 2.0) {
+    high = low;
+    low = std::max(low - step, 0.0);
+  }
+  while (high - low > kStrengthError) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+bool SlopeEquilibrium::Solver::isSteady(const Unknowns& u) const noexcept {
+  const double difference = rover_.steering == Steering::Skid ? 0.5 * std::abs(u.difference) : 0.0;
+  return u.slip + difference <= options_.max_slip && std::abs(u.angle_rad) <= options_.max_slip_angle_rad;
 }
 
 SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unknowns& u) const noexcept {
@@ -289,34 +382,31 @@ SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unk
   return SlopeFailure::None;
 }
 
-SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient) const noexcept {
-  const Planar demand = demandOf(gradient);
-  const double normal = normal_N(gradient);
+SlopeState SlopeEquilibrium::Solver::at(const Gradient& gradient, double strength) const noexcept {
+  const Ground ground{demandOf(gradient), normal_N(gradient), strength};
   SlopeState state;
-  const Scan scanned = scan(demand);
-  state.side_reserve = scanned.most_side - std::abs(demand.y);
+  const Scan scanned = scan(ground);
   Unknowns u = scanned.start;
-  if (scanned.found && solve(demand, normal, u)) {
-    fill(demand, normal, u, state);
+  if (scanned.found && solve(ground, u)) {
+    fill(ground, u, state);
     state.grip = gripOf(state, u);
   } else {
-    const double rolling = forces_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
+    const double rolling = fresh_.atNode(kSinkageRatio, (WheelForcesTable::kSlips - 1) / 2, 0);
     const bool sunk = rolling > kSunk || rolling * rover_.wheel.radius_m >= rover_.clearance_m;
-    state.stability_margin_rad = stance_.stabilityMargin_rad(demand);  // body angle unknown
+    state.stability_margin_rad = stance_.stabilityMargin_rad(ground.demand);  // body angle unknown
     // If the rover has an equilibrium under even loads, the failure is that of the larger component of the
     // gradient.
     const bool lacks_pull = !scanned.pulls || (scanned.found && std::abs(gradient.across) <= gradient.along);
     state.grip = sunk                                 ? SlopeFailure::Sinks
                  : lacks_pull && gradient.along > 0.0 ? SlopeFailure::CannotPull
                                                       : SlopeFailure::Slides;
-    state.side_reserve = std::min(state.side_reserve, 0.0);
   }
   state.failure = state.stability_margin_rad < 0.0 ? SlopeFailure::Tips : state.grip;
   return state;
 }
 
-std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradient,
-                                                           const SlopeState& state) const {
+std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradient, const SlopeState& state,
+                                                           double strength) const {
   const Planar demand = demandOf(gradient);
   const double normal = normal_N(gradient), turn = -state.body_turn_rad, c = std::cos(turn),
                s = std::sin(turn);
@@ -328,13 +418,14 @@ std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradi
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);
     motion.load_N = shares[static_cast<std::size_t>(k)] * normal;
-    all.push_back(wheel(motion));
+    all.push_back(wheel(motion, rutOf(k / 2, turn).value, strength));
   }
   return all;
 }
 
-WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion) const noexcept {
-  const WheelRatios f = forces_.at(motion);
+WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion, double in_rut,
+                                             double strength) const noexcept {
+  const WheelRatios f = forces(motion, {.value = in_rut}, strength);
   const double r = rover_.wheel.radius_m, load_N = motion.load_N;
   return {load_N,
           motion.slip,
@@ -346,27 +437,38 @@ WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion) const no
 }
 
 SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options)
-    : solver_(std::make_shared<const Solver>(WheelForcesTable(soil, rover), rover, options)) {}
+    : solver_(std::make_shared<const Solver>(WheelForcesTable(soil, rover),
+                                             WheelForcesTable(rutted(soil), rover), rover, options)) {}
 
 SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options)
-    : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover), rover, options)) {}
+    : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover, 1),
+                                             WheelForcesTable(rutted(model), rover, 2), rover, options)) {}
+
+SlopeState SlopeEquilibrium::at(const Gradient& gradient, double strength) const noexcept {
+  return solver_->at(gradient, strength);
+}
+
+double SlopeEquilibrium::leastStrength(const Gradient& gradient, double near) const noexcept {
+  return solver_->leastStrength(gradient, near);
+}
+
+std::vector<WheelOnSlope> SlopeEquilibrium::wheels(const Gradient& gradient, const SlopeState& state,
+                                                   double strength) const {
+  return solver_->wheels(gradient, state, strength);
+}
+
+WheelOnSlope SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad, bool in_rut) const noexcept {
+  const auto onSlope = [&](double pull) {
+    return solver_->evenWheel({1.0 / std::hypot(1.0, pull), slip, slip_angle_rad}, in_rut);
+  };
+  const WheelOnSlope level = onSlope(0.0);
+  return onSlope(level.drawbar_pull_N / level.load_N);
+}
 
 SlopeEquilibrium::SlopeEquilibrium(std::shared_ptr<const Solver> solver) : solver_(std::move(solver)) {}
 
-SlopeEquilibrium SlopeEquilibrium::withEvenLoads() const {
-  return SlopeEquilibrium(std::make_shared<const Solver>(solver_->withEvenLoads()));
-}
-
-SlopeState SlopeEquilibrium::at(const Gradient& gradient) const noexcept {
-  return solver_->at(gradient);
-}
-
-std::vector<WheelOnSlope> SlopeEquilibrium::wheels(const Gradient& gradient, const SlopeState& state) const {
-  return solver_->wheels(gradient, state);
-}
-
-WheelOnSlope SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad) const noexcept {
-  return solver_->evenWheel(slip, slip_angle_rad);
+SlopeEquilibrium SlopeEquilibrium::withoutRuts() const {
+  return SlopeEquilibrium(std::make_shared<const Solver>(solver_->withoutRuts()));
 }
 
 bool SlopeEquilibrium::symmetric() const noexcept {

@@ -27,11 +27,12 @@ Planar demandOf(const Gradient& gradient) noexcept;
 
 /// Limits of slip and slip angle for a SlopeEquilibrium.
 struct SlopeOptions {
-  /// Slip above which the rover is immobilised, (0, 1]; same limit as MobilityOptions::max_slip (ours).
+  /// Slip above which the rover is immobilised, (0, 1] (ours).
   double max_slip = 0.8;
   /// Slip angle [rad] above which the rover slides, (0, 1.04]. The wheel model was compared with data up to
   /// 45 deg (ours).
   double max_slip_angle_rad = 0.7854;
+  bool ruts = true;  ///< false: later axles roll on fresh ground, too
 };
 
 /// Reason why a rover has no steady motion over a plane.
@@ -67,16 +68,10 @@ struct SlopeState {
   double sinkage_m = 0.0;             ///< sinkage of the deepest wheel
   double torque_Nm = 0.0;             ///< torque of the wheel with the largest |torque|, with its sign
   double side_force_over_load = 0.0;  ///< largest |F|/N (side force over normal load) of a wheel [-]
-  /// Energy of all wheels and hotel power per metre of travel; braking recovers no energy.
+  /// Energy of all wheels together and hotel power per metre of travel. A braking wheel supplies others that
+  /// drive, and no other load (ours).
   double energy_J_per_m = 0.0;
   double speed_mps = 0.0;  ///< travel speed if the fastest rim has the maximum rim speed
-  /// Smallest change of the demand along the direction of travel, up or down, that exceeds the forces at the
-  /// same slip angle, under equal wheel loads [-]. A negative value means that the demand exceeds these
-  /// forces.
-  double pull_reserve = 0.0;
-  /// Increase of the demand across the direction of travel that reaches the largest lateral force at the same
-  /// demand along, under equal wheel loads [-]. The value is <= 0 if no equilibrium was found.
-  double side_reserve = 0.0;
 
   /// Returns true if the rover has a steady motion, i.e. if `failure` is None.
   bool holds() const { return failure == SlopeFailure::None; }
@@ -103,7 +98,11 @@ struct WheelOnSlope {
 ///   ackermann          body axis and rear wheels have one angle, front wheels another angle;
 ///   skid               body axis and all wheels have one angle, left and right wheels have different slip.
 /// If several equilibria exist, the result is the one with the least slip angle and, among those, the least
-/// slip. A slip > 0 is driven, a slip < 0 braked. No wheel is assumed to follow the track of another wheel.
+/// slip. A slip > 0 is driven, a slip < 0 braked. The wheels of later axles roll in the ruts of the front axle
+/// (rutted()); if the body is turned by beta to the direction of travel, the share exp(-2 (d sin(beta) / b)^2)
+/// of their width b does, d behind the front axle (ours). Ground of the strength s has s times the shear
+/// stresses of the class under a wheel: torque and side force are multiplied by s, the drawbar pull is the
+/// torque over the radius less the resistance of the class, and the sinkage is that of the class (ours).
 /// Pitch and roll limits of the rover are not checked. Immutable, cheap to copy, thread-safe.
 class SlopeEquilibrium {
  public:
@@ -112,23 +111,31 @@ class SlopeEquilibrium {
   SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options = {});
   SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options = {});
 
-  /// Returns the steady motion over a plane with this gradient, or the reason of failure.
-  SlopeState at(const Gradient& gradient) const noexcept;
+  static constexpr double kMostStrength = 5.0;  ///< greatest result of leastStrength() [-]
+
+  /// Returns the steady motion over a plane with this gradient on ground of the given strength >= 0, or the
+  /// reason of failure.
+  SlopeState at(const Gradient& gradient, double strength = 1.0) const noexcept;
+
+  /// Returns the least strength, within 5e-4, at which slip and slip angle stay within their limits;
+  /// kMostStrength if there is none below. Tipping, sinkage and torque are not considered. `near` is an
+  /// estimate of the result, which saves time if it is close.
+  double leastStrength(const Gradient& gradient, double near = 0.5) const noexcept;
 
   /// Returns the state of each wheel for a rover state without failure, from front to rear, left before
   /// right.
-  std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state) const;
+  std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state,
+                                   double strength = 1.0) const;
 
-  /// Returns the state of one wheel that carries an equal share of the weight on level ground. The slip must
-  /// be in [-1, 1] and the slip angle within 60 deg.
-  WheelOnSlope evenWheel(double slip, double slip_angle_rad) const noexcept;
+  /// Returns the state of one wheel that carries an equal share of the weight straight up the slope that its
+  /// drawbar pull climbs, on fresh ground or in the rut of an equal wheel. The slip must be in [-1, 1] and the slip angle within 60 deg.
+  WheelOnSlope evenWheel(double slip, double slip_angle_rad, bool in_rut = false) const noexcept;
 
   /// Returns true if the centre of mass is on the longitudinal axis of the rover.
   bool symmetric() const noexcept;
 
-  /// Returns a copy of the solver without load transfer: the centre of mass is at ground height, in the
-  /// middle of the wheels.
-  SlopeEquilibrium withEvenLoads() const;
+  /// Returns a copy with SlopeOptions::ruts = false.
+  SlopeEquilibrium withoutRuts() const;
 
  private:
   class Solver;

@@ -111,7 +111,7 @@ WheelForcesTable::WheelForcesTable(const Soil& soil, const Rover& rover) : even_
   tabulate(nodes);
 }
 
-WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover)
+WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover, int pass)
     : even_load_N_(wheelLoad_N(rover)) {
   validate(model.soil);
   validate(rover);
@@ -124,7 +124,7 @@ WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover
   std::vector<WheelState> states;
   for (const WheelMotion& m : motions(even_load_N_)) {
     states.push_back(steadyWheel(rover, m.load_N, m.slip, m.slip_angle_rad));
-    states.back().pass_index = 1;
+    states.back().pass_index = pass;
   }
   SolvedContacts solved;
   std::vector<Node> nodes;

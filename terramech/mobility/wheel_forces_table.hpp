@@ -49,9 +49,9 @@ class WheelForcesTable {
   /// exceptions of wong_reece.hpp.
   WheelForcesTable(const Soil& soil, const Rover& rover);
 
-  /// Tabulates a wheel model with effects, without sensor errors, at the rover's maximum speed and pass 1;
-  /// this takes 20 times as long. Throws std::invalid_argument also for the base model linear-formula.
-  WheelForcesTable(const RefinedModel& model, const Rover& rover);
+  /// Tabulates a wheel model with effects, without sensor errors, at the rover's maximum speed and a
+  /// pass >= 1; this takes 20 times as long. Throws std::invalid_argument also for the base model linear-formula.
+  WheelForcesTable(const RefinedModel& model, const Rover& rover, int pass = 1);
 
   /// Returns the interpolated quantities. Slip is clamped to [-1, 1], the slip angle to +-60 deg, and the
   /// load to 0.2 to 4.8 even loads.

@@ -43,7 +43,7 @@ Compared compared(const terramech::Soil& soil, const terramech::Rover& rover) {
       const costmap::TravelState said = cost.detail(cell, towards);
       const terramech::SlopeState want = exact.at({along, across});
       const bool allowed = said.refusal == Refusal::None;
-      const double spare = want.holds() ? std::min(want.pull_reserve, want.side_reserve) : 0.0;
+      const double spare = want.holds() ? 1.0 - exact.leastStrength({along, across}) : 0.0;
       out.allowed_bad += allowed && !want.holds() ? 1 : 0;
       out.refused_good += !allowed && spare > kSpare ? 1 : 0;
       if (!allowed || spare < kAway) {

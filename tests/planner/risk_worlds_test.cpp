@@ -27,11 +27,9 @@ constexpr double kCorrelation_m = 5.0;
 struct RiskyGround {
   std::shared_ptr<const costmap::CostGrid> map;
   std::shared_ptr<const terramech::SlopeEquilibrium> rover;
-  double thrust = 0.0;  // gross thrust over load
-  terramech::MobilityReference reference;
-  double most_pull = 0.0;  // mean of the pull over load at the strongest slip
-  double pull_std = 0.0;   // standard deviation of place and class together
-  double shared = 0.0;     // share of the class in the variance
+  double thrust = 0.0;    // gross thrust over load at the reference slip
+  double pull_std = 0.0;  // standard deviation of place and class together
+  double shared = 0.0;    // share of the class in the variance
 };
 
 RiskyGround riskyGround(double steepest) {
@@ -43,15 +41,14 @@ RiskyGround riskyGround(double steepest) {
   parts.policy.allow_dangerous = true;
   parts.policy.risk_weight_J = 0.0;
   const costmap::GroundModel model(parts);
-  const auto curve = costmap::mobilityOf(parts.classes[0], parts.rover);
   RiskyGround ground;
-  ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(parts.classes[0].soil, parts.rover);
-  ground.thrust = std::max(curve.reference().torque_over_load_radius, std::tan(curve.maxSlope_rad()));
-  ground.reference = curve.reference();
+  ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(parts.classes[0].soil, parts.rover,
+                                                                     terramech::SlopeOptions{.ruts = false});
+  ground.thrust = model.reference(0, false).torque_over_load_radius;
   ground.pull_std = model.prior(0).pull.std;
   ground.shared = std::pow(parts.classes[0].mean_std / ground.pull_std, 2);
-  ground.most_pull = model.prior(0).pull.value + std::max(0.0, curve.strongest().drawbar_pull_over_load -
-                                                                   curve.reference().drawbar_pull_over_load);
+  double most_pull = 0.0;  // steepest climb on ground of the class
+  while (ground.rover->leastStrength({most_pull + 0.002, 0.0}) < 1.0) most_pull += 0.002;
   maps::Raster<costmap::CellCode> cells({.width = 60, .height = 40, .resolution_m = 1.0, .south_west = {}});
   for (int row = 0; row < 40; ++row)
     for (int column = 0; column < 60; ++column) {
@@ -59,7 +56,7 @@ RiskyGround riskyGround(double steepest) {
       // Steep in the south, gentle in the north, so that the cheapest route is not the safest.
       const double share = swell * (1.0 - 0.4 * row / 40.0);
       cells[{column, row}] =
-          costmap::CellCode({.dz_dx = (ground.most_pull - steepest * ground.pull_std) * share, .curve = 0});
+          costmap::CellCode({.dz_dx = (most_pull - steepest * ground.pull_std) * share, .curve = 0});
     }
   const costmap::TravelCost::Limits limits{.max_along = 0.9, .max_across = 0.9};
   ground.map = std::make_shared<costmap::CostGrid>(costmap::flattened(
@@ -70,38 +67,12 @@ RiskyGround riskyGround(double steepest) {
   return ground;
 }
 
-// Largest loss of strength for which the rover holds the slope, by bisection on the equilibrium: the lost
-// pull is added to the climb, and the side force loses the same share as the thrust.
-double strengthToLose(const RiskyGround& ground, const terramech::Gradient& slope) {
-  double holds = -0.5, fails = 0.95 * ground.thrust;
-  for (int halving = 0; halving < 14; ++halving) {
-    const double lost = 0.5 * (holds + fails);
-    const terramech::Gradient weaker{slope.along + lost, slope.across / (1.0 - lost / ground.thrust)};
-    (ground.rover->at(weaker).holds() ? holds : fails) = lost;
-  }
-  return holds;
-}
-
-// Largest pull of a place whose pull at the reference slip departs by a number of standard deviations: its
-// share of the class's thrust less the same resistance. A stronger place has the reserve of the class.
-double pullAtMost(const RiskyGround& ground, double deviations) {
-  const double pull = ground.reference.drawbar_pull_over_load + deviations * ground.pull_std,
-               thrust = ground.reference.torque_over_load_radius,
-               resistance = thrust - ground.reference.drawbar_pull_over_load;
-  const double share = (pull + resistance) / thrust;
-  return share < 1.0 ? share * (ground.most_pull + resistance) - resistance
-                     : ground.most_pull + deviations * ground.pull_std;
-}
-
-// Number of standard deviations by which a place may be weaker than the class before a climb becomes
-// infeasible.
-double deviationsToLose(const RiskyGround& ground, double climb) {
-  double holds = 8.0, fails = -8.0;
-  for (int halving = 0; halving < 40; ++halving) {
-    const double middle = 0.5 * (holds + fails);
-    (pullAtMost(ground, middle) >= climb ? holds : fails) = middle;
-  }
-  return -holds;
+// Number of standard deviations by which a place may be weaker than the class before a slope fails; rows and
+// bins as in the cost table.
+double deviationsToLose(const RiskyGround& ground, double along, double across) {
+  const double least = ground.rover->leastStrength(
+      {std::round(along * 256) / 256.0, std::ceil(std::abs(across) * 64 - 1e-9) / 64.0}, 1.0);
+  return (1.0 - least) * ground.thrust / ground.pull_std;
 }
 
 // Share of worlds in which the pull of some cell of the route is below the gradient. Each cell has one pull.
@@ -109,7 +80,6 @@ double deviationsToLose(const RiskyGround& ground, double climb) {
 // with the distance of the cell centres.
 double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& route, int worlds) {
   const maps::Grid& grid = ground.map->grid();
-  std::map<std::pair<int, int>, double> lost_across;
   std::map<std::size_t, double> least;  // reserve of each cell entered, in deviations
   const auto points = subdivided(route, 0.02);
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -120,15 +90,7 @@ double stuckShare(const RiskyGround& ground, const std::vector<maps::Point>& rou
     const auto code = ground.map->at(cell);
     const double gradient = (code.dzDx() * dx + code.dzDy() * dy) / metres;
     const double across = std::abs(code.dzDy() * dx - code.dzDx() * dy) / metres;
-    const auto [crossing, unseen] = lost_across.try_emplace(
-        {static_cast<int>(std::lround(gradient * 256)), static_cast<int>(std::ceil(across * 64 - 1e-9))},
-        0.0);
-    // Reserve lost to the cross slope; rows and bins as in the cost table.
-    if (unseen)
-      crossing->second =
-          strengthToLose(ground, {crossing->first.first / 256.0, 0.0}) -
-          strengthToLose(ground, {crossing->first.first / 256.0, crossing->first.second / 64.0});
-    const double reserve = deviationsToLose(ground, gradient + std::max(crossing->second, 0.0));
+    const double reserve = deviationsToLose(ground, gradient, across);
     const auto [entry, fresh] = least.try_emplace(grid.index(cell), reserve);
     if (!fresh) entry->second = std::min(entry->second, reserve);
   }

@@ -28,9 +28,18 @@ double slopeOutOf(double dug_m, double radius_m) {
 
 struct LoadedTable {
   const SimulatedWheelTable* table;
-  double load;   // relative to the load on level ground
-  double share;  // share of the rover's weight
+  double load;      // relative to the load on level ground
+  double share;     // share of the rover's weight
+  double strength;  // of the ground relative to its soil
 };
+
+// Forces on ground with `strength` times the shear stresses of its soil.
+SimulatedWheelTable::Row scaled(SimulatedWheelTable::Row forces, double strength) {
+  forces.pull += (strength - 1.0) * forces.torque;
+  forces.torque *= strength;
+  forces.hold *= strength;
+  return forces;
+}
 
 // Required force divided by the normal force; `across` is a magnitude.
 struct RequiredForce {
@@ -53,7 +62,7 @@ struct Balance {
 RequiredForce given(const std::vector<LoadedTable>& wheels, std::size_t row, std::size_t sheet) {
   double pull = 0.0, hold = 0.0;
   for (const LoadedTable& w : wheels) {
-    const SimulatedWheelTable::Row forces = w.table->row(row, w.load, sheet);
+    const SimulatedWheelTable::Row forces = scaled(w.table->row(row, w.load, sheet), w.strength);
     pull += w.share * forces.pull;
     hold += w.share * forces.hold;
   }
@@ -114,6 +123,7 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
       classes_(soils.classes.size()),
       soils_(soils.classes),
       effects_(soils.effects),
+      departures_(soils.departures),
       patches_(soils.patches) {
   for (terramech::Soil& soil : soils_) soil = underGravity(soil, rover.gravity_m_s2);
   for (SoilPatch& patch : patches_) patch.soil = underGravity(patch.soil, rover.gravity_m_s2);
@@ -135,6 +145,20 @@ TrueWorld::TrueWorld(const WorldSoils& soils, const terramech::Rover& rover,
     if (occurs[i])
       tables_[i] = Tables{.fresh = SimulatedWheelTable(soils_[i], rover_, effects_),
                           .rut = SimulatedWheelTable(terramech::rutted(soils_[i]), rover_, effects_)};
+}
+
+double GroundDepartures::field(const maps::Point& place) const noexcept {
+  double sum = 0.0;
+  for (const Wave& w : waves) sum += std::cos(w.x * place.x_m + w.y * place.y_m + w.phase);
+  return sum * std::sqrt(2.0 / static_cast<double>(std::max<std::size_t>(waves.size(), 1)));
+}
+
+double TrueWorld::strengthAt(const maps::Point& place) const noexcept {
+  const std::size_t soil = soilAt(place);
+  if (soil >= departures_.of_class.size()) return 1.0;
+  const double departure =
+      departures_.of_class[soil] + departures_.place_std[soil] * departures_.field(place);
+  return std::max(0.0, 1.0 + departure / tables_[soil]->fresh.at(0.5, 1.0).torque);
 }
 
 std::size_t TrueWorld::soilAt(const maps::Point& place, double margin_m) const noexcept {
@@ -183,7 +207,8 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
     const Tables& ground = *tables_[soilAt(w.place)];
     wheels.push_back({.table = w.passes > 0 ? &ground.rut : &ground.fresh,
                       .load = w.load_N / terramech::wheelLoad_N(rover_),
-                      .share = w.load_N / load_N});
+                      .share = w.load_N / load_N,
+                      .strength = strengthAt(w.place)});
   }
   RequiredForce demand = demandOf(motion.gradient, motion.across);
   demand.along += slopeOutOf(motion.dug_m, rover_.wheel.radius_m);
@@ -193,7 +218,8 @@ TrueWorld::Step TrueWorld::drive(const Motion& motion) const {
   step.slip = balance.slip;
   step.slip_angle_rad = -std::copysign(balance.angle_rad, motion.across);
   for (std::size_t w = 0; w < wheels.size(); ++w) {
-    step.wheels[w].forces = wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad);
+    step.wheels[w].forces =
+        scaled(wheels[w].table->at(step.slip, wheels[w].load, balance.angle_rad), wheels[w].strength);
     step.torque_Nm += step.wheels[w].forces.torque * step.wheels[w].load_N * rover_.wheel.radius_m;
   }
   // Power of all wheels over the speed of travel: T omega / v with omega = v cos(beta) / (r (1 - i)). Braking

@@ -25,6 +25,22 @@ struct SoilPatch {
   terramech::Soil soil;   ///< soil in the disc
 };
 
+/// Departures of the ground of a world from its soils, in drawbar pull over load at slip 0.5 [-]: one of each
+/// class, and a Gaussian field over places with the correlation exp(-d / l), as a sum of random waves. Ground that
+/// departs by D has 1 + D/H times the shear stresses of its soil, with the thrust H of its soil over load.
+struct GroundDepartures {
+  /// Wave numbers [1/m] and phase of a wave.
+  struct Wave {
+    double x, y, phase;
+  };
+  std::vector<double> of_class;   ///< departure of each class, in the order of the classes of the map
+  std::vector<double> place_std;  ///< standard deviation of the field on each class
+  std::vector<Wave> waves{};
+
+  /// Returns the value of the field at a place, of variance 1.
+  double field(const maps::Point& place) const noexcept;
+};
+
 /// True soils of a simulated world. The planner does not know them.
 struct WorldSoils {
   /// True soil of each terrain class, in the order of the classes of the map.
@@ -32,6 +48,7 @@ struct WorldSoils {
   std::vector<SoilPatch> patches;  ///< patches with other soil; at an overlap the later patch counts
   /// Effects in addition to those of a rigid wheel; they act on all soils.
   std::vector<terramech::Effect> effects{};
+  GroundDepartures departures{};  ///< empty: none
 };
 
 /// Position and motion of a rover.
@@ -102,6 +119,7 @@ class TrueWorld {
   };
 
   std::vector<SimulatedWheel> standing(const Motion& motion) const;
+  double strengthAt(const maps::Point& place) const noexcept;
 
   terramech::Rover rover_;
   maps::Raster<std::uint8_t> class_index_;
@@ -109,6 +127,7 @@ class TrueWorld {
   std::vector<terramech::Soil> soils_;
   std::vector<terramech::Effect> effects_;
   std::vector<std::optional<Tables>> tables_;  // of each soil that occurs in a cell or patch
+  GroundDepartures departures_;
   std::vector<SoilPatch> patches_;
   std::vector<std::size_t> patch_soil_;  // of each patch
 };

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <talus/planner/simulation/worlds/world_draw.hpp>
@@ -34,6 +35,27 @@ std::mt19937_64 drawsOf(std::uint64_t seed, int number) {
   return std::mt19937_64(words);
 }
 
+// The spectrum of exp(-d / l) is that of k = (a, b) / (l |c|) with normal a, b and c.
+GroundDepartures departures(const std::vector<costmap::GroundClass>& classes, std::uint64_t seed) {
+  constexpr int kWaves = 256;
+  constexpr double kCorrelation_m = costmap::TravelPolicy{}.correlation_length_m;
+  GroundDepartures made;
+  std::normal_distribution<double> normal;
+  for (const costmap::GroundClass& ground : classes) {
+    std::mt19937_64 own = drawsOf(seed + 1, ground.number);
+    made.of_class.push_back(ground.mean_std * normal(own));
+    made.place_std.push_back(ground.pull_std);
+  }
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> phase(0.0, 2.0 * std::numbers::pi);
+  for (int k = 0; k < kWaves; ++k) {
+    const double x = normal(random), y = normal(random),
+                 per_m = 1.0 / (kCorrelation_m * std::max(std::abs(normal(random)), 1e-3));
+    made.waves.push_back({x * per_m, y * per_m, phase(random)});
+  }
+  return made;
+}
+
 maps::Point anywhere(const maps::Grid& grid, std::mt19937_64& random) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const double x = share(random), y = share(random);
@@ -52,6 +74,7 @@ WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>
     world.classes.push_back(
         varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, own));
   }
+  if (truth.as_believed) world.departures = departures(classes, draw.seed);
   world.patches = truth.patches;
   world.effects = truth.effects;
   std::mt19937_64 random(draw.seed);

@@ -17,6 +17,9 @@ struct Truth {
   std::vector<SoilPatch> patches;  ///< soil patches that are present in every world
   /// Relative standard deviation of cohesion, tangent of the friction angle and moduli [-].
   double spread = 0.0;
+  /// True: the ground of each class departs from its soil as the map believes (GroundClass::mean_std and
+  /// pull_std, correlation length of 5 m).
+  bool as_believed = false;
   /// Number of random patches drawn per world; patches near start or goal are then omitted.
   int random_patches = 0;
   double patch_radius_m = 3.0;  ///< mean radius of random patches, > 0; radii are uniform within +-50 %

@@ -9,16 +9,18 @@
 namespace talus::costmap {
 namespace cost_weights_test {
 
-CostGrid oneGround() {
+CostGrid oneGround(double doubt = 1.0) {
   const auto model = testGround();
   const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
-  return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
-                   std::make_shared<TravelCost>(model->limits(),
-                                                std::vector<GroundCost>{model->ground(0, model->prior(0))}));
+  GroundBelief belief = model->prior(0);
+  belief.pull.std *= doubt;
+  return flattened(
+      maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
+      std::make_shared<TravelCost>(model->limits(), std::vector<GroundCost>{model->ground(0, belief)}));
 }
 
 TEST(CostWeights, CostIsTheWeightedSumOfEnergyTimeAndRisk) {
-  const CostGrid map = oneGround();
+  const CostGrid map = oneGround(0.0);  // without failed attempts, which the cost includes
   const auto other = reweighted(map, {.energy = 2.0, .time_W = 3.0, .risk_J = 5e6});
   for (const double gradient : {-0.1, 0.0, 0.05}) {
     const CellCode cell({gradient, 0.0, 0});

@@ -220,7 +220,8 @@ TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
                    beyond = share(ground->steady(0, {slip, false})) - there,
                    error = 0.5 * (share(ground->steady(0, {slip + 0.03, false})) -
                                   share(ground->steady(0, {slip - 0.03, false}))),
-                   f = there + beyond * beyond * beyond / (beyond * beyond + error * error);
+                   f = beyond != 0.0 ? there + beyond * beyond * beyond / (beyond * beyond + error * error)
+                                     : there;
       EXPECT_NEAR(seen->pull.value, prior + std::min(departure / f, 0.0), 1e-9);
       reading.slip = 0.85;
       EXPECT_FALSE(observer.observe(0, reading)->bound);

@@ -4,7 +4,6 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/ground/category_table.hpp>
 
 namespace talus::costmap {
@@ -25,7 +24,7 @@ TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   for (int i = 0; i < 2000; ++i) {
     const CellCode cell({gradient(random), gradient(random), 0});
     const double steps = std::ceil(std::hypot(cell.stepsX(), cell.stepsY()));
-    const double worst = model->crossing(0)->steepest(steps * CellCode::kStep);
+    const double worst = model->lattice(0)->steepest(steps * CellCode::kStep);
     const RankedCategory expected = model->category(model->prior(0), worst);
     const CategoryTable::Entry seen = table.at(cell);
     ASSERT_GE(seen.category, static_cast<std::uint8_t>(expected.category));

@@ -8,7 +8,7 @@ namespace talus::costmap {
 namespace ground_class_test {
 
 double pull(const terramech::Soil& soil) {
-  return terramech::MobilityCurve(soil, testRover()).reference().drawbar_pull_over_load;
+  return terramech::mobilityReference(soil, testRover()).drawbar_pull_over_load;
 }
 
 TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
@@ -70,7 +70,7 @@ TEST(GroundClass, RefinedModelKeepsItsGroundEffects) {
   EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
   // Property: slip sinkage makes the wheel sink deeper than in plain sand and weakens the pull at the
   // reference slip.
-  EXPECT_LT(mobilityOf(ground, testRover()).reference().drawbar_pull_over_load, pull(testSand()));
+  EXPECT_LT(referenceOf(ground, testRover()).drawbar_pull_over_load, pull(testSand()));
 }
 
 TEST(GroundClass, PullStdFollowsFromTheModelCovariance) {
@@ -78,7 +78,7 @@ TEST(GroundClass, PullStdFollowsFromTheModelCovariance) {
   more.effects[0].parameters[0] += 0.004;
   less.effects[0].parameters[0] -= 0.004;
   const auto at = [](const terramech::RefinedModel& m) {
-    return terramech::MobilityCurve(m, testRover()).reference().drawbar_pull_over_load;
+    return terramech::mobilityReference(m, testRover()).drawbar_pull_over_load;
   };
   // Closed form: |dDP/dn1| times the standard deviation 0.04. Tolerance 2 %: a central against a one-sided
   // difference.

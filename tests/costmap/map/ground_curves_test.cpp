@@ -217,9 +217,8 @@ TEST(GroundCurves, CurveTableOverflowIsConservative) {
       blocked += code.curve() == CellCode::kBlocked && map.surface().hazards(cell) == Hazard::None;
       for (int k = 0; k < 16; ++k) {
         const double along = code.dzDx() * heading(k).x + code.dzDy() * heading(k).y;
-        const double exact =
-            model->cost_J_per_m(model->state(map.surface().classIndex(cell), *map.ground(cell),
-                                             TravelCurve::gradient(TravelCurve::bin(along))));
+        const double exact = static_cast<double>(
+            model->ground(map.surface().classIndex(cell), *map.ground(cell)).curve.price(along, 0.0));
         cheaper += static_cast<double>(map.published()->cost().costPerMetre(code, heading(k))) <
                    (1.0 - 1e-6) * exact;
       }
@@ -245,7 +244,8 @@ TEST(GroundCurves, CoarserRoundingAvoidsBlockedCells) {
     for (int column = 1; column < 79; ++column) {
       const CellCode code = map.published()->at({column, row});
       blocked += code.curve() >= CellCode::kUnknown;
-      const double exact = map.model().cost_J_per_m(map.model().state(0, *map.ground({column, row}), 0.0));
+      const auto exact =
+          static_cast<double>(map.model().ground(0, *map.ground({column, row})).curve.price(0.0, 0.0));
       cheaper +=
           static_cast<double>(map.published()->cost().costPerMetre(code, {1, 0})) < (1.0 - 1e-6) * exact;
     }

@@ -45,7 +45,7 @@ struct Row {
 // A drive east along three lines on one soil, a row every quarter of a metre, with the noise of good
 // sensors.
 std::vector<Row> driveOver(const TraversabilityMap& map, const terramech::Soil& soil) {
-  const terramech::MobilityCurve curve = mobilityOf({.number = 1, .soil = soil}, testRover());
+  const terramech::SlopeEquilibrium equilibrium(soil, testRover());
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
   std::vector<Row> rows;
@@ -53,7 +53,7 @@ std::vector<Row> driveOver(const TraversabilityMap& map, const terramech::Soil& 
     for (int i = 0; i < 180; ++i) {
       const double x_m = 5.0 + 0.25 * i;
       const double gradient = map.published()->at(*map.grid().cellAt({x_m, y_m})).dzDx();
-      const terramech::MobilityState s = curve.at(std::atan(gradient));
+      const terramech::SlopeState s = equilibrium.at({gradient, 0.0});
       rows.push_back({2.5 * i, x_m, y_m, 0.0, std::atan(gradient) + 0.005 * noise(random),
                       s.slip + 0.01 * noise(random), s.torque_Nm * (1.0 + 0.02 * noise(random)),
                       s.sinkage_m * (1.0 + 0.02 * noise(random)), "y" + std::to_string(y_m)});

@@ -3,6 +3,7 @@
 #include <random>
 
 #include <talus/costmap/cost/travel_state.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
@@ -13,9 +14,9 @@ namespace annotation_test {
 
 // Level and sloping ground with tables of travel states.
 std::shared_ptr<const costmap::CostGrid> mapWithStates() {
-  auto states = std::make_shared<costmap::TravelTable>();
+  std::vector<costmap::TravelState> all(costmap::TravelCurve::kBins);
   for (int bin = 0; bin < 512; ++bin) {
-    auto& state = (*states)[static_cast<std::size_t>(bin)];
+    auto& state = all[static_cast<std::size_t>(bin)];
     const float g = static_cast<float>(bin - 256) / 256.0F;
     state.slip = g;
     state.energy_J_per_m = 10.0F + 100.0F * std::max(g, 0.0F);
@@ -23,6 +24,7 @@ std::shared_ptr<const costmap::CostGrid> mapWithStates() {
     state.risk_per_m = 0.01F;
     state.category = terramech::Category::Safe;
   }
+  const auto states = std::make_shared<costmap::TabulatedStates>(std::move(all));
   const auto cost = std::make_shared<costmap::TravelCost>(
       costmap::TravelCost::Limits{}, std::vector<costmap::GroundCost>{{testing::curve({}), states}});
   maps::Raster<costmap::CellCode> cells({.width = 4, .height = 2, .resolution_m = 1.0, .south_west = {}},

@@ -3,6 +3,7 @@
 #include <stop_token>
 
 #include <talus/costmap/cost/cost_weights.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
@@ -22,8 +23,8 @@ std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>
     state.energy_J_per_m = static_cast<float>(energy);
     state.time_s_per_m = static_cast<float>(time);
     state.risk_per_m = static_cast<float>(risk);
-    auto table = std::make_shared<costmap::TravelTable>();
-    table->fill(state);
+    auto table = std::make_shared<costmap::TabulatedStates>(
+        std::vector<costmap::TravelState>(costmap::TravelCurve::kBins, state));
     return costmap::GroundCost{.curve = {}, .states = table};
   };
   auto content = testing::drawn(rows)->content();

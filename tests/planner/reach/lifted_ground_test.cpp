@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <site_fixture.hpp>
 
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
 #include <talus/terramech/mobility/rover_stance.hpp>
@@ -122,8 +123,8 @@ TEST(LiftedGround, SlopeRefusedByLimitAndSoilIsReported) {
     costmap::TravelState state;
     state.energy_J_per_m = 10.0F;
     state.pull_margin = static_cast<float>(margin);
-    auto table = std::make_shared<costmap::TravelTable>();
-    table->fill(state);
+    auto table = std::make_shared<costmap::TabulatedStates>(
+        std::vector<costmap::TravelState>(costmap::TravelCurve::kBins, state));
     auto made = content;
     made.cost = std::make_shared<costmap::TravelCost>(
         costmap::TravelCost::Limits{.max_along = 0.1, .max_across = 0.05},

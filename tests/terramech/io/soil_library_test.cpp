@@ -4,7 +4,7 @@
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 #include "temporary_file.hpp"
 
@@ -156,7 +156,7 @@ TEST(SoilLibrary, EveryEntryLoadsAndEveryRoverIsMobileOnMostSoils) {
     for (const auto& soil_name : librarySoils()) {
       const Soil soil = loadSoil(soil_name);
       EXPECT_EQ(soil.name, soil_name);
-      drivable += MobilityCurve{soil, rover}.at(0.0).feasible;
+      drivable += SlopeEquilibrium{soil, rover}.at({}).grip == SlopeFailure::None;
     }
     EXPECT_GE(drivable, 14) << rover_name;  // Property: these rovers have driven on such ground.
   }

@@ -92,7 +92,7 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
   for (const Steering steering : kSteerings) {
     Rover r = rover(steering);
     r.centre_of_mass_ahead_m = 0.06;
-    const SlopeEquilibrium equilibrium{sand(), r};
+    const SlopeEquilibrium equilibrium{sand(), r, {.ruts = false}};
     const double weight = r.mass_kg * r.gravity_m_s2;
     int held = 0;
     for (double a = -0.35; a <= 0.36; a += 0.07)
@@ -115,22 +115,68 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
   }
 }
 
-TEST(SlopeEquilibrium, StraightUpSlopeMatchesTheMobilityCurve) {
-  Rover r = rover();
-  r.centre_of_mass_height_m = 0.0;  // without load transfer, as in the mobility curve
-  const SlopeEquilibrium equilibrium{sand(), r};
-  const MobilityCurve curve{sand(), r};
-  for (double slope = -0.3; slope <= 0.3; slope += 0.05) {
-    const SlopeState state = equilibrium.at({std::tan(slope), 0.0});
-    const MobilityState want = curve.at(slope);
-    ASSERT_EQ(state.holds(), want.feasible) << slope;
-    if (!want.feasible) continue;
-    // Property: two implementations agree. Tolerance: table errors up to 0.004 in pull over load, times the
-    // derivative of slip by pull over load.
-    EXPECT_NEAR(state.slip, want.slip, 0.006) << slope;
-    EXPECT_NEAR(state.energy_J_per_m, want.energy_J_per_m, 0.02 * want.energy_J_per_m + 0.5) << slope;
-    EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
+// Slip on one slope by bisection.
+double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
+  const double load_N = wheelLoad_N(rover) * std::cos(slope_rad);
+  const auto excess = [&](double slip) {
+    return equilibrium(soil, rover.wheel, {.load_N = load_N, .slip = slip}).drawbar_pull_N / load_N -
+           std::tan(slope_rad);
+  };
+  double low = excess(0.0) > 0.0 ? -1.0 : 0.0, high = low < 0.0 ? 0.0 : 0.01;
+  while (excess(high) < 0.0) {
+    low = high;
+    high = std::min(1.0, high + 0.01);
   }
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+TEST(SlopeEquilibrium, StraightUpSlopeBalancesOneWheel) {
+  Rover r = rover();
+  r.centre_of_mass_height_m = 0.0;  // without load transfer
+  const SlopeEquilibrium rutted{sand(), r}, fresh = rutted.withoutRuts();
+  for (double slope = -0.2; slope <= 0.11; slope += 0.05) {
+    const SlopeState state = fresh.at({std::tan(slope), 0.0});
+    ASSERT_TRUE(state.holds()) << slope;
+    // Closed form: the slip of a wheel by bisection. Tolerance: table errors up to 0.004 in pull over load, times
+    // the derivative of slip by pull over load.
+    EXPECT_NEAR(state.slip, slipOnSlope(sand(), r, slope), 0.006) << slope;
+    EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
+    // Property: later axles in ruts reduce the slip uphill.
+    if (slope > 0.01) {
+      EXPECT_LT(rutted.at({std::tan(slope), 0.0}).slip, state.slip) << slope;
+    }
+  }
+}
+
+// Property: the least strength holds, and a little less does not; at strength s the pull of a wheel is that of its
+// class plus s - 1 times its torque over the radius.
+TEST(SlopeEquilibrium, LeastStrengthIsTheEdgeOfWhatHolds) {
+  for (const Steering steering : kSteerings) {
+    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    for (const Gradient plane : {Gradient{0.15, 0.0}, Gradient{0.05, 0.12}, Gradient{-0.15, 0.05}}) {
+      const double least = equilibrium.leastStrength(plane);
+      const SlopeState edge = equilibrium.at(plane, least + 1e-4);
+      EXPECT_LE(edge.slip, 0.8 + 1e-6);
+      EXPECT_GT(edge.speed_mps, 0.0);
+      const SlopeState below = equilibrium.at(plane, least - 0.01);
+      EXPECT_TRUE(below.speed_mps == 0.0 || below.grip != SlopeFailure::None)
+          << plane.along << ' ' << plane.across;
+      EXPECT_NEAR(equilibrium.leastStrength(plane, 2.0), least, 1e-3);
+    }
+  }
+  const SlopeEquilibrium straight{sand(), rover()};
+  const Gradient climb{0.1, 0.0};
+  const SlopeState state = straight.at(climb, 1.2);
+  double pull_N = 0.0, load_N = 0.0;
+  for (const WheelOnSlope& wheel : straight.wheels(climb, state, 1.2)) {
+    pull_N += wheel.drawbar_pull_N;
+    load_N += wheel.load_N;
+  }
+  EXPECT_NEAR(pull_N / load_N, 0.1, 1e-6);
 }
 
 TEST(SlopeEquilibrium, IsSymmetricLeftAndRight) {
@@ -206,7 +252,7 @@ bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
 TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
   Rover r = rover();
   r.centre_of_mass_height_m = 0.0;
-  const SlopeEquilibrium equilibrium{sand(), r};
+  const SlopeEquilibrium equilibrium{sand(), r, {.ruts = false}};
   std::mt19937_64 engine{3};
   std::uniform_real_distribution<double> any{-0.7, 0.7};
   int held = 0, none = 0;
@@ -254,7 +300,7 @@ TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
 }
 
 TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
-  const SlopeEquilibrium equilibrium{sand(), rover()};
+  const SlopeEquilibrium equilibrium{sand(), rover(), {.ruts = false}};
   const double even = wheelLoad_N(rover());
   const WheelForces locked = terramech::equilibrium(sand(), rover().wheel, {.load_N = even, .slip = -1.0});
   const double steepest = -locked.drawbar_pull_N / even;

@@ -8,7 +8,7 @@
 
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/simulation/drive/traverse_simulation.hpp>
-#include <talus/terramech/mobility/mobility.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::planner {
@@ -178,7 +178,7 @@ TEST(TraverseSimulation, TurnCostIsThatOfTheTrueGround) {
   EXPECT_NEAR(north.time_s, straight.time_s, 0.01 * straight.time_s);
   EXPECT_NEAR(north.energy_J, straight.energy_J, 0.01 * straight.energy_J);
   const terramech::Rover rover = testRover();
-  const terramech::MobilityState flat = terramech::MobilityCurve(testSand(), rover).at(0.0);
+  const terramech::SlopeState flat = terramech::SlopeEquilibrium(testSand(), rover).at({});
   const terramech::TurnEfforts efforts = terramech::turnEfforts(
       rover, {.lateral_resistance = std::tan(testSand().friction_angle_rad),
               .bulldozing_N = terramech::bulldozing_N(testSand(), rover, flat.sinkage_m),

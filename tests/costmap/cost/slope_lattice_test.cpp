@@ -6,12 +6,11 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/cost/cross_slope.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/terramech/contact/wong_reece.hpp>
 
 namespace talus::costmap {
-namespace cross_slope_test {
+namespace slope_lattice_test {
 
 GroundBelief certain(const GroundModel& model) {
   GroundBelief belief = model.prior(0);
@@ -26,6 +25,15 @@ TravelCost costOf(const GroundModel& model, const GroundBelief& belief) {
 // A plane that rises by `along` in the heading east and by `across` to the left of the heading.
 CellCode plane(double along, double across) {
   return CellCode({.dz_dx = along, .dz_dy = across, .curve = 0});
+}
+
+// Strength that a slope requires whether the later axles roll in ruts or not.
+double leastOf(const terramech::SlopeEquilibrium& exact, const terramech::Gradient& gradient) {
+  return std::max(exact.leastStrength(gradient), exact.withoutRuts().leastStrength(gradient));
+}
+
+bool holdsBoth(const terramech::SlopeEquilibrium& exact, const terramech::Gradient& gradient) {
+  return exact.at(gradient).holds() && exact.withoutRuts().at(gradient).holds();
 }
 
 terramech::Soil drawn(std::mt19937& random) {
@@ -46,7 +54,7 @@ GroundModel modelOf(const terramech::Soil& soil) {
 }
 
 // Closed form: with prices_crossing = false the cost on any cross slope equals the cost without cross slope.
-TEST(CrossSlope, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
+TEST(SlopeLattice, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
   GroundModel::Parts parts = modelOf(testSand()).parts();
   const GroundModel priced(parts);
   parts.prices_crossing = false;
@@ -62,7 +70,7 @@ TEST(CrossSlope, AlongOnlyCostDependsOnTheLongitudinalGradientOnly) {
 }
 
 // Property: a slope is refused if the equilibrium refuses it by more than one row across and one bin along.
-TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
+TEST(SlopeLattice, InfeasibleEquilibriaAreNeverAllowed) {
   std::mt19937 random(1);
   int refused = 0, held = 0, given_up = 0;
   for (int soils = 0; soils < 6; ++soils) {
@@ -74,16 +82,16 @@ TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
       for (double across = 0.013; across <= 0.36; across += 0.017) {
         const bool allowed = std::isfinite(cost.costPerMetre(plane(along, across), {}));
         const double inward = along > 0.0 ? -1.0 / 512 : 1.0 / 512;
-        const bool holds = exact.at({along, across}).holds();
-        if (!holds && !exact.at({along + 2 * inward, across}).holds()) {
+        const bool holds = holdsBoth(exact, {along, across});
+        if (!holds && !holdsBoth(exact, {along + 2 * inward, across})) {
           EXPECT_FALSE(allowed) << soils << ' ' << along << ' ' << across;
           ++refused;
         }
         // Property: a slope is allowed if a slope steeper by one row and one bin has an equilibrium, unless
         // limits other than the soil's apply first.
-        if (std::abs(along) < 0.3 && exact.at({along - 1.5 * inward, across + 2.0 / 64}).holds() &&
-            exact.at({along + 0.02, across + 2.0 / 64}).holds() &&
-            exact.at({along - 0.02, across + 2.0 / 64}).holds()) {
+        if (std::abs(along) < 0.3 && holdsBoth(exact, {along - 1.5 * inward, across + 2.0 / 64}) &&
+            holdsBoth(exact, {along + 0.02, across + 2.0 / 64}) &&
+            holdsBoth(exact, {along - 0.02, across + 2.0 / 64})) {
           ++held;
           given_up += !allowed;
         }
@@ -96,7 +104,7 @@ TEST(CrossSlope, InfeasibleEquilibriaAreNeverAllowed) {
 
 // Property: away from failure, cost per metre and slip equal those of the equilibrium at the gradient, also
 // in row 0 and for any steering. Tolerance: linear interpolation between nodes and equilibria.
-TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
+TEST(SlopeLattice, CostAndSlipMatchTheEquilibrium) {
   std::mt19937 random(2);
   std::vector<double> ratios;
   for (const auto steering :
@@ -114,7 +122,7 @@ TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
           const CellCode cell = plane(along, across);
           const TravelState state = cost.detail(cell, {});
           const auto want = exact.at({cell.dzDx(), cell.dzDy()});
-          if (!want.holds() || want.pull_reserve < 0.03 || want.side_reserve < 0.03) continue;
+          if (!want.holds() || leastOf(exact, {cell.dzDx(), cell.dzDy()}) > 0.93) continue;
           ASSERT_EQ(state.refusal, Refusal::None) << soils << ' ' << along << ' ' << across;
           const double metre_J = want.energy_J_per_m * std::hypot(1.0, along);
           ratios.push_back(static_cast<double>(state.energy_J_per_m) / metre_J);
@@ -130,7 +138,7 @@ TEST(CrossSlope, CostAndSlipMatchTheEquilibrium) {
 
 // Property: between headings one degree apart, the cost on a plane changes like the energy of the
 // equilibrium, without steps.
-TEST(CrossSlope, CostIsSmoothInHeading) {
+TEST(SlopeLattice, CostIsSmoothInHeading) {
   const GroundModel model = modelOf(testSand());
   const terramech::SlopeEquilibrium exact(testSand(), testRover());
   const TravelCost cost = costOf(model, certain(model));
@@ -144,7 +152,7 @@ TEST(CrossSlope, CostIsSmoothInHeading) {
       const double now_J =
           static_cast<double>(cost.costPerMetre(cell, {std::cos(heading), std::sin(heading)}));
       const auto state = exact.at({along, cell.dzDx() * std::sin(heading)});
-      const bool away = state.holds() && state.pull_reserve > 0.03 && state.side_reserve > 0.03;
+      const bool away = state.holds() && leastOf(exact, {along, cell.dzDx() * std::sin(heading)}) < 0.93;
       const double metre_J = away ? state.energy_J_per_m * std::hypot(1.0, along) : 0.0;
       if (away && exact_J > 0.0) {
         ++compared;
@@ -159,7 +167,7 @@ TEST(CrossSlope, CostIsSmoothInHeading) {
 
 // A rover with base and track 0.9 m and a centre of mass 1.2 m high tips at atan(0.45 / 1.2) = 20.6 degrees,
 // on ground whose strength allows far steeper slopes.
-TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
+TEST(SlopeLattice, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
   terramech::Soil clay = testSand();
   clay.cohesion_Pa = 20000.0;
   for (const auto steering :
@@ -195,7 +203,7 @@ TEST(CrossSlope, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
 // Property: on an allowed slope the sinkage of the deepest wheel, solved again for its load on the slope, is
 // less than the clearance. Tolerance 0.04 of the clearance: table of wheel forces and one bin of gradient.
 // The rover is near tipping, so that its lower wheels carry far more than their share.
-TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
+TEST(SlopeLattice, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
   terramech::Rover tall = testRover();
   tall.wheelbase_m = 0.8;
   tall.centre_of_mass_height_m = 1.6;
@@ -232,7 +240,7 @@ TEST(CrossSlope, AllowedSlopesLimitSinkageOfTheDeepestWheelToTheClearance) {
 
 // Property: cost, risk and refusal never decrease as the cross slope grows, and are equal for both
 // directions of travel.
-TEST(CrossSlope, CostIsMonotoneInCrossSlope) {
+TEST(SlopeLattice, CostIsMonotoneInSlopeLattice) {
   std::mt19937 random(3);
   for (int soils = 0; soils < 4; ++soils) {
     const GroundModel model = modelOf(drawn(random));
@@ -250,8 +258,8 @@ TEST(CrossSlope, CostIsMonotoneInCrossSlope) {
 }
 
 // Property: weaker or less certain ground is never cheaper in any heading, and is never allowed where
-// stronger ground is refused.
-TEST(CrossSlope, CostIsMonotoneInSoilStrength) {
+// stronger ground is refused. Tolerance 0.5 %: as CostCurveTable.TabulatedCostIsNeverBelowTheExactCost.
+TEST(SlopeLattice, CostIsMonotoneInSoilStrength) {
   std::mt19937 random(4);
   const auto between = [&random](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -269,13 +277,13 @@ TEST(CrossSlope, CostIsMonotoneInSoilStrength) {
         const double heading = k * std::numbers::pi / 18;
         const CellCode cell = plane(steepness, 0.0);
         const Direction towards{std::cos(heading), std::sin(heading)};
-        ASSERT_GE(weaker.costPerMetre(cell, towards), stronger.costPerMetre(cell, towards))
+        ASSERT_GE(weaker.costPerMetre(cell, towards), 0.995F * stronger.costPerMetre(cell, towards))
             << soils << ' ' << steepness << ' ' << k;
       }
   }
 }
 
-TEST(CrossSlope, SideForceFailureIsReported) {
+TEST(SlopeLattice, SideForceFailureIsReported) {
   terramech::Soil loose = testSand();
   loose.cohesion_Pa = 0.0;
   loose.friction_angle_rad = 0.45;
@@ -289,7 +297,7 @@ TEST(CrossSlope, SideForceFailureIsReported) {
   EXPECT_EQ(cost.detail(plane(0.3, 0.1), {}).refusal, Refusal::Pull);
 }
 
-TEST(CrossSlope, CostOfTwoGroundsIsAtLeastThatOfTheHarder) {
+TEST(SlopeLattice, CostOfTwoGroundsIsAtLeastThatOfTheHarder) {
   const auto model = testGround();
   const GroundBelief belief = model->prior(0);
   const TravelCost cost(model->limits(),
@@ -304,5 +312,5 @@ TEST(CrossSlope, CostOfTwoGroundsIsAtLeastThatOfTheHarder) {
     }
 }
 
-}  // namespace cross_slope_test
+}  // namespace slope_lattice_test
 }  // namespace talus::costmap

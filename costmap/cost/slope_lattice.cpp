@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <talus/costmap/cost/slope_lattice.hpp>
+
+namespace talus::costmap {
+namespace {
+
+using terramech::Gradient;
+using terramech::SlopeEquilibrium;
+using terramech::SlopeFailure;
+using terramech::SlopeState;
+
+constexpr int kAlongPerUnit = 32, kAcrossPerUnit = 32;  // solved gradients; divide those of TravelCurve
+
+constexpr double kNever = 1e6;  // energy [J/m] and time [s/m] where no strength holds
+
+// Excess of the strength over the least at which the slip is the reference slip 0.5, if it is greater there.
+double excessAtReference(const std::array<float, StrengthColumn::kStrengths>& slips) noexcept {
+  constexpr float kReferenceSlip = 0.5F;
+  std::size_t k = 0;
+  while (k + 1 < slips.size() && slips[k] > kReferenceSlip) ++k;
+  if (k == 0) return 0.0;
+  const double low = StrengthColumn::excess(static_cast<int>(k) - 1),
+               high = StrengthColumn::excess(static_cast<int>(k));
+  const double fall = static_cast<double>(slips[k - 1] - slips[k]);
+  return low + (high - low) * std::min(static_cast<double>(slips[k - 1] - kReferenceSlip) / fall, 1.0);
+}
+
+// The rover with later axles in ruts, and with all wheels on fresh ground.
+struct Standings {
+  SlopeEquilibrium in_ruts, fresh;
+};
+
+StrengthColumn solvedOnSide(const Standings& rover, const Gradient& gradient, double near) {
+  StrengthColumn column;
+  const double least = rover.in_ruts.leastStrength(gradient, near);
+  column.least = static_cast<float>(least);
+  // Wheels in ruts pull more uphill and brake less downhill.
+  column.required = static_cast<float>(std::max(least, rover.fresh.leastStrength(gradient, least)));
+  // The body turns as on ground of the class or, where that fails, as on the weakest ground that holds.
+  column.margin_rad =
+      static_cast<float>(rover.in_ruts.at(gradient, std::max(1.0, least)).stability_margin_rad);
+  SlopeState s{.energy_J_per_m = kNever, .speed_mps = 1.0 / kNever};
+  for (int k = 0; k < StrengthColumn::kStrengths; ++k) {
+    // Where Newton's method fails, the state of the weaker ground stays.
+    const SlopeState next = rover.in_ruts.at(gradient, least + StrengthColumn::excess(k));
+    if (next.speed_mps > 0.0) s = next;
+    const std::array<double, StrengthColumn::kQuantities> values{
+        s.energy_J_per_m, 1.0 / s.speed_mps,     s.slip, s.sinkage_m, s.torque_Nm,
+        s.slip_angle_rad, s.side_force_over_load};
+    for (std::size_t q = 0; q < values.size(); ++q)
+      column.entries[q][static_cast<std::size_t>(k)] = static_cast<float>(values[q]);
+  }
+  column.at_reference = static_cast<float>(least + excessAtReference(column.entries[StrengthColumn::kSlip]));
+  return column;
+}
+
+// Of two sides, the one that needs more strength or, with equal strength, more energy.
+StrengthColumn solved(const Standings& rover, const Gradient& gradient, double near) {
+  StrengthColumn column = solvedOnSide(rover, gradient, near);
+  if (rover.fresh.symmetric() || gradient.across == 0.0) return column;
+  StrengthColumn other = solvedOnSide(rover, {gradient.along, -gradient.across}, near);
+  for (float& angle : other.entries[StrengthColumn::kSlipAngle]) angle = -angle;
+  const float margin_rad = std::min(column.margin_rad, other.margin_rad);
+  const auto effort = [](const StrengthColumn& c) { return c.entries[StrengthColumn::kEnergy].front(); };
+  if (std::abs(other.least - column.least) < 1e-3F ? effort(other) > effort(column)
+                                                   : other.least > column.least)
+    column = other;
+  column.margin_rad = margin_rad;
+  return column;
+}
+
+StrengthColumn mixed(const StrengthColumn& a, const StrengthColumn& b, float share) noexcept {
+  if (share == 0.0F) return a;
+  StrengthColumn out = a;
+  out.least += share * (b.least - a.least);
+  out.required += share * (b.required - a.required);
+  out.at_reference += share * (b.at_reference - a.at_reference);
+  out.margin_rad += share * (b.margin_rad - a.margin_rad);
+  for (std::size_t q = 0; q < out.entries.size(); ++q)
+    for (std::size_t k = 0; k < out.entries[q].size(); ++k)
+      out.entries[q][k] += share * (b.entries[q][k] - a.entries[q][k]);
+  return out;
+}
+
+}  // namespace
+
+double StrengthColumn::at(Quantity quantity, double excess) const noexcept {
+  const auto& values = entries[static_cast<std::size_t>(quantity)];
+  const double place = std::sqrt(std::clamp(excess, 0.0, kSpan) / kSpan) * (kStrengths - 1);
+  const int k = std::min(static_cast<int>(place), kStrengths - 2);
+  const double low = StrengthColumn::excess(k), high = StrengthColumn::excess(k + 1);
+  const double share = std::clamp((excess - low) / (high - low), 0.0, 1.0);
+  const auto i = static_cast<std::size_t>(k);
+  const auto a = static_cast<double>(values[i]), b = static_cast<double>(values[i + 1]);
+  return a + share * (b - a);
+}
+
+SlopeLattice::SlopeLattice(const SlopeEquilibrium& equilibrium, const TravelCost::Limits& limits,
+                           bool across) {
+  const int half = std::min(static_cast<int>(limits.max_along * TravelCurve::kBinsPerUnit) + 2,
+                            TravelCurve::kBins / 2 - 1);
+  first_ = TravelCurve::kBins / 2 - half;
+  last_ = TravelCurve::kBins / 2 + half;
+  // Interpolation at the roll limit needs the row beyond. Gradients across are at most 1.
+  const int rows =
+      across ? static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 2 : 1;
+  constexpr int kBinsPerStep = TravelCurve::kBinsPerUnit / kAlongPerUnit,
+                kRowsPerStep = TravelCurve::kRowsPerUnit / kAcrossPerUnit;
+  const int steps = (half + kBinsPerStep - 1) / kBinsPerStep,
+            solved_rows = (rows - 1 + kRowsPerStep - 1) / kRowsPerStep;
+  const Standings rover{equilibrium, equilibrium.withoutRuts()};
+  std::vector<std::vector<StrengthColumn>> lattice;
+  for (int row = 0; row <= solved_rows; ++row) {
+    std::vector<StrengthColumn>& here = lattice.emplace_back();
+    for (int k = -steps; k <= steps; ++k) {
+      const float near = !here.empty() ? here.back().least
+                         : row > 0     ? lattice[static_cast<std::size_t>(row - 1)].front().least
+                                       : 0.5F;
+      here.push_back(
+          solved(rover, {static_cast<double>(k) / kAlongPerUnit, static_cast<double>(row) / kAcrossPerUnit},
+                 static_cast<double>(near)));
+    }
+  }
+  for (int row = 0; row < rows; ++row) {
+    const auto low = static_cast<std::size_t>(row / kRowsPerStep),
+               high = std::min(low + 1, lattice.size() - 1);
+    const float up = static_cast<float>(row % kRowsPerStep) / kRowsPerStep;
+    for (int bin = -half; bin <= half; ++bin) {
+      const int place = bin + steps * kBinsPerStep;
+      const auto left = static_cast<std::size_t>(place / kBinsPerStep),
+                 right = std::min(left + 1, lattice[low].size() - 1);
+      const float on = static_cast<float>(place % kBinsPerStep) / kBinsPerStep;
+      nodes_.push_back(mixed(mixed(lattice[low][left], lattice[low][right], on),
+                             mixed(lattice[high][left], lattice[high][right], on), up));
+    }
+  }
+  findClimbs();
+  findSteepest();
+}
+
+// Climbs require more strength the steeper they are, from the gradient that requires least.
+void SlopeLattice::findClimbs() {
+  const auto row0 = [&](int i) { return nodes_[static_cast<std::size_t>(i)].at_reference; };
+  int from = 0;
+  for (int i = 1; i < bins(); ++i)
+    if (row0(i) < row0(from)) from = i;
+  const auto climbOf = [&](float strength) {
+    int i = from;
+    while (i + 1 < bins() && row0(i + 1) < strength) ++i;
+    if (i + 1 >= bins()) return TravelCurve::gradient(last_) + static_cast<double>(strength - row0(i));
+    const float step = row0(i + 1) - row0(i);
+    const float share = step > 0.0F ? std::clamp((strength - row0(i)) / step, 0.0F, 1.0F) : 0.0F;
+    return TravelCurve::gradient(first_ + i + static_cast<double>(share));
+  };
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int i = static_cast<int>(n) % bins();
+    const double own = TravelCurve::gradient(first_ + i);
+    climbs_.push_back(
+        static_cast<float>(own + std::max(0.0, climbOf(nodes_[n].at_reference) - climbOf(row0(i)))));
+    if (n >= static_cast<std::size_t>(bins()))
+      climbs_.back() = std::max(climbs_.back(), climbs_[n - static_cast<std::size_t>(bins())]);
+  }
+}
+
+double SlopeLattice::climb(const Gradient& gradient) const noexcept {
+  constexpr double kNowhere = 4.0;  // steeper than any cell
+  const double place = gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2;
+  if (!(place >= first_ && place < last_)) return kNowhere;
+  const auto bin = TravelCurve::between(place),
+             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
+  const auto inRow = [&](int r) {
+    const std::size_t i = index(r, bin.whole),
+                      next = index(r, bin.whole + static_cast<int>(bin.share > 0.0F));
+    if (nodes_[i].margin_rad < 0.0F || nodes_[next].margin_rad < 0.0F) return static_cast<float>(kNowhere);
+    return climbs_[i] + bin.share * (climbs_[next] - climbs_[i]);
+  };
+  const float low = inRow(row.whole), high = inRow(row.whole + static_cast<int>(row.share > 0.0F));
+  return std::min(static_cast<double>(low + row.share * (high - low)), kNowhere);
+}
+
+void SlopeLattice::findSteepest() {
+  constexpr int kHeadings = 24;  // over 180 degrees: left and right are symmetric
+  for (int step = 0; step <= 1024; ++step) {
+    const double gradient = step * CellCode::kStep;
+    double most = gradient;
+    for (int k = 0; k < kHeadings; ++k) {
+      const double heading = k * std::numbers::pi / kHeadings;
+      most = std::max(most, climb({gradient * std::cos(heading), gradient * std::sin(heading)}));
+    }
+    steepest_.push_back(static_cast<float>(most));
+  }
+}
+
+double SlopeLattice::steepest(double gradient) const noexcept {
+  const double step = gradient / CellCode::kStep;
+  if (!(step <= 1024.0)) return gradient;
+  return std::max(gradient, static_cast<double>(steepest_[static_cast<std::size_t>(std::ceil(step))]));
+}
+
+}  // namespace talus::costmap

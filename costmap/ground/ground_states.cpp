@@ -1,0 +1,299 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <talus/costmap/ground/ground_states.hpp>
+#include <talus/terramech/numerics/normal_distribution.hpp>
+
+namespace talus::costmap {
+namespace {
+
+constexpr int kStrengths = StrengthColumn::kStrengths;
+constexpr float kRefused = std::numeric_limits<float>::infinity();
+constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
+
+// Weights of the entries of a column, and of failure, for a normal excess of the strength over the least that
+// holds.
+struct StrengthWeights {
+  std::array<double, kStrengths> of{};
+  double fails = 0.0;
+};
+
+StrengthWeights weightsOf(double excess, double std) {
+  StrengthWeights w;
+  if (!(std > 1e-6)) {
+    w.fails = excess < 0.0 ? 1.0 : 0.0;
+    if (excess < 0.0) return w;
+    int k = 0;
+    while (k + 2 < kStrengths && StrengthColumn::excess(k + 1) <= excess) ++k;
+    const double low = StrengthColumn::excess(k), high = StrengthColumn::excess(k + 1),
+                 share = std::min((excess - low) / (high - low), 1.0);
+    w.of[static_cast<std::size_t>(k)] = 1.0 - share;
+    w.of[static_cast<std::size_t>(k) + 1] = share;
+    return w;
+  }
+  const auto at = [&](int k) { return (StrengthColumn::excess(k) - excess) / std; };
+  double below = terramech::normalProbability(at(0)), density = terramech::normalDensity(at(0));
+  w.fails = below;
+  for (int k = 0; k + 1 < kStrengths; ++k) {
+    const double next = terramech::normalProbability(at(k + 1)),
+                 next_density = terramech::normalDensity(at(k + 1));
+    const double low = StrengthColumn::excess(k), step = StrengthColumn::excess(k + 1) - low;
+    const double mass = next - below, moment = (excess - low) * mass - std * (next_density - density);
+    const double share = std::clamp(moment / step, 0.0, std::max(mass, 0.0));
+    w.of[static_cast<std::size_t>(k)] += mass - share;
+    w.of[static_cast<std::size_t>(k) + 1] += share;
+    below = next;
+    density = next_density;
+  }
+  w.of.back() += 1.0 - below;
+  return w;
+}
+
+}  // namespace
+
+// weightsOf() for one standard deviation, tabulated over the excess.
+class GroundStates::WeightTable {
+ public:
+  explicit WeightTable(double std) : std_(std) {
+    for (int k = 0; k <= kSteps && std > kCertain; ++k) table_.push_back(weightsOf(k * kStep, std));
+  }
+
+  StrengthWeights at(double excess) const {
+    if (table_.empty() || excess < 0.0) return weightsOf(excess, std_);
+    const double place = std::min(excess / kStep, kSteps - 1e-9);
+    const auto k = static_cast<std::size_t>(place);
+    const double share = place - static_cast<double>(k);
+    StrengthWeights w = table_[k];
+    const StrengthWeights& next = table_[k + 1];
+    for (std::size_t i = 0; i < w.of.size(); ++i) w.of[i] += share * (next.of[i] - w.of[i]);
+    w.fails += share * (next.fails - w.fails);
+    return w;
+  }
+
+ private:
+  static constexpr int kSteps = 1024;
+  static constexpr double kStep = 4.0 / kSteps, kCertain = 0.005;
+  double std_;
+  std::vector<StrengthWeights> table_;
+};
+
+namespace {
+
+double sum(const std::array<float, kStrengths>& entries, const StrengthWeights& w) noexcept {
+  double total = 0.0;
+  for (std::size_t k = 0; k < w.of.size(); ++k) total += w.of[k] * static_cast<double>(entries[k]);
+  return total;
+}
+
+double probabilityBelow(double bound, double std) {
+  return std > 1e-6 ? terramech::normalProbability(bound / std) : 0.0;
+}
+
+// Interpolates between the four nodes around a slope; `at(row, bin, weight)` is called for each.
+template <typename At>
+void forNodesAround(const terramech::Gradient& gradient, At at) {
+  const double place = std::clamp(gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0,
+                                  TravelCurve::kLastPlace);
+  const auto bin = TravelCurve::between(place),
+             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
+  for (const int up : {0, 1})
+    for (const int on : {0, 1}) {
+      const double weight = static_cast<double>((up == 1 ? row.share : 1.0F - row.share) *
+                                                (on == 1 ? bin.share : 1.0F - bin.share));
+      if (weight > 0.0) at(row.whole + up, bin.whole + on, weight);
+    }
+}
+
+}  // namespace
+
+GroundStates::GroundStates(std::shared_ptr<const GroundRules> rules, std::vector<StrengthOfClass> classes,
+                           const GroundBelief& belief, double added_J_per_m)
+    : rules_(std::move(rules)),
+      classes_(std::move(classes)),
+      belief_(belief),
+      added_J_per_m_(added_J_per_m) {}
+
+std::shared_ptr<const GroundStates> GroundStates::withAdded(double added_J_per_m) const {
+  return std::make_shared<const GroundStates>(rules_, classes_, belief_, added_J_per_m_ + added_J_per_m);
+}
+
+int GroundStates::rows() const noexcept {
+  int rows = 1;
+  for (const StrengthOfClass& of : classes_) rows = std::max(rows, of.lattice->rows());
+  return rows;
+}
+
+GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTable* weights, int row,
+                                      int bin) const {
+  const TravelPolicy& policy = rules_->policy;
+  Node out;
+  TravelState& state = out.state;
+  state.class_index = static_cast<std::uint8_t>(of.class_index);
+  if (!of.lattice->contains(bin)) {
+    state.refusal = Refusal::Pitch;
+    state.category =
+        rules_->category.at(belief_.pull.value, belief_.sinkage.value, TravelCurve::gradient(bin));
+    return out;
+  }
+  const StrengthColumn& column = of.lattice->node(row, bin);
+  const double excess = of.strength.value - static_cast<double>(column.least);
+  const StrengthWeights w = weights ? weights->at(excess) : weightsOf(excess, of.strength.std);
+  const double holds = 1.0 - w.fails, reserve = of.strength.value - static_cast<double>(column.required);
+  const double weak = reserve < 0.0 ? 1.0 : probabilityBelow(-reserve, of.strength.std);
+  const double gradient = TravelCurve::gradient(bin), surface = std::hypot(1.0, gradient);
+  const auto at = [&](StrengthColumn::Quantity quantity) { return column.at(quantity, excess); };
+  const auto expected = [&](StrengthColumn::Quantity quantity) {
+    const auto& entries = column.entries[static_cast<std::size_t>(quantity)];
+    const double all = sum(entries, w), limit = static_cast<double>(entries.front());
+    return std::pair(surface * (holds > 1e-9 ? all / holds : limit), surface * (all + 2.0 * w.fails * limit));
+  };
+  const auto [energy_J, energy_cost_J] = expected(StrengthColumn::kEnergy);
+  const auto [time_s, time_cost_s] = expected(StrengthColumn::kTime);
+  const double risk = -std::log1p(-policy.held() * std::min(weak, 1.0 - 1e-12)) / policy.correlation_length_m;
+  const double climb = of.lattice->climbOf(row, bin);
+  state.slip = static_cast<float>(at(StrengthColumn::kSlip));
+  state.sinkage_m = static_cast<float>(at(StrengthColumn::kSinkage) * of.deeper);
+  state.torque_Nm = static_cast<float>(at(StrengthColumn::kTorque));
+  state.energy_J_per_m = static_cast<float>(energy_J + added_J_per_m_);
+  state.time_s_per_m = static_cast<float>(time_s);
+  state.risk_per_m = static_cast<float>(risk);
+  state.weak = static_cast<float>(weak);
+  state.pull_margin = static_cast<float>(belief_.pull.value - climb);
+  state.category = rules_->category.at(belief_.pull.value, belief_.sinkage.value, climb);
+  const bool excluded = (state.category == terramech::Category::Dangerous && !policy.allow_dangerous) ||
+                        (state.category == terramech::Category::Marginal && !policy.allow_marginal);
+  if (static_cast<double>(column.margin_rad) < kUpright_rad)
+    state.refusal = Refusal::Tips;
+  else if (static_cast<double>(std::abs(state.torque_Nm)) > rules_->rover.max_torque_Nm)
+    state.refusal = Refusal::Torque;
+  else if (reserve < 0.0 || weak > policy.max_immobilisation)
+    // What holds without a gradient across lacks side force.
+    state.refusal = of.strength.value < static_cast<double>(of.lattice->node(0, bin).required) || row == 0
+                        ? Refusal::Pull
+                        : Refusal::SideForce;
+  else if (static_cast<double>(state.sinkage_m) >= rules_->rover.clearance_m)
+    state.refusal = Refusal::Sinkage;
+  else if (excluded)
+    state.refusal = Refusal::Category;
+  out.terms = {energy_cost_J + added_J_per_m_, time_cost_s, risk};
+  return out;
+}
+
+GroundStates::Node GroundStates::node(int row, int bin, const std::vector<WeightTable>* weights) const {
+  const auto of = [&](std::size_t k) {
+    return node(classes_[k], weights ? &(*weights)[k] : nullptr, row, bin);
+  };
+  Node out = of(0);
+  for (std::size_t k = 1; k < classes_.size(); ++k) {
+    const Node other = of(k);
+    out.state = worse(out.state, other.state);
+    out.terms = {std::max(out.terms.energy_J_per_m, other.terms.energy_J_per_m),
+                 std::max(out.terms.time_s_per_m, other.terms.time_s_per_m),
+                 std::max(out.terms.risk_per_m, other.terms.risk_per_m)};
+  }
+  return out;
+}
+
+const std::vector<std::array<float, 3>>& GroundStates::terms() const {
+  std::call_once(once_, [this] {
+    const int all = rows();
+    std::vector<WeightTable> weights;
+    for (const StrengthOfClass& of : classes_) weights.emplace_back(of.strength.std);
+    terms_.assign(static_cast<std::size_t>(all * TravelCurve::kBins), {kRefused, kRefused, kRefused});
+    for (int row = 0; row < all; ++row)
+      for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+        const auto i = static_cast<std::size_t>(row * TravelCurve::kBins + bin);
+        if (row > 0 && !(terms_[i - TravelCurve::kBins][0] < kRefused)) continue;
+        const Node here = node(row, bin, &weights);
+        if (here.state.refusal != Refusal::None) continue;
+        terms_[i] = {static_cast<float>(here.terms.energy_J_per_m),
+                     static_cast<float>(here.terms.time_s_per_m), static_cast<float>(here.terms.risk_per_m)};
+        if (row > 0)
+          for (std::size_t k = 0; k < 3; ++k)
+            terms_[i][k] = std::max(terms_[i][k], terms_[i - TravelCurve::kBins][k]);
+      }
+  });
+  return terms_;
+}
+
+TravelState GroundStates::at(int row, int bin) const {
+  TravelState state = node(row, bin).state;
+  const auto& all = terms();
+  for (int r = std::min(row, rows() - 1); r >= 0 && state.refusal == Refusal::None; --r) {
+    if (all[static_cast<std::size_t>(r * TravelCurve::kBins + bin)][0] < kRefused) break;
+    state.refusal = node(r, bin).state.refusal;
+  }
+  return state;
+}
+
+TravelState GroundStates::onClimb(double gradient) const {
+  const auto place = TravelCurve::between(std::clamp(
+      gradient * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0, TravelCurve::kLastPlace));
+  const TravelState here = node(0, place.whole).state;
+  return place.share > 0.0F ? between(here, node(0, place.whole + 1).state, place.share) : here;
+}
+
+TravelCurve GroundStates::curve(const CostWeights& weights) const {
+  auto costs = std::make_shared<std::vector<float>>();
+  for (const auto& [energy_J, time_s, risk] : terms())
+    costs->push_back(energy_J < kRefused ? static_cast<float>(weights.energy * static_cast<double>(energy_J) +
+                                                              weights.time_W * static_cast<double>(time_s) +
+                                                              weights.risk_J * static_cast<double>(risk))
+                                         : kRefused);
+  TravelCurve curve;
+  std::copy_n(costs->begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
+  if (rows() > 1) curve.crossing = std::move(costs);
+  return curve;
+}
+
+SlopeHold GroundStates::hold(const terramech::Gradient& gradient) const {
+  SlopeHold out{0.0, 0.0, 0.0};
+  const StrengthOfClass& of = classes_.front();
+  forNodesAround(gradient, [&](int row, int bin, double weight) {
+    const StrengthColumn* column = of.lattice->contains(bin) ? &of.lattice->node(row, bin) : nullptr;
+    const double excess = column ? of.strength.value - static_cast<double>(column->least) : -1.0;
+    const auto add = [&](double& to, double value) { to += weight * value; };
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    add(out.slip_angle_rad, excess >= 0.0 ? column->at(StrengthColumn::kSlipAngle, excess) : none);
+    add(out.side_force_over_load, excess >= 0.0 ? column->at(StrengthColumn::kSideForce, excess) : none);
+    add(out.stability_margin_rad, column ? static_cast<double>(column->margin_rad) : none);
+  });
+  out.slip_angle_rad = std::copysign(out.slip_angle_rad, 0.0 - gradient.across);
+  return out;
+}
+
+double GroundStates::climb(const terramech::Gradient& gradient) const {
+  double most = gradient.along;
+  for (const StrengthOfClass& of : classes_) most = std::max(most, of.lattice->climb(gradient));
+  return most;
+}
+
+double GroundStates::steepest(double gradient) const {
+  double most = gradient;
+  for (const StrengthOfClass& of : classes_) most = std::max(most, of.lattice->steepest(gradient));
+  return most;
+}
+
+TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const {
+  TravelForecast out{.fails_below = 0.0};
+  const StrengthOfClass& of = classes_.front();
+  forNodesAround(gradient, [&](int row, int bin, double weight) {
+    if (!of.lattice->contains(bin)) return;
+    const StrengthColumn& column = of.lattice->node(row, bin);
+    const double reserve = of.strength.value - static_cast<double>(column.least);
+    const double scale = weight * std::hypot(1.0, TravelCurve::gradient(bin));
+    out.fails_below -= weight * reserve / std::max(of.strength.std, 1e-6);
+    for (int d = 0; d < TravelForecast::kDeviates; ++d) {
+      const double excess = reserve + TravelForecast::deviate(d) * of.strength.std;
+      const auto k = static_cast<std::size_t>(d);
+      out.energy_J_per_m[k] +=
+          static_cast<float>(scale * column.at(StrengthColumn::kEnergy, excess) + weight * added_J_per_m_);
+      out.time_s_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kTime, excess));
+    }
+  });
+  return out;
+}
+
+}  // namespace talus::costmap
