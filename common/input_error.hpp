@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace talus {
 
@@ -16,7 +17,10 @@ class InputError : public std::runtime_error {
     std::string remedy;  ///< action for the user, for example "pass --resolution METRES"; may be empty
   };
 
-  explicit InputError(Parts parts);
+  explicit InputError(Parts parts)
+      : std::runtime_error(parts.where + ": " + parts.reason + (parts.remedy.empty() ? "" : "; ") +
+                           parts.remedy),
+        parts_(std::move(parts)) {}
 
   const Parts& parts() const noexcept { return parts_; }
 

@@ -30,12 +30,6 @@ double inUse() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-std::string gigabytes(double bytes) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g GB", bytes * 1e-9);
-  return text.data();
-}
-
 }  // namespace
 
 void setMemoryBudget(std::uint64_t bytes) noexcept {
@@ -53,10 +47,10 @@ void requireMemory(double bytes, const std::string& where) {
   // Requests below 1 MB skip the read of /proc/self/statm.
   constexpr double kSmall = 1e6;
   if (bytes < kSmall || bytes + inUse() <= budget) return;
-  throw InputError(
-      {where,
-       "needs " + gigabytes(bytes) + ", more than the memory budget of " + gigabytes(budget) + " leaves",
-       "use a smaller file or part, or raise --max-memory"});
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "needs %.3g GB, more than the memory budget of %.3g GB leaves",
+                bytes * 1e-9, budget * 1e-9);
+  throw InputError({where, text.data(), "use a smaller file or part, or raise --max-memory"});
 }
 
 }  // namespace talus

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 #include <thread>
 #include <vector>
+
+#include <talus/common/progress_monitor.hpp>
 
 namespace talus {
 
@@ -30,6 +33,33 @@ void parallelFor(std::size_t count, int threads, Each each) {
     work();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+/// Range [first, past) of raster rows.
+struct Rows {
+  int first = 0;
+  int past = 0;  ///< one beyond the last row of the range
+};
+
+/// Number of rows and threads of a loop by forEachStrip().
+struct RowWork {
+  int rows = 0;     ///< number of raster rows, >= 0
+  int threads = 1;  ///< number of threads, >= 1
+};
+
+/// Calls work(Rows) once for each strip of 64 raster rows by parallelFor(). Only the calling thread reports progress to
+/// `watch`. After a stop request, strips not yet started are skipped.
+template <typename Work>
+void forEachStrip(const RowWork& what, const ProgressMonitor& watch, Work work) {
+  constexpr int kStripRows = 64;
+  const int strips = (what.rows + kStripRows - 1) / kStripRows;
+  const auto caller = std::this_thread::get_id();
+  parallelFor(static_cast<std::size_t>(strips), what.threads, [&](std::size_t k) {
+    if (watch.stopped()) return;
+    const int first = static_cast<int>(k) * kStripRows;
+    work(Rows{first, std::min(first + kStripRows, what.rows)});
+    if (std::this_thread::get_id() == caller) watch.report((static_cast<double>(k) + 1.0) / strips);
+  });
 }
 
 }  // namespace talus

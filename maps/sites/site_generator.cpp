@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include <talus/common/constants.hpp>
-#include <talus/common/parallel_rows.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 
 namespace talus::maps {

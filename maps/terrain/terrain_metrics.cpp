@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/parallel_rows.hpp>
+#include <talus/common/parallel_for.hpp>
 #include <talus/maps/terrain/plane_fit.hpp>
 #include <talus/maps/terrain/step_height.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
