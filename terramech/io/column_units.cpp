@@ -5,12 +5,79 @@
 
 #include <fmt/format.h>
 
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/column_units.hpp>
-#include <talus/terramech/io/unit.hpp>
+#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::terramech {
+namespace {
+
+/// Unit, its kind, and the factor to the SI unit of the kind.
+struct Unit {
+  std::string_view name;
+  char kind;
+  double factor;
+};
+
+constexpr Unit kUnits[] = {
+    {"rad", 'a', 1.0},   {"deg", 'a', kDegree},                                            // angle
+    {"Pa", 'p', 1.0},    {"hPa", 'p', 1e2},       {"kPa", 'p', 1e3},   {"MPa", 'p', 1e6},  // pressure
+    {"N", 'f', 1.0},     {"mN", 'f', 1e-3},       {"kN", 'f', 1e3},                        // force
+    {"m", 'l', 1.0},     {"mm", 'l', 1e-3},       {"cm", 'l', 1e-2},   {"dm", 'l', 0.1},
+    {"km", 'l', 1e3},    {"Nm", 't', 1.0},        {"mNm", 't', 1e-3},  {"Ncm", 't', 1e-2},
+    {"kNm", 't', 1e3},                                                                            // torque
+    {"mps", 'v', 1.0},   {"mmps", 'v', 1e-3},     {"cmps", 'v', 1e-2}, {"kmph", 'v', 1.0 / 3.6},  // speed
+    {"m_s", 'v', 1.0},   {"mm_s", 'v', 1e-3},     {"cm_s", 'v', 1e-2}, {"km_h", 'v', 1.0 / 3.6},
+    {"kg", 'm', 1.0},    {"g", 'm', 1e-3},        {"t", 'm', 1e3},  // mass
+    {"s", 's', 1.0},     {"ms", 's', 1e-3},       {"us", 's', 1e-6},   {"ns", 's', 1e-9},
+    {"min", 's', 60.0},  {"h", 's', 3600.0},                                                 // time
+    {"W", 'w', 1.0},     {"mW", 'w', 1e-3},       {"kW", 'w', 1e3},                          // power
+    {"J", 'e', 1.0},     {"kJ", 'e', 1e3},        {"MJ", 'e', 1e6},    {"Wh", 'e', 3600.0},  // energy
+    {"m_s2", 'g', 1.0},  {"g0", 'g', 9.80665},                                               // acceleration
+    {"kg_m3", 'd', 1.0}, {"g_cm3", 'd', 1e3},     {"t_m3", 'd', 1e3},                        // density
+    {"rad_s", 'o', 1.0}, {"deg_s", 'o', kDegree},                                            // turning rate
+};
+
+const Unit* find(std::string_view name) {
+  for (const Unit& unit : kUnits)
+    if (unit.name == name) return &unit;
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<double> conversion(std::string_view from, std::string_view to) {
+  const Unit *a = find(from), *b = find(to);
+  if (!a || !b || a->kind != b->kind) return std::nullopt;
+  return a->factor / b->factor;
+}
+
+std::string unitsLike(std::string_view unit) {
+  std::string names;
+  if (const Unit* known = find(unit))
+    for (const Unit& one : kUnits)
+      if (one.kind == known->kind) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  return names;
+}
+
+std::string_view unitOf(std::string_view name) {
+  std::string_view longest;
+  for (const Unit& unit : kUnits) {
+    const std::size_t n = unit.name.size();
+    if (name.size() > n + 1 && name.ends_with(unit.name) && name[name.size() - n - 1] == '_' &&
+        n > longest.size())
+      longest = unit.name;
+  }
+  return longest;
+}
+
+std::string stemOf(std::string_view name) {
+  const std::string_view unit = unitOf(name);
+  return std::string(unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1));
+}
+
 namespace {
 
 enum class Kind { Length, Force, Torque, Pressure, Angle, Time, Speed, Rate, Share };
@@ -90,12 +157,7 @@ std::string plain(std::string_view name) {
 
 /// Known column, split into stem and unit.
 struct KnownColumn {
-  explicit KnownColumn(const std::string& whole)
-      : name(whole),
-        unit(unitOf(whole)),
-        stem(unit.empty() ? whole : whole.substr(0, whole.size() - unit.size() - 1)) {}
-
-  std::string name, unit, stem;
+  std::string name, unit{unitOf(name)}, stem{stemOf(name)};
 
   /// Returns true if a column with another unit of this kind has the quantity of this column.
   bool takes(std::string_view other, std::optional<Kind> kind) const {
@@ -104,11 +166,6 @@ struct KnownColumn {
            (kind == Kind::Share && own == Kind::Angle);  // slope in percent
   }
 };
-
-// True if a suffix may be an index or a word, as in slip_t and speed_min.
-bool mayBeNoUnit(std::string_view suffix) {
-  return suffix.size() < 2 || suffix == "min";
-}
 
 /// Returns why an unknown name is probably this known column; empty if the name is accepted as an unknown
 /// column.
@@ -124,8 +181,8 @@ std::string faultOf(const std::string& name, const KnownColumn& column) {
   const std::string_view suffix = std::string_view(text).substr(stem.size() + 1);
   const auto kind = kindOf(suffix);
   if (column.takes(suffix, kind)) return "has another unit than the known column";
-  // A single letter in front of a suffix may be an axis of any quantity.
-  if (!kind || mayBeNoUnit(suffix) || stem.size() < 2) return {};
+  // A suffix may be an index or a word, as in slip_t and speed_min; a single letter in front an axis of any quantity.
+  if (!kind || suffix.size() < 2 || suffix == "min" || stem.size() < 2) return {};
   return "has a unit of another kind than the known column";
 }
 
@@ -139,16 +196,33 @@ std::string remedyFor(const std::string& name, const KnownColumn& column) {
 
 }  // namespace
 
+bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>& row,
+               const std::string& file) {
+  std::vector<std::string> names = header;
+  bool any = false;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (double value = 0.0; parseNumber(row[k], value) || row.size() != header.size()) return false;
+    std::string unit = plain(row[k]);
+    std::erase_if(unit, [&](char c) { return c == '_' && unit.starts_with('N'); });  // N m
+    if (find(unit) == nullptr && unit != "percent") continue;
+    any = true;
+    if (const std::string_view own = unitOf(names[k]); own.empty() && !names[k].ends_with("_" + unit))
+      names[k] += '_' + unit;
+    else if (!own.empty() && own != unit)
+      throw InputError(
+          {file + ":2", "column " + names[k] + " is in " + unit, "correct its name or its unit"});
+  }
+  if (any) header = names;
+  return any;
+}
+
 void checkColumnUnits(const std::vector<std::string>& header, const std::vector<std::string>& known,
                       const std::string& file) {
-  const auto contains = [](const std::vector<std::string>& names, const std::string& name) {
-    return std::ranges::find(names, name) != names.end();
-  };
   for (const std::string& name : header) {
-    if (name.empty() || contains(known, name)) continue;
+    if (name.empty() || std::ranges::count(known, name) > 0) continue;
     for (const std::string& other : known) {
-      if (contains(header, other)) continue;
-      const KnownColumn column(other);
+      if (std::ranges::count(header, other) > 0) continue;
+      const KnownColumn column{other};
       const std::string fault = faultOf(name, column);
       if (fault.empty()) continue;
       throw InputError({.where = file + ":1",

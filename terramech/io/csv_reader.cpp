@@ -11,6 +11,7 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/table_columns.hpp>
 
@@ -92,13 +93,14 @@ void CsvReader::Parser::readHeader() {
   if (header.size() > kMostColumns)
     refuse("has " + std::to_string(header.size()) + " columns, at most 1000 can be read",
            "keep those that are needed");
-  for (std::size_t k = 0; k < header.size(); ++k)
-    if (!header[k].empty() && std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(k),
-                                        header[k]) != header.begin() + static_cast<std::ptrdiff_t>(k))
-      throw InputError({.where = path.string() + ":" + std::to_string(row.line),
-                        .reason = "column " + header[k] + " appears twice in the header",
-                        .remedy = "rename one"});
-  columns.emplace(header, table, separator != ',');
+  for (const std::string& name : header)
+    if (!name.empty() && std::ranges::count(header, name) > 1)
+      throw InputError({path.string() + ":" + std::to_string(row.line),
+                        "column " + name + " appears twice in the header", "rename one"});
+  std::vector<std::string> names = header;
+  if (CsvRow below; pop(below) && !takeUnits(names, below.fields, path.string()))
+    ready.push_front(std::move(below));
+  columns.emplace(std::move(names), table, separator != ',');
 }
 
 bool CsvReader::Parser::pop(CsvRow& row) {
@@ -169,11 +171,9 @@ void CsvReader::Parser::endRecord(int terminator) {
 
 std::string CsvReader::Parser::faultOf(const CsvRow& row) const {
   if (row.fields == header) return "repeats the header";
-  if (row.fields.size() == header.size()) return "";
-  const bool only_blanks_beyond = row.fields.size() > header.size() &&
-                                  std::all_of(row.fields.begin() + static_cast<std::ptrdiff_t>(header.size()),
-                                              row.fields.end(), [](const auto& f) { return f.empty(); });
-  if (only_blanks_beyond) return "";
+  std::size_t fields = row.fields.size();
+  while (fields > header.size() && row.fields[fields - 1].empty()) --fields;
+  if (fields == header.size()) return "";
   return "has " + std::to_string(row.fields.size()) + " fields, the header " + std::to_string(header.size());
 }
 

@@ -24,7 +24,7 @@ struct CsvRow {
 /// UTF-8 byte order marks are skipped, and lines that begin with # (behind the header: with a field #, or as
 /// one field); the line ends LF, CRLF and CR are accepted. The separator is the most frequent of comma,
 /// semicolon and tab in the header, or blanks if it has none of them; except with commas, numbers may have a
-/// decimal comma. Columns are renamed and converted as the TableFile requests. Not copyable; not thread-safe.
+/// decimal comma. A row of units below the header is part of it (takeUnits()). Columns are renamed and converted as the TableFile requests. Not copyable; not thread-safe.
 class CsvReader {
  public:
   /// Opens the file and reads its header. Throws InputError if the file cannot be read, is not text, has no

@@ -1,6 +1,6 @@
 #include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/file_keys.hpp>
-#include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {
 
@@ -94,19 +94,9 @@ std::span<const FileKey> telemetryKeys() {
 
 std::vector<std::string> namesOf(std::span<const FileKey> keys) {
   std::vector<std::string> names;
-  names.reserve(keys.size());
   for (const FileKey& key : keys) names.emplace_back(key.name);
   return names;
 }
-
-namespace {
-
-std::string stemOf(std::string_view name) {
-  const std::string_view unit = unitOf(name);
-  return std::string(unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1));
-}
-
-}  // namespace
 
 std::string meantKey(const std::string& key, const std::vector<std::string>& known) {
   for (const std::string& name : known)

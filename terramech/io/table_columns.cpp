@@ -8,9 +8,9 @@
 
 #include <talus/common/input_error.hpp>
 #include <talus/common/nearest_name.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/table_columns.hpp>
-#include <talus/terramech/io/unit.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -30,9 +30,8 @@ std::string suffixOf(const std::string& name) {
   return std::string(unitOf(name));
 }
 
-std::string stemOf(const std::string& name) {
-  const std::string unit = suffixOf(name);
-  return unit.empty() ? name : name.substr(0, name.size() - unit.size() - 1);
+std::string stemWithoutShare(const std::string& name) {
+  return name.substr(0, name.size() - (suffixOf(name).empty() ? 0 : suffixOf(name).size() + 1));
 }
 
 std::string shortest(double value) {
@@ -116,9 +115,12 @@ void TableColumns::convertUnits(const TableFile& table) {
   std::vector<std::string> all = knownTelemetryColumns();
   all.insert(all.end(), table.also.begin(), table.also.end());
   for (const std::string& known : all) {
-    if (has(known) || stemOf(known).size() < 2) continue;  // a single letter, as in z_mm, may be any quantity
+    if (has(known) || stemWithoutShare(known).size() < 2)
+      continue;  // a single letter, as in z_mm, may be any quantity
     for (const std::string& name : std::vector<std::string>(header_)) {
-      if (name.empty() || has(known) || stemOf(name) != stemOf(known) || suffixOf(name).empty()) continue;
+      if (name.empty() || has(known) || stemWithoutShare(name) != stemWithoutShare(known) ||
+          suffixOf(name).empty())
+        continue;
       if (columnFactor(suffixOf(name), known)) map({.known = known, .name = name}, table);
     }
   }

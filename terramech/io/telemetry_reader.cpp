@@ -105,14 +105,12 @@ double checkedNumber(const Column& column, const std::string& field, std::string
     fault = column.name + " = '" + field + "', must be a number";
   } else if (!std::isfinite(value)) {
     fault = column.name + " = " + field + ", must be finite";
-  } else if (std::abs(value) < kDust) {
-    value = 0.0;
-    if (column.rule && !column.rule->holds(value))
+  } else {
+    if (std::abs(value) < kDust) value = 0.0;
+    if (!plausible(value))
+      fault = column.name + " = " + field + ", " + kPlausible;
+    else if (column.rule && !column.rule->holds(value))
       fault = column.name + " = " + field + ", must be " + column.rule->bound;
-  } else if (!plausible(value)) {
-    fault = column.name + " = " + field + ", " + kPlausible;
-  } else if (column.rule && !column.rule->holds(value)) {
-    fault = column.name + " = " + field + ", must be " + column.rule->bound;
   }
   return value;
 }

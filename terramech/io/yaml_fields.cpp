@@ -12,10 +12,10 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
 #include <talus/common/plausible.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/file_keys.hpp>
-#include <talus/terramech/io/unit.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {

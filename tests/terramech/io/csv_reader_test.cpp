@@ -37,6 +37,19 @@ TEST(CsvReader, ReadsEveryLineEndingQuotesAndByteOrderMark) {
   }
 }
 
+// A row of units below the header names the columns; one with a number is data, and a contradiction is refused.
+TEST(CsvReader, RowOfUnitsIsPartOfTheHeader) {
+  const test::TemporaryFile file{"load,slip,speed,torque,note\nkN,%,[m/s],N m,-\n0.06,10,0.1,2,a\n"};
+  CsvReader reader{file.path()};
+  EXPECT_THAT(reader.header(), ElementsAre("load_kN", "slip_percent", "speed_m_s", "torque_Nm", "note"));
+  CsvRow row;
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(row.line, 3U);
+  EXPECT_EQ(rowsOf("load_N,note\n60,m\n")[0].fields, (std::vector<std::string>{"60", "m"}));
+  EXPECT_EQ(rowsOf("run,note\na,b\n").size(), 1U);
+  EXPECT_THROW(rowsOf("load_N,slip\nkN,-\n60,0.1\n"), InputError);
+}
+
 // Property: a repeated byte order mark is skipped; otherwise it would be part of the first column's name.
 TEST(CsvReader, RepeatedByteOrderMarksAreSkipped) {
   const test::TemporaryFile file{"\xEF\xBB\xBF\xEF\xBB\xBFslip,load_N\n0.1,20\n"};

@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include <talus/terramech/io/unit.hpp>
+#include <talus/terramech/io/column_units.hpp>
 
 namespace talus::terramech {
 namespace unit_test {
