@@ -37,8 +37,6 @@ void addReadOptions(CLI::App& command, MapOptions& options) {
                   "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each")
       ->type_name("BOX");
   command.add_option("--nodata", read.nodata, "value of cells without data")->type_name("VALUE");
-  command.add_flag("--keep-zeros", read.keep_zeros,
-                   "take a region of exactly 0 for ground although the elevation around it is not near 0");
   command.add_flag("--keep-holes", read.keep_holes,
                    "leave single cells without data unknown instead of interpolating them");
   command
@@ -67,7 +65,6 @@ void refuseReadOptions(const MapOptions& options) {
       {"--resolution", read.resolution_m.has_value()},
       {"--window", !options.window.empty()},
       {"--nodata", read.nodata.has_value()},
-      {"--keep-zeros", read.keep_zeros},
       {"--keep-holes", read.keep_holes},
       {"--vertical-scale", read.vertical_scale.has_value()},
       {"--ignore-crs", read.ignore_crs},
@@ -170,7 +167,6 @@ Layers readLayers(const LayerOptions& options, const maps::ElevationMap& map,
     layers.classes = maps::readTerrainClasses({options.terrain, options.terrain_band}, map, weakest_last);
   if (!options.rocks.empty()) {
     maps::RockAbundance rocks = maps::readRockAbundance({options.rocks, options.rocks_band}, map);
-    for (const std::string& note : rocks.notes) layers.notes.push_back(options.rocks + ": " + note);
     layers.rock_abundance = std::move(rocks.share);
     if (std::ranges::count(rocks.unseen.values(), 0) != std::ssize(rocks.unseen.values()))
       layers.costs.push_back(unseenRocks(rocks.unseen));

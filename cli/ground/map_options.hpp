@@ -27,7 +27,7 @@ struct MapOptions {
   maps::ReadOptions read;
 };
 
-/// Declares the options --band, --resolution, --window, --nodata, --keep-zeros, --keep-holes, --vertical-scale,
+/// Declares the options --band, --resolution, --window, --nodata, --keep-holes, --vertical-scale,
 /// --ignore-crs, --max-cells, --allow-vrt and --below.
 void addReadOptions(CLI::App& command, MapOptions& options);
 

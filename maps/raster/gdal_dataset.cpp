@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <new>
 #include <numbers>
@@ -82,6 +83,15 @@ std::uint64_t littleEndian(const std::string& bytes, std::size_t at, std::size_t
   for (std::size_t i = 0; i < count; ++i)
     value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
   return value;
+}
+
+std::string bytesAt(std::ifstream& file, std::uintmax_t begin, std::size_t count) {
+  std::string bytes(count, '\0');
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(begin));
+  file.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  return bytes;
 }
 
 void CloseDataset::operator()(GDALDataset* dataset) const noexcept {
@@ -459,6 +469,8 @@ std::string_view MemoryFile::bytes() const {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;
+// GDAL searches a label of PDS3 in as many bytes at most.
+constexpr std::size_t kPds3Label = std::size_t{64} << 10U;
 
 std::uintmax_t cellsOf(GDALDataset& dataset) {
   return static_cast<std::uintmax_t>(dataset.GetRasterXSize()) *
@@ -491,32 +503,48 @@ void refuseFewerBytes(const std::string& path, std::uintmax_t needed) {
                       "fetch it again"});
 }
 
-// End [bytes] of the last object (label, history, table) of an ISIS cube by its StartByte and Bytes.
-std::uintmax_t lastByte(const nlohmann::json& label) {
-  std::uintmax_t end = 0;
+using Piece = std::pair<std::uintmax_t, std::uintmax_t>;  // bytes from the first to before the second
+
+// Adds the objects (label, history, table) of an ISIS cube by their StartByte and Bytes.
+void addObjects(const nlohmann::json& label, std::vector<Piece>& objects) {
   if (label.is_object() && label.contains("StartByte") && label.contains("Bytes") &&
-      label["StartByte"].is_number_unsigned() && label["Bytes"].is_number_unsigned())
-    end = label["StartByte"].get<std::uintmax_t>() - 1 + label["Bytes"].get<std::uintmax_t>();
+      label["StartByte"].is_number_unsigned() && label["Bytes"].is_number_unsigned()) {
+    const auto begin = label["StartByte"].get<std::uintmax_t>() - 1;
+    objects.emplace_back(begin, begin + label["Bytes"].get<std::uintmax_t>());
+  }
   if (label.is_structured())
-    for (const auto& part : label) end = std::max(end, lastByte(part));
-  return end;
+    for (const auto& part : label) addObjects(part, objects);
 }
 
 nlohmann::json labelOf(GDALDataset& dataset, const char* domain) {
   char** text = dataset.GetMetadata(domain);
-  return text == nullptr ? nlohmann::json() : nlohmann::json::parse(*text, nullptr, false);
+  nlohmann::json label = nlohmann::json::parse(text == nullptr ? "" : *text, nullptr, false);
+  return label.is_object() ? label : nlohmann::json::object();
 }
 
-// File size [bytes] that the label of a raster of plain numbers states, beside the size of its pixels: of
-// records (PDS3, VICAR), of the file (PDS4) or of further objects (ISIS). 0: none.
-std::uintmax_t statedBytes(GDALDataset& dataset, const std::string& path, std::uintmax_t size) {
+// File size [bytes] that the label of a raster of plain numbers states, beside the `end` of its pixels: of
+// records (PDS3, VICAR), of the file (PDS4) or of the objects (ISIS) of which one begins at `end`. 0: none.
+std::uintmax_t statedBytes(GDALDataset& dataset, const std::string& path, std::uintmax_t end,
+                           std::uintmax_t size) {
   const std::string_view driver = driverOf(dataset);
-  if (driver == "PDS")
-    return wholeNumber(pds3Keyword(path, "RECORD_BYTES")) * wholeNumber(pds3Keyword(path, "FILE_RECORDS"));
-  if (driver == "ISIS3") return lastByte(labelOf(dataset, "json:ISIS3"));
+  if (driver == "PDS") {
+    const std::uintmax_t record = wholeNumber(pds3Keyword(path, "RECORD_BYTES")),
+                         stated = record * wholeNumber(pds3Keyword(path, "FILE_RECORDS"));
+    std::ifstream file(path, std::ios::binary);
+    const std::string label = bytesAt(file, 0, kPds3Label);
+    const bool alone = std::ranges::count(label.substr(0, label.find("\nEND")), '^') == 1;
+    return alone && stated >= end + record ? 0 : stated;
+  }
+  if (driver == "ISIS3") {
+    std::vector<Piece> objects;
+    addObjects(labelOf(dataset, "json:ISIS3"), objects);
+    const bool follows = std::ranges::count(objects, end, &Piece::first) > 0;
+    return follows ? std::ranges::max(objects, {}, &Piece::second).second : 0;
+  }
   if (driver == "VICAR") {
-    const auto record = labelOf(dataset, "json:VICAR").value("RECSIZE", std::uintmax_t{0});
-    return record == 0 ? 0 : size / record * record;
+    const nlohmann::json label = labelOf(dataset, "json:VICAR");
+    const auto record = label.value("RECSIZE", std::uintmax_t{0});
+    return record == 0 || label.value("EOL", 0) == 0 ? 0 : size / record * record;
   }
   if (driver != "PDS4") return 0;
   char** xml = dataset.GetMetadata("xml:PDS4");
@@ -542,12 +570,49 @@ void refuseOtherSize(GDALDataset& dataset, const std::string& path) {
       steps(dataset.GetRasterYSize(), raw.nLineOffset) + steps(dataset.GetRasterXSize(), raw.nPixelOffset) +
       static_cast<std::uintmax_t>(GDALGetDataTypeSizeBytes(raw.eDataType));
   refuseFewerBytes(raw.osRawFilename, end);
-  const std::uintmax_t size = sizeOf(raw.osRawFilename), stated = statedBytes(dataset, path, size);
+  const std::uintmax_t size = sizeOf(raw.osRawFilename), stated = statedBytes(dataset, path, end, size);
   // Lines may be longer than their pixels, also the last one.
   const std::uintmax_t whole_lines =
       std::uintmax_t{raw.nImageOffset} + steps(dataset.GetRasterYSize() + 1, raw.nLineOffset);
   if (size != end && size != stated && size != whole_lines)
     refuseSize(raw.osRawFilename, size, std::max(end, stated));
+}
+
+[[noreturn]] void refuseLabel(const std::string& path, const std::string& reason) {
+  throw InputError({path, reason + ": a line is damaged or lost", "fetch it again, or correct it"});
+}
+
+// Rejects a label of PDS3 that ends another object than it begins: what is stated of the image would be lost.
+void refuseOpenObjects(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::istringstream lines(bytesAt(file, 0, kPds3Label));
+  std::vector<std::string> open;
+  for (std::string line, key, equals, name; std::getline(lines, line) && key != "END";) {
+    std::istringstream words(line);
+    name.clear();
+    if (!(words >> key)) continue;
+    words >> equals >> name;
+    if (key == "OBJECT") open.push_back(name);
+    if (key != "END_OBJECT") continue;
+    if (open.empty() || (!name.empty() && open.back() != name))
+      refuseLabel(path, "ends an object " + name.substr(0, 40) + " that does not begin");
+    open.pop_back();
+  }
+  if (!open.empty()) refuseLabel(path, "does not end its object " + open.back().substr(0, 40));
+}
+
+struct PixelScale {
+  double length, per_degree, radius;  // of a pixel [km or m], pixels, of the body; 0: not stated
+};
+
+// Rejects a pixel that is stated twice: pixels per degree times the size of a pixel is a degree on the sphere, within 2 %
+// on ellipsoids.
+void refuseOtherPixels(const PixelScale& map, const std::string& path) {
+  const double degree = map.length * map.per_degree, own = map.radius * std::numbers::pi / 180.0;
+  const auto near = [&](double length) { return std::abs(degree - length) <= 0.02 * length; };
+  if (degree > 0.0 && own > 0.0 && !near(own) && !near(1000.0 * own))
+    throw InputError(
+        {path, "states a size of pixels and pixels per degree that differ", "correct one of them"});
 }
 
 // Rejects pixels that GDAL reads as other numbers or in another order than the label states.
@@ -566,21 +631,34 @@ void refuseMisread(GDALDataset& dataset, const std::string& path) {
       refuse("holds pixels of SAMPLE_TYPE " + type + " and SAMPLE_BITS " +
              pds3Keyword(path, "SAMPLE_BITS", "IMAGE"));
     if (wholeNumber(pds3Keyword(path, "LINE_SUFFIX_BYTES", "IMAGE")) > 0) refuse("has LINE_SUFFIX_BYTES");
+    refuseOpenObjects(path);
     const auto map = [&](const char* key) { return std::atof(pds3Keyword(path, key).c_str()); };
-    // Pixels per degree times the size of a pixel [km or m] is a degree on the sphere, within 2 % on ellipsoids.
-    const double degree = map("MAP_SCALE") * map("MAP_RESOLUTION"),
-                 own = map("A_AXIS_RADIUS") * std::numbers::pi / 180.0;
-    const auto near = [&](double length) { return std::abs(degree - length) <= 0.02 * length; };
-    if (degree > 0.0 && own > 0.0 && !near(own) && !near(1000.0 * own))
-      throw InputError(
-          {path, "states a MAP_SCALE and a MAP_RESOLUTION of different pixels", "correct one of them"});
+    refuseOtherPixels({map("MAP_SCALE"), map("MAP_RESOLUTION"), map("A_AXIS_RADIUS")}, path);
+  }
+  if (driverOf(dataset) == "ISIS3") {
+    const auto mapping =
+        labelOf(dataset, "json:ISIS3")
+            .value(nlohmann::json::json_pointer("/IsisCube/Mapping"), nlohmann::json::object());
+    const auto map = [&](const char* key) {
+      const nlohmann::json stated = mapping.value(key, nlohmann::json());
+      const nlohmann::json plain = stated.is_object() ? stated.value("value", nlohmann::json()) : stated;
+      return plain.is_number() ? plain.get<double>() : 0.0;
+    };
+    refuseOtherPixels({map("PixelResolution"), map("Scale"), map("EquatorialRadius")}, path);
   }
   GDALDataset::RawBinaryLayout raw;
   if (driverOf(dataset) == "EHdr" && dataset.GetRawBinaryLayout(raw))
-    for (const InputFile& side : filesOf(dataset, path))
-      if (const std::string bytes = side.role == "label" ? wordBehind("totalrowbytes", side.path) : "";
+    for (const InputFile& side : filesOf(dataset, path)) {
+      const auto stated = [&](const char* key) {
+        return side.role == "label" ? wordBehind(key, side.path) : "";
+      };
+      if (const std::string bytes = stated("totalrowbytes");
           !bytes.empty() && wholeNumber(bytes) != static_cast<std::uintmax_t>(raw.nLineOffset))
         refuse("has lines of " + bytes.substr(0, 20) + " bytes (TOTALROWBYTES)");
+      constexpr const char* kPlace[] = {"ulxmap", "ulymap", "xdim", "ydim"};
+      const auto keys = std::ranges::count_if(kPlace, [&](const char* key) { return !stated(key).empty(); });
+      if (keys % 4 != 0) refuseLabel(side.path, "states only a part of ULXMAP, ULYMAP, XDIM and YDIM");
+    }
   if (driverOf(dataset) == "PDS4") {
     char** xml = dataset.GetMetadata("xml:PDS4");
     const std::string_view label = xml == nullptr ? "" : *xml;
@@ -589,25 +667,157 @@ void refuseMisread(GDALDataset& dataset, const std::string& path) {
   }
 }
 
-// Rejects a GeoTIFF with an image that GDAL uses neither as the raster nor as its overview or mask: one bit of
-// its header separates a mask from the raster.
-void refuseUnusedImages(GDALDataset& dataset, const std::string& path) {
+// Directories of a TIFF (TIFF 6.0, section 2; BigTIFF), and the bytes that its statements and blocks take.
+class TiffLayout {
+ public:
+  explicit TiffLayout(const std::string& path)
+      : path_(path), file_(path, std::ios::binary), size_(sizeOf(path)) {
+    swapped_ = bytesAt(file_, 0, 1) == "M";
+    big_ = number(2, 2) == 43;
+    wide_ = big_ ? 8 : 4;
+    pieces_.emplace_back(0, 2 * wide_);
+    for (std::uintmax_t next = number(wide_, wide_); next != 0 && images_ < kMostImages; ++images_)
+      next = readDirectory(next, images_ == 0);
+    while (!waiting_.empty() && pieces_.size() < kMostPieces) {
+      const std::uintmax_t next = waiting_.back();
+      waiting_.pop_back();
+      readDirectory(next, false);
+    }
+  }
+
+  std::size_t images() const { return images_; }
+  // True if a block of the first image was never written.
+  bool isSparse() const { return std::ranges::count(counts_, 0U) > 0; }
+
+  // Throws InputError if statements or blocks lie in each other or beyond the file; of an uncompressed raster also
+  // if a block has another size than its cells, or the file bytes behind all blocks and statements.
+  void check() {
+    std::ranges::sort(pieces_);
+    // Equal blocks may be stored once.
+    pieces_.erase(std::unique(pieces_.begin(), pieces_.end()), pieces_.end());
+    std::uintmax_t end = 0;
+    for (const auto& [first, past] : pieces_) {
+      refuseIf(first < end, "has blocks or tags that overlap");
+      end = past;
+    }
+    refuseIf(end > size_, "is cut short: blocks or tags lie beyond its end");
+    if (first_.contains(259) && of(259) != 1) return;
+    refuseIf(!holdsItsCells(), "states blocks of another size than its cells have");
+    const bool trailer = bytesAt(file_, 2 * wide_, 24) == "GDAL_STRUCTURAL_METADATA";
+    refuseIf(size_ != end && size_ != end + end % 2 && !(trailer && size_ == end + 4),
+             "holds bytes behind all blocks and tags: bytes were inserted or lost");
+  }
+
+ private:
+  static constexpr std::size_t kMostImages = 1000, kMostPieces = 10'000'000;
+
+  void refuseIf(bool differs, const char* what) const {
+    if (differs) throw InputError({path_, what, "fetch it again, or write it again with gdal_translate"});
+  }
+
+  std::uintmax_t number(std::uintmax_t at, std::size_t count) {
+    std::string bytes = bytesAt(file_, at, count);
+    bytes.resize(count, '\0');
+    return valueOf(bytes);
+  }
+  std::uintmax_t valueOf(std::string bytes) const {
+    if (swapped_) std::ranges::reverse(bytes);
+    return littleEndian(bytes, 0, bytes.size());
+  }
+
+  // Returns the place of the next directory.
+  std::uintmax_t readDirectory(std::uintmax_t at, bool first) {
+    constexpr std::array<std::size_t, 19> kSizes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+    const std::uintmax_t count = number(at, big_ ? 8 : 2), begin = at + (big_ ? 8 : 2), entry = 4 + 2 * wide_,
+                         end = begin + count * entry;
+    refuseIf(count > 65535 || end > size_, "has a directory beyond its end");
+    pieces_.emplace_back(at, end + wide_);
+    Tags tags;
+    for (std::uintmax_t e = begin; e < end; e += entry) {
+      const std::uintmax_t type = number(e + 2, 2), values = number(e + 4, wide_);
+      const std::size_t size = type < kSizes.size() ? kSizes[type] : 0;
+      refuseIf(values > size_, "has a tag beyond its end");
+      const std::uintmax_t bytes = values * size,
+                           place = bytes > wide_ ? number(e + 4 + wide_, wide_) : e + 4 + wide_;
+      if (bytes > wide_) pieces_.emplace_back(place, place + bytes);
+      const std::string content = bytesAt(file_, place, bytes);
+      std::vector<std::uintmax_t>& of_tag = tags[number(e, 2)];
+      for (std::size_t k = 0; size > 0 && k + size <= content.size() && size <= 8; k += size)
+        of_tag.push_back(valueOf(content.substr(k, size)));
+    }
+    for (const std::uintmax_t nested : {330U, 34665U, 34853U})
+      if (const auto found = tags.find(nested); found != tags.end())
+        waiting_.insert(waiting_.end(), found->second.begin(), found->second.end());
+    const bool tiled = tags.contains(324);
+    const auto& offsets = tags[tiled ? 324 : 273];
+    auto& counts = tags[tiled ? 325 : 279];
+    counts.resize(offsets.size());
+    for (std::size_t k = 0; k < offsets.size(); ++k)
+      if (counts[k] != 0) pieces_.emplace_back(offsets[k], offsets[k] + counts[k]);
+    if (first) counts_ = counts, first_ = std::move(tags);
+    return number(end, wide_);
+  }
+
+  std::uintmax_t of(std::uintmax_t tag, std::uintmax_t otherwise = 1) const {
+    const auto found = first_.find(tag);
+    return found == first_.end() || found->second.empty() ? otherwise : found->second.front();
+  }
+
+  bool holdsItsCells() const {
+    const bool tiled = first_.contains(322), apart = of(284) == 2;
+    const std::uintmax_t width = tiled ? of(322) : of(256),
+                         rows = tiled ? of(323) : std::min(of(278, of(257)), of(257));
+    if (width == 0 || rows == 0) return false;
+    const std::uintmax_t line = (width * of(258) * (apart ? 1 : of(277)) + 7) / 8,
+                         across = (of(256) + width - 1) / width, down = (of(257) + rows - 1) / rows;
+    if (counts_.size() != across * down * (apart ? of(277) : 1)) return false;
+    for (std::size_t k = 0; k < counts_.size(); ++k) {
+      const std::uintmax_t row = k / across % down,
+                           held = tiled ? rows : std::min(rows, of(257) - row * rows);
+      if (counts_[k] != 0 && counts_[k] != held * line) return false;
+    }
+    return true;
+  }
+
+  using Tags = std::map<std::uintmax_t, std::vector<std::uintmax_t>>;
+
+  const std::string& path_;
+  std::ifstream file_;
+  std::uintmax_t size_;
+  bool swapped_ = false, big_ = false;
+  std::size_t wide_ = 4, images_ = 0;
+  std::vector<Piece> pieces_;
+  std::vector<std::uintmax_t> waiting_, counts_;  // directories; bytes of the blocks of the first image
+  Tags first_;
+};
+
+// Rejects a GeoTIFF whose bytes contradict each other, that lacks blocks without a no-data value (GDAL would read
+// zeros), or with an image that GDAL uses neither as the raster nor as its overview or mask: one bit of its header
+// separates a mask from the raster.
+void refuseDamagedTiff(GDALDataset& dataset, const std::string& path) {
   if (driverOf(dataset) != "GTiff") return;
+  TiffLayout layout(path);
+  layout.check();
   GDALRasterBand& band = *dataset.GetRasterBand(1);
+  int stated = 0;
+  band.GetNoDataValue(&stated);
+  if (layout.isSparse() && stated == 0)
+    throw InputError(
+        {path, "is half written: blocks are missing without a no-data value",
+         "write it again, or state one with gdal_edit.py -a_nodata if they are meant to be empty"});
   const std::vector<InputFile> files = filesOf(dataset, path);
   const auto beside = [&](const char* role) { return std::ranges::count(files, role, &InputFile::role) > 0; };
   int used = 1 + (beside("overviews") ? 0 : band.GetOverviewCount());
   const bool masked = (band.GetMaskFlags() & GMF_PER_DATASET) != 0;
+  if (beside("mask")) TiffLayout(path + ".msk").check();
   if (beside("mask") && !masked)
     throw InputError({path + ".msk", "lacks INTERNAL_MASK_FLAGS, by which GDAL knows a mask",
                       "write it again with gdal_translate -mask, or remove it"});
   if (masked && !beside("mask")) used += 1 + band.GetMaskBand()->GetOverviewCount();
-  const GdalErrors quiet;
-  constexpr const char* kTiff[] = {"GTiff", nullptr};
-  const std::string next = "GTIFF_DIR:" + std::to_string(used + 1) + ":" + path;
-  if (const Dataset more{GDALDataset::Open(next.c_str(), GDAL_OF_RASTER, kTiff)})
+  if (layout.images() > static_cast<std::size_t>(used))
     throw InputError({path, "holds a further image, neither raster, overview nor mask",
-                      "fetch it again; if it is meant to, take its image out with gdal_translate " + next});
+                      "fetch it again; if it is meant to, take its image out with gdal_translate GTIFF_DIR:" +
+                          std::to_string(used + 1) + ":" + path});
 }
 
 // Parser of a netCDF-3 header ("The NetCDF Classic Format Specification", Unidata). A read beyond the end of
@@ -759,30 +969,6 @@ void refuseForeignBytes(const std::string& path) {
     }
 }
 
-// Calls `each` for every source raster of a VRT.
-template <typename Each>
-void forSources(GDALDataset& dataset, const std::string& path, Each each) {
-  for (const InputFile& file : filesOf(dataset, path))
-    if (const Dataset source{file.role == "source"
-                                 ? GDALDataset::Open(file.path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)
-                                 : nullptr})
-      each(*source, file.path);
-}
-
-// True if a block of a GeoTIFF lies in its header, or has no place and no value stands for no data.
-bool lost(GDALRasterBand& band) {
-  int width = 0, height = 0, stated = 0;
-  band.GetNoDataValue(&stated);
-  band.GetBlockSize(&width, &height);
-  for (int row = 0; row * height < band.GetYSize(); ++row)
-    for (int column = 0; column * width < band.GetXSize(); ++column) {
-      const std::string block = "BLOCK_OFFSET_" + std::to_string(column) + "_" + std::to_string(row);
-      const char* const at = band.GetMetadataItem(block.c_str(), "TIFF");
-      if (at == nullptr ? stated == 0 : std::strtoull(at, nullptr, 10) < 8) return true;
-    }
-  return false;
-}
-
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
 // True if a word is a number for GDAL, which accepts a decimal comma.
 bool isNumber(std::string_view word) {
@@ -812,6 +998,7 @@ class Words {
   void take(std::string_view word, std::size_t line) {
     if (header_ && !value_of_key_ && isKey(word)) {
       value_of_key_ = true;
+      keys_ += ' ' + lower(std::string(word));
       return;
     }
     if (!value_of_key_) header_ = false;
@@ -823,10 +1010,16 @@ class Words {
                       "write the NODATA_value, or nan, where nothing is known"});
   }
 
-  std::uintmax_t values() const { return values_; }
+  std::uintmax_t values() const {
+    const auto has = [&](const char* key) { return keys_.find(key) != keys_.npos; };
+    if (const bool size = has(" cellsize") || has(" dx"); size != has(" xllc") || size != has(" yllc"))
+      refuseLabel(path_, "states only a part of xllcorner, yllcorner and cellsize");
+    return values_;
+  }
 
  private:
   const std::string& path_;
+  std::string keys_{};
   bool header_ = true, value_of_key_ = false;
   std::uintmax_t values_ = 0;
 };
@@ -837,7 +1030,7 @@ void refuseDamaged(GDALDataset& dataset, const std::string& path) {
   const std::string_view driver = driverOf(dataset);
   refuseMisread(dataset, path);
   refuseOtherSize(dataset, path);
-  refuseUnusedImages(dataset, path);
+  refuseDamagedTiff(dataset, path);
   if (driver == "netCDF")
     if (const auto end = ClassicHeader(path).end()) {
       refuseFewerBytes(path, *end);
@@ -850,26 +1043,16 @@ void refuseDamaged(GDALDataset& dataset, const std::string& path) {
     refuseOpenEnd(path);
   }
   if (driver == "VRT")
-    forSources(dataset, path, [](GDALDataset& source, const std::string& of) { refuseDamaged(source, of); });
-}
-
-void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path) {
-  if (driverOf(dataset) == "VRT")
-    return forSources(dataset, path, [](GDALDataset& source, const std::string& of) {
-      for (int own = 1; own <= source.GetRasterCount(); ++own) refuseLostBlocks(source, own, of);
-    });
-  if (driverOf(dataset) == "GTiff" && lost(*dataset.GetRasterBand(band)))
-    throw InputError(
-        {path, "is cut short or half written: blocks are in its header, or missing without a no-data value",
-         "write it again, or state one with gdal_edit.py -a_nodata if they are meant to be empty"});
+    for (const InputFile& file : filesOf(dataset, path))
+      if (const Dataset source{file.role == "source"
+                                   ? GDALDataset::Open(file.path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)
+                                   : nullptr})
+        refuseDamaged(*source, file.path);
 }
 
 std::string pds3Keyword(const std::string& path, const std::string& keyword, const std::string& object) {
-  // GDAL searches a label of PDS3 in as many bytes at most.
-  constexpr std::size_t kLabel = std::size_t{64} << 10U;
   std::ifstream file(path, std::ios::binary);
-  std::string text(kLabel, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(kLabel));
+  const std::string text = bytesAt(file, 0, kPds3Label);
   std::istringstream lines(text.substr(0, text.find('\0')));
   bool inside = object.empty();
   for (std::string line, key, equals, value; std::getline(lines, line) && key != "END";) {

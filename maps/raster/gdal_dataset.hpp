@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -34,6 +35,9 @@ std::string wordBehind(std::string_view key, const std::string& path);
 
 /// Returns the little-endian unsigned integer in the `count` <= 8 bytes from index `at`.
 std::uint64_t littleEndian(const std::string& bytes, std::size_t at, std::size_t count);
+
+/// Returns at most `count` bytes of a file from an offset; fewer at its end.
+std::string bytesAt(std::ifstream& file, std::uintmax_t begin, std::size_t count);
 
 struct CloseDataset {
   void operator()(GDALDataset* dataset) const noexcept;
@@ -131,16 +135,11 @@ Dataset memoryRaster(int width, int height, int type = 6);
 
 /// Throws InputError if the file of an open raster differs from what its header states: shorter (also netCDF-3
 /// and text grids, which GDAL fills up) or, for rasters of plain numbers, longer; a text that ends within a
-/// number; an image of a GeoTIFF that is neither raster, overview nor mask; pixels that GDAL reads as other
-/// numbers (signed bytes, some types of PDS). Also checks the sources of a
+/// number; blocks and tags of a GeoTIFF that overlap, lie beyond its end or were never written without a no-data
+/// value, or an image that is neither raster, overview nor mask; pixels that GDAL reads as other numbers (signed bytes, some types of PDS). Also checks the sources of a
 /// virtual raster (VRT). For other formats, GDAL's drivers reject truncated files on reading
 /// (tests/maps/raster/complete_file_test.cpp truncates a file of each format).
 void refuseDamaged(GDALDataset& dataset, const std::string& path);
-
-/// Throws InputError if blocks of a band of a GeoTIFF were never written and the band has no no-data value:
-/// GDAL would read zeros. The block offsets in the file decide. For a VRT, all bands of its source files are
-/// checked.
-void refuseLostBlocks(GDALDataset& dataset, int band, const std::string& path);
 
 /// Returns the value of the first line KEYWORD = VALUE of a PDS3 label, without quotes; empty if there is none.
 /// With `object`, only lines of the first such object of the label count.

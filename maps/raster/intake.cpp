@@ -108,7 +108,6 @@ int chooseBand(GDALDataset& file, const BandCriteria& wish, std::vector<std::str
   if (!wish.band && isPicture(*file.GetRasterBand(chosen)))
     throw InputError({wish.path, "is a colour image without elevations or classes",
                       "select a band with --band if it is intended"});
-  refuseLostBlocks(file, chosen, wish.path);
   if (!wish.band && count > 1)
     notes.push_back("took " + description(file, chosen) + " of " + std::to_string(count));
   return chosen;
@@ -141,10 +140,6 @@ RawPixels::RawPixels(GDALDataset& raster, int band, const PixelBox& box, const s
   }
 }
 
-bool RawPixels::holdZero() const {
-  return std::ranges::find(numbers_, 0.0F) != numbers_.end();
-}
-
 Quantity::Quantity(Kind kind, GDALDataset& file, int band_number, const std::string& path,
                    const ReadOptions& options)
     : kind_(kind), path_(path) {
@@ -165,6 +160,19 @@ Quantity::Quantity(Kind kind, GDALDataset& file, int band_number, const std::str
   offset_ = offset * unit;
   int declared = FALSE;
   const double nodata = band.GetNoDataValue(&declared);
+  if (int clamped = 0;
+      kind == Kind::Height_m && declared != FALSE && !options.nodata &&
+      (GDALAdjustValueToDataType(band.GetRasterDataType(), nodata, &clamped, nullptr), clamped != 0))
+    throw InputError({path,
+                      "states the no-data value " + number(nodata) + ", which its numbers of type " +
+                          GDALGetDataTypeName(band.GetRasterDataType()) + " cannot be",
+                      "fetch it again; or name the value by --nodata"});
+  if (const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+      kind == Kind::Height_m && bits != nullptr && GDALDataTypeIsFloating(band.GetRasterDataType()) != FALSE)
+    throw InputError({path,
+                      std::string("holds heights in floating point of ") + bits +
+                          " bits, in steps of up to 1/2048 of them",
+                      "fetch it again, or write it in 32 bits"});
   if (options.nodata && declared != FALSE && *options.nodata != nodata)
     notes.push_back("--nodata takes the place of the declared no-data value " + number(nodata));
   if (options.nodata)
@@ -326,26 +334,6 @@ std::vector<float> Quantity::of(RawPixels pixels) {
   return std::move(pixels.numbers_);
 }
 
-LostCells Quantity::lostZeros(GDALDataset& file, int band, const PixelBox& box) const {
-  LostCells lost;
-  if (isMark(0.0F)) return lost;
-  constexpr int kCellsAtOnce = 1 << 20;
-  const int rows = std::max(1, kCellsAtOnce / box.width);
-  LostZeros search(box.width, kind_ == Kind::Rocks);
-  for (int row = 0; row < box.height; row += rows) {
-    const int count = std::min(rows, box.height - row);
-    RawPixels pixels(file, band, {box.column, box.row + row, box.width, count}, path_);
-    for (float& v : pixels.numbers_)
-      if (isMark(v) || !std::isfinite(v)) v = kNoValue;
-    const auto width = static_cast<std::size_t>(box.width);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      search.add(std::span(pixels.numbers_).subspan(k * width, width));
-  }
-  lost = search.finish();
-  for (CellRun& run : lost.runs) run = {run.row + box.row, run.first + box.column, run.last + box.column};
-  return lost;
-}
-
 std::string Quantity::reading() const {
   std::string text = std::string(named(kind_).name) + " = raw";
   if (scale_ != 1.0) text += " x " + number(scale_);
@@ -359,23 +347,6 @@ std::string Quantity::reading() const {
             number(std::round(1000.0 * static_cast<double>(masked_) / static_cast<double>(read_)) / 10.0) +
             " %";
   return text;
-}
-
-void blank(const LostCells& lost, const PixelBox& box, std::vector<float>& values) {
-  for (const CellRun& run : lost.runs) {
-    const int row = run.row - box.row, first = std::max(run.first - box.column, 0),
-              last = std::min(run.last - box.column, box.width - 1);
-    if (row < 0 || row >= box.height || first > last) continue;
-    const auto begin = values.begin() + std::ptrdiff_t{row} * box.width;
-    std::fill(begin + first, begin + last + 1, kNoValue);
-  }
-}
-
-std::string lostNote(const LostCells& lost, const std::string& remedy) {
-  return std::to_string(lost.count) +
-         " cells of exactly 0 treated as no data: what surrounds them does not come down to 0, as where a "
-         "part of the file was lost (" +
-         remedy + " if 0 is their value)";
 }
 
 Raster<float> northUp(const Grid& grid, std::vector<float> values) {

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include <talus/maps/grid/grid.hpp>
-#include <talus/maps/grid/lost_zeros.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/raster/read_options.hpp>
 
 class GDALDataset;
 class GDALRasterBand;
@@ -56,8 +55,6 @@ class RawPixels {
   RawPixels(GDALDataset& raster, int band, const PixelBox& box, const std::string& where);
 
   const PixelBox& box() const noexcept { return box_; }
-  /// Returns true if a number is exactly 0.
-  bool holdZero() const;
 
  private:
   friend class Quantity;
@@ -99,9 +96,6 @@ class Quantity {
   /// magnitude (but infinite added costs) become NaN. @throws InputError for a height beyond 131072 m in magnitude
   std::vector<float> of(RawPixels pixels);
 
-  /// Returns the cells of a box that were overwritten by zeros (LostZeros), unless 0 means no data.
-  LostCells lostZeros(GDALDataset& file, int band, const PixelBox& box) const;
-
   /// Returns how numbers become values, on one line: "heights = raw x 0.001 + 1500 m (file), no-data -32768 (found),
   /// mask 7.8 %"; a unit that nothing states is "assumed".
   std::string reading() const;
@@ -138,13 +132,6 @@ class Quantity {
   std::array<std::size_t, 4> customary_{};
   std::size_t masked_ = 0, read_ = 0;
 };
-
-/// Sets to NaN each value of the pixels `values` of a box that is a lost cell.
-void blank(const LostCells& lost, const PixelBox& box, std::vector<float>& values);
-
-/// Returns a message about lost cells. `remedy` is the command-line option to use if 0 is the true value of
-/// the cells.
-std::string lostNote(const LostCells& lost, const std::string& remedy);
 
 /// Returns a raster in order from south to north of values in order from north to south.
 Raster<float> northUp(const Grid& grid, std::vector<float> values);

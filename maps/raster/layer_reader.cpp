@@ -59,7 +59,7 @@ bool sameSystem(const OGRSpatialReference& crs, const std::string& wkt) {
 // unknown. The copy has a CRS only if the CRS differs from that of the map; otherwise its geotransform is relative
 // to the south-west corner of the map.
 Dataset inMemory(Quantity& quantity, GDALDataset& file, int band, const ElevationMap& map,
-                 const std::string& path, const LostCells& lost = {}) {
+                 const std::string& path) {
   const int width = file.GetRasterXSize(), height = file.GetRasterYSize();
   requireMemory(8.0 * (width + 2.0) * (height + 2.0), path);
   Dataset copy(driverNamed("MEM").Create("", width + 2, height + 2, 1, GDT_Float32, nullptr));
@@ -78,10 +78,7 @@ Dataset inMemory(Quantity& quantity, GDALDataset& file, int band, const Elevatio
   if (elsewhere) copy->SetSpatialRef(crs);
   for (int y = -1; y <= height; ++y) {
     std::vector<float> row(static_cast<std::size_t>(width), kNoValue);
-    if (const PixelBox line{0, y, width, 1}; y >= 0 && y < height) {
-      row = quantity.of({file, band, line, path});
-      blank(lost, line, row);
-    }
+    if (y >= 0 && y < height) row = quantity.of({file, band, {0, y, width, 1}, path});
     row.insert(row.begin(), kNoValue);
     row.push_back(kNoValue);
     if (copy->GetRasterBand(1)->RasterIO(GF_Write, 0, y + 1, width + 2, 1, row.data(), width + 2, 1,
@@ -280,8 +277,7 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
                                          .others = {"slope", "dem"}},
                                         notes);
   Quantity shares(Kind::Rocks, *file, number_of_band, source.path);
-  const LostCells lost = shares.lostZeros(*file, number_of_band, wholeOf(*file));
-  Dataset band = inMemory(shares, *file, number_of_band, map, source.path, lost);
+  Dataset band = inMemory(shares, *file, number_of_band, map, source.path);
   changePixels(*band, source.path, [&](float v) {
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(number_of_band),
@@ -290,7 +286,6 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
     return v;
   });
   RockAbundance rocks{.share = greatest(*band, map, source.path), .unseen = Raster<std::uint8_t>(map.grid())};
-  if (lost.count > 0) rocks.notes.push_back(lostNote(lost, "state a value of no data"));
   requireOverlap(std::ranges::any_of(rocks.share.values(), [](float v) { return !std::isnan(v); }), map,
                  source.path);
   changePixels(*band, source.path, [](float v) { return std::isnan(v) ? 1.0F : 0.0F; });

@@ -33,8 +33,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 struct RockAbundance {
   /// Rock abundance: fraction of the area covered by rocks, 0 to 1; NaN without data [-].
   Raster<float> share;
-  Raster<std::uint8_t> unseen;       ///< non-zero if the file has no data in a part of the cell
-  std::vector<std::string> notes{};  ///< decisions of the reader, one sentence each
+  Raster<std::uint8_t> unseen;  ///< non-zero if the file has no data in a part of the cell
 };
 
 /// Returns the rock abundance of a file on the grid of the map. @throws InputError, also if the file and the

@@ -144,15 +144,6 @@ namespace {
       {path, "is not a NumPy archive: its directory of files is damaged or missing", "fetch it again"});
 }
 
-std::string bytesAt(std::ifstream& file, std::streamoff begin, std::size_t count) {
-  std::string bytes(count, '\0');
-  file.clear();
-  file.seekg(begin);
-  file.read(bytes.data(), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-  return bytes;
-}
-
 }  // namespace
 
 std::uint32_t crc32(const std::string& bytes) noexcept {
@@ -164,17 +155,16 @@ std::uint32_t crc32(const std::string& bytes) noexcept {
 std::map<std::string, ZipEntry> zipDirectory(const std::string& path) {
   constexpr std::size_t kEnd = 22, kEntry = 46, kMostDirectory = std::size_t{16} << 20U;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = static_cast<std::streamoff>(file.tellg());
-  if (!file || size < static_cast<std::streamoff>(kEnd)) refuse(path);
+  const auto size = static_cast<std::size_t>(std::max<std::streamoff>(0, file.tellg()));
+  if (size < kEnd) refuse(path);
   // A comment of at most 65535 bytes may follow the end-of-central-directory record.
-  const std::streamoff tail_begin = std::max<std::streamoff>(0, size - 65535 - static_cast<int>(kEnd));
-  const std::string tail = bytesAt(file, tail_begin, static_cast<std::size_t>(size - tail_begin));
+  const std::size_t longest = 65535 + kEnd, tail_begin = size > longest ? size - longest : 0;
+  const std::string tail = bytesAt(file, tail_begin, size - tail_begin);
   const std::size_t end = tail.rfind("PK\5\6");
   if (end == tail.npos || tail.size() - end < kEnd) refuse(path);
   const std::size_t length = littleEndian(tail, end + 12, 4);
   if (length > kMostDirectory) refuse(path);
-  const std::string directory =
-      bytesAt(file, static_cast<std::streamoff>(littleEndian(tail, end + 16, 4)), length);
+  const std::string directory = bytesAt(file, littleEndian(tail, end + 16, 4), length);
   std::map<std::string, ZipEntry> entries;
   for (std::size_t at = 0; at < directory.size();) {
     if (directory.size() - at < kEntry || directory.compare(at, 4, "PK\1\2") != 0) refuse(path);

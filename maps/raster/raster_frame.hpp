@@ -6,8 +6,8 @@
 
 #include <talus/maps/geodesy/georeference.hpp>
 #include <talus/maps/grid/grid.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/read_options.hpp>
 
 namespace talus::maps {
 

@@ -15,7 +15,6 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/maps/geodesy/transform.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/spatial_reference.hpp>
 

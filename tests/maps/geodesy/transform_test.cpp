@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include <talus/common/constants.hpp>
-#include <talus/maps/geodesy/transform.hpp>
+#include <talus/maps/geodesy/georeference.hpp>
 
 namespace talus::maps {
 namespace transform_test {

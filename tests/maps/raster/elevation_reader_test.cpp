@@ -68,39 +68,27 @@ TEST(ElevationReader, OverviewCoversTheWholeMap) {
   }
 }
 
-// Ground of about 30 m with cells 200 to 327 of the file zeroed, 40 cells a row.
-RasterFile zeroedFile() {
-  RasterFile file;
-  for (int row = 0; row < 40; ++row) {
-    file.rows.emplace_back();
-    for (int column = 0; column < 40; ++column) {
-      const int at = 40 * row + column;
-      file.rows.back().push_back(at >= 200 && at < 328 ? 0.0 : 30.0 + 0.3 * std::sin(column) + 0.2 * row);
-    }
-  }
-  return file;
+// A pixel scale below 0 in y is ambiguous: GDAL reads such a file as if its rows ran south.
+TEST(ElevationReader, NegativeScaleOfRowsIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = write({.rows = kHill}, folder / "south.tif");
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const double scale[] = {10.0, 10.0, 0.0};
+  const std::size_t at = bytes.find({reinterpret_cast<const char*>(scale), sizeof scale});
+  ASSERT_NE(at, bytes.npos);
+  bytes[at + 15] = static_cast<char>(bytes[at + 15] ^ '\x80');  // sign of the second number
+  EXPECT_THAT(refusal([&] { readElevation(folder.write("north.tif", bytes)); }),
+              HasSubstr("GDAL warns of its structure"));
 }
 
-TEST(ElevationReader, ZeroedRegionIsNoDataUnlessKeptOnRequest) {
+TEST(ElevationReader, WindowInBareDegreesIsRefusedNamingTheSuffix) {
   const TemporaryFolder folder;
-  const std::string path = write(zeroedFile(), folder / "zeroed.tif");
-  const ElevationMap map = readElevation(path);
-  EXPECT_THAT(map.notes, Contains(HasSubstr("128 cells of exactly 0 treated as no data")));
-  for (const float z : map.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 29.0F) << z;
-  EXPECT_TRUE(std::isnan(map.elevation_m[{5, 33}]));
-  const ElevationMap kept = readElevation(path, {.keep_zeros = true});
-  EXPECT_EQ((kept.elevation_m[{5, 33}]), 0.0F);
-  EXPECT_THAT(kept.notes, testing::Not(Contains(HasSubstr("exactly 0"))));
-  // A window inside the lost cells, means of cells, and cells of another size.
-  const Window inside{Point{500020, 4999920}, Point{500300, 4999940}};
-  EXPECT_THAT(refusal([&] { readElevation(path, {.window = inside}); }), HasSubstr("no data in any cell"));
-  const ElevationMap means = readElevation(path, {.overview = 2});
-  for (const float z : means.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 28.0F) << z;
-  for (const double resolution_m : {7.0, 25.0}) {
-    const ElevationMap resampled = readElevation(path, {.resolution_m = resolution_m});
-    for (const float z : resampled.elevation_m.values()) EXPECT_TRUE(std::isnan(z) || z > 28.0F) << z;
-  }
-  EXPECT_EQ(validFraction(readElevation(path, {.nodata = 0.0}).elevation_m), 1.0 - 128.0 / 1600);
+  const std::string path = write({.rows = kHill}, folder / "hill.tif");
+  EXPECT_THAT(refusal([&] { readElevation(path, {.window = parseWindow("45.1,-123.1,45.2,-122.9")}); }),
+              HasSubstr("latitudes and longitudes take the suffix d"));
+  EXPECT_THAT(refusal([&] { readElevation(path, {.window = parseWindow("1000,1000,2000,2000")}); }),
+              testing::Not(HasSubstr("suffix")));
 }
 
 // Property: of a plane, a single hole is interpolated exactly; at a step, beside another hole that leaves

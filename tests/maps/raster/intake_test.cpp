@@ -159,7 +159,8 @@ TEST(Intake, Pds3LabelIsHonouredOrRefused) {
   const std::string scale =
       "A_AXIS_RADIUS = 1737.4 <km>\r\nMAP_SCALE = 20 <METERS/PIXEL>\r\nMAP_RESOLUTION = ";
   EXPECT_EQ(valid(scale + "1516.17 <PIXEL/DEG>\r\n"), 1.0);
-  EXPECT_THAT(refusal([&] { valid(scale + "758.1 <PIXEL/DEG>\r\n"); }), HasSubstr("of different pixels"));
+  EXPECT_THAT(refusal([&] { valid(scale + "758.1 <PIXEL/DEG>\r\n"); }),
+              HasSubstr("pixels per degree that differ"));
   EXPECT_THAT(refusal([&] { valid("LINE_SUFFIX_BYTES = 4\r\n"); }),
               HasSubstr("which GDAL reads as other numbers"));
   std::string integers = pds3("", "0.0");

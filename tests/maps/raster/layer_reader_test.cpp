@@ -39,25 +39,6 @@ TEST(LayerReader, ScaleAndOffsetOfTheBandAreApplied) {
   EXPECT_FLOAT_EQ((readRockAbundance({.path = path}, dem).share[{1, 1}]), 0.17F);
 }
 
-// Property: in a zeroed region of a file with abundances of about 0.3 the rock abundance is unknown.
-TEST(LayerReader, ZeroedRegionOfRockAbundanceIsUnseen) {
-  const TemporaryFolder folder;
-  RasterFile dem, rocks;
-  for (int row = 0; row < 20; ++row) {
-    dem.rows.emplace_back(20, 5.0);
-    rocks.rows.emplace_back();
-    for (int column = 0; column < 20; ++column)
-      rocks.rows.back().push_back(row == 9 && column > 3 ? 0.0 : 0.3 + 0.02 * std::sin(column + 2 * row));
-  }
-  const ElevationMap map = readElevation(write(dem, folder / "dem.tif"));
-  const RockAbundance read = readRockAbundance({.path = write(rocks, folder / "rocks.tif")}, map);
-  EXPECT_THAT(read.notes, testing::ElementsAre(HasSubstr("16 cells of exactly 0")));
-  EXPECT_TRUE(std::isnan(read.share[{10, 10}]));
-  EXPECT_NE((read.unseen[{10, 10}]), 0);
-  EXPECT_NEAR((read.share[{10, 2}]), 0.3, 0.03);
-  EXPECT_EQ((read.unseen[{10, 2}]), 0);
-}
-
 TEST(LayerReader, FinerShiftedClassesAreAlignedToTheMap) {
   const TemporaryFolder folder;
   // Cells of 5 m that cover the eastern three columns.

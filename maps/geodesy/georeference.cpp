@@ -11,7 +11,6 @@
 
 #include <talus/common/constants.hpp>
 #include <talus/maps/geodesy/georeference.hpp>
-#include <talus/maps/geodesy/transform.hpp>
 
 namespace talus::maps {
 namespace {

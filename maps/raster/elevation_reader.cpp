@@ -2,14 +2,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <sstream>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <gdal_alg.h>
@@ -134,8 +130,7 @@ Selection select(const std::string& path, const ReadOptions& options, std::vecto
   return {std::move(file), band, std::move(from), box, grid};
 }
 
-// In larger files, only the vicinity of the pixels to read is searched for lost data.
-constexpr double kSearchedWhole = 1e8;  // pixels
+constexpr double kMostPixels = 1e8;  // that are resampled at once
 
 // Box extended by width and height on each side, within the file.
 PixelBox around(const PixelBox& box, int width, int height, GDALDataset& file) {
@@ -147,19 +142,7 @@ PixelBox around(const PixelBox& box, int width, int height, GDALDataset& file) {
           end(box.row, box.height, height, file.GetRasterYSize()) - row};
 }
 
-// Names, sizes and modification times of all files of a raster. All files are listed because the data may
-// change while the label does not.
-std::string stateOf(GDALDataset& raster, const std::string& path) {
-  std::ostringstream state;
-  for (const auto& [file, role, size, sha256, used] : filesOf(raster, path)) {
-    std::error_code error;
-    state << file << ' ' << std::filesystem::file_size(file, error) << ' '
-          << std::filesystem::last_write_time(file, error).time_since_epoch().count() << '\n';
-  }
-  return state.str();
-}
-
-// Reads heights [m] from the cells of a file. All checks of values (no-data marks, lost zeros, plausibility)
+// Reads heights [m] from the cells of a file. All checks of values (no-data marks, plausibility)
 // are made here, before any mean or resampling mixes the cells.
 class HeightReader {
  public:
@@ -181,18 +164,13 @@ class HeightReader {
       heights.found();
     }
     std::vector<float> means;
-    std::shared_ptr<const LostCells> lost;
     eachStrip(box, factor, from_below, [&](const PixelBox& strip) {
-      RawPixels raw = pixels(strip);
-      if (!options_.keep_zeros && !lost && raw.holdZero()) lost = lostOf(searched(box));
-      std::vector<float> values = heights.of(std::move(raw));
-      if (lost) blank(*lost, strip, values);
+      std::vector<float> values = heights.of(pixels(strip));
       if (factor == 1 && means.empty())
         means = std::move(values);
       else
         appendMeans(values, strip, factor, from_below, means);
     });
-    if (lost && lost->count > 0) heights.notes.push_back(lostNote(*lost, "--keep-zeros"));
     return means;
   }
 
@@ -215,34 +193,6 @@ class HeightReader {
   RawPixels pixels(const PixelBox& strip) {
     RawPixels kept = std::exchange(kept_, {});
     return kept.box() == strip ? std::move(kept) : RawPixels(file_, band_, strip, path_);
-  }
-
-  // Pixels searched for lost data: the whole file, or the box extended on each side by its own size.
-  PixelBox searched(const PixelBox& box) const {
-    const bool whole = static_cast<double>(file_.GetRasterXSize()) * file_.GetRasterYSize() <= kSearchedWhole;
-    return whole ? wholeOf(file_) : around(box, box.width, box.height, file_);
-  }
-
-  // Lost cells in pixels of the file. Caches the last result, because a map that is read in windows opens the
-  // file for each window.
-  std::shared_ptr<const LostCells> lostOf(const PixelBox& box) const {
-    struct Known {
-      std::string files;
-      int band = 0;
-      PixelBox box;
-      std::string reading;
-      bool operator==(const Known&) const = default;
-    };
-    static std::mutex mutex;
-    static Known last;
-    static std::shared_ptr<const LostCells> lost;
-    const Known asked{stateOf(file_, path_), band_, box, heights.reading()};
-    const std::lock_guard lock(mutex);
-    if (!lost || asked != last) {
-      lost = std::make_shared<const LostCells>(heights.lostZeros(file_, band_, box));
-      last = asked;
-    }
-    return lost;
   }
 
   static void appendMeans(const std::vector<float>& values, const PixelBox& strip, int factor,
@@ -338,7 +288,7 @@ std::vector<float> resampled(const Selection& chosen, HeightReader& reader, cons
   const double pixel_m = all.resolution_m * std::sqrt(static_cast<double>(all.size()) /
                                                       file.GetRasterXSize() / file.GetRasterYSize());
   int factor = 1;
-  while (static_cast<double>(box.width) * box.height / factor / factor > kSearchedWhole &&
+  while (static_cast<double>(box.width) * box.height / factor / factor > kMostPixels &&
          cells.resolution_m >= 2.0 * (factor + 1) * pixel_m)
     ++factor;
   const Dataset heights = heightsInFrame(reader, file, box, factor, path);
