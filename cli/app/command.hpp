@@ -40,7 +40,6 @@ CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
   auto options = std::make_shared<Options>();
   bind(command, *options);
   command.callback([options, run, &command, &context] {
-    for (const std::string& warning : oldNamesUsed(command)) context.warn(warning);
     checkNumbers(command);
     const InputRecord manifest;
     checkOutputs(command, context.force);

@@ -130,17 +130,4 @@ void groupOptions(CLI::App& command, const std::string& heading) {
     if (option->get_group() == "Options" && option != command.get_help_ptr()) option->group(heading);
 }
 
-void makeOldName(CLI::Option& option, const std::string& new_name) {
-  option.description(new_name)->group("");
-}
-
-std::vector<std::string> oldNamesUsed(CLI::App& command) {
-  std::vector<std::string> used;
-  for (const CLI::Option* option : command.get_options())
-    if (option->get_group().empty() && option->count() > 0)
-      used.push_back(fmt::format("'--{}' is deprecated: use '{}'", option->get_lnames().front(),
-                                 option->get_description()));
-  return used;
-}
-
 }  // namespace talus::cli

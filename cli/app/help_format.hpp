@@ -31,11 +31,4 @@ class HelpFormat : public CLI::Formatter {
 /// Assigns the heading `heading` in --help to all options of the command that have no heading yet.
 void groupOptions(CLI::App& command, const std::string& heading);
 
-/// Makes an option a deprecated name of another option: the old name is accepted, hidden from --help, and
-/// causes a warning.
-void makeOldName(CLI::Option& option, const std::string& new_name);
-
-/// Returns the messages "'--old' is deprecated: use '--new'" for all deprecated names in the call.
-std::vector<std::string> oldNamesUsed(CLI::App& command);
-
 }  // namespace talus::cli

@@ -36,7 +36,6 @@ void bind(CLI::App& command, AssessCommand& options) {
   command.add_option("--slope-uncertainty", options.margin_rad, "uncertainty of the slope, plus or minus")
       ->type_name("RAD")
       ->capture_default_str();
-  makeOldName(*command.add_option("--margin", options.margin_rad), "--slope-uncertainty");
   command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level")
       ->capture_default_str();
   command.add_option("--z-critical", options.z_critical, "z/r above which the category is dangerous")

@@ -24,6 +24,7 @@ struct ExplainOptions {
   GroundOptions ground;
   std::string at;
   std::optional<double> heading_rad;
+  bool next = false;
   std::string png;
 };
 
@@ -36,6 +37,10 @@ void bind(CLI::App& command, ExplainOptions& options) {
       ->type_name("P");
   addHeading(command, "--heading", options.heading_rad,
              "heading, counter-clockwise from east (default: the worst heading)");
+  command.add_flag(
+      "--next", options.next,
+      "where to drive next: the allowed place nearby whose reading is expected to tell most about "
+      "ground that is not safe");
   groupOptions(command, "Place");
   addOutput(command, "--png", options.png, "picture of cost, slip and slip angle over all headings")
       ->type_name("FILE.png|FILE.svg");
@@ -74,6 +79,25 @@ std::string explainText(const costmap::Explanation& why, const std::string& plac
   return text;
 }
 
+// Adds the place to drive to next to the JSON `out`, or null; returns it as text.
+std::string addNext(const costmap::TraversabilityMap& map, const maps::Cell& cell,
+                    nlohmann::ordered_json& out) {
+  const auto next = costmap::nextDrive(map, cell);
+  out["next"] = nullptr;
+  if (!next) return "next drive: none nearby tells about ground that is not safe\n";
+  const maps::Point at = map.grid().centre(next->cell);
+  const double turn = std::atan2(next->heading.y, next->heading.x);
+  out["next"] = {{"x_m", at.x_m},
+                 {"y_m", at.y_m},
+                 {"heading_rad", turn},
+                 {"std", next->std},
+                 {"expected_std", next->after}};
+  return fmt::format(
+      "next drive: {:.2f},{:.2f}, heading {:.2f} rad: DP/W of {} blocks nearby that are not safe +- {:.3f}, "
+      "expected +- {:.3f}\n",
+      at.x_m, at.y_m, turn, next->cells, next->std, next->after);
+}
+
 SlopeRose roseOf(const costmap::TraversabilityMap& map, const maps::Cell& cell, const std::string& title) {
   constexpr int kHeadings = 72;
   const auto grid = map.published();
@@ -105,10 +129,12 @@ int run(const ExplainOptions& options, Context& context) {
     writeFile(options.png,
               draw(roseOf(site.map, cell, maps::describe(point, site.map.elevation()) + ": " + why.verdict),
                    isNamed(options.png, ".svg") ? Canvas::Kind::Svg : Canvas::Kind::Png));
+  nlohmann::ordered_json out = explainJson(why, point, cell);
+  const std::string next = options.next ? addNext(site.map, cell, out) : "";
   if (context.json)
-    printJson(explainJson(why, point, cell));
+    printJson(out);
   else
-    print(explainText(why, maps::describe(point, site.map.elevation())));
+    print(explainText(why, maps::describe(point, site.map.elevation())) + next);
   return Exit::kDone;
 }
 
@@ -121,6 +147,7 @@ void addExplain(CLI::App& app, Context& context) {
        .group = Group::kMaps,
        .description = "explain the category of a cell: quantities, sources, uncertainties",
        .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
+                   "  talus explain map.ot --at 120,80 --next\n"
                    "  talus explain map.ot --at 120,80 --png rose.png\n"},
       bind, run);
 }

@@ -1,7 +1,12 @@
-// talus update MAP.ot T.csv -o MAP2.ot: adds the telemetry of a drive to a map.
+// talus update MAP.ot T.csv -o MAP2.ot: adds the telemetry of a drive to a map, leaves a drive out, lists drives.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +22,7 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
@@ -28,7 +34,8 @@ struct UpdateOptions {
   std::string telemetry;
   std::string output;
   std::string journal;
-  bool replay = false;
+  std::vector<std::string> joined, without;
+  bool replay = false, list = false;
   costmap::IntakeOptions intake;
   TableOptions columns;
 };
@@ -38,7 +45,7 @@ void bind(CLI::App& command, UpdateOptions& options) {
       ->required()
       ->type_name("MAP.ot");
   command.add_option("TELEMETRY", options.telemetry, "wheel telemetry")->type_name("T.csv");
-  addOutput(command, "-o,--output", options.output, "map to write")->required()->type_name("MAP2.ot");
+  addOutput(command, "-o,--output", options.output, "map to write")->type_name("MAP2.ot");
   auto* journal =
       command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
           ->type_name("EVIDENCE.db");
@@ -49,48 +56,17 @@ void bind(CLI::App& command, UpdateOptions& options) {
       ->capture_default_str();
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
+  command.add_option("--join", options.joined, "journal of another rover, whose drives --journal receives")
+      ->needs(journal)
+      ->type_name("OTHER.db");
+  command
+      .add_option("--without", options.without,
+                  "id of a drive (--list) to leave out of the map, as if never put in")
+      ->type_name("DRIVE");
+  command.add_flag("--list", options.list,
+                   "list the drives of the map: sensors, what each taught, where ground rose or fell");
   groupOptions(command, "Evidence");
   addTableOptions(command, options.columns);
-}
-
-// Costs and categories of the cells at one time, for a comparison before and after.
-struct Snapshot {
-  std::shared_ptr<const costmap::CostGrid> grid;
-  std::vector<std::uint8_t> categories;
-};
-
-Snapshot snapshotOf(const costmap::TraversabilityMap& map) {
-  Snapshot snapshot{map.published(), {}};
-  snapshot.categories.reserve(map.grid().size());
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column)
-      snapshot.categories.push_back(map.costs().category({column, row}));
-  return snapshot;
-}
-
-struct Difference {
-  std::size_t cells = 0;
-  std::size_t categories = 0;
-};
-
-bool sameCost(const Snapshot& a, const Snapshot& b, maps::Cell cell) {
-  const std::size_t from = a.grid->at(cell).curve(), to = b.grid->at(cell).curve();
-  const auto& before = a.grid->cost().curves();
-  const auto& after = b.grid->cost().curves();
-  if (from >= before.size() || to >= after.size()) return from == to;
-  return before[from].cost_J_per_m == after[to].cost_J_per_m;
-}
-
-Difference between(const Snapshot& before, const Snapshot& after) {
-  Difference difference;
-  const maps::Grid& grid = before.grid->grid();
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) {
-      const std::size_t i = grid.index({column, row});
-      difference.categories += before.categories[i] != after.categories[i] ? 1U : 0U;
-      difference.cells += sameCost(before, after, {column, row}) ? 0U : 1U;
-    }
-  return difference;
 }
 
 [[noreturn]] void refuseReplay(const UpdateOptions& options) {
@@ -119,10 +95,14 @@ void checkCall(const UpdateOptions& options) {
   std::error_code error;
   if (options.replay && (std::filesystem::file_size(options.journal, error) == 0 || error))
     refuseReplay(options);
-  if (options.telemetry.empty() == options.replay) return;
+  const bool other = options.list || !options.without.empty();
+  if (options.output.empty() &&
+      (!options.list || options.replay || !options.telemetry.empty() || !options.without.empty()))
+    throw InputError({"talus update", "no map to write", "give -o MAP2.ot"});
+  if (options.telemetry.empty() ? options.replay || other : !options.replay) return;
   throw InputError({options.replay ? options.telemetry : "talus update",
                     options.replay ? "telemetry and --replay together" : "no telemetry",
-                    "give T.csv, or --replay with --journal"});
+                    "give T.csv, --replay with --journal, --without or --list"});
 }
 
 terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::TraversabilityMap& map,
@@ -144,7 +124,7 @@ terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::Trav
 void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
                   const terramech::Telemetry& telemetry, costmap::EvidenceJournal* journal,
                   const Context& context, costmap::DriveReport& report) {
-  const costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
+  costmap::DriveReport drive = costmap::addDrive(map, telemetry, journal, options.intake);
   if (drive.repeated == telemetry.size())
     context.warn(options.telemetry + ": all rows of this drive are in the map already; no row is added");
   else if (drive.repeated > 0)
@@ -154,80 +134,141 @@ void addTelemetry(const UpdateOptions& options, costmap::TraversabilityMap& map,
   else if (drive.used == 0 && drive.bounding == 0)
     throw InputError({options.telemetry, fmt::format("none of its {} rows is usable", drive.rejected),
                       "first reason: " + drive.first_reason});
-  report.used += drive.used;
-  report.raising += drive.raising;
-  report.rejected += drive.rejected + telemetry.rejected.size();
-  report.repeated = drive.repeated + telemetry.repeated;
-  report.learned = drive.learned;
-  report.slip_offset = drive.slip_offset;
-  report.slip_scale = drive.slip_scale;
-  report.findings.insert(report.findings.end(), drive.findings.begin(), drive.findings.end());
+  drive.used += report.used;
+  drive.raising += report.raising;
+  drive.rejected += report.rejected + telemetry.rejected.size();
+  drive.repeated += telemetry.repeated;
+  drive.findings.insert(drive.findings.begin(), report.findings.begin(), report.findings.end());
+  report = std::move(drive);
 }
 
-nlohmann::json learnedJson(const costmap::DriveReport& report) {
+// What the last drive taught about each class: as JSON, and as text.
+std::pair<nlohmann::json, std::string> learned(const costmap::DriveReport& report) {
   nlohmann::json all = nlohmann::json::array();
-  for (const costmap::LearnedClass& one : report.learned)
+  std::string text;
+  if (!report.learned.empty())
+    text = fmt::format("slip        offset {:+.3f}, scale {:.2f}\n", report.slip_offset, report.slip_scale);
+  for (const costmap::LearnedClass& one : report.learned) {
     all.push_back({{"class", one.class_number},
                    {"drawbar_pull_over_load", one.pull.value},
                    {"std", one.pull.std},
                    {"if_sensor_sound", one.if_sound.value},
                    {"if_sensor_sound_std", one.if_sound.std},
                    {"counted_on", one.counted_on}});
-  return all;
-}
-
-std::string learnedText(const costmap::DriveReport& report) {
-  if (report.learned.empty()) return {};
-  std::string text =
-      fmt::format("slip        offset {:+.3f}, scale {:.2f}\n", report.slip_offset, report.slip_scale);
-  for (const costmap::LearnedClass& one : report.learned)
     text += fmt::format(
         "class {:<5} DP/W {:.3f} +- {:.3f} ({:.3f} +- {:.3f} if the slip is sound); decisions count on "
         "{:.3f}\n",
         one.class_number, one.pull.value, one.pull.std, one.if_sound.value, one.if_sound.std, one.counted_on);
-  return text;
+  }
+  return {all, text};
 }
 
-void printReport(const costmap::DriveReport& report, const Difference& difference, const Context& context) {
-  if (context.json)
-    printJson({{"rows_used", report.used},
-               {"rows_rejected", report.rejected},
-               {"rows_raising", report.raising},
-               {"rows_counted_before", report.repeated},
-               {"cells_changed", difference.cells},
-               {"categories_changed", difference.categories},
-               {"slip_offset", report.slip_offset},
-               {"slip_scale", report.slip_scale},
-               {"learned", learnedJson(report)},
-               {"findings", report.findings}});
-  else
+// Leaves the drives of --without out of the map. A drive that only the journal has is not replayed.
+void leaveOut(const UpdateOptions& options, costmap::TraversabilityMap& map) try {
+  for (const std::string& id : options.without)
+    if (map.drives().contains(id) || !options.replay) map.leaveOut(id);
+  if (!options.without.empty()) map.publishAll();
+} catch (const std::invalid_argument& e) {
+  throw InputError({options.map, e.what(), "name a drive of `talus update MAP.ot --list`"});
+}
+
+// What each drive taught, as JSON and as text: the difference between the map and the map without the drive, for
+// classes, and one place of each block whose DP/W rose or fell by more than 0.05, by cause.
+std::pair<nlohmann::json, std::string> drivesOf(const costmap::TraversabilityMap& map) {
+  nlohmann::json all = nlohmann::json::array();
+  std::string text;
+  const int side = map.evidence().blockCells();
+  for (const auto& [id, drive] : map.drives()) {
+    nlohmann::json one{{"drive", id}, {"sensors", drive.sensors}};
+    text += fmt::format("drive {}: {}\n", id, drive.sensors);
+    costmap::TraversabilityMap less = map.moved({0, 0});
+    if (drive.number != 0) less.leaveOut(id);
+    for (int c = 0; const costmap::GroundClass& ground : map.model().parts().classes) {
+      const double with = map.evidence().classBelief(c).pull.value,
+                   without = less.evidence().classBelief(c++).pull.value;
+      one["classes"].push_back({{"class", ground.number}, {"with", with}, {"without", without}});
+      text +=
+          fmt::format("  class {}: DP/W {:.3f}, without this drive {:.3f}\n", ground.number, with, without);
+    }
+    costmap::PlaceBeliefs with(map), without(less);
+    std::map<std::string, int> blocks;
+    for (maps::Cell cell{0, side / 2}; cell.row < map.grid().height; cell.row += side)
+      for (cell.column = side / 2; cell.column < map.grid().width; cell.column += side) {
+        const auto to = with.ground(cell), from = without.ground(cell);
+        if (!to || std::abs(to->pull.value - from->pull.value) <= 0.05) continue;
+        const auto *own = map.evidence().evidence(cell), *rest = less.evidence().evidence(cell);
+        const bool failed = own && own->most_pull < (rest ? std::fmin(rest->most_pull, 1.0F) : 1.0F);
+        const std::string way = to->pull.value < from->pull.value ? "fell" : "rose",
+                          why = failed ? "a wheel failed here"
+                                : own  ? "readings here"
+                                       : "readings nearby, or the mean of the class";
+        const maps::Point at = map.grid().centre(cell);
+        one[way][why].push_back({at.x_m, at.y_m});
+        ++blocks[way + ": " + why];
+      }
+    for (const auto& [cause, count] : blocks) text += fmt::format("  {} blocks {}\n", count, cause);
+    all.push_back(std::move(one));
+  }
+  return {all, text};
+}
+
+// Prints the report; `categories` are those before the call.
+void printReport(const UpdateOptions& options, const costmap::DriveReport& report,
+                 const costmap::TraversabilityMap& map, const costmap::CostGrid& before,
+                 const std::vector<std::uint8_t>& categories, const Context& context) {
+  const std::vector<std::uint8_t> now = map.costs().categories().values();
+  std::size_t recategorised = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) recategorised += now[i] != categories[i] ? 1U : 0U;
+  const std::size_t cells = map.costs().cellsChanged(before);
+  const auto [json, text] = learned(report);
+  nlohmann::json out{{"rows_used", report.used},
+                     {"rows_rejected", report.rejected},
+                     {"rows_raising", report.raising},
+                     {"rows_counted_before", report.repeated},
+                     {"cells_changed", cells},
+                     {"categories_changed", recategorised},
+                     {"slip_offset", report.slip_offset},
+                     {"slip_scale", report.slip_scale},
+                     {"learned", json},
+                     {"findings", report.findings}};
+  const auto [drives, list] = options.list ? drivesOf(map) : std::pair<nlohmann::json, std::string>();
+  if (options.list) out["drives"] = drives;
+  if (context.json) return printJson(out);
+  if (!options.output.empty())
     print(
         fmt::format("rows        {} used, {} rejected; {} able to raise the estimate\n"
                     "cells       {} changed, {} with a new category\n{}",
-                    report.used, report.rejected, report.raising, difference.cells, difference.categories,
-                    learnedText(report)));
+                    report.used, report.rejected, report.raising, cells, recategorised, text));
+  print(list);
 }
 
 int run(const UpdateOptions& options, Context& context) {
   checkCall(options);
   checkJournal(options, context.force);
-  const FileLock lock({options.map, options.output}, context.stop);
-  OutputFile output(options.output);
+  const FileLock lock({options.map, options.output.empty() ? options.map : options.output}, context.stop);
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output.emplace(options.output);
   costmap::TraversabilityMap map = readBuiltMap(options.map, context);
   std::optional<terramech::Telemetry> telemetry;
-  if (!options.replay) telemetry = readDrive(options, map, context);
+  if (!options.telemetry.empty()) telemetry = readDrive(options, map, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   // Opening creates the journal, and so follows the reading of all other files of the call.
   std::optional<costmap::EvidenceJournal> journal;
   std::optional<costmap::EvidenceJournal::Transaction> transaction;
   if (!options.journal.empty()) transaction.emplace(journal.emplace(options.journal));
+  for (const std::string& other : options.joined) {
+    const costmap::EvidenceJournal from(other);
+    for (const std::string& drive : from.drives()) journal->append(drive, from.rows(drive));
+  }
   if (options.replay && journal->drives().empty()) refuseReplay(options);
 
-  const Snapshot before = snapshotOf(map);
+  const std::shared_ptr<const costmap::CostGrid> before = map.published();
+  const std::vector<std::uint8_t> categories = map.costs().categories().values();
+  leaveOut(options, map);
   // Rows of the journal that are missing in the map, as after an interrupted call, are added before this
   // drive.
   costmap::DriveReport report;
-  if (journal) report = costmap::replay(map, *journal);
+  if (journal) report = costmap::replay(map, *journal, {options.without.begin(), options.without.end()});
   if (report.used == 0 && report.rejected > 0) warnForeignJournal(options, report, context);
   if (telemetry) {
     if (report.used + report.rejected > 0)
@@ -237,11 +278,11 @@ int run(const UpdateOptions& options, Context& context) {
   }
   for (const std::string& finding : report.findings) context.warn(finding);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  costmap::writeMap(map, output.stream());
-  output.sync();
+  if (output) costmap::writeMap(map, output->stream());
+  if (output) output->sync();
   if (transaction) transaction->commit();
-  output.commit();
-  printReport(report, between(before, snapshotOf(map)), context);
+  if (output) output->commit();
+  printReport(options, report, map, *before, categories, context);
   return Exit::kDone;
 }
 
@@ -254,7 +295,9 @@ void addUpdate(CLI::App& app, Context& context) {
        .group = Group::kMaps,
        .description = "update a traversability map with the telemetry of a drive",
        .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
-                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"},
+                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"
+                   "  talus update map.ot --list\n"
+                   "  talus update map.ot --without 0f9b12c344aa81e7 -o map2.ot\n"},
       bind, run);
 }
 

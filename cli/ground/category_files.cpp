@@ -19,14 +19,6 @@ using terramech::Category;
 
 constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
 
-maps::Raster<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map) {
-  maps::Raster<std::uint8_t> categories(map.grid());
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column)
-      categories[{column, row}] = static_cast<std::uint8_t>(map.belief({column, row}).category);
-  return categories;
-}
-
 std::uint8_t byteOf(double part) {
   return static_cast<std::uint8_t>(std::lround(255.0 * part));
 }
@@ -67,7 +59,7 @@ void writeCategories(const costmap::TraversabilityMap& map, const std::string& p
   const auto& georeference = map.elevation().georeference;
   OutputFile raster(path), style(categoryStyle(path));
   maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr, .into = &raster},
-                     "category", categoriesOf(map), std::nullopt, classes);
+                     "category", map.costs().categories(), std::nullopt, classes);
   style.write(qgisStyle());
   raster.commit();
   style.commit();
@@ -79,7 +71,7 @@ std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
 
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml) {
   const maps::Grid& grid = map.grid();
-  const maps::Raster<std::uint8_t> categories = categoriesOf(map);
+  const maps::Raster<std::uint8_t> categories = map.costs().categories();
   const bool allow_marginal = map.model().parts().policy.allow_marginal;
   std::string picture = fmt::format("P5\n{} {}\n255\n", grid.width, grid.height);
   for (int row = grid.height - 1; row >= 0; --row)

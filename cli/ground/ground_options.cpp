@@ -65,12 +65,11 @@ void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
                    "allow dangerous cells where the drawbar pull is sufficient");
   command.add_flag("--allow-unknown", policy.allow_unknown,
                    "drive over cells without data, at the slope between the heights beside them");
-  const auto uncertainty = [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; };
   command
-      .add_option_function<double>("--slope-uncertainty-deg", uncertainty,
-                                   "slope uncertainty on either side of a category threshold (default: 5)")
+      .add_option_function<double>(
+          "--slope-uncertainty-deg", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
+          "slope uncertainty on either side of a category threshold (default: 5)")
       ->type_name("DEG");
-  makeOldName(*command.add_option_function<double>("--slope-margin", uncertainty), "--slope-uncertainty-deg");
   command.add_option("--time-weight", policy.time_weight_W, "cost of time, joules per second")
       ->type_name("W")
       ->capture_default_str();
@@ -403,7 +402,6 @@ Ground readGround(const GroundOptions& options, const Context& context) {
                              std::move(layers.classes),
                              std::move(layers.rock_abundance),
                              std::move(layers.keep_out),
-                             {},
                              {},
                              std::move(layers.costs)};
   warnOfUnseen(content.costs, options.policy, context);

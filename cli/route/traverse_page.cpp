@@ -35,7 +35,7 @@ RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::
   const planner::TrueWorld world = site.trueWorld(0);
   costmap::TraversabilityMap map = site.estimatedMap(belief, world);
   RecordedTraverse out{{}, {{}, {}, world.patches(), map.grid()}};
-  const std::vector<std::uint8_t> before = planner::categoriesOf(map);
+  const std::vector<std::uint8_t> before = map.costs().categories().values();
   std::vector<std::uint8_t> known = before;
   planner::SimulationOptions options = site.options(belief, 0);
   options.watch = {.progress = {}, .stop = watch.stop};
@@ -43,7 +43,7 @@ RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::
   planner::TraverseLog log;
   options.on_step = [&](const planner::TraverseStep& step) { log.record(step); };
   options.on_learned = [&](double time_s) {
-    std::vector<std::uint8_t> now = planner::categoriesOf(map);
+    std::vector<std::uint8_t> now = map.costs().categories().values();
     const int width = map.grid().width;
     for (std::size_t i = 0; i < now.size(); ++i)
       if (now[i] != known[i])

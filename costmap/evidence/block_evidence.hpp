@@ -84,9 +84,6 @@ std::vector<SourcePull> pullsOf(std::span<const ReadingCount> counts);
 
 /// Evidence of one terrain class in a block, computed from the counts of its readings.
 struct BlockEvidence {
-  static constexpr std::uint16_t kTop = 0xffff;  ///< value of `level` for the surface
-
-  std::uint16_t level = kTop;       ///< kTop; another value belongs to a level that no map has
   std::uint8_t terrain_class = 0;   ///< number of the terrain class
   std::uint8_t place_in_brick = 0;  ///< index of the block within its brick, set by EvidenceBricks
   std::uint32_t updated_s = 0;      ///< telemetry time of the newest reading, rounded down [s]

@@ -38,8 +38,8 @@ const InferredGround& EvidenceBeliefs::away(int class_index) {
 
 // Returns the patch of a block and class, computed on first use. Discards all patches at kMostRemembered,
 // which limits the memory for a whole map.
-EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockLevel& block, int class_index) {
-  BlockLevel first = block;
+EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockOfClass& block, int class_index) {
+  BlockOfClass first = block;
   first.column = block.column / kPatchSide * kPatchSide;
   first.row = block.row / kPatchSide * kPatchSide;
   const Key key{first.column, first.row, class_index};
@@ -55,7 +55,7 @@ EvidenceBeliefs::Patch& EvidenceBeliefs::patchAt(const BlockLevel& block, int cl
 }
 
 const InferredGround& EvidenceBeliefs::at(maps::Cell cell, int class_index) {
-  const BlockLevel block = store_.topOf(cell, class_index);
+  const BlockOfClass block = store_.topOf(cell, class_index);
   Patch& patch = patchAt(block, class_index);
   if (patch.ground.empty()) return away(class_index);
   std::optional<InferredGround>& known =

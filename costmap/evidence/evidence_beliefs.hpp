@@ -30,7 +30,7 @@ class EvidenceBeliefs {
   using Key = std::tuple<int, int, int>;
 
   GroundOfClass groundOf(int class_index) const;
-  Patch& patchAt(const BlockLevel& block, int class_index);
+  Patch& patchAt(const BlockOfClass& block, int class_index);
   const InferredGround& away(int class_index);
 
   const EvidenceStore& store_;

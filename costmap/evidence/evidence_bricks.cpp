@@ -9,14 +9,13 @@ namespace {
 constexpr int kShift = 3;  // log2 of the side of a brick in blocks
 constexpr int kMask = (1 << kShift) - 1;
 
-// Sort key within a brick: place, level, class.
-std::uint32_t keyOf(const BlockLevel& block) noexcept {
+// Sort key within a brick: place, class.
+std::uint32_t keyOf(const BlockOfClass& block) noexcept {
   const auto place = static_cast<std::uint32_t>((block.row & kMask) << kShift | (block.column & kMask));
-  return place << 24 | static_cast<std::uint32_t>(block.level) << 8 | block.terrain_class;
+  return place << 8 | block.terrain_class;
 }
 std::uint32_t keyOf(const BlockEvidence& e) noexcept {
-  return static_cast<std::uint32_t>(e.place_in_brick) << 24 | static_cast<std::uint32_t>(e.level) << 8 |
-         e.terrain_class;
+  return static_cast<std::uint32_t>(e.place_in_brick) << 8 | e.terrain_class;
 }
 
 bool before(const BlockEvidence& e, std::uint32_t key) noexcept {
@@ -47,7 +46,7 @@ std::size_t EvidenceBricks::brickOf(int column, int row) const noexcept {
          static_cast<std::size_t>(column >> kShift);
 }
 
-const BlockEvidence* EvidenceBricks::find(const BlockLevel& block) const noexcept {
+const BlockEvidence* EvidenceBricks::find(const BlockOfClass& block) const noexcept {
   if (!contains(block.column, block.row)) return nullptr;
   const auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
   const std::uint32_t key = keyOf(block);
@@ -55,24 +54,23 @@ const BlockEvidence* EvidenceBricks::find(const BlockLevel& block) const noexcep
   return found != blocks.end() && keyOf(*found) == key ? &*found : nullptr;
 }
 
-BlockEvidence& EvidenceBricks::at(const BlockLevel& block) {
+BlockEvidence& EvidenceBricks::at(const BlockOfClass& block) {
   auto& blocks = bricks_[brickOf(block.column, block.row)].blocks;
   const std::uint32_t key = keyOf(block);
   auto found = std::lower_bound(blocks.begin(), blocks.end(), key, before);
   if (found != blocks.end() && keyOf(*found) == key) return *found;
   const auto place = found - blocks.begin();
   makeRoom(blocks);
-  return *blocks.insert(blocks.begin() + place, {.level = block.level,
-                                                 .terrain_class = block.terrain_class,
-                                                 .place_in_brick = static_cast<std::uint8_t>(key >> 24)});
+  return *blocks.insert(blocks.begin() + place, {.terrain_class = block.terrain_class,
+                                                 .place_in_brick = static_cast<std::uint8_t>(key >> 8)});
 }
 
-void EvidenceBricks::erase(const BlockLevel& block) {
+void EvidenceBricks::erase(const BlockOfClass& block) {
   std::erase_if(bricks_[brickOf(block.column, block.row)].blocks,
                 [key = keyOf(block)](const BlockEvidence& e) { return keyOf(e) == key; });
 }
 
-std::vector<ReadingCount> EvidenceBricks::counts(const BlockLevel& block) const {
+std::vector<ReadingCount> EvidenceBricks::counts(const BlockOfClass& block) const {
   std::vector<ReadingCount> out;
   if (!contains(block.column, block.row)) return out;
   const auto& readings = bricks_[brickOf(block.column, block.row)].readings;
@@ -96,18 +94,18 @@ std::vector<EvidenceBricks::BlockReadings>::iterator EvidenceBricks::placeOf(
                           [](const BlockReadings& h, std::uint64_t key) { return orderOf(h) < key; });
 }
 
-void EvidenceBricks::uncount(const BlockLevel& block, const ReadingCount& reading) {
+void EvidenceBricks::uncount(const BlockOfClass& block, const ReadingCount& reading) {
   auto& readings = bricks_[brickOf(block.column, block.row)].readings;
   const BlockReadings taken{keyOf(block), reading};
   const auto found = placeOf(readings, taken);
   if (found == readings.end() || orderOf(*found) != orderOf(taken)) return;
   std::uint16_t& count = found->reading.count;
-  if (count == std::numeric_limits<std::uint16_t>::max()) return;
+  if (count == std::numeric_limits<std::uint16_t>::max() && reading.count < count) return;
   count = static_cast<std::uint16_t>(count - std::min(count, reading.count));
   if (count == 0) readings.erase(found);
 }
 
-void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading) {
+void EvidenceBricks::count(const BlockOfClass& block, const ReadingCount& reading) {
   auto& readings = bricks_[brickOf(block.column, block.row)].readings;
   const BlockReadings added{keyOf(block), reading};
   const auto found = placeOf(readings, added);
@@ -122,16 +120,7 @@ void EvidenceBricks::count(const BlockLevel& block, const ReadingCount& reading)
   readings.insert(readings.begin() + at, added);
 }
 
-void EvidenceBricks::visitLevels(int column, int row, const Visit& visit) const {
-  if (!contains(column, row)) return;
-  const auto& blocks = bricks_[brickOf(column, row)].blocks;
-  const std::uint32_t first = keyOf(BlockLevel{column, row, 0, 0});
-  for (auto at = std::lower_bound(blocks.begin(), blocks.end(), first, before);
-       at != blocks.end() && at->place_in_brick == first >> 24; ++at)
-    visit({column, row, at->level, at->terrain_class}, *at);
-}
-
-void EvidenceBricks::visitTop(const Box& box, const Visit& visit) const {
+void EvidenceBricks::visit(const Box& box, const Visit& visit) const {
   const int west = std::max(box.west, 0), east = std::min(box.east, columns_ - 1);
   const int south = std::max(box.south, 0), north = std::min(box.north, rows_ - 1);
   for (int y = south >> kShift; y <= north >> kShift; ++y)
@@ -139,15 +128,14 @@ void EvidenceBricks::visitTop(const Box& box, const Visit& visit) const {
       for (const BlockEvidence& e : bricks_[brickOf(x << kShift, y << kShift)].blocks) {
         const int column = (x << kShift) + (e.place_in_brick & kMask);
         const int row = (y << kShift) + (e.place_in_brick >> kShift);
-        if (e.level == BlockEvidence::kTop && column >= west && column <= east && row >= south &&
-            row <= north)
-          visit({column, row, e.level, e.terrain_class}, e);
+        if (column >= west && column <= east && row >= south && row <= north)
+          visit({column, row, e.terrain_class}, e);
       }
 }
 
 void EvidenceBricks::visitAll(const Visit& visit) const {
   for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column) visitLevels(column, row, visit);
+    for (int column = 0; column < columns_; ++column) this->visit({column, row, column, row}, visit);
 }
 
 }  // namespace talus::costmap

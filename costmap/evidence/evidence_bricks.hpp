@@ -11,10 +11,9 @@ namespace talus::costmap {
 
 /// Key of evidence: one terrain class of one block. A block is a square of cells. Columns and rows of blocks
 /// count from the map's south-west corner.
-struct BlockLevel {
+struct BlockOfClass {
   int column = 0, row = 0;
-  std::uint16_t level = BlockEvidence::kTop;  ///< BlockEvidence::kTop in every map
-  std::uint8_t terrain_class = 0;             ///< number of the terrain class
+  std::uint8_t terrain_class = 0;  ///< number of the terrain class
 };
 
 /// The evidence of a map, stored in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with
@@ -27,43 +26,38 @@ class EvidenceBricks {
   /// Makes an empty store for a map with this number of block columns and rows.
   EvidenceBricks(int block_columns, int block_rows);
 
-  /// Returns the evidence of a class on a level of a block; null if there is no evidence or the block lies
-  /// outside the map.
-  const BlockEvidence* find(const BlockLevel& block) const noexcept;
+  /// Returns the evidence of a class in a block; null if there is no evidence or the block lies outside the map.
+  const BlockEvidence* find(const BlockOfClass& block) const noexcept;
   /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
   /// inside the map.
-  BlockEvidence& at(const BlockLevel& block);
+  BlockEvidence& at(const BlockOfClass& block);
   /// Removes evidence that at() created; its readings must have been removed.
-  void erase(const BlockLevel& block);
-  /// Returns the readings of a class on a level of a block, sorted by kind, value and drive; empty without
-  /// readings.
-  std::vector<ReadingCount> counts(const BlockLevel& block) const;
+  void erase(const BlockOfClass& block);
+  /// Returns the readings of a class in a block, sorted by kind, value and drive; empty without readings.
+  std::vector<ReadingCount> counts(const BlockOfClass& block) const;
   /// Adds reading.count readings of one kind, value and drive to evidence that at() created; the count
   /// saturates at 65535.
-  void count(const BlockLevel& block, const ReadingCount& reading);
-  /// Removes reading.count readings from evidence that at() created. A saturated count (65535) is not
-  /// changed, nor is evidence without such readings.
-  void uncount(const BlockLevel& block, const ReadingCount& reading);
+  void count(const BlockOfClass& block, const ReadingCount& reading);
+  /// Removes reading.count readings from evidence that at() created. A saturated count (65535) is removed only
+  /// by a saturated one; evidence without such readings is not changed.
+  void uncount(const BlockOfClass& block, const ReadingCount& reading);
 
   /// Callback with a key and its evidence.
-  using Visit = std::function<void(const BlockLevel&, const BlockEvidence&)>;
+  using Visit = std::function<void(const BlockOfClass&, const BlockEvidence&)>;
 
-  /// Calls `visit` for all levels and classes of a block, in ascending order of level; the top surface is
-  /// last.
-  void visitLevels(int column, int row, const Visit& visit) const;
   /// A rectangle of blocks, given by columns and rows, both corners included. The rectangle may extend beyond
   /// the map.
   struct Box {
     int west, south, east, north;
   };
-  /// Calls `visit` for the evidence of the top surface within a box, brick by brick.
-  void visitTop(const Box& box, const Visit& visit) const;
-  /// Calls `visit` for all evidence, by ascending row, column, level and class.
+  /// Calls `visit` for the evidence within a box, brick by brick.
+  void visit(const Box& box, const Visit& visit) const;
+  /// Calls `visit` for all evidence, by ascending row, column and class.
   void visitAll(const Visit& visit) const;
 
  private:
   struct BlockReadings {
-    std::uint32_t block = 0;  // sort key: place in the brick, level, class
+    std::uint32_t block = 0;  // sort key: place in the brick, class
     ReadingCount reading;
   };
   struct Brick {

@@ -32,7 +32,7 @@ int EvidenceField::blockCells() const noexcept {
 // Adds or removes readings of a block and updates what the block contributes to its class. A block counts as
 // its side over the integral scale (2/3 of the correlation length), at most 1 place. Returns the cells whose
 // estimate may change.
-maps::CellBox EvidenceField::count(const BlockLevel& where, const SavedBlock& readings, Count how) {
+maps::CellBox EvidenceField::count(const BlockOfClass& where, const SavedBlock& readings, Count how) {
   const int class_index = site_->model->classIndex(where.terrain_class);
   ClassEvidence& of_class = store_->classes[static_cast<std::size_t>(class_index)];
   const GroundBelief& prior = site_->model->prior(class_index);
@@ -84,11 +84,7 @@ std::optional<maps::CellBox> EvidenceField::add(const WheelObservation& observat
 
 std::optional<maps::CellBox> EvidenceField::forget(const SavedBlock& readings) {
   if (!store_->bricks.find(readings.block)) return std::nullopt;
-  SavedBlock estimates = readings;
-  std::erase_if(estimates.counts, [](const ReadingCount& c) {
-    return c.kind == reading_kind::kMostPullHere || c.kind == reading_kind::kLeastSinkageHere;
-  });
-  return count(estimates.block, estimates, Count::TakeOff);
+  return count(readings.block, readings, Count::TakeOff);
 }
 
 std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& observation) const {
@@ -120,15 +116,14 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
 }
 
 void EvidenceField::visit(const std::function<void(const SavedBlock&)>& visit) const {
-  store_->bricks.visitAll([&](const BlockLevel& at, const BlockEvidence& e) {
+  store_->bricks.visitAll([&](const BlockOfClass& at, const BlockEvidence& e) {
     visit({.block = at, .updated_s = e.updated_s, .reach = e.reach, .counts = store_->bricks.counts(at)});
   });
 }
 
 std::optional<maps::CellBox> EvidenceField::restore(const SavedBlock& saved) {
-  if (saved.block.level != BlockEvidence::kTop || saved.block.column < 0 || saved.block.row < 0 ||
-      saved.block.column >= store_->blocks.columns() || saved.block.row >= store_->blocks.rows() ||
-      site_->model->classIndex(saved.block.terrain_class) < 0)
+  if (saved.block.column < 0 || saved.block.row < 0 || saved.block.column >= store_->blocks.columns() ||
+      saved.block.row >= store_->blocks.rows() || site_->model->classIndex(saved.block.terrain_class) < 0)
     return std::nullopt;
   return count(saved.block, saved);
 }

@@ -16,7 +16,7 @@ namespace talus::costmap {
 
 /// All readings of one terrain class in a block, as map files store them.
 struct SavedBlock {
-  BlockLevel block;
+  BlockOfClass block;
   /// Telemetry time of the newest reading, rounded down [s].
   std::uint32_t updated_s = 0;
   std::uint8_t reach = 0;  ///< position uncertainty of the readings, in steps of 0.1 m
@@ -49,8 +49,8 @@ class EvidenceField {
   /// Returns the block and the quantised readings that add() would store for an observation; nullopt if add()
   /// would return nullopt.
   std::optional<SavedBlock> readingsOf(const WheelObservation& observation) const;
-  /// Removes stored readings of pull and sinkage; bounds of the ground remain. Returns the box of cells whose
-  /// estimate may change; nullopt if the block has no evidence.
+  /// Removes stored readings. Returns the box of cells whose estimate may change; nullopt if the block has no
+  /// evidence.
   std::optional<maps::CellBox> forget(const SavedBlock& readings);
 
   /// Returns the evidence of the block that contains a cell, for the cell's class; null without evidence.
@@ -84,7 +84,7 @@ class EvidenceField {
  private:
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
   enum class Count { Add, TakeOff };
-  maps::CellBox count(const BlockLevel& where, const SavedBlock& readings, Count how = Count::Add);
+  maps::CellBox count(const BlockOfClass& where, const SavedBlock& readings, Count how = Count::Add);
   ClassState stateOf(int class_index) const;
 
   std::shared_ptr<const GroundSite> site_;

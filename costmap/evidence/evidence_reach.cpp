@@ -26,7 +26,7 @@ maps::CellBox EvidenceReach::cellsOf(const maps::CellBox& patches) const noexcep
           {std::min(last.column, grid.width) - 1, std::min(last.row, grid.height) - 1}};
 }
 
-maps::CellBox EvidenceReach::add(const BlockLevel& block, double reach_m) {
+maps::CellBox EvidenceReach::add(const BlockOfClass& block, double reach_m) {
   farthest_m_ = std::max(farthest_m_, reach_m);
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
   const int reach = 1 + static_cast<int>(std::ceil((correlation_length_m + reach_m) / blocks_.side_m()));

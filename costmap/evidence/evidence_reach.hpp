@@ -22,7 +22,7 @@ class EvidenceReach {
 
   /// Adds the evidence of a block whose position uncertainty is reach_m >= 0 [m]. Returns the box of the
   /// cells of all patches within the correlation length plus reach_m of the block.
-  maps::CellBox add(const BlockLevel& block, double reach_m);
+  maps::CellBox add(const BlockOfClass& block, double reach_m);
 
   /// Returns the boxes of cells that evidence can affect, one for each patch.
   std::vector<maps::CellBox> boxes() const;

@@ -35,8 +35,8 @@ struct EvidenceStore {
     return model().parts().classes[static_cast<std::size_t>(class_index)];
   }
   /// Returns the key of the evidence of a class on the top surface, in the block that contains a cell.
-  BlockLevel topOf(maps::Cell cell, int class_index) const noexcept {
-    return {blocks.columnOf(cell), blocks.rowOf(cell), BlockEvidence::kTop,
+  BlockOfClass topOf(maps::Cell cell, int class_index) const noexcept {
+    return {blocks.columnOf(cell), blocks.rowOf(cell),
             static_cast<std::uint8_t>(groundClass(class_index).number)};
   }
 };

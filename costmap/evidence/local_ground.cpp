@@ -81,17 +81,17 @@ GroundBelief classGround(const GroundModel& model, const GroundOfClass& of) {
 
 // The process contains only places within a correlation length of the patch, of more than kMostNeighbours the
 // nearest. Bounds, of any class, also lie beyond, if their position uncertainty reaches the patch.
-LocalGround::LocalGround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of)
+LocalGround::LocalGround(const EvidenceStore& store, const BlockOfClass& patch, const GroundOfClass& of)
     : store_(store), of_(of) {
   const int near = store.blocks.reach();
   const int reach = near + static_cast<int>(std::ceil(store.reach.farthest_m() / store.blocks.side_m()));
   const GroundBelief& prior = store.model().prior(of.class_index);
   const int number = store.groundClass(of.class_index).number;
   std::vector<Block> blocks;
-  store.bricks.visitTop(
+  store.bricks.visit(
       {patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
        patch.row + kPatchBlocks + reach - 1},
-      [&](const BlockLevel& at, const BlockEvidence& e) {
+      [&](const BlockOfClass& at, const BlockEvidence& e) {
         const maps::Point middle = store.blocks.middleOf(store.blocks.blockAt(at.column, at.row));
         const bool alike = at.terrain_class == number;
         if ((alike || e.reach > 0) && !(std::isnan(e.most_pull) && std::isnan(e.least_sinkage)))

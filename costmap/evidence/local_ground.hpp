@@ -46,7 +46,7 @@ GroundBelief classGround(const GroundModel& model, const GroundOfClass& of);
 class LocalGround {
  public:
   /// Collects the evidence that can affect the patch with the south-west block `patch`.
-  LocalGround(const EvidenceStore& store, const BlockLevel& patch, const GroundOfClass& of);
+  LocalGround(const EvidenceStore& store, const BlockOfClass& patch, const GroundOfClass& of);
 
   bool empty() const noexcept { return !any_; }
   /// Returns the estimate of the ground at `at`, as ground of the class. It lies within the bounds of its

@@ -177,10 +177,11 @@ struct RowWheel {
 
 /// One telemetry row as the journal stores it.
 struct JournalRow {
-  std::string source;            ///< file or vehicle from which the row originates
-  std::int64_t line = 0;         ///< line number in the file
-  bool accepted = false;         ///< true if the map used the row
-  std::string reason;            ///< reason of the rejection; empty if accepted
+  std::string source;     ///< file or vehicle from which the row originates
+  std::int64_t line = 0;  ///< line number in the file
+  bool accepted = false;  ///< true if the map used the row
+  /// Reason of a rejection; for an accepted estimate, what the sensors of the drive were found to be.
+  std::string reason;
   TelemetryReading reading;      ///< measurements of the row
   WheelObservation observation;  ///< observation from the row; undefined if rejected
   RowWheel wheel{};              ///< wheel to which the row refers

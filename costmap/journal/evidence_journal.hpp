@@ -31,7 +31,7 @@ class EvidenceJournal {
     EvidenceJournal* journal_;  // journal; null after commit()
   };
 
-  /// Opens or creates the file `path` (no URI, no in-memory database). A journal of Talus 0.1.0 is converted.
+  /// Opens or creates the file `path` (no URI, no in-memory database).
   /// Throws InputError if the file is not a journal, has another format, has foreign tables, columns,
   /// triggers or views, or cannot be written.
   explicit EvidenceJournal(const std::string& path);

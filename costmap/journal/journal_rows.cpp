@@ -171,11 +171,9 @@ std::uint64_t sealed(const DriveEntry& entry) {
 }
 
 bool isDriveId(const std::string& id) {
-  constexpr std::size_t kDigits = 16, kLongest = 5000;
+  constexpr std::size_t kDigits = 16;
   const auto digit = [](unsigned char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (!id.starts_with("source ")) return id.size() == kDigits && std::ranges::all_of(id, digit);
-  // Ids must fit on one line, because a map lists ids line by line.
-  return id.size() < kLongest && std::ranges::none_of(id, [](unsigned char c) { return c < ' '; });
+  return id.size() == kDigits && std::ranges::all_of(id, digit);
 }
 
 }  // namespace talus::costmap

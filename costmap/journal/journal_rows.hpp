@@ -40,8 +40,7 @@ struct DriveEntry {
 /// number and id.
 std::uint64_t sealed(const DriveEntry& entry);
 
-/// Returns true if the id has 16 hexadecimal digits, like DriveId, or the form "source NAME" of Talus
-/// 0.1.0.
+/// Returns true if the id has 16 hexadecimal digits, like DriveId.
 bool isDriveId(const std::string& id);
 
 }  // namespace talus::costmap

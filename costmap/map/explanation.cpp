@@ -1,10 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
+#include <vector>
 
+#include <talus/costmap/evidence/spreading.hpp>
 #include <talus/costmap/ground/category_table.hpp>
 #include <talus/costmap/map/explanation.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -242,6 +247,38 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   if (opened) out.verdict += "; " + hazardText(map, cell, Hazard::Unknown);
 }
 
+// Ground of one block: its class, the standard deviation of its estimate, and the most accurate reading there.
+struct Sampled {
+  maps::Cell cell;
+  int class_index = 0;
+  double std = 0.0;
+  double error = std::numeric_limits<double>::infinity();  // of a reading; infinite: no heading is allowed
+  Direction heading{};
+};
+
+// Sets the heading of the most accurate reading of an allowed motion, and its error (B4).
+void readIn(const TraversabilityMap& map, Sampled& at) {
+  constexpr int kHeadings = 16;
+  constexpr double kLeastShare = 0.15;
+  const ReadingNoise noise;
+  const auto grid = map.published();
+  const CellCode code = grid->at(at.cell);
+  const auto steady = [&](double slip) { return map.model().steady(at.class_index, {.slip = slip}); };
+  for (int k = 0; k < kHeadings; ++k) {
+    const double turn = 2.0 * std::numbers::pi * k / kHeadings;
+    const Direction heading{std::cos(turn), std::sin(turn)};
+    if (!std::isfinite(grid->cost().costPerMetre(code, heading))) continue;
+    const auto slip = static_cast<double>(grid->cost().detail(code, heading).slip);
+    const double share = steady(slip).torque_over_load_radius /
+                         map.model().reference(at.class_index, false).torque_over_load_radius;
+    const double rise = (steady(slip + noise.slip).gradient - steady(slip - noise.slip).gradient) / 2.0;
+    const double error = std::hypot(noise.model_pull, std::hypot(noise.gradient, rise) / share);
+    if (share < kLeastShare || error >= at.error) continue;
+    at.error = error;
+    at.heading = heading;
+  }
+}
+
 }  // namespace
 
 Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::optional<Direction>& heading) {
@@ -254,6 +291,48 @@ Explanation explain(const TraversabilityMap& map, maps::Cell cell, const std::op
   addSoil(map, cell, out);
   addDrive(map, cell, direction, out);
   return out;
+}
+
+std::optional<NextDrive> nextDrive(const TraversabilityMap& map, maps::Cell around) {
+  const double length_m = map.model().parts().policy.correlation_length_m;
+  const maps::Grid& grid = map.grid();
+  const auto between_m = [&](maps::Cell a, maps::Cell b) {
+    return grid.resolution_m * std::hypot(a.column - b.column, a.row - b.row);
+  };
+  PlaceBeliefs beliefs(map);
+  std::vector<Sampled> allowed, uncertain;
+  const int side = map.evidence().blockCells();
+  for (maps::Cell cell{0, side / 2}; cell.row < grid.height; cell.row += side)
+    for (cell.column = side / 2; cell.column < grid.width; cell.column += side) {
+      const auto ground = beliefs.ground(cell);
+      if (!ground || between_m(cell, around) > 3.0 * length_m || map.surface().hazards(cell) != Hazard::None)
+        continue;
+      Sampled at{cell, map.surface().classIndex(cell), ground->pull.std};
+      if (map.costs().category(cell) != static_cast<std::uint8_t>(terramech::Category::Safe))
+        uncertain.push_back(at);
+      readIn(map, at);
+      if (std::isfinite(at.error)) allowed.push_back(at);
+    }
+  std::optional<NextDrive> best;
+  double variance = 0.0, most = 0.0;
+  for (const Sampled& x : uncertain) variance += x.std * x.std;
+  for (const Sampled& a : allowed) {
+    const double p = map.model().parts().classes[static_cast<std::size_t>(a.class_index)].pull_std,
+                 of_class = map.evidence().classBelief(a.class_index).pull.std;
+    double gain = 0.0;
+    for (const Sampled& x : uncertain) {
+      if (x.class_index != a.class_index) continue;
+      const double common = std::max(of_class * of_class - p * p, 0.0) +
+                            p * p * sparseKernel(between_m(a.cell, x.cell), length_m);
+      gain += std::pow(std::min(common, a.std * x.std), 2) / (a.std * a.std + a.error * a.error);
+    }
+    if (gain <= most) continue;
+    most = gain;
+    const auto count = static_cast<double>(uncertain.size());
+    best = {a.cell, a.heading, uncertain.size(), std::sqrt(variance / count),
+            std::sqrt((variance - gain) / count)};
+  }
+  return best;
 }
 
 }  // namespace talus::costmap

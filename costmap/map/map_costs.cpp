@@ -86,13 +86,35 @@ std::optional<CellCategory> MapCosts::ranked(maps::Cell cell) const {
   return CellCategory{entry.category, entry.confidence};
 }
 
-CategoryCounts MapCosts::countCategories() const {
-  std::array<std::size_t, 4> counts{};
+maps::Raster<std::uint8_t> MapCosts::categories() const {
+  maps::Raster<std::uint8_t> all(surface_->grid());
   const auto published = this->published();
   for (int row = 0; row < surface_->grid().height; ++row)
     for (int column = 0; column < surface_->grid().width; ++column)
-      ++counts[categoryOf(*published, {column, row})];
+      all[{column, row}] = categoryOf(*published, {column, row});
+  return all;
+}
+
+CategoryCounts MapCosts::countCategories() const {
+  std::array<std::size_t, 4> counts{};
+  const maps::Raster<std::uint8_t> all = categories();
+  for (const std::uint8_t category : all.values()) ++counts[category];
   return {counts[0], counts[1], counts[2], counts[3]};
+}
+
+std::size_t MapCosts::cellsChanged(const CostGrid& before) const {
+  const auto now = published();
+  const auto &old_curves = before.cost().curves(), &curves = now->cost().curves();
+  std::size_t changed = 0;
+  for (int row = 0; row < surface_->grid().height; ++row)
+    for (int column = 0; column < surface_->grid().width; ++column) {
+      const std::size_t from = before.at({column, row}).curve(), to = now->at({column, row}).curve();
+      const bool same = from >= old_curves.size() || to >= curves.size()
+                            ? from == to
+                            : old_curves[from].cost_J_per_m == curves[to].cost_J_per_m;
+      changed += same ? 0U : 1U;
+    }
+  return changed;
 }
 
 std::uint8_t MapCosts::categoryOf(const CostGrid& grid, maps::Cell cell) const noexcept {

@@ -48,9 +48,13 @@ class MapCosts {
   std::optional<GroundBelief> ground(maps::Cell cell) const;
   /// Returns the published category of a cell; nullopt for blocked and unknown cells.
   std::optional<CellCategory> ranked(maps::Cell cell) const;
-  /// Returns the published category of a cell as a number (terramech::Category); blocked cells are dangerous.
+  /// Return the published category of a cell, or of all, as numbers (terramech::Category); blocked cells are
+  /// dangerous.
   std::uint8_t category(maps::Cell cell) const noexcept { return categoryOf(*published(), cell); }
+  maps::Raster<std::uint8_t> categories() const;
   CategoryCounts countCategories() const;
+  /// Returns the number of cells whose cost differs from that of an earlier version.
+  std::size_t cellsChanged(const CostGrid& before) const;
 
   /// Mark the cells of a box as possibly different from the newest version: noteLearned() for cells with a
   /// changed estimate, noteChanged() for cells with changed hazards or terrain class.

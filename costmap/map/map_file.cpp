@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -112,14 +113,6 @@ class TrailerReader {
     if (version != kVersion) fail(versionFault(version));
   }
 
-  std::vector<Floor> floors(const char (&tag)[5]) {
-    const std::uint64_t size = open(tag);
-    if (size % sizeof(Floor) != 0) fail("damaged section");
-    std::vector<Floor> floors(size / sizeof(Floor));
-    raw(floors.data(), size);
-    return floors;
-  }
-
   std::string bytes(const char (&tag)[5]) {
     std::string bytes(open(tag), '\0');
     raw(bytes.data(), bytes.size());
@@ -186,7 +179,7 @@ maps::Raster<Hazard> declared(const TraversabilityMap& map) {
 struct BlockHeader {
   std::int32_t column = 0, row = 0;
   std::uint32_t updated_s = 0;
-  std::uint16_t level = 0;
+  std::uint16_t level = 0xffff;
   std::uint8_t terrain_class = 0, reach = 0;
   std::uint32_t readings = 0;
 };
@@ -201,7 +194,6 @@ std::string evidenceOf(const TraversabilityMap& map) {
     const BlockHeader header{.column = saved.block.column,
                              .row = saved.block.row,
                              .updated_s = saved.updated_s,
-                             .level = saved.block.level,
                              .terrain_class = saved.block.terrain_class,
                              .reach = saved.reach,
                              .readings = static_cast<std::uint32_t>(saved.counts.size())};
@@ -219,7 +211,7 @@ bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
     std::memcpy(&header, bytes.data(), sizeof header);
     bytes.remove_prefix(sizeof header);
     if (bytes.size() / sizeof(ReadingCount) < header.readings) return false;
-    SavedBlock saved{.block = {header.column, header.row, header.level, header.terrain_class},
+    SavedBlock saved{.block = {header.column, header.row, header.terrain_class},
                      .updated_s = header.updated_s,
                      .reach = header.reach,
                      .counts = std::vector<ReadingCount>(header.readings)};
@@ -228,7 +220,7 @@ bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
     const bool kinds = std::all_of(saved.counts.begin(), saved.counts.end(), [](const ReadingCount& r) {
       return r.kind < reading_kind::kCount && r.count > 0;
     });
-    if (!kinds || saved.counts.empty() || !map.restore(saved)) return false;
+    if (!kinds || header.level != 0xffff || saved.counts.empty() || !map.restore(saved)) return false;
   }
   return true;
 }
@@ -276,7 +268,6 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 
 void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   writeTree(map, stream);
-  const std::vector<Floor>& floors = map.surface().floors().all();
   TrailerWriter trailer(stream);
   const std::string text = written(textOf(map));
   trailer.section("TEXT", text.data(), text.size());
@@ -285,11 +276,14 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   trailer.section("CLAS", map.surface().classes().values().data(), map.surface().classes().values().size());
   const maps::Raster<Hazard> hazards = declared(map);
   trailer.section("HAZD", hazards.values().data(), hazards.values().size());
-  trailer.section("FLOR", floors.data(), floors.size() * sizeof(Floor));
+  trailer.section("FLOR", nullptr, 0);
   const std::string evidence = evidenceOf(map);
   trailer.section("EVID", evidence.data(), evidence.size());
   std::string drives;
-  for (const std::string& drive : map.drives()) drives += drive + '\n';
+  for (auto [id, note] : map.drives()) {
+    std::ranges::replace(note.sensors, '\n', ' ');
+    drives += id + '\t' + std::to_string(note.number) + '\t' + note.sensors + '\n';
+  }
   trailer.section("DRIV", drives.data(), drives.size());
   for (const CostLayer& layer : map.surface().costLayers()) {
     const std::string bytes = bytesOf(layer);
@@ -322,7 +316,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
   layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
-  std::vector<Floor> floors = trailer.floors("FLOR");
+  const bool levels = !trailer.bytes("FLOR").empty();
   const std::string evidence = trailer.bytes("EVID");
   std::istringstream drives(trailer.bytes("DRIV"));
   std::vector<std::string> costs;
@@ -333,7 +327,7 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
         {reading.name, "damaged: it holds no elevation", "write the map again with talus costmap"});
   try {
     for (const std::string& bytes : costs) layers.costs.push_back(costLayerOf(bytes, text.grid));
-    layers.floors = Floors(floors, text.grid.size());
+    if (levels) throw std::invalid_argument("it has levels of a point cloud; build it again");
     if (text.coordinate_system)
       layers.elevation.georeference = reading.georeference
                                           ? reading.georeference(*text.coordinate_system, text.grid)
@@ -342,12 +336,18 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
     if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
-    for (const RefusedPlace& refused : text.refused) map.refuse(refused.place, refused.radius_m);
+    for (const RefusedPlace& refused : text.refused)
+      map.refuse(refused.place, refused.radius_m, refused.drive);
     if (!evidence.empty())
       map.publishAll();
     else if (!text.refused.empty())
       map.publish();
-    for (std::string drive; std::getline(drives, drive);) map.noteDrive(drive);
+    for (std::string line; std::getline(drives, line);) {
+      std::istringstream fields(line);
+      std::string id, number, sensors;
+      std::getline(std::getline(std::getline(fields, id, '\t'), number, '\t'), sensors);
+      map.noteDrive(id, {static_cast<std::uint16_t>(std::strtoul(number.c_str(), nullptr, 10)), sensors});
+    }
     return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(

@@ -212,6 +212,16 @@ maps::CellBox MapSurface::refuse(const RefusedPlace& place) {
   return mark(place, true);
 }
 
+std::vector<maps::CellBox> MapSurface::leaveOut(std::uint16_t drive) {
+  std::vector<maps::CellBox> boxes;
+  std::erase_if(refused_, [&](const RefusedPlace& place) {
+    if (place.drive == drive) boxes.push_back(mark(place, false));
+    return place.drive == drive;
+  });
+  for (const RefusedPlace& place : refused_) mark(place, true);
+  return boxes;
+}
+
 // Sets or clears the obstacle mark of the cells of a place. Returns the bounding box of the cells.
 maps::CellBox MapSurface::mark(const RefusedPlace& refusal, bool refused) {
   const double cell_m = grid().resolution_m;

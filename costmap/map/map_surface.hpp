@@ -47,9 +47,6 @@ class MapSurface {
   int classIndex(maps::Cell cell) const noexcept { return site_->classIndex(cell); }
   const std::vector<CostLayer>& costLayers() const noexcept { return site_->costs; }
 
-  /// Returns the levels for the section FLOR of a map file: none.
-  Floors floors() const noexcept { return {}; }
-
   const maps::Raster<Hazard>& hazards() const noexcept { return hazards_; }
   Hazard hazards(maps::Cell cell) const noexcept { return hazards_[cell]; }
   const HazardLimits& limits() const noexcept { return limits_; }
@@ -91,6 +88,8 @@ class MapSurface {
 
   /// Marks the cells of a place as obstacles (impassable), and returns the bounding box of these cells.
   maps::CellBox refuse(const RefusedPlace& place);
+  /// Removes the places that the wheels of a drive declared, and returns their bounding boxes.
+  std::vector<maps::CellBox> leaveOut(std::uint16_t drive);
 
  private:
   // Cell code (gradients and index of the cost curve) and hazards of a measured cell.

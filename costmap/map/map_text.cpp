@@ -262,6 +262,7 @@ void visitRefused(V& v, R& refused) {
     v(at + "x_m", refused[k].place.x_m);
     v(at + "y_m", refused[k].place.y_m);
     v(at + "radius_m", refused[k].radius_m);
+    v.added(at + "drive", refused[k].drive);
   }
 }
 

@@ -50,7 +50,8 @@ RefusedPlace blockAround(const WheelObservation& observation, const maps::Grid& 
   };
   return {{middle(observation.place.x_m, grid.south_west.x_m),
            middle(observation.place.y_m, grid.south_west.y_m)},
-          side_m + EvidenceField::kPoseReach * std::max(observation.pose_std_m, 0.0)};
+          side_m + EvidenceField::kPoseReach * std::max(observation.pose_std_m, 0.0),
+          observation.drive};
 }
 
 bool reaches(const RefusedPlace& refusal, const maps::Grid& grid) {
@@ -96,17 +97,34 @@ bool TraversabilityMap::refuseUnobserved(const WheelObservation& observation) {
   const RefusedPlace refusal = blockAround(observation, grid(), field_.blockCells() * grid().resolution_m);
   if (!reaches(refusal, grid())) return false;
   const bool known = std::ranges::any_of(surface_->refused(), [&](const RefusedPlace& other) {
-    return other.place == refusal.place && other.radius_m >= refusal.radius_m;
+    return other.place == refusal.place && other.radius_m >= refusal.radius_m && other.drive == refusal.drive;
   });
   if (!known) costs_->noteChanged(surface_->refuse(refusal));
   return true;
 }
 
-void TraversabilityMap::refuse(const maps::Point& place, double radius_m) {
+void TraversabilityMap::leaveOut(const std::string& id) {
+  const auto found = drives_.find(id);
+  if (found == drives_.end() || found->second.number == 0)
+    throw std::invalid_argument("drive '" + id +
+                                "' is not one of the map whose readings are stored by drive");
+  const MapChange change(*changing_, "leaveOut");
+  const std::uint16_t number = found->second.number;
+  std::vector<SavedBlock> blocks;
+  field_.visit([&](const SavedBlock& saved) { blocks.push_back(saved); });
+  for (SavedBlock& block : blocks) {
+    std::erase_if(block.counts, [&](const ReadingCount& count) { return count.drive != number; });
+    if (!block.counts.empty()) costs_->noteLearned(*field_.forget(block));
+  }
+  for (const maps::CellBox& box : surface_->leaveOut(number)) costs_->noteChanged(box);
+  std::erase_if(drives_, [&](const auto& drive) { return drive.second.number == number; });
+}
+
+void TraversabilityMap::refuse(const maps::Point& place, double radius_m, std::uint16_t drive) {
   if (!std::isfinite(place.x_m) || !std::isfinite(place.y_m) || !std::isfinite(radius_m) || radius_m <= 0.0)
     throw std::invalid_argument("refuse: the place must be finite, the radius finite and > 0");
   const MapChange change(*changing_, "refuse");
-  costs_->noteChanged(surface_->refuse({place, radius_m}));
+  costs_->noteChanged(surface_->refuse({place, radius_m, drive}));
 }
 
 void TraversabilityMap::patch(const SurfacePatch& patch) {
@@ -132,7 +150,8 @@ TraversabilityMap TraversabilityMap::moved(maps::Cell tiles, const ProgressMonit
       {.footprint_radius_m = surface_->footprintRadius_m(), .threads = surface_->threads()}, watch);
   field_.visit([&](const SavedBlock& saved) { next.field_.restore(shift.block(saved)); });
   next.drives_ = drives_;
-  for (const RefusedPlace& refusal : surface_->refused()) next.refuse(refusal.place, refusal.radius_m);
+  for (const RefusedPlace& refusal : surface_->refused())
+    next.refuse(refusal.place, refusal.radius_m, refusal.drive);
   next.publishAll();
   next.costs_->republishAs(published()->version() + 1);
   return next;

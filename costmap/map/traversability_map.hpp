@@ -1,9 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include <talus/common/progress_monitor.hpp>
@@ -70,28 +71,38 @@ class TraversabilityMap {
   /// the position, independently of later patches. Returns false if the map has no ground at the position of
   /// the observation.
   bool learn(const WheelObservation& observation);
-  /// Removes pull and sinkage readings that learn() stored, e.g. to replace them. `readings` is the result of
-  /// evidence().readingsOf(). Bounds of the ground at that place remain. Planners use the change after
-  /// publish().
+  /// Removes readings that learn() stored, e.g. to replace them. `readings` is of evidence().readingsOf().
+  /// Planners use the change after publish().
   void forget(const SavedBlock& readings);
   /// Adds the evidence of one block that was read from a file. Planners use the evidence after publish().
   /// Returns false if the map has no such block or terrain class.
   bool restore(const SavedBlock& saved);
 
-  /// Returns the identifiers (DriveId) of the drives whose telemetry the map contains, sorted.
-  const std::set<std::string>& drives() const noexcept { return drives_; }
+  /// What a map records of a drive.
+  struct Drive {
+    std::uint16_t number = 0;  ///< number of its readings (WheelObservation::drive); 0: unknown
+    std::string sensors{};     ///< what its sensors were found to be, as text
+  };
+  /// Returns the drives whose telemetry the map contains, by identifier (DriveId).
+  const std::map<std::string, Drive>& drives() const noexcept { return drives_; }
   /// Records that the map contains the drive `id`. `continued` is the identifier of the shorter drive that
   /// `id` replaces; empty: `id` replaces no drive.
-  void noteDrive(const std::string& id, const std::string& continued = {}) {
+  void noteDrive(const std::string& id, const Drive& drive, const std::string& continued = {}) {
     drives_.erase(continued);
-    drives_.insert(id);
+    drives_[id] = drive;
   }
+  /// Removes all evidence of a drive, and of its further parts: of all drives with its number. Planners use the
+  /// change after publish(). The map equals one that never contained the drive, except that the time and the
+  /// position uncertainty of a block remain the greatest of all its readings. Throws std::invalid_argument if
+  /// the map lacks the drive or its number.
+  void leaveOut(const std::string& id);
 
   /// Declares the ground around a place impassable, for example after an immobilisation: all cells whose
   /// centre lies within radius_m > 0 [m] of `place` become Hazard::Obstacle. Planners use the change after
   /// publish(). Map files store the declaration. Throws std::invalid_argument for a non-finite place or
   /// radius, or a radius <= 0.
-  void refuse(const maps::Point& place, double radius_m);
+  /// `drive` is the number of the drive that declared the place; 0: none.
+  void refuse(const maps::Point& place, double radius_m, std::uint16_t drive = 0);
 
   /// Replaces the ground of a window (rectangle of cells) by a new observation, and publishes the change and
   /// all learned evidence as one new version. The new version equals a map that was built with these
@@ -130,7 +141,7 @@ class TraversabilityMap {
   std::shared_ptr<MapSurface> surface_;
   EvidenceField field_;
   std::unique_ptr<MapCosts> costs_;
-  std::set<std::string> drives_;
+  std::map<std::string, Drive> drives_;
   // allocated separately, because std::atomic_flag is not movable
   std::unique_ptr<std::atomic_flag> changing_;
 };

@@ -9,7 +9,6 @@
 
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/costmap/surface/cell_belief.hpp>
-#include <talus/costmap/surface/floors.hpp>
 #include <talus/costmap/surface/surface_cells.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
 
@@ -40,7 +39,6 @@ struct MapLayers {
   maps::Raster<float> rock_abundance;
   maps::Raster<std::uint8_t> keep_out;  ///< non-zero: impassable
   maps::Raster<Hazard> declared;        ///< known hazards of each cell, e.g. from a map file
-  Floors floors;                        ///< of a map file: empty
   std::vector<CostLayer> costs{};       ///< external costs, in addition to the costs of driving
   /// Elevation [m] from which the octree counts heights; nullopt: middleElevation().
   std::optional<double> base_elevation_m{};
@@ -61,6 +59,7 @@ struct SurfacePatch {
 struct RefusedPlace {
   maps::Point place;
   double radius_m = 0.0;
+  std::uint16_t drive = 0;  ///< number of the drive that declared the place; 0: none
 };
 
 /// Ground of a map before any evidence from wheels, shared by the map and its evidence. Only the map changes

@@ -32,10 +32,6 @@ octomap::OcTreeKey SurfaceKeys::key(maps::Cell cell, double elevation_m) const n
           static_cast<octomap::key_type>(std::clamp(height, 0.0, kMostCells - 1.0))};
 }
 
-double SurfaceKeys::heightOf_m(octomap::key_type height) const noexcept {
-  return base_elevation_m_ + (height - kCentreKey + 0.5) * grid_.resolution_m;
-}
-
 maps::Point SurfaceKeys::origin() const noexcept {
   return {grid_.south_west.x_m + (kCentreKey - firstKey(grid_.width)) * grid_.resolution_m,
           grid_.south_west.y_m + (kCentreKey - firstKey(grid_.height)) * grid_.resolution_m};

@@ -22,9 +22,6 @@ class SurfaceKeys {
   /// Returns the key of a cell at an elevation [m]; elevations outside the tree are clamped.
   octomap::OcTreeKey key(maps::Cell cell, double elevation_m) const noexcept;
 
-  /// Returns the elevation [m] of the centre of a voxel with the height key `height`.
-  double heightOf_m(octomap::key_type height) const noexcept;
-
   double baseElevation_m() const noexcept { return base_elevation_m_; }
   const maps::Grid& grid() const noexcept { return grid_; }
 

@@ -106,6 +106,7 @@ struct DriveIntake::State {
   DriveId sum{};                       // identifier of all parts so far
   std::string id{};                    // text of `sum`
   std::optional<std::uint16_t> tag{};  // drive number, from the first part with a row
+  std::string sensors{};               // what the sensors were found to be, at the last row with an estimate
   std::vector<JournalRow> rows{};      // rows of the present part
   // Data of all parts, kept only for settle(): measurements, readings counted in the map, places with a
   // bound, and rejected rows that indicate danger.
@@ -131,7 +132,9 @@ DriveIntake::State::Place DriveIntake::State::placeOf(const WheelObservation& ob
 }
 
 void DriveIntake::State::keep(const WheelObservation& observation) {
-  if (auto heard = map.evidence().readingsOf(observation)) counted.push_back(std::move(*heard));
+  WheelObservation estimate = observation;  // bounds remain as first added
+  estimate.here = {};
+  if (auto heard = map.evidence().readingsOf(estimate)) counted.push_back(std::move(*heard));
   if (observation.here.any()) bounded.insert(placeOf(observation));
 }
 
@@ -156,6 +159,8 @@ void DriveIntake::State::learn(const terramech::Telemetry& telemetry, const Tele
                  .reading = readings.reading(i),
                  .observation = result.observation.value_or(WheelObservation{}),
                  .wheel = wheelOf(map.model().rover())};
+  row.observation.drive = tag.value_or(0);
+  if (accepted && std::isfinite(row.observation.pull.value)) row.reason = sensors = processor->sensors();
   ++(accepted ? report.used : report.rejected);
   if (accepted && row.observation.trust != Trust::Unverified) ++report.raising;
   if (!accepted && report.first_reason.empty()) report.first_reason = row.reason;
@@ -185,7 +190,7 @@ void DriveIntake::State::put(const terramech::Telemetry& telemetry, const DriveV
     of_rejected.insert(of_rejected.end(), rows.begin() + static_cast<std::ptrdiff_t>(read), rows.end());
   report.unobserved += map.surface().refused().size() - refused;
   if (journal) journal->append(id, rows, before);
-  map.noteDrive(id, before);
+  map.noteDrive(id, {tag.value_or(0), sensors}, before);
 }
 
 // Replaces the estimates of all rows; bounds of places remain as first added.
@@ -212,6 +217,7 @@ void DriveIntake::State::settle() {
               });
   rows.insert(rows.end(), of_rejected.begin(), of_rejected.end());
   if (journal) journal->replace(id, rows);
+  map.noteDrive(id, {tag.value_or(0), sensors});
 }
 
 // Adds the bounds from rows that the file's reader rejected.
@@ -252,12 +258,11 @@ void DriveIntake::settle() {
 
 DriveReport DriveIntake::report() const {
   DriveReport report = state_->report;
-  report.findings = state_->processor->watch().findings();
+  report.findings = state_->processor->findings();
   if (const std::size_t rows = state_->processor->transferred(); rows > 0)
     report.findings.push_back(std::to_string(rows) +
                               " rows: load_N is an equal share of the weight on a slope; the load transfer "
                               "was computed from the wheel positions");
-  if (const std::string fault = state_->processor->fault(); !fault.empty()) report.findings.push_back(fault);
   report.others = state_->processor->others();
   if (report.others > 0) report.findings.push_back(othersFinding(report.others));
   if (report.bounding > 0)
@@ -289,17 +294,22 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
   return report;
 }
 
-DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
+DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal,
+                   const std::set<std::string>& without) {
   DriveReport report;
   const std::size_t refused = map.surface().refused().size();
   std::size_t lacking = map.drives().size();
   for (const std::string& drive : journal.drives()) {
+    if (without.contains(drive)) continue;
     if (map.drives().contains(drive)) {
       journal.check(drive);
       --lacking;
       continue;
     }
+    TraversabilityMap::Drive note;
     for (JournalRow& row : journal.rows(drive)) {
+      note.number = row.observation.drive;
+      if (row.accepted && std::isfinite(row.observation.pull.value)) note.sensors = row.reason;
       if (!isOf(map.model().rover(), row.wheel)) {
         row.observation.trust = Trust::Unverified;
         row.observation.sinkage_verified = false;
@@ -309,7 +319,7 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal) {
       ++(used ? report.used : report.rejected);
       if (used && row.observation.trust != Trust::Unverified) ++report.raising;
     }
-    map.noteDrive(drive);
+    map.noteDrive(drive, note);
   }
   report.unobserved = map.surface().refused().size() - refused;
   if (lacking > 0) report.findings.push_back(lackingFinding(lacking));

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,10 +96,11 @@ class DriveIntake {
 DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemetry,
                      EvidenceJournal* journal = nullptr, const IntakeOptions& options = {});
 
-/// Adds to a map each drive of a journal that the map does not contain, and publishes the map. The same map
-/// and journal give a bit-identical map. Drives that the map contains are compared with the journal; one
+/// Adds to a map each drive of a journal that the map does not contain and `without` does not name, and publishes
+/// the map. The same drives in any order, of one journal or of several, give a bit-identical map. Drives that the map contains are compared with the journal; one
 /// finding counts the drives of the map that the journal lacks. Throws InputError for a damaged journal; the
 /// map then contains the drives before the damage.
-DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal);
+DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal,
+                   const std::set<std::string>& without = {});
 
 }  // namespace talus::costmap

@@ -106,7 +106,8 @@ std::uint16_t driveTag(const terramech::Telemetry& telemetry) {
   return tag.value_or(0);
 }
 
-DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives) {
+DriveBeginning knownBeginning(const terramech::Telemetry& telemetry,
+                              const std::map<std::string, TraversabilityMap::Drive>& drives) {
   DriveBeginning here, known;
   Checksum sum;
   if (drives.empty()) return known;

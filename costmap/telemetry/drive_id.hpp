@@ -2,10 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <map>
 #include <string>
 
 #include <talus/common/checksum.hpp>
+#include <talus/costmap/map/traversability_map.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::costmap {
@@ -36,6 +37,7 @@ struct DriveBeginning {
 
 /// Returns the longest beginning of a telemetry whose identifier is among `drives`, i.e. the known rows of a
 /// file that grew.
-DriveBeginning knownBeginning(const terramech::Telemetry& telemetry, const std::set<std::string>& drives);
+DriveBeginning knownBeginning(const terramech::Telemetry& telemetry,
+                              const std::map<std::string, TraversabilityMap::Drive>& drives);
 
 }  // namespace talus::costmap

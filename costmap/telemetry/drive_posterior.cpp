@@ -394,6 +394,7 @@ std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, 
       out.probability = weight;
       out.hypothesis = kind;
     }
+  out.uninforming = kinds["of class"] > kinds["unrelated"] ? "of class" : "unrelated";
   out.sensor = h.sensors[h.all[best].sensor];
   out.changed_from = h.all[best].from;
   out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].informs();

@@ -38,6 +38,7 @@ struct DriveEstimate {
   static constexpr int kParts = 8;  ///< number of parts of equal length into which a drive is divided
   /// Probability of a slip that depends on the ground below which readings are not used (ours) [-].
   static constexpr double kLeastInforming = 0.02;
+  static constexpr double kVerified = 0.9;  ///< the same probability, of a verified drive (ours) [-]
 
   /// Ground of one class. Departures of drawbar pull over load DP/W at the reference slip from the class [-].
   struct OfClass {
@@ -54,11 +55,12 @@ struct DriveEstimate {
   int changed_from = kParts;    ///< part of the drive from which the sensor changed; kParts: none
   double changed_offset = 0.0;  ///< offset from there on [-]
   bool changed_informs = true;  ///< true if the slip depends on the ground from there on
-  std::string hypothesis;       ///< most probable kind of sensor, as text
-  double probability = 0.0;     ///< probability of this kind [-]
-  double informing = 0.0;       ///< probability that the slip depends on the ground [-]
-  bool twice = false;           ///< true if a second, independent slip was measured
-  double slope_offset = 0.0;    ///< measured gradient = slope_offset + slope_scale * gradient of the map
+  /// Most probable kind of sensor, and most probable kind whose slip does not depend on the ground, as text.
+  std::string hypothesis, uninforming;
+  double probability = 0.0;   ///< probability of this kind [-]
+  double informing = 0.0;     ///< probability that the slip depends on the ground [-]
+  bool twice = false;         ///< true if a second, independent slip was measured
+  double slope_offset = 0.0;  ///< measured gradient = slope_offset + slope_scale * gradient of the map
   double slope_scale = 1.0;
   int displaced_from = kParts;  ///< part of the drive from which the pose is displaced; kParts: none
   std::size_t moments = 0;      ///< number of moments of the drive

@@ -78,26 +78,6 @@ std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReadi
   return wheel.equal + 1 >= limits_.stuck_rows ? "readings are stuck" : reason;
 }
 
-void SensorWatch::countGap(Wheel& wheel, double time_s) {
-  constexpr std::size_t kKnown = 10;  // intervals after which the mean interval is used
-  const double passed_s = time_s - wheel.time_s;
-  if (wheel.time_s < -1e299 || !(passed_s > 0.0)) return;
-  if (wheel.intervals >= kKnown && passed_s > limits_.gap * wheel.interval_s) {
-    ++gaps_;
-    longest_gap_s_ = std::max(longest_gap_s_, passed_s);
-    return;
-  }
-  ++wheel.intervals;
-  wheel.interval_s += (passed_s - wheel.interval_s) / static_cast<double>(wheel.intervals);
-}
-
-void SensorWatch::countDropout(Wheel& wheel, const TelemetryReading& reading) {
-  const bool torque = std::isfinite(reading.torque_Nm), sinkage = std::isfinite(reading.sinkage_m);
-  if ((wheel.has_torque && !torque) || (wheel.has_sinkage && !sinkage)) ++dropouts_;
-  wheel.has_torque |= torque;
-  wheel.has_sinkage |= sinkage;
-}
-
 std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
   std::vector<std::optional<std::string>> reasons;
   for (const Named& named : moment) reasons.push_back(judge(named));
@@ -117,8 +97,6 @@ std::optional<std::string> SensorWatch::judge(const Named& named) {
   const TelemetryReading& reading = named.reading;
   Wheel& wheel = wheels_[named.wheel];
   std::optional<std::string> reason;
-  countGap(wheel, reading.time_s);
-  countDropout(wheel, reading);
   if (reading.time_s < wheel.time_s) {
     wheel = Wheel{};
     ++clock_went_back_;
@@ -138,45 +116,18 @@ void SensorWatch::compare(const WheelObservation& observation) {
   ++differences_;
 }
 
-void SensorWatch::compareSlip(double excess) {
-  if (!std::isfinite(excess)) return;
-  excess_sum_ += excess;
-  excess_squares_ += excess * excess;
-  ++excesses_;
-}
-
 std::optional<double> SensorWatch::bias() const {
   if (differences_ < limits_.bias_rows) return std::nullopt;
   return difference_sum_ / static_cast<double>(differences_);
 }
 
-std::optional<double> SensorWatch::slipExcess() const {
-  if (excesses_ < limits_.bias_rows) return std::nullopt;
-  const double mean = excess_sum_ / static_cast<double>(excesses_);
-  const double scatter =
-      std::sqrt(std::max(excess_squares_ / static_cast<double>(excesses_) - mean * mean, 0.0));
-  if (std::abs(mean) < std::max(limits_.slip_excess, scatter)) return std::nullopt;
-  return mean;
-}
-
 std::vector<std::string> SensorWatch::findings() const {
   std::vector<std::string> lines;
   for (const auto& [reason, count] : refusals_) lines.push_back(std::to_string(count) + " rows: " + reason);
-  if (dropouts_ > 0)
-    lines.push_back(std::to_string(dropouts_) +
-                    " rows: torque or sinkage missing; their slip and slope count");
   if (clock_went_back_ > 0)
     lines.push_back(
         std::to_string(clock_went_back_) +
         " rows: time decreases; each begins a series of its own, and the drive raises no estimate");
-  if (gaps_ > 0)
-    lines.push_back(std::to_string(gaps_) + " gaps in time, the longest of " +
-                    std::to_string(longest_gap_s_) + " s");
-  if (const auto excess = slipExcess())
-    lines.push_back("wheels slip " + std::to_string(std::abs(*excess)) + (*excess > 0.0 ? " more" : " less") +
-                    " than the soil model predicts on these slopes, in all cells: the soil is " +
-                    (*excess > 0.0 ? "weaker" : "firmer") +
-                    " than estimated, or the slip is biased; one rover cannot distinguish the two");
   if (biased())
     lines.push_back(
         "torque and sinkage imply " + std::to_string(*bias()) +

@@ -22,25 +22,19 @@ struct SensorLimits {
   std::size_t stuck_rows = 25;  ///< number of consecutive equal readings from which a sensor counts as stuck
   /// Share of rows with a changed value above which later equal values of a sensor count as stuck [-].
   double lively = 0.8;
-  /// Least magnitude of the mean slip excess that is reported, if it also exceeds the scatter [-]. Slip
-  /// excess is the measured slip minus the slip of the soil on the same slope.
-  double slip_excess = 0.05;
   /// Least magnitude of the mean difference that counts as a bias: pull from torque and sinkage minus
   /// required pull, over load [-].
   double bias = 0.04;
-  std::size_t bias_rows = 30;    ///< least number of rows for the detection of a bias or a slip excess
+  std::size_t bias_rows = 30;    ///< least number of rows for the detection of a bias
   double climb = 0.03;           ///< gradient above which a driven wheel cannot slip backwards [-]
   double backward_slip = -0.03;  ///< slip below which a wheel slips backwards [-]
-  double gap = 10.0;             ///< time without a row that counts as a gap, in mean intervals between rows
 };
 
 /// Checks the readings of a drive, wheel by wheel, in their order. Rejects, with a reason: stuck values (of
 /// all sensors of a wheel, or of one sensor that changed before), spikes, and negative slip of a driven wheel
 /// on a climb. A decrease of time is counted and begins a new series. An offset of torque or sinkage appears
 /// as pull that the slope does not require, on all ground; both channels are then excluded, so that only slip
-/// and slope remain. One rover cannot distinguish a bias of slip from ground that is weaker or firmer than
-/// estimated: a mean slip excess on all ground is reported with both explanations. Gaps in time and single
-/// missing values are counted.
+/// and slope remain.
 class SensorWatch {
  public:
   SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
@@ -62,20 +56,11 @@ class SensorWatch {
   /// Adds to the statistics of bias() the pull from torque and sinkage minus the required pull of an
   /// observation.
   void compare(const WheelObservation& observation);
-  /// Adds to the statistics of slipExcess() the slip of a wheel minus the slip of its soil on the slope [-].
-  void compareSlip(double excess);
   /// Returns the mean of the pull from torque and sinkage minus the required pull, over load [-]; nullopt
   /// before SensorLimits::bias_rows rows.
   std::optional<double> bias() const;
   /// Returns true if |bias()| exceeds SensorLimits::bias.
   bool biased() const { return bias() && std::abs(*bias()) > limits_.bias; }
-
-  /// Returns the mean slip excess: measured slip minus slip of the soil, on all ground [-]. Returns nullopt
-  /// if its magnitude is below SensorLimits::slip_excess or below its scatter.
-  std::optional<double> slipExcess() const;
-
-  /// Returns true if time decreased in the rows of any wheel.
-  bool clockWentBack() const noexcept { return clock_went_back_ > 0; }
 
   /// Returns the results of the checks, one line each.
   std::vector<std::string> findings() const;
@@ -88,9 +73,6 @@ class SensorWatch {
   };
   struct Wheel {
     double time_s = -1e300;
-    double interval_s = 0.0;  // mean interval between rows, without gaps
-    std::size_t intervals = 0;
-    bool has_torque = false, has_sinkage = false;
     std::deque<TelemetryReading> last;
     std::size_t equal = 0;
     std::array<Channel, 3> channels{};
@@ -100,19 +82,14 @@ class SensorWatch {
   bool isSpike(const Wheel& wheel, const TelemetryReading& reading) const;
   bool slipsBackwardsUphill(const TelemetryReading& reading) const noexcept;
   std::optional<std::string> stuck(Wheel& wheel, const TelemetryReading& reading) const;
-  void countGap(Wheel& wheel, double time_s);
-  void countDropout(Wheel& wheel, const TelemetryReading& reading);
 
   const GroundModel& model_;
   SensorLimits limits_;
   std::map<std::string, Wheel> wheels_;
   std::map<std::string, std::size_t> refusals_;
-  std::size_t gaps_ = 0, dropouts_ = 0, clock_went_back_ = 0;
-  double longest_gap_s_ = 0.0;
+  std::size_t clock_went_back_ = 0;
   double difference_sum_ = 0.0;
   std::size_t differences_ = 0;
-  double excess_sum_ = 0.0, excess_squares_ = 0.0;
-  std::size_t excesses_ = 0;
 };
 
 }  // namespace talus::costmap

@@ -16,11 +16,10 @@ constexpr double kLargestStdShare =
 // Least thrust, relative to that at the reference slip, at which readings of sensors that are not verified tell
 // about the strength of the ground: below, an offset of the slip outweighs it (ours).
 constexpr double kMobilised = 0.5;
-constexpr double kVerified =
-    0.9;  // probability that the slip depends on the ground, of a verified drive (ours)
 constexpr double kNoStrength = 1.0;    // standard deviation of a pull that tells nothing
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
-constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
+constexpr const char* kSettles = "; a second slip settles it: give rim_speed_mps and speed_mps";
+constexpr double kCrabbing = 0.1;  // slip angle above which a wheel does not go straight [rad]
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
   const int index = cell ? map.surface().classIndex(*cell) : -1;
@@ -47,9 +46,10 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
-// Returns the most probable fault of the sensors of a drive, and what would settle it; empty for sound ones.
-std::string faultText(const DriveEstimate& drive) {
+// Returns the most probable kind of sensors of a drive, and what would settle a fault.
+std::string sensorText(const DriveEstimate& drive) {
   static const std::map<std::string, const char*> texts{
+      {"sound", "sound slip sensor"},
       {"offset", "slip has an offset, which is corrected"},
       {"step", "slip steps on the way, which is corrected"},
       {"stuck",
@@ -65,12 +65,13 @@ std::string faultText(const DriveEstimate& drive) {
            std::to_string(drive.displaced_from + 1) + " of " + std::to_string(DriveEstimate::kParts) +
            " of the drive on: the pose is displaced, and the rows from there on tell nothing; check pose and "
            "heading_rad";
-  const auto text = texts.find(drive.hypothesis);
-  if (text == texts.end()) return {};
+  if (drive.hypothesis.empty()) return {};
+  const bool verified = drive.informing > DriveEstimate::kVerified;
   char probability[16];
-  std::snprintf(probability, sizeof probability, "%.2f", drive.probability);
-  return std::string(text->second) + " (probability " + probability + ")" +
-         (drive.twice ? "" : "; a second slip settles it: give rim_speed_mps and speed_mps");
+  std::snprintf(probability, sizeof probability, "%.2f",
+                verified ? drive.probability : 1.0 - drive.informing);
+  return std::string(texts.at(verified ? drive.hypothesis : drive.uninforming)) + " (probability " +
+         probability + ")" + (drive.twice || (verified && drive.hypothesis == "sound") ? "" : kSettles);
 }
 
 }  // namespace
@@ -90,7 +91,6 @@ TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
                                                                     const DriveVerdict& verdict) {
-  read_ += moment.readings.size();
   transferred_ += moment.transferred ? moment.readings.size() : 0;
   std::vector<SensorWatch::Named> named;
   for (std::size_t w = 0; w < moment.readings.size(); ++w)
@@ -123,7 +123,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   const std::size_t number = posterior_.moments();
   take(rows, sound);
   if (verdict.follows && !verdict.drive) follow();
-  if (verdict.drive) fitted_ = verdict.drive;
+  if (verdict.drive && fitted_ != verdict.drive) sensors_ = sensorText(*(fitted_ = verdict.drive));
   const bool of_rover =
       carriesRover(moment.readings, map_.model().rover()) &&
       std::all_of(moment.rows.begin(), moment.rows.end(), [&](std::size_t row) { return rows.ofRover(row); });
@@ -171,32 +171,13 @@ GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gra
   return here;
 }
 
-// Caches slipOfClasses() for the wheels of a moment, which mostly have one slope.
-struct TelemetryProcessor::SlipOfClasses {
-  const TelemetryProcessor& processor;
-  const std::vector<ClassReading>& together;
-  double gradient = kNone, slip = kNone;
-
-  double on(double of_gradient) {
-    if (of_gradient != gradient) {
-      gradient = of_gradient;
-      slip = processor.slipOfClasses(together, gradient);
-    }
-    return slip;
-  }
-};
-
 // Returns the joint observations of the accepted wheels; biased torque and sinkage are omitted. Readings that
 // indicate danger are not used to check sensors.
 std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
                                                                           const DriveVerdict& verdict) {
   auto whole = observer_.observe(sound.read);
-  SlipOfClasses of_classes{*this, sound.read};
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    if (sound.danger[i]) continue;
-    if (whole[i]) watch_.compare(*whole[i]);
-    watch_.compareSlip(sound.read[i].reading.slip - of_classes.on(sound.read[i].reading.gradient));
-  }
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    if (whole[i] && !sound.danger[i]) watch_.compare(*whole[i]);
   if (!verdict.without_torque) return whole;
   std::vector<ClassReading> without;
   for (const ClassReading& read : sound.read) without.push_back(withoutTorque(read));
@@ -232,12 +213,32 @@ void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
 // Repeats the fit each time that the number of moments has grown by a quarter.
 void TelemetryProcessor::follow() {
   if (posterior_.moments() < std::max(next_fit_, kFirstFit)) return;
-  fitted_ = std::make_shared<DriveEstimate>(posterior_.fitted());
+  sensors_ = sensorText(*(fitted_ = std::make_shared<DriveEstimate>(posterior_.fitted())));
   next_fit_ = posterior_.moments() + posterior_.moments() / 4;
 }
 
-std::string TelemetryProcessor::fault() const {
-  return fitted_ ? faultText(*fitted_) : std::string();
+std::vector<std::string> TelemetryProcessor::findings() const {
+  constexpr double kLeastChange = 0.05;  // least departure from a class that is reported
+  std::vector<std::string> lines = watch_.findings();
+  if (!fitted_) return lines;
+  if (!sensors_.empty() && !sensors_.starts_with("sound")) lines.push_back(sensors_);
+  for (std::size_t c = 0; c < fitted_->classes.size(); ++c) {
+    const auto index = static_cast<int>(c);
+    const double counted = map_.evidence().classBelief(index).pull.value,
+                 change = counted - map_.model().prior(index).pull.value;
+    if (!std::isfinite(fitted_->classes[c].shared_std) || std::abs(change) < kLeastChange) continue;
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "class %d: decisions count on DP/W %.3f, %.3f %s its soil: the ground is %s",
+                  map_.model().parts().classes[c].number, counted, std::abs(change),
+                  change < 0.0 ? "below" : "above", change < 0.0 ? "weaker" : "firmer");
+    lines.push_back(std::string(text) +
+                    (fitted_->twice ? ""
+                     : change < 0.0 ? ", or slip is read too large"
+                                    : ", or slip is read too small") +
+                    (fitted_->twice ? "" : kSettles));
+  }
+  return lines;
 }
 
 DriveVerdict TelemetryProcessor::verdict() const {
@@ -268,7 +269,7 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const D
     const auto index = static_cast<std::size_t>(read[i].class_index);
     const DriveEstimate::OfClass& of = drive.classes[index];
     const double largest = kLargestStdShare * map_.model().parts().classes[index].mean_std;
-    const bool verified = drive.informing > kVerified && of.shared_std <= largest;
+    const bool verified = drive.informing > DriveEstimate::kVerified && of.shared_std <= largest;
     if (!std::isfinite(of.shared_std)) continue;  // no moment of the class was fitted
     if (!drive.informs(number)) {
       seen[i]->pull.std = kNoStrength;
@@ -282,27 +283,6 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const D
     if (verified) seen[i]->trust = drive.twice ? Trust::Twice : Trust::Once;
     seen[i]->sinkage_verified = verified;
   }
-}
-
-// Returns the common slip of all wheels at which ground of their classes, undisturbed or in a rut, provides
-// the pull of a gradient; NaN if no slip in -0.5 to 0.8 does.
-double TelemetryProcessor::slipOfClasses(const std::vector<ClassReading>& together, double gradient) const {
-  const auto pull = [&](double slip) {
-    double load_N = 0.0, sum = 0.0;
-    for (const ClassReading& read : together) {
-      load_N += read.reading.load_N;
-      sum += read.reading.load_N *
-             map_.model().steady(read.class_index, {.slip = slip, .in_rut = read.reading.pass > 1}).gradient;
-    }
-    return sum / load_N;
-  };
-  double low = -0.5, high = 0.8;
-  if (!(pull(low) <= gradient && pull(high) >= gradient)) return kNone;
-  while (high - low > 1e-4) {
-    const double middle = 0.5 * (low + high);
-    (pull(middle) < gradient ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace talus::costmap

@@ -60,9 +60,12 @@ class TelemetryProcessor {
   /// estimate at that row.
   DriveVerdict verdict() const;
   DriveVerdict soFar() const { return {.without_torque = watch_.biased(), .follows = true}; }
-  const SensorWatch& watch() const noexcept { return watch_; }
-  /// Returns what is wrong with the sensors of the drive, and the remedy; empty if nothing is.
-  std::string fault() const;
+  /// Returns what the sensors of the drive were found to be, as text, and the remedy of a fault; empty before the
+  /// first estimate.
+  const std::string& sensors() const noexcept { return sensors_; }
+  /// Returns what the checks and the estimate of the drive found, one line each: faults of sensors, and ground that
+  /// departs from its class by more than 0.05 in DP/W.
+  std::vector<std::string> findings() const;
   /// Returns the number of rows whose wheel loads were computed from the load transfer on the slope.
   std::size_t transferred() const noexcept { return transferred_; }
   /// Returns the number of rows whose wheel or load differs from the rover's.
@@ -83,17 +86,16 @@ class TelemetryProcessor {
   void follow();
   void correct(const Sound& sound, std::size_t number, const DriveVerdict& verdict,
                std::vector<std::optional<WheelObservation>>& seen) const;
-  struct SlipOfClasses;
-  double slipOfClasses(const std::vector<ClassReading>& together, double gradient) const;
 
   const TraversabilityMap& map_;
   DangerWatch danger_;
   SensorWatch watch_;
   DrivePosterior posterior_;
   std::shared_ptr<const DriveEstimate> fitted_;  // estimate from some of the moments so far
-  std::size_t next_fit_ = 0;                     // number of moments at which the fit is repeated
+  std::string sensors_{};
+  std::size_t next_fit_ = 0;  // number of moments at which the fit is repeated
   WheelObserver observer_;
-  std::size_t read_ = 0, transferred_ = 0, others_ = 0;
+  std::size_t transferred_ = 0, others_ = 0;
 };
 
 }  // namespace talus::costmap

@@ -96,11 +96,11 @@ SimulationOptions SimulationSite::options(SoilKnowledge belief, std::size_t i) c
 WorldResult SimulationSite::world(SoilKnowledge belief, std::size_t i, const ProgressMonitor& watch) const {
   const TrueWorld truth = trueWorld(i);
   costmap::TraversabilityMap map = estimatedMap(belief, truth);
-  const std::vector<std::uint8_t> before = categoriesOf(map);
+  const std::vector<std::uint8_t> before = map.costs().categories().values();
   SimulationOptions how = options(belief, i);
   how.watch = {.progress = {}, .stop = watch.stop};
   WorldResult result{simulateTraverse(map, truth, how)};
-  const std::vector<std::uint8_t> after = categoriesOf(map);
+  const std::vector<std::uint8_t> after = map.costs().categories().values();
   for (std::size_t c = 0; c < before.size(); ++c)
     result.categories_changed += before[c] != after[c] ? 1U : 0U;
   return result;
@@ -113,15 +113,6 @@ std::vector<WorldResult> SimulationSite::worlds(const WorldRange& range, const P
     watch.report(static_cast<double>(i + 1) / static_cast<double>(range.count));
   }
   return results;
-}
-
-std::vector<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map) {
-  std::vector<std::uint8_t> categories;
-  categories.reserve(map.grid().size());
-  for (int row = 0; row < map.grid().height; ++row)
-    for (int column = 0; column < map.grid().width; ++column)
-      categories.push_back(map.costs().category({column, row}));
-  return categories;
 }
 
 }  // namespace talus::planner

@@ -82,7 +82,4 @@ class SimulationSite {
   Parts parts_;
 };
 
-/// Returns the category of every cell, row by row from the south-west corner.
-std::vector<std::uint8_t> categoriesOf(const costmap::TraversabilityMap& map);
-
 }  // namespace talus::planner

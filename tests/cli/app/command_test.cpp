@@ -13,7 +13,6 @@ struct Options {
 void bind(CLI::App& command, Options& options) {
   command.add_option("--name", options.name)->required();
   command.add_option("--count", options.count)->capture_default_str();
-  makeOldName(*command.add_option("--number", options.count), "--count");
 }
 
 int run(const Options& options, Context& context) {
@@ -49,16 +48,6 @@ TEST(Command, InvalidCommandLineDoesNotRun) {
   EXPECT_THROW(program.app.parse("greet"), CLI::RequiredError);
   EXPECT_THROW(program.app.parse("greet --name x --count many"), CLI::ConversionError);
   EXPECT_EQ(program.context.exit_code, 99);
-}
-
-TEST(Command, DeprecatedNameWorksWithAWarning) {
-  Program program;
-  program.context.quiet = false;
-  testing::internal::CaptureStderr();
-  program.app.parse("greet --name x --number 7");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "talus: warning: '--number' is deprecated: use '--count'\n");
-  EXPECT_EQ(program.context.exit_code, 27);
 }
 
 }  // namespace command_test

@@ -43,27 +43,11 @@ TEST(HelpFormat, OptionHelpShowsValueChoicesDefaultAndExclusions) {
       ->excludes(first);
   app.add_flag("--fast", fast, "hurry");
   groupOptions(app, "Ground");
-  makeOldName(*app.add_option("--sort", kind), "--kind");
   const std::string help = app.help();
   EXPECT_THAT(help, HasSubstr("\nGround:\n"));
   EXPECT_THAT(help, HasSubstr("--kind KIND"));
   EXPECT_THAT(help, HasSubstr("of chassis [one of rigid, rocker; not with --side]"));
   EXPECT_THAT(help, HasSubstr("in cells [1 to 9; default: 5; not with --kind]"));
-  EXPECT_THAT(help, testing::Not(HasSubstr("--sort")));
-}
-
-TEST(HelpFormat, DeprecatedOptionsAreAcceptedWithAWarning) {
-  const Folder folder;
-  const std::string table = folder.write("t.csv",
-                                         "load_N,torque_Nm,sinkage_m,slip,wheel_radius_m,wheel_width_m\n"
-                                         "80,4,0.02,0.3,0.15,0.15\n");
-  const Ran now = runTalus({"assess", table, "--slope-uncertainty", "0.2"});
-  const Ran old = runTalus({"assess", table, "--margin", "0.2"});
-  EXPECT_EQ(now.code, 0) << now.err;
-  EXPECT_EQ(now.err, "");
-  EXPECT_EQ(old.err, "talus: warning: '--margin' is deprecated: use '--slope-uncertainty'\n");
-  EXPECT_EQ(old.out, now.out);
-  EXPECT_NE(old.out, runTalus({"assess", table}).out);
 }
 
 }  // namespace help_format_test

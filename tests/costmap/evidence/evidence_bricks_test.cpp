@@ -7,7 +7,7 @@
 namespace talus::costmap {
 namespace evidence_bricks_test {
 
-using Key = std::tuple<int, int, std::uint16_t, std::uint8_t>;
+using Key = std::tuple<int, int, std::uint8_t>;
 using Readings = std::map<std::tuple<std::uint8_t, std::uint8_t>, unsigned>;
 
 Readings tableOf(const std::vector<ReadingCount>& counts) {
@@ -24,46 +24,33 @@ TEST(EvidenceBricks, MatchesAPlainMap) {
   EvidenceBricks bricks(21, 13);  // not a multiple of the side of a brick
   std::map<Key, Readings> plain;
   for (int i = 0; i < 4000; ++i) {
-    const BlockLevel at{static_cast<int>(random() % 21), static_cast<int>(random() % 13),
-                        random() % 3 ? BlockEvidence::kTop : static_cast<std::uint16_t>(random() % 4),
-                        static_cast<std::uint8_t>(random() % 2)};
+    const BlockOfClass at{static_cast<int>(random() % 21), static_cast<int>(random() % 13),
+                          static_cast<std::uint8_t>(random() % 2)};
     const ReadingCount reading{static_cast<std::uint8_t>(random() % 3),
                                static_cast<std::uint8_t>(random() % 5),
                                static_cast<std::uint16_t>(1 + random() % 2)};
     bricks.at(at);
     bricks.count(at, reading);
-    plain[{at.column, at.row, at.level, at.terrain_class}][{reading.kind, reading.step}] += reading.count;
+    plain[{at.column, at.row, at.terrain_class}][{reading.kind, reading.step}] += reading.count;
   }
   std::size_t all = 0;
   for (int row = -1; row <= 13; ++row)
     for (int column = -1; column <= 21; ++column) {
-      std::size_t known = 0, levels = 0;
-      for (const std::uint16_t level : {std::uint16_t{0}, std::uint16_t{3}, BlockEvidence::kTop})
-        for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) {
-          const auto expected = plain.find({column, row, level, number});
-          ASSERT_EQ(bricks.find({column, row, level, number}) != nullptr, expected != plain.end());
-          EXPECT_EQ(tableOf(bricks.counts({column, row, level, number})),
-                    expected == plain.end() ? Readings{} : expected->second);
-        }
-      for (const auto& [key, heard] : plain) known += std::get<0>(key) == column && std::get<1>(key) == row;
-      int last = -1;
-      bricks.visitLevels(column, row, [&](const BlockLevel& at, const BlockEvidence& e) {
-        EXPECT_EQ(at.level, e.level);
-        EXPECT_GE(static_cast<int>(at.level), last);
-        last = at.level;
-        ++levels;
-      });
-      EXPECT_EQ(levels, known);
-      all += levels;
+      for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) {
+        const auto expected = plain.find({column, row, number});
+        ASSERT_EQ(bricks.find({column, row, number}) != nullptr, expected != plain.end());
+        EXPECT_EQ(tableOf(bricks.counts({column, row, number})),
+                  expected == plain.end() ? Readings{} : expected->second);
+      }
     }
+  bricks.visitAll([&](const BlockOfClass&, const BlockEvidence&) { ++all; });
   EXPECT_EQ(all, plain.size());
   // The box extends beyond the map on three sides.
   std::size_t inside = 0, visited = 0;
-  for (const auto& [key, heard] : plain)
-    inside += std::get<0>(key) <= 11 && std::get<1>(key) >= 5 && std::get<2>(key) == BlockEvidence::kTop;
-  bricks.visitTop({-4, 5, 11, 40}, [&](const BlockLevel& at, const BlockEvidence&) {
+  for (const auto& [key, heard] : plain) inside += std::get<0>(key) <= 11 && std::get<1>(key) >= 5;
+  bricks.visit({-4, 5, 11, 40}, [&](const BlockOfClass& at, const BlockEvidence&) {
     ++visited;
-    EXPECT_TRUE(plain.contains({at.column, at.row, at.level, at.terrain_class}));
+    EXPECT_TRUE(plain.contains({at.column, at.row, at.terrain_class}));
   });
   EXPECT_EQ(visited, inside);
   EXPECT_GT(inside, 20U);

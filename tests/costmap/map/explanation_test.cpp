@@ -102,5 +102,17 @@ TEST(Explain, UnseenCellWithImmobilisationEvidenceIsRefused) {
   EXPECT_EQ(cause(held, "evidence_samples").remark.find("prior only"), std::string::npos);
 }
 
+// Property: a place to drive to next is allowed, and a reading there reduces the expected deviation of ground that
+// is not safe; on ground that is safe in every heading there is none.
+TEST(Explain, NextDriveReducesTheDeviationOfUnsafeGround) {
+  EXPECT_FALSE(nextDrive(mapOf(kPlain), {6, 6}).has_value());
+  const TraversabilityMap steep = mapOf(kPlain, 0.2);
+  const auto next = nextDrive(steep, {6, 6});
+  ASSERT_TRUE(next.has_value());
+  EXPECT_TRUE(std::isfinite(
+      steep.published()->cost().costPerMetre(steep.published()->at(next->cell), next->heading)));
+  EXPECT_LT(next->after, next->std);
+}
+
 }  // namespace explanation_test
 }  // namespace talus::costmap

