@@ -25,6 +25,7 @@ const char* const kTruthFormat =
     "    patch_soil: mars_drift\n"
     "  effects:                          effects on all soils, unknown to the planner\n"
     "    - {name: slip_sinkage_ding, parameters: [0.4]}\n"
+    "  second_slip: true                 the rover measures rim speed and odometry, too\n"
     "  soils:                            soils defined in this file\n"
     "    - {name: SOIL, cohesion_kPa: 0.2, friction_angle_deg: 24, ...}\n"
     "SOIL: a name in the library or in `soils:`, a YAML file, or the fields of a soil in braces.\n";
@@ -81,7 +82,7 @@ void readRandom(const YamlFields& random, const YamlFields& file, const std::str
 
 planner::Truth readTruth(const std::string& path) {
   const YamlFields file = YamlFields::file(path);
-  const std::vector<std::string> more{"patches", "random", "effects"};
+  const std::vector<std::string> more{"patches", "random", "effects", "second_slip"};
   std::vector<std::string> known = more;
   known.insert(known.end(), {"classes", "terrain_classes", "soils"});
   file.only(known);
@@ -92,6 +93,7 @@ planner::Truth readTruth(const std::string& path) {
   for (const YamlFields& patch : file.list("patches")) truth.patches.push_back(patchOf(patch, file, path));
   truth.patch_soil = terramech::loadSoil("mars_drift");
   truth.effects = terramech::readEffects(file);
+  truth.second_slip = file.flag("second_slip", true);
   if (file.has("random")) readRandom(file.fields("random"), file, path, truth);
   return truth;
 }

@@ -83,6 +83,7 @@ costmap::TraversabilityMap SimulationSite::estimatedMap(SoilKnowledge belief, co
 SimulationOptions SimulationSite::options(SoilKnowledge belief, std::size_t i) const {
   SensorOptions sensors = parts_.sensors;
   sensors.seed = parts_.seed + i;
+  sensors.second_slip = parts_.truth.second_slip;
   if (belief == SoilKnowledge::PerfectKnowledge)
     sensors.pose_drift = 0.0;  // the position is known exactly, too
   return {.start = parts_.start,

@@ -16,16 +16,8 @@ namespace {
 
 using costmap::Direction;
 
-// The route is replanned if the cost of its remainder exceeds this multiple of its cost when planned: more than
-// the noise of estimates on ground as its class changes it (ours).
-constexpr double kDearer = 2.0;
 // Depth that a wheel digs on the spot per metre of rim travel (ours; Spirit sank to the hub in some metres).
 constexpr double kDugPerMetre = 0.05;
-
-Direction directionTo(const maps::Point& from, const maps::Point& to) {
-  const double d = distance_m(from, to);
-  return {(to.x_m - from.x_m) / d, (to.y_m - from.y_m) / d};
-}
 
 // One drive, step by step.
 class Drive {
@@ -79,9 +71,15 @@ class Drive {
     for (;;) {
       while (options_.senses && !cost.allowed(estimated()))
         if (!leaveOneStep(0.0)) return false;
-      if (const RouteStatus status = planFromHere();
-          status != RouteStatus::NoRoute && status != RouteStatus::NoneFound)
-        return status == RouteStatus::Found;
+      Plan plan = planned();
+      if (plan.status == RouteStatus::Found) {
+        route_ = std::move(plan.points);
+        next_ = 1;
+        planned_J_ = plan.cost_J;
+        recordEvent("planned", route_);
+        return true;
+      }
+      if (plan.status != RouteStatus::NoRoute && plan.status != RouteStatus::NoneFound) return false;
       const double from_m = result_.length_m;
       while (result_.length_m - from_m < options_.keep_out_radius_m)
         if (!options_.senses || !leaveOneStep(0.0)) return false;
@@ -89,7 +87,8 @@ class Drive {
     }
   }
 
-  RouteStatus planFromHere() {
+  // Plans from the estimated position.
+  Plan planned() {
     Problem problem;
     problem.map = map_.published();
     problem.start = estimated();
@@ -97,13 +96,7 @@ class Drive {
     problem.goal_tolerance_m = options_.goal_tolerance_m;
     problem.prove = false;
     problem.watch = {.progress = {}, .stop = options_.watch.stop};
-    Plan plan = options_.planner ? options_.planner(problem) : planner_.plan(problem);
-    if (plan.status != RouteStatus::Found) return plan.status;
-    route_ = std::move(plan.points);
-    next_ = 1;
-    planned_J_ = plan.cost_J;
-    recordEvent("planned", route_);
-    return plan.status;
+    return options_.planner ? options_.planner(problem) : planner_.plan(problem);
   }
 
   // Estimated position of the rover.
@@ -117,7 +110,7 @@ class Drive {
         continue;
       }
       if (options_.watch.stopped()) return FollowEnd::Replan;
-      const Direction heading = directionTo(estimated(), route_[next_]);
+      const Direction heading = directionOf({estimated(), route_[next_]});
       if (tipped(heading)) return FollowEnd::Tipped;
       const auto end = lookAndStep(heading, std::min(left, options_.step_m));
       if (end) return *end;
@@ -142,7 +135,7 @@ class Drive {
     if (check.reason) return retreat(step, check);
     if (step.slides) return FollowEnd::Stuck;
     if (step.stuck) return dig(step);
-    if (learned && routeTurnedDear()) return retreat(step, {"soil weaker than estimated", {}});
+    if (learned && anotherRoutePays()) return retreat(step, {"soil weaker than estimated", {}});
     report(step, heading, length_m);
     if (const auto before = std::exchange(heading_, heading)) {
       const terramech::TurnEffort turn = world_.turn(*before, motion(heading, 0.0));
@@ -245,7 +238,7 @@ class Drive {
     while (!way_back_.empty() && distance_m(way_back_.back(), here_) < 1e-9) way_back_.pop_back();
     if (way_back_.empty()) return false;
     const maps::Point to = way_back_.back();
-    const Direction heading = directionTo(here_, to);
+    const Direction heading = directionOf({here_, to});
     const double slope = gradient(heading);
     const TrueWorld::Step step = world_.drive(motion(heading, dug_m));
     if (step.stuck) {
@@ -286,24 +279,8 @@ class Drive {
     return downhill_;
   }
 
-  // Returns true if the ground at four points of the outline is no weaker than (class mean - 1 sigma).
-  bool standsSound() const {
-    const auto& model = map_.model();
-    const double reach_m = 0.5 * std::hypot(model.rover().wheelbase_m, model.rover().track_m);
-    for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}) {
-      const auto cell = map_.grid().cellAt({estimated().x_m + x * reach_m, estimated().y_m + y * reach_m});
-      const auto ground = cell ? map_.ground(*cell) : std::nullopt;
-      if (!ground) continue;
-      const int index = map_.surface().classIndex(*cell);
-      const double ordinary = map_.evidence().classBelief(index).pull.value -
-                              model.parts().classes[static_cast<std::size_t>(index)].pull_std;
-      if (ground->pull.value < ordinary) return false;
-    }
-    return true;
-  }
-
-  // Drives back in its own ruts by at least the keep-out radius, until the rover stands on sound ground,
-  // where it may turn. The ground that raised the alarm is refused afterwards.
+  // Drives back in its own ruts by the keep-out radius; plan() leaves ground that the map refuses. The ground that
+  // raised the alarm is refused afterwards.
   FollowEnd retreat(const TrueWorld::Step& stopped, const WheelAlarm::AlarmCheck& check) {
     recordEvent(*check.reason);
     why_it_stopped_ = *check.reason;
@@ -314,7 +291,7 @@ class Drive {
     ruts_.turnBack();
     double hole_m = std::exchange(dug_m_, 0.0) + kDugPerMetre * spun_m;
     const double from_m = result_.length_m;
-    while ((result_.length_m - from_m < options_.keep_out_radius_m || !standsSound()) &&
+    while (result_.length_m - from_m < options_.keep_out_radius_m &&
            leaveOneStep(std::exchange(hole_m, 0.0))) {
     }
     ruts_.turnBack();
@@ -341,8 +318,7 @@ class Drive {
 
   // Adds readings to the map at each sensing interval, or if `now`. Returns true if the map was updated.
   bool learn(bool now) {
-    const bool blind = !options_.senses && !options_.record;
-    if (blind || (!now && since_sensing_m_ < options_.sensing_interval_m)) return false;
+    if (!now && since_sensing_m_ < options_.sensing_interval_m) return false;
     since_sensing_m_ = 0.0;
     for (std::size_t w = 0; w < seen_.wheels.size() && options_.record; ++w)
       result_.records.push_back({w, seen_.heading_rad, seen_.wheels[w]});
@@ -353,13 +329,37 @@ class Drive {
     return true;
   }
 
-  bool routeTurnedDear() {
-    const MotionCost cost(map_.published());
-    double left_J = cost({estimated(), route_[std::min(next_, route_.size() - 1)]});
-    for (std::size_t i = next_; i + 1 < route_.size(); ++i) left_J += cost({route_[i], route_[i + 1]});
-    const bool dear = !(left_J <= kDearer * planned_J_);
-    planned_J_ = std::min(planned_J_, left_J);
-    return dear;
+  // Standard deviation of the cost of a route: ground stronger by s costs what it costs at a gradient lower by s.
+  double deviation_J(const std::vector<maps::Point>& route) const {
+    const auto grid = map_.published();
+    double sum_J = 0.0;
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+      const Direction on = directionOf({route[i], route[i + 1]});
+      for (double m = 0.5 * options_.step_m; m < distance_m(route[i], route[i + 1]); m += options_.step_m) {
+        const auto cell = map_.grid().cellAt({route[i].x_m + m * on.x, route[i].y_m + m * on.y});
+        const auto ground = cell ? map_.costs().ground(*cell) : std::nullopt;
+        if (!ground) continue;
+        const double s = ground->pull.std;
+        const costmap::CellCode code = grid->at(*cell),
+                                stronger({code.dzDx() - s * on.x, code.dzDy() - s * on.y, code.curve()});
+        sum_J += options_.step_m * static_cast<double>(grid->cost().costPerMetre(code, on) -
+                                                       grid->cost().costPerMetre(stronger, on));
+      }
+    }
+    return std::abs(sum_J);
+  }
+
+  // True if the rest of the route became dearer, and another is cheaper by more than the deviation of the difference.
+  bool anotherRoutePays() {
+    std::vector<maps::Point> rest{estimated()};
+    rest.insert(rest.end(), route_.begin() + static_cast<std::ptrdiff_t>(next_), route_.end());
+    const double left_J = MotionCost(map_.published()).ofLegs(rest), noise_J = deviation_J(rest);
+    const double before_J = std::exchange(planned_J_, std::min(planned_J_, left_J));
+    if (!std::isfinite(left_J) || left_J <= before_J + noise_J) return !std::isfinite(left_J);
+    planned_J_ = left_J;
+    const Plan other = planned();
+    return other.status == RouteStatus::Found &&
+           left_J - other.cost_J > std::hypot(noise_J, deviation_J(other.points));
   }
 
   costmap::TraversabilityMap& map_;

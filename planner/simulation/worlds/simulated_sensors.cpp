@@ -11,6 +11,7 @@ namespace {
 
 // Standard deviations of the rover's sensors, equal to those assumed by WheelObserver.
 constexpr double kSlipNoise = 0.02, kAngleNoise_rad = 0.02, kTorqueNoise = 0.05, kSinkageNoise = 0.03;
+constexpr double kSecondNoise = 0.03;  // of the slip by rim speed and odometry
 // Standard deviation of the difference between the slip of one wheel and the slip of the rover.
 constexpr double kEncoderNoise = 0.005;
 // Magnitudes of the faults of SensorFault.
@@ -29,27 +30,30 @@ const std::vector<std::string_view>& sensorFaultNames() {
 }
 
 terramech::Telemetry telemetryOf(const WheelMeasurements& look) {
-  using Field = double (*)(const costmap::TelemetryReading&, double heading_rad);
-  constexpr std::pair<const char*, Field> kColumns[] = {
-      {"time_s", [](const costmap::TelemetryReading& r, double) { return r.time_s; }},
-      {"x_m", [](const costmap::TelemetryReading& r, double) { return r.place.x_m; }},
-      {"y_m", [](const costmap::TelemetryReading& r, double) { return r.place.y_m; }},
-      {"heading_rad", [](const costmap::TelemetryReading&, double heading_rad) { return heading_rad; }},
-      {"slope_rad", [](const costmap::TelemetryReading& r, double) { return std::atan(r.gradient); }},
-      {"roll_rad", [](const costmap::TelemetryReading& r, double) { return std::atan(r.across); }},
-      {"slip", [](const costmap::TelemetryReading& r, double) { return r.slip; }},
-      {"slip_angle_rad", [](const costmap::TelemetryReading& r, double) { return r.slip_angle_rad; }},
-      {"load_N", [](const costmap::TelemetryReading& r, double) { return r.load_N; }},
-      {"torque_Nm", [](const costmap::TelemetryReading& r, double) { return r.torque_Nm; }},
-      {"sinkage_m", [](const costmap::TelemetryReading& r, double) { return r.sinkage_m; }},
-      {"pass_index", [](const costmap::TelemetryReading& r, double) { return static_cast<double>(r.pass); }}};
+  using R = const costmap::TelemetryReading&;
+  using All = const WheelMeasurements&;
+  constexpr std::pair<const char*, double (*)(R, All)> kColumns[] = {
+      {"time_s", [](R r, All) { return r.time_s; }},
+      {"x_m", [](R r, All) { return r.place.x_m; }},
+      {"y_m", [](R r, All) { return r.place.y_m; }},
+      {"heading_rad", [](R, All all) { return all.heading_rad; }},
+      {"slope_rad", [](R r, All) { return std::atan(r.gradient); }},
+      {"roll_rad", [](R r, All) { return std::atan(r.across); }},
+      {"slip", [](R r, All) { return r.slip; }},
+      {"slip_angle_rad", [](R r, All) { return r.slip_angle_rad; }},
+      {"rim_speed_mps", [](R, All all) { return all.rim_speed_mps; }},
+      {"speed_mps", [](R r, All all) { return all.rim_speed_mps * (1.0 - r.speed_slip); }},
+      {"load_N", [](R r, All) { return r.load_N; }},
+      {"torque_Nm", [](R r, All) { return r.torque_Nm; }},
+      {"sinkage_m", [](R r, All) { return r.sinkage_m; }},
+      {"pass_index", [](R r, All) { return static_cast<double>(r.pass); }}};
   terramech::Telemetry rows{
       .source = "simulation", .numbers = {}, .words = {{"wheel", {}}}, .lines = {}, .rejected = {}};
   for (const auto& [name, field] : kColumns) rows.numbers.push_back({name, {}});
   for (std::size_t w = 0; w < look.wheels.size(); ++w) {
     if (std::isnan(look.wheels[w].slip)) continue;
     for (std::size_t c = 0; c < rows.numbers.size(); ++c)
-      rows.numbers[c].values.push_back(kColumns[c].second(look.wheels[w], look.heading_rad));
+      rows.numbers[c].values.push_back(kColumns[c].second(look.wheels[w], look));
     rows.words[0].values.push_back("w" + std::to_string(w + 1));
     rows.lines.push_back(rows.lines.size() + 1);
   }
@@ -57,7 +61,7 @@ terramech::Telemetry telemetryOf(const WheelMeasurements& look) {
 }
 
 SimulatedSensors::SimulatedSensors(const SensorOptions& options, const terramech::Rover& rover)
-    : options_(options), rover_(rover), random_(options.seed) {
+    : options_(options), rover_(rover), random_(options.seed), random_speed_(~options.seed) {
   if (!(options.pose_drift >= 0.0 && options.pose_drift <= kMostPoseDrift))
     throw std::invalid_argument("SensorOptions: pose_drift = " + std::to_string(options.pose_drift) +
                                 ", must be 0 to " + std::to_string(kMostPoseDrift));
@@ -86,6 +90,7 @@ WheelMeasurements SimulatedSensors::look(const TrueWorld::Step& step, const Mome
   const double radius_m = rover_.wheel.radius_m, noise = options_.noise ? 1.0 : 0.0;
   WheelMeasurements look{.heading_rad = std::atan2(moment.heading.y, moment.heading.x),
                          .slip_angle_rad = step.slip_angle_rad + noise * kAngleNoise_rad * normal_(random_),
+                         .rim_speed_mps = rover_.max_speed_mps,
                          .wheels = {}};
   const double slip = step.slip + noise * kSlipNoise * normal_(random_);
   for (const TrueWorld::SimulatedWheel& wheel : step.wheels) {
@@ -103,6 +108,8 @@ WheelMeasurements SimulatedSensors::look(const TrueWorld::Step& step, const Mome
                            .slip_angle_rad = look.slip_angle_rad,
                            .drawbar_pull_N = kNone,
                            .pass = wheel.passes + 1});
+    if (options_.second_slip)
+      look.wheels.back().speed_slip = step.slip + noise * kSecondNoise * normal_speed_(random_speed_);
     spoil(look.wheels.back(), look.wheels.size() - 1);
   }
   return look;
@@ -118,6 +125,7 @@ void SimulatedSensors::spoil(costmap::TelemetryReading& reading, std::size_t whe
       if (!mine && options_.fault == SensorFault::SlipStuck) return;
       if (!stuck_slip_) stuck_slip_ = reading.slip;
       reading.slip = *stuck_slip_;
+      if (options_.fault == SensorFault::OdometryStuck) reading.speed_slip = reading.slip;
       return;
     case SensorFault::SlipBiased:
       if (mine) reading.slip = std::clamp(reading.slip + kSlipBias, -1.0, 1.0);

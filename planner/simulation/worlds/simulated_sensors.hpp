@@ -20,7 +20,7 @@ enum class SensorFault {
   None,           ///< no fault
   SlipStuck,      ///< the slip reading of one wheel keeps its first value
   SlipBiased,     ///< the slip reading of one wheel is 0.2 too low
-  OdometryStuck,  ///< the slip readings of all wheels keep their first value
+  OdometryStuck,  ///< the slips of all wheels, also by their speeds, keep their first value
   TorqueOffset,   ///< the torque reading of one wheel is too high by 0.15 * load * radius
   SinkageDatum,   ///< the sinkage reading of one wheel is too low by 0.1 * radius
   Silent,         ///< one wheel has no readings of slip, torque and sinkage
@@ -42,6 +42,7 @@ struct SensorOptions {
   bool noise = true;
   double dropout = 0.02;     ///< share of missing torque and sinkage values, [0, 1]; only with `noise`
   double pose_drift = 0.01;  ///< drift of the estimated position per metre driven, [0, kMostPoseDrift] [-]
+  bool second_slip = true;   ///< rim speed and odometry are measured: a second slip with a noise of 0.03
   SensorFault fault = SensorFault::None;  ///< fault of one sensor
   std::uint64_t seed = 1;  ///< seed of the noise, the drift direction and the choice of the faulty wheel
 };
@@ -51,6 +52,7 @@ struct WheelMeasurements {
   double heading_rad = 0.0;  ///< heading of the rover
   /// Angle from the wheel planes to the direction of travel, measured by visual odometry.
   double slip_angle_rad = 0.0;
+  double rim_speed_mps = 0.0;
   std::vector<costmap::TelemetryReading>
       wheels;  ///< front wheels first, at estimated positions; NaN: missing value
 };
@@ -91,8 +93,8 @@ class SimulatedSensors {
 
   SensorOptions options_;
   terramech::Rover rover_;
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
+  std::mt19937_64 random_, random_speed_;
+  std::normal_distribution<double> normal_, normal_speed_;
   maps::Point drift_, drift_per_m_;
   double driven_m_ = 0.0, displaced_from_m_ = 0.0;
   std::size_t faulty_wheel_ = 0;

@@ -25,6 +25,7 @@ struct Truth {
   double patch_radius_m = 3.0;  ///< mean radius of random patches, > 0; radii are uniform within +-50 %
   terramech::Soil patch_soil;   ///< soil of the random patches, varied by `spread`
   std::vector<terramech::Effect> effects{};  ///< effects on all soils that the map does not declare
+  bool second_slip = true;  ///< true: the rover measures a second slip by its speeds (SensorOptions)
 };
 
 /// Seed of the random draw of a world, and positions that stay free of random patches.

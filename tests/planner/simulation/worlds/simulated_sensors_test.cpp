@@ -107,6 +107,12 @@ TEST(TelemetryOf, TelemetryHasOneRowPerWheelWithSlip) {
   const terramech::Telemetry rows = telemetryOf(lookOf(sensors, 7.5));
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_THAT(rows.at("slip"), testing::Each(0.3));
+  // Closed form: without noise the second slip 1 - speed_mps/rim_speed_mps is the true one.
+  EXPECT_NEAR(1.0 - rows.at("speed_mps")[0] / rows.at("rim_speed_mps")[0], 0.3, 1e-12);
+  SensorOptions once = exact(SensorFault::Silent);
+  once.second_slip = false;
+  SimulatedSensors without(once, testRover());
+  EXPECT_TRUE(std::isnan(telemetryOf(lookOf(without, 7.5)).at("speed_mps")[0]));
   EXPECT_THAT(rows.at("time_s"), testing::Each(7.5));
   EXPECT_NEAR(rows.at("slope_rad")[0], std::atan(0.1), 1e-12);
   EXPECT_EQ(rows.findWords("wheel")->size(), 3U);
