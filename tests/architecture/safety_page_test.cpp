@@ -1,4 +1,4 @@
-// docs/safety.md names a test for each safety property; every name must be that of an existing test.
+// The page of safety checks names a test for each safety property; every name must be that of an existing test.
 #include <regex>
 #include <set>
 
@@ -19,7 +19,7 @@ std::set<std::string> testNames() {
 }
 
 TEST(SafetyPage, EveryTestThatItNamesExists) {
-  const std::string page = text(TALUS_SOURCE_DIR "/docs/safety.md");
+  const std::string page = text(TALUS_SOURCE_DIR "/docs/measurements/safety_checks.md");
   const std::regex pattern(R"(`([A-Z]\w+)\.([A-Z]\w+|\*)`)");
   const auto names = testNames();
   std::size_t named = 0;
