@@ -186,7 +186,7 @@ std::string durationText(double seconds) {
 // What 9 of 10 drives do not exceed; empty if it is not known.
 template <typename Text>
 std::string atMost(double p90, Text text) {
-  return p90 > 0.0 ? fmt::format(" (9 of 10 drives: at most {})", text(p90)) : "";
+  return p90 > 0.0 ? fmt::format(", 9 of 10 drives at most {}", text(p90)) : "";
 }
 
 Facts summaryOf(const Route& route) {
@@ -202,9 +202,9 @@ Facts summaryOf(const Route& route) {
               {"length", lengthText(s.length_m) + straightText(route)},
               {"driving time", fmt::format("{}{}, mean speed {:.3g} m/s", durationText(s.time_s),
                                            atMost(s.time_p90_s, durationText), s.length_m / s.time_s)},
-              {"energy", fmt::format("{}{} ({:.4g} Wh), {:.4g} J/m; cost including time and risk {}",
-                                     energyText(s.energy_J), atMost(s.energy_p90_J, energyText),
-                                     s.energy_J / 3600.0, s.energy_J / s.length_m, energyText(s.cost))},
+              {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m{}; cost including time and risk {}",
+                                     energyText(s.energy_J), s.energy_J / 3600.0, s.energy_J / s.length_m,
+                                     atMost(s.energy_p90_J, energyText), energyText(s.cost))},
               {"manoeuvres", driveText(route)},
               {"elevation", climbText(route)},
               {"slope", slopeText(route)},

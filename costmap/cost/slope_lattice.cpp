@@ -16,18 +16,6 @@ constexpr int kAlongPerUnit = 32, kAcrossPerUnit = 32;  // solved gradients; div
 
 constexpr double kNever = 1e6;  // energy [J/m] and time [s/m] where no strength holds
 
-// Excess of the strength over the least at which the slip is the reference slip 0.5, if it is greater there.
-double excessAtReference(const std::array<float, StrengthColumn::kStrengths>& slips) noexcept {
-  constexpr float kReferenceSlip = 0.5F;
-  std::size_t k = 0;
-  while (k + 1 < slips.size() && slips[k] > kReferenceSlip) ++k;
-  if (k == 0) return 0.0;
-  const double low = StrengthColumn::excess(static_cast<int>(k) - 1),
-               high = StrengthColumn::excess(static_cast<int>(k));
-  const double fall = static_cast<double>(slips[k - 1] - slips[k]);
-  return low + (high - low) * std::min(static_cast<double>(slips[k - 1] - kReferenceSlip) / fall, 1.0);
-}
-
 // The rover with later axles in ruts, and with all wheels on fresh ground.
 struct Standings {
   SlopeEquilibrium in_ruts, fresh;
@@ -53,7 +41,6 @@ StrengthColumn solvedOnSide(const Standings& rover, const Gradient& gradient, do
     for (std::size_t q = 0; q < values.size(); ++q)
       column.entries[q][static_cast<std::size_t>(k)] = static_cast<float>(values[q]);
   }
-  column.at_reference = static_cast<float>(least + excessAtReference(column.entries[StrengthColumn::kSlip]));
   return column;
 }
 
@@ -77,7 +64,6 @@ StrengthColumn mixed(const StrengthColumn& a, const StrengthColumn& b, float sha
   StrengthColumn out = a;
   out.least += share * (b.least - a.least);
   out.required += share * (b.required - a.required);
-  out.at_reference += share * (b.at_reference - a.at_reference);
   out.margin_rad += share * (b.margin_rad - a.margin_rad);
   for (std::size_t q = 0; q < out.entries.size(); ++q)
     for (std::size_t k = 0; k < out.entries[q].size(); ++k)
@@ -143,7 +129,7 @@ SlopeLattice::SlopeLattice(const SlopeEquilibrium& equilibrium, const TravelCost
 
 // Climbs require more strength the steeper they are, from the gradient that requires least.
 void SlopeLattice::findClimbs() {
-  const auto row0 = [&](int i) { return nodes_[static_cast<std::size_t>(i)].at_reference; };
+  const auto row0 = [&](int i) { return nodes_[static_cast<std::size_t>(i)].required; };
   int from = 0;
   for (int i = 1; i < bins(); ++i)
     if (row0(i) < row0(from)) from = i;
@@ -159,7 +145,7 @@ void SlopeLattice::findClimbs() {
     const int i = static_cast<int>(n) % bins();
     const double own = TravelCurve::gradient(first_ + i);
     climbs_.push_back(
-        static_cast<float>(own + std::max(0.0, climbOf(nodes_[n].at_reference) - climbOf(row0(i)))));
+        static_cast<float>(own + std::max(0.0, climbOf(nodes_[n].required) - climbOf(row0(i)))));
     if (n >= static_cast<std::size_t>(bins()))
       climbs_.back() = std::max(climbs_.back(), climbs_[n - static_cast<std::size_t>(bins())]);
   }

@@ -20,8 +20,7 @@ struct StrengthColumn {
   /// The same whether later axles roll in ruts or on fresh ground: the strength that a decision requires, because
   /// the law of ruts is uncertain and a wheel may leave its rut.
   float required = 0.0F;
-  float at_reference = 0.0F;  ///< strength at which the slip is the reference slip 0.5; at least `least`
-  float margin_rad = 0.0F;    ///< stability margin on ground of the class; NaN: not known
+  float margin_rad = 0.0F;  ///< stability margin on ground of the class; NaN: not known
   /// Energy [J/m] and time [s/m] along the surface, slip, sinkage [m] and torque [N m] of the wheel with the
   /// greatest value, slip angle [rad] (negative where the ground rises to the left), side force over load.
   std::array<std::array<float, kStrengths>, kQuantities> entries{};
@@ -54,8 +53,8 @@ class SlopeLattice {
   bool contains(int bin) const noexcept { return bin >= first_ && bin <= last_; }
   /// Returns the node of a row and a bin that contains() includes.
   const StrengthColumn& node(int row, int bin) const noexcept { return nodes_[index(row, bin)]; }
-  /// Returns the gradient of the straight climb that requires the same strength at the reference slip as a slope,
-  /// at least the gradient along; 4 if any ground refuses the slope.
+  /// Returns the gradient of the straight climb that requires the same strength as a slope, at least the gradient
+  /// along; 4 if any ground refuses the slope.
   double climb(const terramech::Gradient& gradient) const noexcept;
   /// Returns the maximum of climb() over all headings on a plane of this gradient; at least `gradient`.
   double steepest(double gradient) const noexcept;

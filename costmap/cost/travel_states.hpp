@@ -19,7 +19,7 @@ class TravelStates {
 
   /// Returns slip angle, side force and stability margin on a slope.
   virtual SlopeHold hold(const terramech::Gradient&) const { return {}; }
-  /// Returns the gradient of the straight climb that requires the same strength at the reference slip as a slope; at
+  /// Returns the gradient of the straight climb that requires the same strength as a slope; at
   /// least the gradient along the heading.
   virtual double climb(const terramech::Gradient& gradient) const { return gradient.along; }
   /// Returns the maximum of climb() over all headings on a plane of this gradient; at least `gradient`.
