@@ -35,8 +35,7 @@ TEST(Forecast, EnergyAndTimeOfDrivesAreAsForecast) {
     const SimulationSite site(map, {.truth = truth, .start = start, .goal = goal, .firm = {}, .seed = 3});
     const auto grid = map.published();
     NamedPlanner planner;
-    const Plan plan =
-        planner.plan({.map = grid, .start = start, .goal = goal, .tolerance_m = 1.0, .prove = false});
+    const Plan plan = planner.plan({.map = grid, .start = start, .goal = goal, .prove = false});
     ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
     const RouteSummary forecast = annotated(plan, {.map = *grid, .planner = "field"}).summary;
     double sum = 0.0, squares = 0.0, time_s = 0.0, within = 0.0, arrived = 0.0;
