@@ -19,7 +19,7 @@ const GroundCost& refused() {
   static const GroundCost ground = [] {
     auto states = std::make_shared<const TabulatedStates>(
         std::vector<TravelState>(TravelCurve::kBins, {.refusal = Refusal::Unknown}));
-    return GroundCost{.curve = states->curve({}), .states = std::move(states)};
+    return GroundCost{.curve = states->curve({}), .states = states};
   }();
   return ground;
 }

@@ -166,7 +166,7 @@ costmap::GroundCost estimatedCost(const SlipWorld& world, const Ground& ground, 
                    .refusal = stands ? costmap::Refusal::Pull : costmap::Refusal::None});
   }
   auto states = std::make_shared<const costmap::TabulatedStates>(std::move(all));
-  return {.curve = states->curve({.energy = 0.0, .time_W = 1.0, .risk_J = 0.0}), .states = std::move(states)};
+  return {.curve = states->curve({.energy = 0.0, .time_W = 1.0, .risk_J = 0.0}), .states = states};
 }
 
 std::shared_ptr<const costmap::CostGrid> estimatedMap(const SlipWorld& world, const Ground& ground,

@@ -93,7 +93,7 @@ struct RouteVertex {
   double drawbar_pull_margin = kNotKnown;
   terramech::Category category = terramech::Category::Unknown;  ///< traversability category of the motion
   double energy_J = 0.0;  ///< expected energy from the start to this vertex
-  double time_s = 0.0;  ///< expected driving time from the start to this vertex
+  double time_s = 0.0;    ///< expected driving time from the start to this vertex
   /// Probability of immobilisation between the start and this vertex, [0, 1].
   double immobilisation_risk = 0.0;
   /// Rate of immobilisation [1/m] after this vertex, if every metre of soil is independent.

@@ -93,8 +93,8 @@ Json summaryJson(const Route& route) {
   Json made;
   made["status"] = std::string(name(route.status));
   if (route.vertices.empty()) {
-    for (const char* key : {"cost", "energy_J", "time_s", "energy_p90_J", "time_p90_s", "length_m", "max_slip", "max_slope_rad",
-                            "lower_bound", "gap", "immobilisation_risk"})
+    for (const char* key : {"cost", "energy_J", "time_s", "energy_p90_J", "time_p90_s", "length_m",
+                            "max_slip", "max_slope_rad", "lower_bound", "gap", "immobilisation_risk"})
       made[key] = nullptr;
     made["planner"] = s.planner;
     if (route.obstruction) made["obstruction"] = obstructionJson(*route.obstruction);

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7282},     {"costmap", 13224},
-                           {"planner", 24226}, {"cli", 15252},       {"examples", 1703}, {"tests", 61283}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7282},     {"costmap", 13209},
+                           {"planner", 24226}, {"cli", 15252},       {"examples", 1703}, {"tests", 61273}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
