@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7282},     {"costmap", 13209},
-                           {"planner", 24226}, {"cli", 15252},       {"examples", 1703}, {"tests", 61273}};
+                           {"planner", 24226}, {"cli", 15252},       {"examples", 1703}, {"tests", 61274}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
