@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include <talus/terramech/mobility/category.hpp>
@@ -31,6 +32,17 @@ constexpr Colour faded(Colour c, double alpha) {
 /// decreases with danger in equal steps (99, 66, 33, 0 of CIE L*), so that the colours stay distinguishable
 /// for colour-blind readers, in grey print and under the shading of lit().
 Colour colourOf(terramech::Category category);
+
+/// The headings in which planners enter a cell.
+enum class AllowedHeadings : std::uint8_t { All, Some, None, Unknown };
+
+/// Names of AllowedHeadings in legends.
+inline constexpr std::array kAllowedNames{"all", "some", "none", "unknown"};
+
+/// Returns the colour of allowed headings: that of the category safe, marginal, dangerous or unknown.
+inline Colour colourOf(AllowedHeadings allowed) {
+  return colourOf(static_cast<terramech::Category>(allowed));
+}
 
 /// Values of the argument `relief` of lit(), for categories and for other layers. Category colours must
 /// differ by 30 of CIE L*a*b* under any shading.

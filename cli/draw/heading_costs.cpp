@@ -14,7 +14,8 @@ namespace {
 using costmap::CellCode;
 using costmap::TravelCurve;
 
-constexpr std::uint32_t kNoCurve = 255;
+constexpr std::uint32_t kNoCurve = 65535;
+constexpr int kImageWidth = 4096;         // browsers limit the height of an image
 constexpr double kMostWord = 16777214.0;  // largest 24-bit value, less one for "refused"
 
 /// Range of the cost-curve nodes within the limits of pitch and roll: index of the bin of the steepest
@@ -48,19 +49,16 @@ nlohmann::ordered_json tableOf(const std::vector<const TravelCurve*>& curves, co
         high = std::max(high, cost);
       }
   const double span = low < high ? std::log(high / low) : 1.0;
-  Image image(nodes.bins, nodes.rows * static_cast<int>(curves.size()));
-  for (std::size_t i = 0; i < costs.size(); ++i) image.argb[i] = 0xFF000000U;
+  Image image(kImageWidth, static_cast<int>(costs.size()) / kImageWidth + 1);
+  std::ranges::fill(image.argb, 0xFF000000U);
   for (std::size_t i = 0; i < costs.size(); ++i)
     if (std::isfinite(costs[i]))
       image.argb[i] |=
           1U + static_cast<std::uint32_t>(std::round(std::log(costs[i] / low) / span * kMostWord));
-  return {{"image", dataUri(image)},
-          {"width", image.width},
-          {"height", image.height},
-          {"first", nodes.first_bin},
-          {"bins", nodes.bins},
-          {"rows", nodes.rows},
-          {"low", std::isfinite(low) ? low : 1.0},
+  return {{"image", dataUri(image)},  {"width", image.width},
+          {"height", image.height},   {"curves", curves.size()},
+          {"first", nodes.first_bin}, {"bins", nodes.bins},
+          {"rows", nodes.rows},       {"low", std::isfinite(low) ? low : 1.0},
           {"span", span / kMostWord}};
 }
 
@@ -77,10 +75,13 @@ nlohmann::ordered_json headingCostsOf(const Scene& scene) {
     if (added) curves.push_back(&cost.curves()[code.curve()]);
     return known->second;
   };
-  const auto gradient = [&](maps::Cell cell) { return scene.costs->codes[cell].bits() >> 8U; };
+  const auto gradient = [&](maps::Cell cell) {
+    const CellCode code = scene.costs->codes[cell];
+    return static_cast<std::uint32_t>((code.stepsX() & 4095) << 12 | (code.stepsY() & 4095));
+  };
   const auto kind = [&](maps::Cell cell) {
     return numberOf(scene.costs->codes[cell]) | static_cast<std::uint32_t>(scene.costs->categories[cell])
-                                                    << 8U;
+                                                    << 16U;
   };
   nlohmann::ordered_json json{{"gradients", wordsUri(scene.grid(), gradient)},
                               {"kinds", wordsUri(scene.grid(), kind)}};

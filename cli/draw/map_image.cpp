@@ -96,13 +96,13 @@ Image shadeImage(const Raster<float>& shade) {
   });
 }
 
-Image categoryImage(const Raster<CategoryShares>& categories) {
-  return imageOf(categories.grid(), [&](Cell c) {
+Image headingImage(const Raster<HeadingShares>& headings) {
+  return imageOf(headings.grid(), [&](Cell c) {
     Colour sum{.alpha = 0.0};
     int total = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const int n = categories[c].count[i];
-      const Colour colour = colourOf(static_cast<terramech::Category>(i));
+      const int n = headings[c].count[i];
+      const Colour colour = colourOf(static_cast<AllowedHeadings>(i));
       sum.red += n * colour.red;
       sum.green += n * colour.green;
       sum.blue += n * colour.blue;

@@ -15,9 +15,9 @@ Range lightRange(const maps::Raster<float>& shade);
 /// Returns brightness as a grey image; cells without data are transparent.
 Image shadeImage(const maps::Raster<float>& shade);
 
-/// Returns the category colours as an image, mixed by the shares of the categories in a cell; cells without
+/// Returns the colours of the allowed headings as an image, mixed by their shares in a cell; cells without
 /// data are transparent.
-Image categoryImage(const maps::Raster<CategoryShares>& categories);
+Image headingImage(const maps::Raster<HeadingShares>& headings);
 
 /// Returns the values of a layer as an image in the colours of the layer; NaN is transparent.
 Image valueImage(const ValueLayer& layer);

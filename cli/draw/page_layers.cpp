@@ -36,8 +36,8 @@ void addValues(ordered_json& json, const ValueLayer& layer) {
   });
 }
 
-/// Shares of safe, marginal, dangerous and unknown, six bits each.
-std::uint32_t sharesWord(const CategoryShares& shares) {
+/// Shares of all, some, no and unknown headings, six bits each.
+std::uint32_t sharesWord(const HeadingShares& shares) {
   int total = 0;
   for (const int n : shares.count) total += n;
   std::uint32_t word = 0;
@@ -126,15 +126,23 @@ ordered_json categoryLegend() {
   return legend;
 }
 
+ordered_json headingLegend() {
+  ordered_json legend = ordered_json::array();
+  for (std::size_t i = 0; i < kAllowedNames.size(); ++i)
+    legend.push_back(
+        {{"colour", hex(colourOf(static_cast<AllowedHeadings>(i)))}, {"label", kAllowedNames[i]}});
+  return legend;
+}
+
 ordered_json layersOf(const Scene& scene) {
   ordered_json layers = ordered_json::array();
-  if (!scene.categories.empty())
-    layers.push_back({{"name", "categories"},
-                      {"image", dataUri(categoryImage(scene.categories))},
+  if (!scene.headings.empty())
+    layers.push_back({{"name", "allowed headings"},
+                      {"image", dataUri(headingImage(scene.headings))},
                       {"relief", kCategoryRelief},
-                      {"legend", categoryLegend()},
-                      {"shares", wordsUri(scene.categories.grid(),
-                                          [&](Cell cell) { return sharesWord(scene.categories[cell]); })}});
+                      {"legend", headingLegend()},
+                      {"shares", wordsUri(scene.headings.grid(),
+                                          [&](Cell cell) { return sharesWord(scene.headings[cell]); })}});
   for (const ValueLayer& layer : scene.layers) {
     ordered_json json{{"name", layer.name}, {"image", dataUri(valueImage(layer))}, {"relief", kValueRelief}};
     if (layer.classes.empty())

@@ -31,9 +31,9 @@ nlohmann::ordered_json coloursOf(Scale scale);
 /// Returns the colour and label of each category.
 nlohmann::ordered_json categoryLegend();
 
-/// Returns the layers of a scene for an HTML page, categories first. Each layer has a name, a coloured image,
+/// Returns the layers of a scene for an HTML page, allowed headings first. Each layer has a name, a coloured image,
 /// a legend or a colour bar with range and unit, and the values that cli/page/probe.js shows: integers in
-/// units of the layer's last decimal, or the shares of the four categories.
+/// units of the layer's last decimal, or the shares of the four AllowedHeadings.
 nlohmann::ordered_json layersOf(const Scene& scene);
 
 /// Returns latitudes and longitudes [deg] on a square lattice over the scene, row by row from the south-west.

@@ -12,6 +12,7 @@
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/ticks.hpp>
 
 namespace talus::cli {
@@ -20,6 +21,7 @@ namespace {
 constexpr double kMargin = 24.0;
 constexpr double kHead = 64.0;
 constexpr double kTitleLine = 24.0;
+constexpr double kWarningLine = 16.0;
 constexpr double kLegend = 210.0;
 constexpr Colour kRoute = rgb(0x1B3FBF);
 constexpr Colour kReverse = rgb(0xB3202C);
@@ -66,7 +68,9 @@ class Picture {
       : scene_(scene),
         scale_(pixelsPerCell(scene.grid())),
         title_(wrapped(scene.title, scene.grid().width * scale_ + kLegend + kMargin, kTitle)),
-        head_(kHead + kTitleLine * static_cast<double>(title_.size() - 1)),
+        warning_(warningLines(scene)),
+        head_(kHead + kTitleLine * static_cast<double>(title_.size() - 1) +
+              kWarningLine * static_cast<double>(warning_.size())),
         map_{kMargin, head_, scene.grid().width * scale_, scene.grid().height * scale_},
         canvas_({.width = static_cast<int>(std::ceil(map_.width + kLegend + 3 * kMargin)),
                  .height = static_cast<int>(std::ceil(head_ + kMargin + std::max(map_.height, 420.0)))}) {}
@@ -74,7 +78,10 @@ class Picture {
   std::string draw() {
     for (std::size_t i = 0; i < title_.size(); ++i)
       canvas_.text(title_[i], {kMargin, 30 + kTitleLine * static_cast<double>(i)}, kTitle);
-    canvas_.text(scene_.subtitle, {kMargin, head_ - 14}, {.size = 12, .colour = rgb(0x555555)});
+    double y = head_ - 14 - kWarningLine * static_cast<double>(warning_.size());
+    canvas_.text(scene_.subtitle, {kMargin, y}, {.size = 12, .colour = rgb(0x555555)});
+    for (const std::string& line : warning_)
+      canvas_.text(line, {kMargin, y += kWarningLine}, {.size = 12, .colour = kReverse, .bold = true});
     canvas_.fill(map_, rgb(0xECECEC));
     ground();
     canvas_.clip(map_);
@@ -87,6 +94,13 @@ class Picture {
   }
 
  private:
+  std::vector<std::string> warningLines(const Scene& scene) const {
+    const auto warning = scene.route ? warningOf(*scene.route) : std::nullopt;
+    if (!warning) return {};
+    return wrapped("warning: " + warning->text, scene.grid().width * scale_ + kLegend,
+                   {.size = 12, .bold = true});
+  }
+
   /// Enlarges small maps by an integer factor, to at most 900 pixels on the longer side.
   static double pixelsPerCell(const maps::Grid& grid) {
     return std::max(1.0, std::floor(900.0 / std::max(grid.width, grid.height)));
@@ -102,8 +116,8 @@ class Picture {
   void ground() {
     const maps::Raster<float> shade = hillshade(scene_.elevation_m);
     canvas_.image(shadeImage(shade), map_);
-    if (!scene_.categories.empty())
-      canvas_.image(underLight(categoryImage(scene_.categories), shade, kCategoryRelief), map_);
+    if (!scene_.headings.empty())
+      canvas_.image(underLight(headingImage(scene_.headings), shade, kCategoryRelief), map_);
     else if (!scene_.layers.empty())
       canvas_.image(underLight(valueImage(scene_.layers.front()), shade,
                                scene_.layers.front().classes.empty() ? kValueRelief : kCategoryRelief),
@@ -181,13 +195,14 @@ class Picture {
 
   void legend() {
     Spot at{map_.x + map_.width + kMargin, map_.y + 8};
-    if (!scene_.categories.empty())
-      categoryLegend(at);
+    if (!scene_.headings.empty())
+      headingLegend(at);
     else if (!scene_.layers.empty())
       scaleLegend(at, scene_.layers.front());
     if (!scene_.rings.empty()) {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRing, .width = 3.5});
-      canvas_.text("ring: the smaller set", {at.x + 36, at.y + 4}, {});
+      canvas_.text(scene_.route ? "ring: see the warning" : "ring: the smaller set", {at.x + 36, at.y + 4},
+                   {});
       at.y += 24;
     }
     if (scene_.route && !scene_.route->vertices.empty()) {
@@ -214,21 +229,21 @@ class Picture {
     outline(canvas_, {at.x, at.y - 8, 26, 16}, {.colour = kInk, .width = 0.7});
   }
 
-  void categoryLegend(Spot& at) {
+  void headingLegend(Spot& at) {
+    canvas_.text("allowed headings", {at.x, at.y + 4}, {.bold = true});
+    at.y += 24;
     std::array<double, 4> share{};
     double total = 0.0;
-    for (const CategoryShares& s : scene_.categories.values()) {
+    for (const HeadingShares& s : scene_.headings.values()) {
       for (std::size_t i = 0; i < 4; ++i) {
         share[i] += s.count[i];
         total += s.count[i];
       }
     }
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto category = static_cast<terramech::Category>(i);
-      swatch(at, colourOf(category));
-      canvas_.text(
-          fmt::format("{}, {:.1f} %", terramech::name(category), 100.0 * share[i] / std::max(1.0, total)),
-          {at.x + 36, at.y + 4});
+      swatch(at, colourOf(static_cast<AllowedHeadings>(i)));
+      canvas_.text(fmt::format("{}, {:.1f} %", kAllowedNames[i], 100.0 * share[i] / std::max(1.0, total)),
+                   {at.x + 36, at.y + 4});
       at.y += 24;
     }
   }
@@ -273,7 +288,7 @@ class Picture {
 
   const Scene& scene_;
   double scale_;
-  std::vector<std::string> title_;
+  std::vector<std::string> title_, warning_;
   double head_;
   Box map_;
   Canvas canvas_;

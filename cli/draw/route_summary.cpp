@@ -130,23 +130,6 @@ std::string riskText(double probability) {
   return fmt::format("immobilisation probability {:.2g}", probability);
 }
 
-// Place and remedy where a route is likely to fail.
-std::string warningText(const Route& route) {
-  constexpr double kLikely = 0.1;
-  const Profile margin = profile(route, &RouteVertex::drawbar_pull_margin);
-  if (margin.known() && margin.lowest < 0.0)
-    return fmt::format(
-        "the slope at {:.1f},{:.1f} requires more drawbar pull than is available at slip 0.5: "
-        "lower --risk, measure the ground, or choose another goal",
-        route.vertices[margin.lowest_at].x_m, route.vertices[margin.lowest_at].y_m);
-  if (!(route.vertices.back().immobilisation_risk > kLikely)) return "";
-  const auto worst = std::ranges::max_element(route.vertices, {}, &RouteVertex::hazard_per_m);
-  return fmt::format(
-      "immobilisation is likely, most at {:.1f},{:.1f}: lower --risk, measure the ground, or choose "
-      "another goal",
-      worst->x_m, worst->y_m);
-}
-
 std::string driveText(const Route& route) {
   if (!route.summary.drive) return "";
   const planner::RouteShape& d = *route.summary.drive;
@@ -158,6 +141,21 @@ std::string driveText(const Route& route) {
 }
 
 }  // namespace
+
+std::optional<RouteWarning> warningOf(const Route& route) {
+  constexpr double kLikely = 0.1;
+  constexpr const char* kRemedy = ": lower --risk, measure the ground, or choose another goal";
+  const auto at = [](const RouteVertex& v, const char* format) {
+    return RouteWarning{{v.x_m, v.y_m}, fmt::format(fmt::runtime(format), v.x_m, v.y_m) + kRemedy};
+  };
+  const Profile margin = profile(route, &RouteVertex::drawbar_pull_margin);
+  if (margin.known() && margin.lowest < 0.0)
+    return at(route.vertices[margin.lowest_at],
+              "the slope at {:.1f},{:.1f} requires more drawbar pull than is available at slip 0.5");
+  if (route.vertices.empty() || !(route.vertices.back().immobilisation_risk > kLikely)) return std::nullopt;
+  return at(*std::ranges::max_element(route.vertices, {}, &RouteVertex::hazard_per_m),
+            "immobilisation is likely, most at {:.1f},{:.1f}");
+}
 
 std::vector<double> distances_m(const Route& route) {
   std::vector<double> s;
@@ -213,7 +211,7 @@ Facts summaryOf(const Route& route) {
               {"drawbar-pull margin", marginText(route)},
               {"traversability", groundText(route)},
               {"risk", riskText(risk)},
-              {"warning", warningText(route)}};
+              {"warning", warningOf(route).value_or(RouteWarning{}).text}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }

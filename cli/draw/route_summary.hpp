@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <talus/maps/grid/grid.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::cli {
@@ -15,6 +17,16 @@ std::vector<double> distances_m(const planner::Route& route);
 /// Returns the summary of a route: up to ten quantities with value and unit; unknown quantities are omitted.
 /// For a route that was not found, the summary contains status and reason.
 std::vector<std::pair<std::string, std::string>> summaryOf(const planner::Route& route);
+
+/// A place where a route is likely to fail, and the remedy.
+struct RouteWarning {
+  maps::Point place;
+  std::string text;
+};
+
+/// Returns the place with the least drawbar-pull margin if it is negative, or the riskiest place if immobilisation is
+/// more probable than 0.1.
+std::optional<RouteWarning> warningOf(const planner::Route& route);
 
 /// Returns one aligned line of text with a quantity and its value.
 std::string summaryLine(std::string_view what, std::string_view value);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <talus/cli/draw/allowed_headings.hpp>
 #include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
@@ -41,21 +42,22 @@ Raster<float> slope_deg(const Raster<float>& z) {
 
 /// Averages of the map's estimates over the cells of each block; NaN if no cell has a category.
 struct BlockBeliefs {
-  Raster<CategoryShares> categories;
+  Raster<HeadingShares> headings;
   Raster<float> pull, pull_std, sinkage;
 };
 
 BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& blocks) {
   const Raster<float> nothing(blocks.coarse(), std::nanf(""));
-  BlockBeliefs out{Raster<CategoryShares>(blocks.coarse()), nothing, nothing, nothing};
+  BlockBeliefs out{Raster<HeadingShares>(blocks.coarse()), nothing, nothing, nothing};
   costmap::PlaceBeliefs beliefs(map);
+  HeadingsOfCells headings(map);
   for (int row = 0; row < blocks.coarse().height; ++row) {
     for (int column = 0; column < blocks.coarse().width; ++column) {
       const Cell block{column, row};
       double pull = 0.0, pull_std = 0.0, sinkage = 0.0, count = 0.0;
       blocks.forEach(block, [&](Cell cell) {
         const costmap::CellBelief belief = beliefs.at(cell);
-        ++out.categories[block].count[belief.category & 3U];
+        ++out.headings[block].count[static_cast<std::size_t>(headings.at(cell))];
         if (belief.category > 2) return;
         pull += static_cast<double>(belief.pull_mean);
         pull_std += static_cast<double>(belief.pull_std);
@@ -179,7 +181,7 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   const Blocks blocks(map.grid(), options.max_side);
   Scene scene = ground(map.elevation(), blocks, options);
   BlockBeliefs beliefs = beliefsOf(map, blocks);
-  scene.categories = std::move(beliefs.categories);
+  scene.headings = std::move(beliefs.headings);
   scene.costs = headingCosts(map, blocks);
   addSlope(scene, slope_deg(map, blocks));
   addLayer(scene, "DP/W (drawbar pull / load)", std::move(beliefs.pull));
@@ -213,6 +215,7 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
 void addRoute(Scene& scene, const planner::Route& route) {
   scene.route = route;
   for (Fact& fact : summaryOf(route)) scene.facts.push_back(std::move(fact));
+  if (const auto warning = warningOf(route)) scene.rings.push_back({warning->place, 0.0, "warning"});
 }
 
 }  // namespace talus::cli

@@ -21,9 +21,8 @@ class TraversabilityMap;
 
 namespace talus::cli {
 
-/// Number of map cells of each category in one block (cell of a scene), indexed by the number of
-/// terramech::Category.
-struct CategoryShares {
+/// Number of map cells in one block (cell of a scene), by their AllowedHeadings.
+struct HeadingShares {
   std::array<std::uint8_t, 4> count{};
 };
 
@@ -84,8 +83,8 @@ struct ComparedFact {
 struct Scene {
   std::string title;
   std::string subtitle;
-  maps::Raster<float> elevation_m;          ///< NaN: no data
-  maps::Raster<CategoryShares> categories;  ///< shares of the categories; empty: not known
+  maps::Raster<float> elevation_m;       ///< NaN: no data
+  maps::Raster<HeadingShares> headings;  ///< shares of the allowed headings; empty: not known
   std::vector<ValueLayer> layers;
   std::vector<Fact> facts;
   std::vector<Fact> provenance{};  ///< data needed to reproduce the result
@@ -114,7 +113,7 @@ struct SceneOptions {
 /// Returns the scene of an elevation map, with elevation and slope.
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options);
 
-/// Returns the scene of a traversability map: elevation, slope, categories, drawbar pull with its standard
+/// Returns the scene of a traversability map: elevation, slope, allowed headings, drawbar pull with its standard
 /// deviation, and sinkage.
 Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options);
 

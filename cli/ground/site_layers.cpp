@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include <talus/cli/draw/allowed_headings.hpp>
 #include <talus/cli/ground/site_layers.hpp>
 #include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
@@ -38,39 +38,6 @@ float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   return grid.cost().detail(code, up).energy_J_per_m;
 }
 
-// Category of a cell in its best heading, which depends only on the cost curve and the steepness; cached.
-class BestHeading {
- public:
-  explicit BestHeading(const costmap::TravelCost& cost) : cost_(cost), known_(cost.curves().size()) {}
-
-  float category(CellCode cell) {
-    const double steepness = std::hypot(cell.dzDx(), cell.dzDy());
-    const auto step = static_cast<std::size_t>(std::ceil(steepness / kStep - 1e-9));
-    auto& curve = known_[cell.curve()];
-    if (curve.size() <= step) curve.resize(step + 1, kNoValue);
-    if (std::isnan(curve[step])) curve[step] = best(static_cast<double>(step) * kStep, cell.curve());
-    return curve[step];
-  }
-
- private:
-  static constexpr double kStep = 1.0 / 256.0;
-
-  float best(double steepness, std::uint8_t curve) const {
-    constexpr int kHeadings = 48;
-    const CellCode cell({.dz_dx = steepness, .dz_dy = 0.0, .curve = curve});
-    auto found = terramech::Category::Dangerous;
-    for (int k = 0; k <= kHeadings / 2; ++k) {
-      const double heading = 2.0 * std::numbers::pi * k / kHeadings;
-      const costmap::TravelState state = cost_.detail(cell, {std::cos(heading), std::sin(heading)});
-      if (state.refusal == costmap::Refusal::None) found = std::min(found, state.category);
-    }
-    return static_cast<float>(found);
-  }
-
-  const costmap::TravelCost& cost_;
-  std::vector<std::vector<float>> known_;  // by curve and step
-};
-
 }  // namespace
 
 std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
@@ -92,6 +59,9 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
                          [&](maps::Cell c) { return static_cast<float>(map.surface().classNumber(c)); }));
   layers.push_back(
       layer(grid, "category", "", [&](maps::Cell c) { return static_cast<float>(beliefs.at(c).category); }));
+  HeadingsOfCells headings(map);
+  layers.push_back(
+      layer(grid, "allowed_headings", "", [&](maps::Cell c) { return static_cast<float>(headings.at(c)); }));
   layers.push_back(layer(grid, "drawbar_pull_over_load", "",
                          [&](maps::Cell c) { return known(c, beliefs.at(c).pull_mean); }));
   layers.push_back(layer(grid, "drawbar_pull_over_load_std", "",
@@ -102,12 +72,6 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
                          [&](maps::Cell c) { return energyAlong(*published, c, 1.0); }));
   layers.push_back(layer(grid, "energy_per_metre_downhill", "J/m",
                          [&](maps::Cell c) { return energyAlong(*published, c, -1.0); }));
-  BestHeading best(published->cost());
-  layers.push_back(layer(grid, "category_best_heading", "", [&](maps::Cell c) {
-    const CellCode code = published->at(c);
-    return code.curve() < CellCode::kUnknown ? best.category(code)
-                                             : static_cast<float>(beliefs.at(c).category);
-  }));
   return layers;
 }
 

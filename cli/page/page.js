@@ -21,6 +21,7 @@ function addRow(table, name, values) {
   const row = table.insertRow();
   row.appendChild(document.createElement("th")).textContent = name;
   for (const value of values) row.insertCell().textContent = value;
+  row.classList.toggle("warning", name === "warning");
 }
 
 function showFacts(data) {

@@ -49,7 +49,7 @@ function cellReader(data) {
     add("cell", block > 1 ? `mean of ${block} x ${block} cells` : `column ${column}, row ${row}`);
     const parts = [table];
     if (costs) {
-      if (block > 1) add("cell in its middle", data.categories[costs.kinds[index] >> 8].label);
+      if (block > 1) add("cell in its middle", data.categories[costs.kinds[index] >> 16].label);
       parts.push(drawRose(costs, index));
     }
     const box = document.createElement("div");

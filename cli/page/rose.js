@@ -7,14 +7,14 @@ async function readHeadings({headings, grid}) {
   const {image, width, height} = headings.table;
   const [gradients, kinds, nodes] = await Promise.all([words(headings.gradients, grid.width, grid.height),
                                                        words(headings.kinds, grid.width, grid.height),
-                                                       width * height ? words(image, width, height) : []]);
+                                                       words(image, width, height)]);
   return {...headings, gradients, kinds, nodes};
 }
 
 // Cost [J/m] in a heading, counter-clockwise from east; null if the heading is refused.
 function headingCost({gradients, kinds, nodes, table, most}, index, heading) {
-  const curve = kinds[index] & 255, signed = bits => (bits << 20) >> 20;
-  if (curve * table.rows >= table.height) return null;
+  const curve = kinds[index] & 65535, signed = bits => (bits << 20) >> 20;
+  if (curve >= table.curves) return null;
   const dx = signed(gradients[index] >> 12) / 1024, dy = signed(gradients[index] & 4095) / 1024;
   const along = dx * Math.cos(heading) + dy * Math.sin(heading);
   const across = Math.abs(dy * Math.cos(heading) - dx * Math.sin(heading));

@@ -12,9 +12,9 @@
 
 namespace talus::costmap {
 
-std::uint32_t CellCode::quantised(double gradient) noexcept {
+std::int16_t CellCode::quantised(double gradient) noexcept {
   const double steps = std::clamp(std::round(gradient / kStep), -2048.0, 2047.0);
-  return static_cast<std::uint32_t>(static_cast<int>(std::isnan(steps) ? 0.0 : steps)) & 0xfffu;
+  return static_cast<std::int16_t>(std::isnan(steps) ? 0.0 : steps);
 }
 
 int TravelCurve::bin(double gradient) noexcept {
@@ -50,7 +50,7 @@ TravelCost::TravelCost(const Limits& limits, std::vector<TravelCurve> curves)
       steady_gradient_(steadyGradient(limits.stance.get())) {
   if (curves_.size() > CellCode::kUnknown)
     throw std::invalid_argument("DriveCost: " + std::to_string(curves_.size()) +
-                                " drive curves, must be <= 254");
+                                " drive curves, must be <= 65534");
 }
 
 TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds,

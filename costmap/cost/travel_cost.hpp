@@ -20,40 +20,48 @@ struct Direction {
   double y = 0.0;
 };
 
-/// Cell code: planner data of one cell in 4 bytes. It contains the gradient of the fitted plane under the
+/// Cell code: planner data of one cell in 6 bytes. It contains the gradient of the fitted plane under the
 /// rover and the index of a cost curve (TravelCurve). dz/dx and dz/dy are stored in steps of 1/1024 (rise
 /// over run, error at most half a step), clamped to [-2, 2).
 class CellCode {
  public:
-  static constexpr std::uint8_t kUnknown = 254;  ///< curve index of an unobserved cell
-  static constexpr std::uint8_t kBlocked = 255;  ///< curve index of a cell that no heading may enter
+  using Curve = std::uint16_t;              ///< index of a cost curve
+  static constexpr Curve kUnknown = 65534;  ///< curve index of an unobserved cell
+  static constexpr Curve kBlocked = 65535;  ///< curve index of a cell that no heading may enter
 
   /// The values of a cell code.
   struct Parts {
     double dz_dx = 0.0;  ///< gradient eastward, rise over run [-]
     double dz_dy = 0.0;  ///< gradient northward, rise over run [-]
     /// Index of the cost curve, kUnknown or kBlocked.
-    std::uint8_t curve = kUnknown;
+    Curve curve = kUnknown;
   };
 
   CellCode() : CellCode(Parts{}) {}
   explicit CellCode(const Parts& parts)
-      : bits_(quantised(parts.dz_dx) << 20 | quantised(parts.dz_dy) << 8 | parts.curve) {}
+      : steps_x_(quantised(parts.dz_dx)), steps_y_(quantised(parts.dz_dy)), curve_(parts.curve) {}
 
   /// Gradients of the plane eastward and northward [-].
   double dzDx() const noexcept { return static_cast<double>(stepsX()) * kStep; }
   double dzDy() const noexcept { return static_cast<double>(stepsY()) * kStep; }
   /// Gradients of the plane eastward and northward, in steps of kStep.
-  int stepsX() const noexcept { return static_cast<std::int32_t>(bits_) >> 20; }
-  int stepsY() const noexcept { return static_cast<std::int32_t>(bits_ << 12) >> 20; }
+  int stepsX() const noexcept { return steps_x_; }
+  int stepsY() const noexcept { return steps_y_; }
   /// Returns the code with an unchanged gradient and another curve index.
-  CellCode withCurve(std::uint8_t curve) const noexcept {
+  CellCode withCurve(Curve curve) const noexcept {
     CellCode code = *this;
-    code.bits_ = (bits_ & 0xffffff00U) | curve;
+    code.curve_ = curve;
     return code;
   }
-  std::uint8_t curve() const noexcept { return static_cast<std::uint8_t>(bits_); }
-  std::uint32_t bits() const noexcept { return bits_; }
+  Curve curve() const noexcept { return curve_; }
+  /// Returns the code as a number. recentSlot() returns a hash value of `bits` bits, for caches of recent codes.
+  std::uint64_t number() const noexcept {
+    const auto of = [](std::int16_t steps) { return std::uint64_t{static_cast<std::uint16_t>(steps)}; };
+    return of(steps_x_) << 32 | of(steps_y_) << 16 | curve_;
+  }
+  std::size_t recentSlot(int bits) const noexcept {
+    return static_cast<std::size_t>((number() * 0x9e3779b97f4a7c15U) >> (64 - bits));
+  }
 
   friend bool operator==(CellCode, CellCode) = default;
 
@@ -61,9 +69,10 @@ class CellCode {
   static constexpr double kStep = 1.0 / 1024.0;
 
  private:
-  static std::uint32_t quantised(double gradient) noexcept;
+  static std::int16_t quantised(double gradient) noexcept;
 
-  std::uint32_t bits_;
+  std::int16_t steps_x_, steps_y_;
+  Curve curve_;
 };
 
 /// Cost curve: cost per horizontal metre on ground of one estimated strength, tabulated over two gradients.
@@ -217,7 +226,7 @@ class TravelCost {
     } outline{};
   };
 
-  /// Makes the cost function from cost curves in the order of their indices, at most 254. Throws
+  /// Makes the cost function from cost curves in the order of their indices, at most 65534. Throws
   /// std::invalid_argument for more curves.
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
   TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty uncertainty = {});

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -11,8 +9,6 @@
 
 namespace talus::costmap {
 namespace {
-
-constexpr std::size_t kNumbers = CellCode::kUnknown;
 
 // Returns a cost that refuses every heading, for classes whose prior was not requested.
 const GroundCost& refused() {
@@ -27,84 +23,51 @@ const GroundCost& refused() {
 }  // namespace
 
 CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model_(std::move(model)) {
-  if (classes() > kNumbers)
+  if (classes() > kMost)
     throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
-                                " classes of ground, must be <= " + std::to_string(kNumbers));
+                                " classes of ground, must be <= " + std::to_string(kMost));
   for (int i = 0; i < static_cast<int>(classes()); ++i) priors_.push_back(model_->prior(i));
   beliefs_ = priors_;
   grounds_.assign(classes(), refused());
   categories_.resize(classes());
-  slots_.assign(classes(), Slot::Free);
+  priced_.assign(classes(), false);
   price(0);
 }
 
 void CostCurveTable::price(std::size_t class_index) {
-  slots_[class_index] = Slot::Own;
-  const Worked& now = worked(static_cast<int>(class_index), priors_[class_index]);
-  grounds_[class_index] = now.ground;
-  beliefs_[class_index] = priors_[class_index];
-  categories_[class_index] = now.categories;
+  priced_[class_index] = true;
+  const GroundBelief& prior = priors_[class_index];
+  grounds_[class_index] = model_->ground(static_cast<int>(class_index), prior);
+  beliefs_[class_index] = prior;
+  categories_[class_index] = CategoryTable(*model_, prior, grounds_[class_index]);
   cost_.reset();
 }
 
-std::uint8_t CostCurveTable::prior(int class_index) {
-  const auto i = static_cast<std::size_t>(class_index);
-  if (slots_[i] == Slot::Free) price(i);
-  if (slots_[i] == Slot::Own) return static_cast<std::uint8_t>(class_index);
-  slots_[i] = Slot::Wanted;
-  overflowed_ = true;
-  return standIn(GroundKind::of(model_->prior(class_index), class_index, class_index, priors_[i], level_));
+CellCode::Curve CostCurveTable::prior(int class_index) {
+  if (!priced_[static_cast<std::size_t>(class_index)]) price(static_cast<std::size_t>(class_index));
+  return static_cast<CellCode::Curve>(class_index);
 }
 
-// Appends a curve index, or reuses the highest free class index; nullopt if all indices are in use.
-std::optional<std::uint8_t> CostCurveTable::freeNumber() {
-  if (grounds_.size() < kNumbers) {
-    grounds_.emplace_back();
-    beliefs_.emplace_back();
-    categories_.emplace_back();
-    return static_cast<std::uint8_t>(grounds_.size() - 1);
-  }
-  const auto free = std::find(slots_.rbegin(), slots_.rend(), Slot::Free);
-  if (free == slots_.rend()) return std::nullopt;
-  *free = Slot::Lent;
-  return static_cast<std::uint8_t>(slots_.rend() - free - 1);
+CellCode::Curve CostCurveTable::added(GroundCost ground, const GroundBelief& belief,
+                                      CategoryTable categories) {
+  grounds_.push_back(std::move(ground));
+  beliefs_.push_back(belief);
+  categories_.push_back(std::move(categories));
+  cost_.reset();
+  return static_cast<CellCode::Curve>(grounds_.size() - 1);
 }
 
-std::uint8_t CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
-  const GroundKind kind =
-      GroundKind::of(model_->prior(class_index), class_index, other_class, belief, level_);
+CellCode::Curve CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
+  const GroundKind kind = GroundKind::of(model_->prior(class_index), class_index, other_class, belief);
   if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
-  const auto number = freeNumber();
-  if (!number) {
-    overflowed_ = true;
-    return standIn(kind);
-  }
+  if (grounds_.size() >= kMost) return CellCode::kBlocked;
   // Uses the worst estimate of the kind, so that the curve does not depend on the estimate that occurred
   // first.
   const GroundBelief worst =
       kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
-  grounds_[*number] = model_->ground(class_index, other_class, worst);
-  beliefs_[*number] = worst;
-  categories_[*number] = CategoryTable(*model_, worst, grounds_[*number]);
-  numbers_.emplace(kind, *number);
-  cost_.reset();
-  return *number;
-}
-
-// Returns the curve index of the known kind with the greatest pull among those of the same classes that are
-// no better in pull, standard deviation and sinkage; kBlocked without such a kind.
-std::uint8_t CostCurveTable::standIn(const GroundKind& kind) const {
-  const GroundKind* best = nullptr;
-  std::uint8_t number = CellCode::kBlocked;
-  for (const auto& [known, its] : numbers_) {
-    const bool same = known.class_index == kind.class_index && known.other_class == kind.other_class;
-    const bool no_better =
-        known.pull <= kind.pull && known.pull_std >= kind.pull_std && known.sinkage >= kind.sinkage;
-    if (!same || !no_better || (best && known.pull <= best->pull)) continue;
-    best = &known;
-    number = its;
-  }
-  return number;
+  GroundCost ground = model_->ground(class_index, other_class, worst);
+  CategoryTable categories(*model_, worst, ground);
+  return numbers_[kind] = added(std::move(ground), worst, std::move(categories));
 }
 
 GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m) const {
@@ -116,46 +79,22 @@ GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m
       .turns = ground.turns};
 }
 
-std::uint8_t CostCurveTable::dearer(std::uint8_t number, int step, double added_J_per_m) {
+CellCode::Curve CostCurveTable::dearer(CellCode::Curve number, int step, double added_J_per_m) {
   if (const auto known = dearer_.find({number, step}); known != dearer_.end()) return known->second.number;
-  const auto next = freeNumber();
-  if (!next) {
-    overflowed_ = true;
-    const auto greater = dearer_.lower_bound({number, step});
-    return greater != dearer_.end() && greater->first.first == number ? greater->second.number
-                                                                      : CellCode::kBlocked;
-  }
-  grounds_[*next] = dearer(grounds_[number], added_J_per_m);
-  beliefs_[*next] = beliefs_[number];
-  categories_[*next] = categories_[number];
-  dearer_.emplace(std::pair(number, step), Dearer{*next, added_J_per_m});
-  cost_.reset();
-  return *next;
+  if (grounds_.size() >= kMost) return CellCode::kBlocked;
+  const CellCode::Curve next =
+      added(dearer(grounds_[number], added_J_per_m), beliefs_[number], categories_[number]);
+  dearer_.emplace(std::pair(number, step), Dearer{next, added_J_per_m});
+  return next;
 }
 
-double CostCurveTable::used() const noexcept {
-  const auto own = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Own)),
-             idle = static_cast<std::size_t>(std::ranges::count(slots_, Slot::Free));
-  const std::size_t all = kNumbers - own;
-  return all > 0 ? static_cast<double>(grounds_.size() - own - idle) / static_cast<double>(all) : 1.0;
-}
-
-void CostCurveTable::restart(int level) {
-  level_ = level;
-  overflowed_ = false;
+void CostCurveTable::restart() {
   grounds_.resize(classes());
   beliefs_.resize(classes());
   categories_.resize(classes());
   numbers_.clear();
   dearer_.clear();
   cost_.reset();
-  for (std::size_t i = 0; i < classes(); ++i) {
-    if (slots_[i] == Slot::Wanted) price(i);
-    if (slots_[i] != Slot::Lent) continue;
-    slots_[i] = Slot::Free;
-    grounds_[i] = refused();
-    categories_[i] = {};
-  }
 }
 
 bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
@@ -163,7 +102,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   const auto same = [](const Estimate& a, const Estimate& b) { return a.value == b.value && a.std == b.std; };
   if (same(next.pull, priors_[i].pull) && same(next.sinkage, priors_[i].sinkage)) return false;
   priors_[i] = next;
-  if (slots_[i] != Slot::Own) return true;  // at class borders, the prior is in use
+  if (!priced_[i]) return true;  // at class borders, the prior is in use
   price(i);
   for (const auto& [from, its] : dearer_)
     if (from.first == i) {
@@ -172,18 +111,6 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
       categories_[its.number] = categories_[i];
     }
   return true;
-}
-
-const CostCurveTable::Worked& CostCurveTable::worked(int class_index, const GroundBelief& prior) {
-  constexpr std::size_t kRemembered = 64;
-  const auto bits = [](double value) { return std::bit_cast<std::int64_t>(value); };
-  const PriorKey key{class_index, bits(prior.pull.value), bits(prior.pull.std), bits(prior.sinkage.value),
-                     bits(prior.sinkage.std)};
-  if (const auto known = worked_.find(key); known != worked_.end()) return known->second;
-  if (worked_.size() >= kRemembered) worked_.clear();
-  GroundCost ground = model_->ground(class_index, prior);
-  CategoryTable categories(*model_, prior, ground);
-  return worked_.emplace(key, Worked{std::move(ground), std::move(categories)}).first->second;
 }
 
 // Computes the fraction of the pull variance of each class that is common to all of its ground: the excess

@@ -196,33 +196,39 @@ GroundStates::Node GroundStates::node(int row, int bin, const std::vector<Weight
   return out;
 }
 
-const std::vector<std::array<float, 3>>& GroundStates::terms() const {
+// Returns the terms of all nodes, raised from row to row.
+std::vector<std::array<float, 3>> GroundStates::terms() const {
+  const int all = rows();
+  std::vector<WeightTable> weights;
+  for (const StrengthOfClass& of : classes_) weights.emplace_back(of.strength.std);
+  std::vector<std::array<float, 3>> terms(static_cast<std::size_t>(all * TravelCurve::kBins),
+                                          {kRefused, kRefused, kRefused});
+  for (int row = 0; row < all; ++row)
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      const auto i = static_cast<std::size_t>(row * TravelCurve::kBins + bin);
+      if (row > 0 && !(terms[i - TravelCurve::kBins][0] < kRefused)) continue;
+      const Node here = node(row, bin, &weights);
+      if (here.state.refusal != Refusal::None) continue;
+      terms[i] = {static_cast<float>(here.terms.energy_J_per_m), static_cast<float>(here.terms.time_s_per_m),
+                  static_cast<float>(here.terms.risk_per_m)};
+      if (row > 0)
+        for (std::size_t k = 0; k < 3; ++k)
+          terms[i][k] = std::max(terms[i][k], terms[i - TravelCurve::kBins][k]);
+    }
+  return terms;
+}
+
+bool GroundStates::isAllowed(std::size_t node) const {
   std::call_once(once_, [this] {
-    const int all = rows();
-    std::vector<WeightTable> weights;
-    for (const StrengthOfClass& of : classes_) weights.emplace_back(of.strength.std);
-    terms_.assign(static_cast<std::size_t>(all * TravelCurve::kBins), {kRefused, kRefused, kRefused});
-    for (int row = 0; row < all; ++row)
-      for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
-        const auto i = static_cast<std::size_t>(row * TravelCurve::kBins + bin);
-        if (row > 0 && !(terms_[i - TravelCurve::kBins][0] < kRefused)) continue;
-        const Node here = node(row, bin, &weights);
-        if (here.state.refusal != Refusal::None) continue;
-        terms_[i] = {static_cast<float>(here.terms.energy_J_per_m),
-                     static_cast<float>(here.terms.time_s_per_m), static_cast<float>(here.terms.risk_per_m)};
-        if (row > 0)
-          for (std::size_t k = 0; k < 3; ++k)
-            terms_[i][k] = std::max(terms_[i][k], terms_[i - TravelCurve::kBins][k]);
-      }
+    for (const auto& [energy_J, time_s, risk] : terms()) allowed_.push_back(energy_J < kRefused);
   });
-  return terms_;
+  return allowed_[node];
 }
 
 TravelState GroundStates::at(int row, int bin) const {
   TravelState state = node(row, bin).state;
-  const auto& all = terms();
   for (int r = std::min(row, rows() - 1); r >= 0 && state.refusal == Refusal::None; --r) {
-    if (all[static_cast<std::size_t>(r * TravelCurve::kBins + bin)][0] < kRefused) break;
+    if (isAllowed(static_cast<std::size_t>(r * TravelCurve::kBins + bin))) break;
     state.refusal = node(r, bin).state.refusal;
   }
   return state;

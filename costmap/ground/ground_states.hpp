@@ -66,7 +66,8 @@ class GroundStates final : public TravelStates {
   class WeightTable;
   Node node(int row, int bin, const std::vector<WeightTable>* weights = nullptr) const;
   Node node(const StrengthOfClass& of, const WeightTable* weights, int row, int bin) const;
-  const std::vector<std::array<float, 3>>& terms() const;
+  std::vector<std::array<float, 3>> terms() const;
+  bool isAllowed(std::size_t node) const;
   int rows() const noexcept;
 
   std::shared_ptr<const GroundRules> rules_;
@@ -74,7 +75,7 @@ class GroundStates final : public TravelStates {
   GroundBelief belief_;
   double added_J_per_m_;
   mutable std::once_flag once_;
-  mutable std::vector<std::array<float, 3>> terms_;  // of all nodes, raised from row to row
+  mutable std::vector<bool> allowed_;  // by node: neither this row nor one with less gradient across refuses
 };
 
 }  // namespace talus::costmap

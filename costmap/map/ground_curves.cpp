@@ -8,11 +8,11 @@
 namespace talus::costmap {
 namespace {
 
-constexpr int kPullBits = 10, kStdBits = 6, kSinkageBits = 9;
+constexpr int kPullBits = 11, kStdBits = 7, kSinkageBits = 10;
 constexpr int kFew = 4;  // number of other cells that a box may include with a new cell
-constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 24, kSinkageZero = 64;
+constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 48, kSinkageZero = 128;
 
-// Packs a kind into a non-zero word. Range: drawbar pull over load within 10 of the prior, sinkage up to 44
+// Packs a kind into a non-zero word. Range: drawbar pull over load within 5 of the prior, sinkage up to 17
 // radii above.
 std::uint32_t packed(const GroundKind& kind) {
   const auto field = [](int value, int bits) {
@@ -101,16 +101,16 @@ bool GroundCurves::alike(maps::Cell cell) const noexcept {
   return true;
 }
 
-std::uint8_t GroundCurves::withLayers(std::uint8_t number, maps::Cell cell) {
-  const int step = number < CellCode::kUnknown ? added_.step(cell, step_level_) : 0;
+CellCode::Curve GroundCurves::withLayers(CellCode::Curve number, maps::Cell cell) {
+  const int step = number < CellCode::kUnknown ? added_.step(cell) : 0;
   return step == 0 ? number : table_.dearer(number, step, added_.J_per_m(step));
 }
 
-std::uint8_t GroundCurves::number(maps::Cell cell) {
+CellCode::Curve GroundCurves::number(maps::Cell cell) {
   return withLayers(numberOfGround(cell), cell);
 }
 
-std::uint8_t GroundCurves::numberOfGround(maps::Cell cell) {
+CellCode::Curve GroundCurves::numberOfGround(maps::Cell cell) {
   const WheelSwath::Ground own = ground(cell);
   const bool learned = any_learned_ && learned_[cell] != 0;
   WheelSwath::Judged judged{own.belief, own.class_index};

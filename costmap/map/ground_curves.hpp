@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,9 +27,9 @@ class GroundCurves {
 
   /// Returns the curve index of a cell whose terrain class has a soil. Returns CellCode::kUnknown if a wheel
   /// may touch ground without a class and the policy excludes unknown ground.
-  std::uint8_t number(maps::Cell cell);
+  CellCode::Curve number(maps::Cell cell);
   /// Returns the curve index of an unobserved cell that the policy allows, as ground of the first class.
-  std::uint8_t numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
+  CellCode::Curve numberOfUnseen(maps::Cell cell) { return withLayers(table_.prior(0), cell); }
 
   /// Changes made by learnClasses().
   struct ClassChange {
@@ -49,30 +48,19 @@ class GroundCurves {
   /// Returns boxes that contain all cells whose curve is combined from ground of different strengths.
   std::vector<maps::CellBox> mixedRanges() const;
 
-  /// Discards all curve indices, for use when no index is free. A higher level means coarser steps, so that
-  /// fewer curves are needed. The steps of cost layers become coarser before those of estimates, because
-  /// estimates determine which ground is drivable.
-  void restart(int level) {
-    level_ = level;
-    step_level_ = added_.empty() ? 0 : std::min(level, AddedCost::kCoarsest);
-    table_.restart(level - step_level_);
-  }
-  int level() const noexcept { return level_; }
-  int coarsest() const noexcept {
-    return GroundKind::kCoarsest + (added_.empty() ? 0 : AddedCost::kCoarsest);
-  }
+  /// Discards the curve indices of all estimates from telemetry and of cost layers.
+  void restart() { table_.restart(); }
 
  private:
   WheelSwath::Ground ground(maps::Cell cell) const;
-  std::uint8_t numberOfGround(maps::Cell cell);
-  std::uint8_t withLayers(std::uint8_t number, maps::Cell cell);
+  CellCode::Curve numberOfGround(maps::Cell cell);
+  CellCode::Curve withLayers(CellCode::Curve number, maps::Cell cell);
   bool alike(maps::Cell cell) const noexcept;
   maps::CellBox within(const maps::CellBox& range) const noexcept;
 
   std::shared_ptr<const GroundSite> site_;
   CostCurveTable table_;
   AddedCost added_;
-  int level_ = 0, step_level_ = 0;
   WheelSwath swath_;
   std::vector<bool> borders_;
   LearnedCells learned_;

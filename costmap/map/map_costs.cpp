@@ -11,7 +11,9 @@
 namespace talus::costmap {
 namespace {
 
-constexpr double kFull = 0.75;  // fraction of curve indices in use above which all are reassigned
+std::size_t mostOf(const CostCurveTable& table) {
+  return std::min(CostCurveTable::kMost - 1, 256 + 2 * table.size());
+}
 
 std::vector<std::shared_ptr<CostTile>> emptyTiles(const maps::Grid& grid) {
   const auto across = [](int cells) {
@@ -46,7 +48,7 @@ MapCosts::MapCosts(std::shared_ptr<MapSurface> surface, const ProgressMonitor& w
       curves_(std::make_unique<GroundCurves>(surface_->site())),
       published_(std::make_unique<PublishedGrid>()) {
   published_->store(measured(watch));
-  if (curves_->table().overflowed()) published_->store(renumbered());
+  most_curves_ = mostOf(curves_->table());
 }
 
 MapCosts::~MapCosts() = default;
@@ -74,7 +76,7 @@ std::shared_ptr<const CostGrid> MapCosts::published() const noexcept {
 }
 
 std::optional<GroundBelief> MapCosts::ground(maps::Cell cell) const {
-  const std::uint8_t number = published()->at(cell).curve();
+  const CellCode::Curve number = published()->at(cell).curve();
   if (number >= CellCode::kUnknown) return std::nullopt;
   return curves_->table().belief(number);
 }
@@ -144,7 +146,7 @@ void MapCosts::publish(const EvidenceField& field) {
 }
 
 void MapCosts::publishAll(const EvidenceField& field) {
-  curves_->restart(0);
+  curves_->restart();
   learned_ = changed_ = {allOf(surface_->grid())};
   publish(field, true);
 }
@@ -173,24 +175,15 @@ void MapCosts::publish(const EvidenceField& field, bool whole) {
   heights_m_.reset();
 }
 
-// Ensures that no cost of an incremental version is below that of a complete one. At level 0, each curve
-// depends on its kind alone. At a coarser level with free curve indices, a complete computation would use the
-// same or a finer level. In all other cases, all indices are reassigned.
+// Each curve depends on its kind alone, so that an incremental version equals a complete one. Curves of former
+// versions are discarded when most are such.
 std::shared_ptr<const CostGrid> MapCosts::costed(const std::vector<maps::CellBox>& changed) {
   std::shared_ptr<const CostGrid> next = rewritten(changed);
-  const bool extreme = curves_->level() == 0 || curves_->level() == curves_->coarsest();
-  const bool room = extreme || curves_->table().used() <= kFull;
-  return curves_->table().overflowed() || !room ? renumbered() : next;
-}
-
-// Recomputes all cells at the finest level that leaves free curve indices.
-std::shared_ptr<const CostGrid> MapCosts::renumbered() {
-  for (int level = 0;; ++level) {
-    curves_->restart(level);
-    auto next = rewritten({allOf(surface_->grid())});
-    const bool room = !curves_->table().overflowed() && curves_->table().used() <= kFull;
-    if (room || level == curves_->coarsest()) return next;
-  }
+  if (curves_->table().size() <= most_curves_) return next;
+  curves_->restart();
+  next = rewritten({allOf(surface_->grid())});
+  most_curves_ = mostOf(curves_->table());
+  return next;
 }
 
 // Recomputes the cells of the ranges. The cost is requested after the codes, because new codes may add

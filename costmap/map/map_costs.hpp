@@ -78,11 +78,11 @@ class MapCosts {
   void publish(const EvidenceField& field, bool whole);
   std::shared_ptr<const CostGrid> costed(const std::vector<maps::CellBox>& changed);
   std::shared_ptr<const CostGrid> rewritten(const std::vector<maps::CellBox>& ranges);
-  std::shared_ptr<const CostGrid> renumbered();
 
   std::shared_ptr<MapSurface> surface_;
   std::unique_ptr<GroundCurves> curves_;
   std::unique_ptr<PublishedGrid> published_;
+  std::size_t most_curves_;                         // number above which former curves are discarded
   std::vector<maps::CellBox> learned_, changed_;    // changes since the newest version
   std::optional<MapSurface::Gradients> gradients_;  // gradients of the next version
   std::optional<HeightTable> heights_m_;            // elevations of the next version, for the whole map

@@ -123,14 +123,11 @@ class TraversabilityMap {
   /// Publishes all changes since the last call as a new version of the cost grid. Recomputes the cells whose
   /// ground changed and the cells from which a wheel reaches changed ground. Tiles (64x64 cells) without such
   /// cells are shared with the previous version. Readers do not wait, and a running planner keeps its
-  /// version. The cost curves have at most 254 indices: if no index is free, all cells receive new indices
-  /// with coarser steps of the estimates (GroundKind).
+  /// version.
   ///
   /// The costs are bit-identical to those of publishAll(), for any sequence of changes. A cell depends on its
   /// shape, on the rounded state of the terrain classes (ClassEvidence::stateInSteps()) and on the evidence
-  /// within reach of its patch of 8x8 blocks, and is recomputed after a change of any of these. Exception:
-  /// after the curve indices were exhausted, the steps may be up to 8 times as coarse as those of
-  /// publishAll(); no cost is lower.
+  /// within reach of its patch of 8x8 blocks, and is recomputed after a change of any of these.
   void publish();
   /// Recomputes the cost of all cells and publishes a new version.
   void publishAll();

@@ -101,8 +101,8 @@ std::string mapBeside(const std::string& scenario_path, const std::string& map) 
 std::shared_ptr<const costmap::CostGrid> evenGround(const maps::Raster<std::uint8_t>& walls) {
   maps::Raster<costmap::CellCode> cells(walls.grid());
   for (std::size_t i = 0; i < walls.values().size(); ++i)
-    cells.values()[i] =
-        costmap::CellCode({.curve = walls.values()[i] == 0 ? std::uint8_t{0} : costmap::CellCode::kBlocked});
+    cells.values()[i] = costmap::CellCode(
+        {.curve = walls.values()[i] == 0 ? costmap::CellCode::Curve{0} : costmap::CellCode::kBlocked});
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, flatCost()));
 }
 

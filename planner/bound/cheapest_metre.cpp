@@ -1,14 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <talus/planner/bound/cheapest_metre.hpp>
 
 namespace talus::planner {
 
 double cheapestMetre_J(const costmap::CostGrid& map) {
-  std::array<bool, 256> used{};
+  std::vector<bool> used(std::size_t{costmap::CellCode::kBlocked} + 1);
   for (std::size_t i = 0; i < map.content().tiles.size(); ++i)
     for (const costmap::CellCode cell : map.content().tiles.tile(i).cells) used[cell.curve()] = true;
   float cheapest = std::numeric_limits<float>::infinity();

@@ -32,7 +32,8 @@ class CodeNumbers {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
-  std::vector<std::vector<std::uint32_t>> tables_ = std::vector<std::vector<std::uint32_t>>(256);
+  std::vector<std::vector<std::uint32_t>> tables_ =
+      std::vector<std::vector<std::uint32_t>>(std::size_t{costmap::CellCode::kBlocked} + 1);
   std::uint32_t size_ = 0;
 };
 

@@ -6,7 +6,7 @@ namespace talus::planner {
 namespace {
 
 constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell without an allowed heading
-constexpr std::size_t kCodes = std::size_t{1} << 14;
+constexpr int kRecentBits = 14;
 
 std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
   return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid.width) +
@@ -22,12 +22,12 @@ MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCo
       limits_(limits),
       region_(region),
       slot_of_(map_->grid().size(), kNone),
-      recent_(kCodes) {}
+      recent_(std::size_t{1} << kRecentBits) {}
 
 std::uint32_t MeshCosts::newPrices(costmap::CellCode code) {
-  Recent& recent = recent_[(code.bits() * 2654435761U) >> 18];  // multiplicative hash to kCodes values
-  if (recent.bits == code.bits() && recent.prices != kNone) return recent.prices;
-  recent = {code.bits(), kClosed};
+  Recent& recent = recent_[code.recentSlot(kRecentBits)];
+  if (recent.code == code.number() && recent.prices != kNone) return recent.prices;
+  recent = {code.number(), kClosed};
   DirectionalCostBounds::Limits limits;
   if (!limits_.of(code, limits)) return kClosed;
   recent.prices = static_cast<std::uint32_t>(prices_.size());

@@ -46,7 +46,8 @@ class MeshCosts {
   };
   // Most recent cell code with a given hash value, and its costs. Neighbouring cells often have equal codes.
   struct Recent {
-    std::uint32_t bits = 0, prices = kNone;
+    std::uint64_t code = 0;
+    std::uint32_t prices = kNone;
   };
 
   std::uint32_t newPrices(costmap::CellCode code);

@@ -13,7 +13,7 @@ namespace {
 
 using costmap::CellCode;
 
-constexpr std::size_t kMostCurves = 254;
+constexpr std::size_t kMostCopies = 254;
 constexpr double kSurchargeStep = 1.25;  // factor between levels
 constexpr double kLeastShare = 1.0 / 3;  // smallest share of traversable cells
 constexpr std::size_t kHeadings = 8;
@@ -23,7 +23,7 @@ class Levels {
  public:
   explicit Levels(const costmap::TravelCost& cost)
       : curves_(cost.curves().size()),
-        levels_(std::clamp<std::size_t>(kMostCurves / std::max<std::size_t>(curves_, 1), 1, 8)) {}
+        levels_(std::clamp<std::size_t>(kMostCopies / std::max<std::size_t>(curves_, 1), 1, 8)) {}
 
   std::shared_ptr<const costmap::TravelCost> cost(const costmap::TravelCost& base) const {
     std::vector<costmap::TravelCurve> all;
@@ -41,9 +41,9 @@ class Levels {
     return std::make_shared<costmap::TravelCost>(base.limits(), std::move(all));
   }
 
-  std::uint8_t number(std::size_t curve, double surcharge) const {
+  CellCode::Curve number(std::size_t curve, double surcharge) const {
     const double level = std::round(std::log(std::max(surcharge, 1.0)) / std::log(kSurchargeStep));
-    return static_cast<std::uint8_t>(
+    return static_cast<CellCode::Curve>(
         curve + curves_ * static_cast<std::size_t>(std::min(level, static_cast<double>(levels_ - 1))));
   }
 
@@ -83,7 +83,7 @@ double Pooling::mean(CellCode cell) const noexcept {
 CellCode Pooling::code(maps::Cell coarse) const {
   const maps::Grid& grid = map_.grid();
   double dz_dx = 0.0, dz_dy = 0.0, cost = 0.0;
-  std::array<int, kMostCurves + 2> curves{};
+  std::vector<int> curves(map_.cost().curves().size());
   int cells = 0, entered = 0;
   const int last_row = std::min((coarse.row + 1) * factor_, grid.height),
             last_column = std::min((coarse.column + 1) * factor_, grid.width);
@@ -103,7 +103,7 @@ CellCode Pooling::code(maps::Cell coarse) const {
   CellCode::Parts parts{.curve = CellCode::kBlocked};
   if (entered == 0 || entered < kLeastShare * cells) return CellCode(parts);
   const auto most = static_cast<std::size_t>(std::max_element(curves.begin(), curves.end()) - curves.begin());
-  parts = {dz_dx / entered, dz_dy / entered, static_cast<std::uint8_t>(most)};
+  parts = {dz_dx / entered, dz_dy / entered, static_cast<CellCode::Curve>(most)};
   const double plain = mean(CellCode(parts)), share = static_cast<double>(entered) / cells;
   parts.curve = levels_.number(most, cost / entered / plain / share);
   return CellCode(parts);

@@ -133,7 +133,7 @@ LiftedGround::LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazard
 }
 
 LiftedGround::Kind LiftedGround::kindOf(Cell cell, const HazardsOf& hazards) const {
-  const std::uint8_t curve = map_.at(cell).curve();
+  const CellCode::Curve curve = map_.at(cell).curve();
   if (curve < map_.cost().curves().size()) return Kind::Open;
   if (curve != CellCode::kBlocked) return Kind::Unseen;
   if (!hazards) return Kind::Fixed;
@@ -163,7 +163,7 @@ bool LiftedGround::isSteep(CellCode code) const noexcept {
 bool LiftedGround::refuses(Cell cell, double gradient) const noexcept {
   const TravelCost::Limits& limits = map_.cost().limits();
   if (gradient > std::min(limits.max_along, limits.max_across)) return true;
-  const std::uint8_t ground = ground_[map_.grid().index(cell)];
+  const CellCode::Curve ground = ground_[map_.grid().index(cell)];
   if (ground >= map_.cost().curves().size()) return false;
   const TravelCurve& curve = map_.cost().curves()[ground];
   return !(curve.price(gradient, 0.0) < kBlocked) || !(curve.price(-gradient, 0.0) < kBlocked);
@@ -197,7 +197,7 @@ void LiftedGround::findGround() {
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const std::size_t i = grid.index({column, row});
-      const std::uint8_t curve = map_.at({column, row}).curve();
+      const CellCode::Curve curve = map_.at({column, row}).curve();
       if (curve >= map_.cost().curves().size()) continue;
       ground_[i] = curve;
       known[i] = true;

@@ -62,7 +62,7 @@ class LiftedGround {
   std::vector<Kind> kinds_;
   // Hazards of kSolid, of the cell or of the cell that requires the clearance.
   std::vector<costmap::Hazard> solid_;
-  std::vector<std::uint8_t> ground_;  // cost-curve index of the nearest cell that is not closed
+  std::vector<costmap::CellCode::Curve> ground_;  // cost-curve index of the nearest cell that is not closed
   std::optional<StepEdges> edges_;
 };
 

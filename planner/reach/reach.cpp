@@ -40,9 +40,9 @@ const HeadingSet& Reach::headingsOf(Cell cell) {
   const costmap::CellCode code = map_.at(cell);
   const HeadingSet& own = headings_.of(code);
   if (sense_ == Sense::From || own.all()) return own;
-  const auto known = reversed_.find(code.bits());
+  const auto known = reversed_.find(code.number());
   return known != reversed_.end() ? known->second
-                                  : reversed_.emplace(code.bits(), own.reversed()).first->second;
+                                  : reversed_.emplace(code.number(), own.reversed()).first->second;
 }
 
 void Reach::enqueue(std::size_t index) {

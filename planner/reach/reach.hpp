@@ -76,7 +76,7 @@ class Reach {
   const costmap::CostGrid& map_;
   HeadingSets& headings_;
   Sense sense_;
-  std::unordered_map<std::uint32_t, HeadingSet> reversed_;
+  std::unordered_map<std::uint64_t, HeadingSet> reversed_;
   std::vector<std::uint8_t> seen_;
   std::unordered_map<std::size_t, Entries> cones_;
   std::deque<std::size_t> open_;

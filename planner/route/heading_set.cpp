@@ -189,7 +189,7 @@ HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode ce
 }
 
 const HeadingSet& HeadingSets::known(costmap::CellCode cell) {
-  const auto found = sets_.find(cell.bits());
+  const auto found = sets_.find(cell.number());
   if (found != sets_.end()) return found->second;
   HeadingSet set;
   if (cell.curve() == free_) {
@@ -202,7 +202,7 @@ const HeadingSet& HeadingSets::known(costmap::CellCode cell) {
     }
     set = allowedHeadings(cost_, cell, *limits);
   }
-  return sets_.try_emplace(cell.bits(), set, &arena_).first->second;
+  return sets_.try_emplace(cell.number(), set, &arena_).first->second;
 }
 
 }  // namespace talus::planner

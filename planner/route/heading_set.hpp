@@ -67,13 +67,13 @@ class HeadingSet {
 /// Not thread-safe; the TravelCost must outlive the object.
 class HeadingSets {
  public:
-  explicit HeadingSets(const costmap::TravelCost& cost, std::optional<std::uint8_t> free = {})
+  explicit HeadingSets(const costmap::TravelCost& cost, std::optional<costmap::CellCode::Curve> free = {})
       : cost_(cost),
         free_(free),
         sets_(*new (arena_.allocate(sizeof(Sets), alignof(Sets))) Sets(&arena_)),
         limits_(cost.curves().size()),
         gentle_(cost.curves().size()),
-        recent_(kRecent) {}
+        recent_(std::size_t{1} << kRecentBits) {}
   HeadingSets(const HeadingSets&) = delete;
   HeadingSets& operator=(const HeadingSets&) = delete;
   /// Returns the allowed headings of a cell with the given code.
@@ -81,10 +81,10 @@ class HeadingSets {
     if (cell.curve() < gentle_.size() &&
         cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() < gentle_[cell.curve()])
       return all_;
-    Recent& recent = recent_[(cell.bits() * 2654435761U) >> 20];  // multiplicative hashing to kRecent slots
-    if (recent.set != nullptr && recent.bits == cell.bits()) return *recent.set;
+    Recent& recent = recent_[cell.recentSlot(kRecentBits)];
+    if (recent.set != nullptr && recent.code == cell.number()) return *recent.set;
     const HeadingSet& set = known(cell);
-    recent = {cell.bits(), &set};
+    recent = {cell.number(), &set};
     return set;
   }
 
@@ -101,17 +101,17 @@ class HeadingSets {
   // Cell code and heading set of a recent call of of(), because neighbouring cells have equal codes. Sets in
   // sets_ keep their address.
   struct Recent {
-    std::uint32_t bits = 0;
+    std::uint64_t code = 0;
     const HeadingSet* set = nullptr;
   };
-  static constexpr std::size_t kRecent = 4096;
+  static constexpr int kRecentBits = 12;
 
   const HeadingSet& known(costmap::CellCode cell);
 
-  using Sets = std::pmr::unordered_map<std::uint32_t, HeadingSet>;
+  using Sets = std::pmr::unordered_map<std::uint64_t, HeadingSet>;
 
   const costmap::TravelCost& cost_;
-  std::optional<std::uint8_t> free_;
+  std::optional<costmap::CellCode::Curve> free_;
   std::pmr::monotonic_buffer_resource arena_;
   Sets& sets_;  // in the arena, never destroyed: destruction delayed a stopped plan by 0.5 s
   std::vector<std::optional<Limits>> limits_;

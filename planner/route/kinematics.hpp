@@ -31,7 +31,7 @@ struct Kinematics {
 
   /// Returns the costs of one radian of turning on a cell with CellCode::curve() = `curve`, the index of the
   /// cost curve of its ground.
-  const TurnCosts& turnsOn(std::uint8_t curve) const noexcept {
+  const TurnCosts& turnsOn(costmap::CellCode::Curve curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };

@@ -64,12 +64,12 @@ planner::Route exampleRoute() {
 
 Scene exampleScene() {
   Scene scene = sceneOf(exampleMap(), {.title = "Example <hills> & route"});
-  scene.categories = maps::Raster<CategoryShares>(scene.grid());
+  scene.headings = maps::Raster<HeadingShares>(scene.grid());
   for (int row = 0; row < 80; ++row)
     for (int column = 0; column < 120; ++column) {
       const bool known = !std::isnan(scene.elevation_m[{column, row}]);
       const auto category = known ? static_cast<std::size_t>((column / 20 + row / 20) % 3) : std::size_t{3};
-      scene.categories[{column, row}].count[category] = 1;
+      scene.headings[{column, row}].count[category] = 1;
     }
   addRoute(scene, exampleRoute());
   return scene;

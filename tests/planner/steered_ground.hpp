@@ -27,7 +27,7 @@ inline std::shared_ptr<const costmap::CostGrid> randomDescent(unsigned seed) {
     const bool blocked = unit() < 0.12;
     cell = costmap::CellCode({.dz_dx = 0.3 * (unit() - 0.5),
                               .dz_dy = 0.05 + 0.15 * unit(),
-                              .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
+                              .curve = blocked ? costmap::CellCode::kBlocked : costmap::CellCode::Curve{0}});
   }
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, onlyAlong(-1.0, -1.0 / 512.0)));
 }
@@ -44,7 +44,7 @@ inline std::shared_ptr<const costmap::CostGrid> randomBand(unsigned seed, double
     const double steep = 0.3 + 0.03 * (unit() - 0.5), at = up + 0.06 * (unit() - 0.5);
     cell = costmap::CellCode({.dz_dx = steep * std::cos(at),
                               .dz_dy = steep * std::sin(at),
-                              .curve = blocked ? costmap::CellCode::kBlocked : std::uint8_t{0}});
+                              .curve = blocked ? costmap::CellCode::kBlocked : costmap::CellCode::Curve{0}});
   }
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, onlyAlong(least, most)));
 }

@@ -9,7 +9,7 @@ costmap::TravelState MapExpectation::at(const maps::Point& place, const costmap:
   const auto cell = map_.grid().cellAt(place);
   if (!cell) return {};
   const auto grid = map_.published();
-  const std::uint8_t curve = grid->at(*cell).curve();
+  const auto curve = grid->at(*cell).curve();
   return grid->cost().detail(onSlope(curve >= costmap::CellCode::kUnknown ? classCurve(*cell) : curve),
                              heading);
 }
@@ -37,12 +37,12 @@ WheelExpectation MapExpectation::ofWheel(const maps::Point& place, const maps::P
                : 0.0};
 }
 
-costmap::CellCode MapExpectation::onSlope(std::uint8_t curve) const {
+costmap::CellCode MapExpectation::onSlope(costmap::CellCode::Curve curve) const {
   return costmap::CellCode({.dz_dx = slope_.dzDx(), .dz_dy = slope_.dzDy(), .curve = curve});
 }
 
-std::uint8_t MapExpectation::classCurve(maps::Cell cell) const noexcept {
-  return static_cast<std::uint8_t>(std::max(map_.surface().classIndex(cell), 0));
+costmap::CellCode::Curve MapExpectation::classCurve(maps::Cell cell) const noexcept {
+  return static_cast<costmap::CellCode::Curve>(std::max(map_.surface().classIndex(cell), 0));
 }
 
 }  // namespace talus::planner

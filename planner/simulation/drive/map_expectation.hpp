@@ -26,8 +26,8 @@ class MapExpectation {
 
  private:
   costmap::TravelState ofClass(const maps::Point& place, const costmap::Direction& heading) const;
-  costmap::CellCode onSlope(std::uint8_t curve) const;
-  std::uint8_t classCurve(maps::Cell cell) const noexcept;
+  costmap::CellCode onSlope(costmap::CellCode::Curve curve) const;
+  costmap::CellCode::Curve classCurve(maps::Cell cell) const noexcept;
 
   const costmap::TraversabilityMap& map_;
   costmap::CellCode slope_;

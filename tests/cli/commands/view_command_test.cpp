@@ -26,7 +26,7 @@ TEST(ViewCommand, PlannedRouteIsShownOnItsMap) {
                folder.path());
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr("drawbar-pull margin"));
-  EXPECT_THAT(fileContent(folder / "plan.html"), HasSubstr("\"name\":\"categories\""));
+  EXPECT_THAT(fileContent(folder / "plan.html"), HasSubstr("\"name\":\"allowed headings\""));
   EXPECT_THAT(fileContent(folder / "plan.png"), StartsWith("\x89PNG"));
 
   const Ran view = runTalus({"view", "route.geojson", "--resolution", "1", "--json"}, folder.path());

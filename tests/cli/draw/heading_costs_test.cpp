@@ -39,7 +39,7 @@ nlohmann::json answersOf(const Scene& scene) {
   const Shown shown = show(played(scene, R"((async () => {
     const data = JSON.parse(document.getElementById("data").textContent), read = await readHeadings(data);
     const costs = index => [0, 1, 2, 3, 4, 5, 6, 7].map(k => headingCost(read, index, k * Math.PI / 4 + 0.1));
-    const cells = Array.from(read.kinds, (kind, i) => [data.categories[kind >> 8].label, ...costs(i)]);
+    const cells = Array.from(read.kinds, (kind, i) => [data.categories[kind >> 16].label, ...costs(i)]);
     const box = document.body.appendChild(document.createElement("pre"));
     box.id = "answers";
     box.textContent = JSON.stringify(cells);

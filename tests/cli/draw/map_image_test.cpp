@@ -44,20 +44,20 @@ TEST(Hillshade, LightRangeIgnoresOutliers) {
 }
 
 TEST(MapImage, TopRowIsNorth) {
-  maps::Raster<CategoryShares> categories({1, 2, 1.0, {0.0, 0.0}});
-  categories[{0, 0}].count[2] = 1;  // south: dangerous
-  categories[{0, 1}].count[0] = 1;  // north: safe
-  Image image = categoryImage(categories);
+  maps::Raster<HeadingShares> headings({1, 2, 1.0, {0.0, 0.0}});
+  headings[{0, 0}].count[2] = 1;  // south: none
+  headings[{0, 1}].count[0] = 1;  // north: all
+  Image image = headingImage(headings);
   EXPECT_EQ(image.at(0, 0), pixel(colourOf(terramech::Category::Safe)));
   EXPECT_EQ(image.at(0, 1), pixel(colourOf(terramech::Category::Dangerous)));
 }
 
-TEST(MapImage, CategoryColoursOfABlockAreMixed) {
-  maps::Raster<CategoryShares> categories({1, 1, 1.0, {0.0, 0.0}});
-  categories[{0, 0}].count = {1, 0, 1, 0};
+TEST(MapImage, ColoursOfABlockAreMixed) {
+  maps::Raster<HeadingShares> headings({1, 1, 1.0, {0.0, 0.0}});
+  headings[{0, 0}].count = {1, 0, 1, 0};
   const Colour a = colourOf(terramech::Category::Safe);
   const Colour b = colourOf(terramech::Category::Dangerous);
-  EXPECT_EQ(categoryImage(categories).at(0, 0),
+  EXPECT_EQ(headingImage(headings).at(0, 0),
             pixel({(a.red + b.red) / 2, (a.green + b.green) / 2, (a.blue + b.blue) / 2, 1.0}));
 }
 

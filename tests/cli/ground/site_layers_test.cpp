@@ -1,5 +1,7 @@
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <set>
 
 #include <site_map.hpp>
 
@@ -31,17 +33,26 @@ TEST(SiteLayers, LayersOfAPlaneMatchClosedForm) {
   EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][hole]));
 }
 
-// Property: the category in the best heading is at most that in the worst heading, and lower on some slope.
-TEST(SiteLayers, BestHeadingIsNoWorseThanTheWorst) {
-  bool better = false;
-  for (const double gradient : {0.05, 0.1, 0.15, 0.2, 0.25}) {
-    auto layers = layersOf(costmap::mapOf(std::vector<std::string>(14, "1111111222222"), gradient));
+// Property: the layer equals a count of 720 headings by the cost of a metre; each kind of cell occurs.
+TEST(SiteLayers, AllowedHeadingsMatchTheCostsOfHeadings) {
+  std::set<float> seen;
+  for (const double gradient : {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5}) {
+    const auto map = costmap::mapOf(std::vector<std::string>(14, "1111111222222"), gradient);
+    auto layers = layersOf(map);
+    const auto grid = map.published();
     for (const maps::Cell cell : {maps::Cell{3, 7}, maps::Cell{10, 7}}) {
-      EXPECT_LE(layers["category_best_heading"][cell], layers["category"][cell]) << gradient;
-      better = better || layers["category_best_heading"][cell] < layers["category"][cell];
+      int allowed = 0;
+      for (int k = 0; k < 720; ++k) {
+        const double heading = k * std::numbers::pi / 360.0;
+        allowed +=
+            std::isfinite(grid->cost().costPerMetre(grid->at(cell), {std::cos(heading), std::sin(heading)}));
+      }
+      const float expected = allowed == 720 ? 0.0F : allowed > 0 ? 1.0F : 2.0F;
+      EXPECT_EQ(layers["allowed_headings"][cell], expected) << gradient;
+      seen.insert(expected);
     }
   }
-  EXPECT_TRUE(better);
+  EXPECT_EQ(seen.size(), 3U);
 }
 
 // Property: the weaker soil has less drawbar pull and more sinkage; categories equal those of the map.

@@ -103,7 +103,7 @@ TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
 TEST(TravelCost, UnknownAndBlockedCellsAreInfeasibleInEveryHeading) {
   const TravelCost cost({}, std::vector<TravelCurve>{numbered()});
   for (double heading = -3.0; heading < 3.2; heading += 0.4)
-    for (const std::uint8_t curve : {std::uint8_t{1}, CellCode::kUnknown, CellCode::kBlocked}) {
+    for (const CellCode::Curve curve : {CellCode::Curve{1}, CellCode::kUnknown, CellCode::kBlocked}) {
       EXPECT_TRUE(std::isinf(cost.costPerMetre(CellCode({0.0, 0.0, curve}), towards(heading))));
       EXPECT_EQ(cost.detail(CellCode({0.0, 0.0, curve}), towards(heading)).refusal,
                 curve == CellCode::kBlocked ? Refusal::Blocked : Refusal::Unknown);
@@ -170,7 +170,7 @@ TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
 
 TEST(TravelCost, CurveCountIsLimitedByTheCellCode) {
   EXPECT_NO_THROW(TravelCost({}, std::vector<TravelCurve>(254)));
-  EXPECT_THROW(TravelCost({}, std::vector<TravelCurve>(255)), std::invalid_argument);
+  EXPECT_THROW(TravelCost({}, std::vector<TravelCurve>(65535)), std::invalid_argument);
 }
 
 }  // namespace travel_cost_test

@@ -79,7 +79,7 @@ TEST(AddedCost, TwoDigitSumsAreExact) {
   EXPECT_GT(allowed, 1000);
 }
 
-// Property: any value is rounded up, by at most a fifth from 0.1 J on; a coarser level rounds further up.
+// Property: any value is rounded up, by at most a fifth from 0.1 J on.
 TEST(AddedCost, ValuesAreRoundedUp) {
   const maps::Grid grid{.width = 100, .height = 100, .resolution_m = 1.0, .south_west = {}};
   std::mt19937 random(5);
@@ -87,17 +87,13 @@ TEST(AddedCost, ValuesAreRoundedUp) {
   for (float& v : many.added_J_per_m.values())
     v = uniform(random) < 0.2 ? 0.0F : static_cast<float>(std::pow(10.0, 8.0 * uniform(random) - 2.0));
   const AddedCost added({many});
-  for (int level = 0; level <= AddedCost::kCoarsest; ++level)
-    forEachCell(allOf(grid), [&](Cell c) {
-      const auto value = static_cast<double>(many.added_J_per_m[c]);
-      const double taken = added.J_per_m(added.step(c, level));
-      ASSERT_GE(taken, value * (1.0 - 1e-7));
-      ASSERT_GE(taken, added.J_per_m(added.step(c, std::max(0, level - 1))));
-      ASSERT_EQ(taken == 0.0, value == 0.0);
-      if (level == 0) {
-        ASSERT_LE(taken, std::max(1.2 * value, 0.1) * (1.0 + 1e-6));
-      }
-    });
+  forEachCell(allOf(grid), [&](Cell c) {
+    const auto value = static_cast<double>(many.added_J_per_m[c]);
+    const double taken = added.J_per_m(added.step(c));
+    ASSERT_GE(taken, value * (1.0 - 1e-7));
+    ASSERT_EQ(taken == 0.0, value == 0.0);
+    ASSERT_LE(taken, std::max(1.2 * value, 0.1) * (1.0 + 1e-6));
+  });
 }
 
 // Property: increasing the values of a layer lowers no cost in any heading and allows no refused motion.

@@ -141,10 +141,10 @@ std::shared_ptr<const costmap::CostGrid> randomGround(
   maps::Raster<costmap::CellCode> cells(
       {.width = 24, .height = 17, .resolution_m = 2.0, .south_west = {-7.0, 3.0}});
   for (auto& cell : cells.values())
-    cell = costmap::CellCode(
-        {.dz_dx = 0.12 * (2 * unit() - 1),
-         .dz_dy = 0.12 * (2 * unit() - 1),
-         .curve = unit() < 0.1 ? costmap::CellCode::kBlocked : static_cast<std::uint8_t>(3 * unit())});
+    cell = costmap::CellCode({.dz_dx = 0.12 * (2 * unit() - 1),
+                              .dz_dy = 0.12 * (2 * unit() - 1),
+                              .curve = unit() < 0.1 ? costmap::CellCode::kBlocked
+                                                    : static_cast<costmap::CellCode::Curve>(3 * unit())});
   return std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
 }
 
