@@ -61,6 +61,7 @@ GroundClass groundClass(int number, const terramech::SoilPrior& tested, const te
   GroundClass ground;
   ground.number = number;
   ground.soil = prior.mean;
+  ground.rut_stiffness_std = prior.deviation.rut_stiffness;
   double variance = 0.0;
   for (const auto& [value, deviation] : kFields) {
     const double std = prior.deviation.*deviation;

@@ -26,6 +26,8 @@ struct GroundClass {
   double pull_std = 0.05;
   double mean_std = 0.05;    ///< standard deviation of the mean DP/W of the class [-]
   double sinkage_std = 0.1;  ///< standard deviation of sinkage over wheel radius z/r between places [-]
+  double rut_stiffness_std =
+      0.0;  ///< standard deviation of Soil::rut_stiffness, drawn in simulated worlds [-]
 };
 
 /// Returns the quantities of a wheel on fresh ground of the mean soil of a class at the reference slip 0.5.

@@ -14,6 +14,9 @@ namespace {
 // smallest distance of marks, and overlap at each mark.
 constexpr double kMarks = 96.0, kAround = 20.0;
 
+// [cells] Distance from a section of the ground on which its refinement depends.
+constexpr double kReach = 38.0;
+
 // [cells] Longest window of a search, because a search needs memory for a window's bounding box. Marks are
 // turns, and long straight legs have none.
 constexpr double kWindow = 256.0;
@@ -45,8 +48,6 @@ Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& s
     best_J = tried_J;
     stretch = std::move(tried);
   };
-  for (double cells = options_.coarsest_cells; cells >= options_.finest_cells && !stop(); cells /= 2)
-    take(shifted(cost, stretch, cells * cell_m, options_.shift, stop));
   RefinementCache none;
   take(byWindows(
       stretch, {kWindow * cell_m, kAround * cell_m},
@@ -66,17 +67,14 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
     best_J = tried_J;
     route = std::move(tried);
   };
-  take(shortCut(cost, route, options_.short_cut_cells * cell_m, stop));
-  const double reach_cells = 2 * options_.coarsest_cells + options_.corridor.reach_cells + 2;
   const CorridorSearch search(cost, options_.corridor);
-  const WindowCut cut{kMarks * cell_m, kAround * cell_m, reach_cells * cell_m};
+  const WindowCut cut{kMarks * cell_m, kAround * cell_m, kReach * cell_m};
   take(overWindows(
       cutAtMarks(route, cut.length_m), cut,
       [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,
       stop));
   take(withFewerTurns(cost, withLongerTacks(cost, route)));
-  const Polyline fewer = withoutIdleTurns(cost, route);
-  return cost.along(fewer) <= best_J * (1.0 + 1e-9) ? fewer : route;
+  return route;
 }
 
 Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options,

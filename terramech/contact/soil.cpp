@@ -33,6 +33,7 @@ void validate(const Soil& soil) {
   check.within("slip_sinkage_exponent", soil.slip_sinkage_exponent, {0.0, 2.0});
   check.within("digging_exponent", soil.digging_exponent, {0.0, 2.0});
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
+  check.within("rut_stiffness", soil.rut_stiffness, {1.0, 1e3});
   check.within("test_gravity_m_s2", soil.test_gravity_m_s2, {0.0, 1e3});
   // Upper bounds are at least a hundred times the values of any known soil.
   check.within("cohesion_Pa", soil.cohesion_Pa, {0.0, 1e9});

@@ -30,6 +30,9 @@ struct Soil {
   /// Factor >= 0 on Hegedus' bulldozing resistance against the side face of a wheel that slides sideways [-];
   /// ishigami_2007 uses 1.
   double side_bulldozing = 1.0;
+  /// Stiffness of soil that a wheel loads for the second time over that of the first time [-], in [1, 1000]; its
+  /// shear modulus K is divided by the root of this value (rutted()). The default is ours.
+  double rut_stiffness = 4.0;
   /// Gravity in which the soil tests were made [m/s^2], in [0, 1e3]; 0: the gravity at the rover's driving
   /// site. underGravity() uses this value.
   double test_gravity_m_s2 = 0.0;

@@ -18,6 +18,7 @@ struct SoilDeviation {
   double slip_sinkage_exponent = 0.0;
   double digging_exponent = 0.0;
   double side_bulldozing = 0.0;
+  double rut_stiffness = 0.0;
 };
 
 /// Prior of a soil: independent Gaussians of all parameters.

@@ -19,6 +19,7 @@ std::span<const FileKey> soilKeys() {
       {"slip_sinkage_exponent", "growth of the sinkage exponent with slip, 0 to 2, default 0"},
       {"digging_exponent", "growth of the sinkage exponent with sideways slip, 0 to 2, default 0.4"},
       {"side_bulldozing", "share of Hegedus' pressure on the side of a wheel, >= 0, default 1"},
+      {"rut_stiffness", "stiffness in the rut of a wheel over that before, 1 to 1000, default 4"},
       {"test_gravity_m_s2",
        "gravity of the soil's test; in less, cohesion and moduli are less by as much; default 0: that of the "
        "rover"},

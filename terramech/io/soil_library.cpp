@@ -176,6 +176,8 @@ SoilPrior readSoil(const YamlFields& fields) {
        fields.stated("digging_exponent", defaults.digging_exponent));
   take(&Soil::side_bulldozing, &SoilDeviation::side_bulldozing,
        fields.stated("side_bulldozing", defaults.side_bulldozing));
+  take(&Soil::rut_stiffness, &SoilDeviation::rut_stiffness,
+       fields.stated("rut_stiffness", defaults.rut_stiffness));
   soil.mean.test_gravity_m_s2 = fields.number("test_gravity_m_s2", defaults.test_gravity_m_s2);
   if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
     fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");

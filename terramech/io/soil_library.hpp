@@ -11,7 +11,7 @@
 ///
 /// A soil file is a mapping of the fields of Soil (name, cohesion_Pa, friction_angle_rad, sinkage_exponent,
 /// cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2, density_kg_m3, slip_sinkage_exponent,
-/// test_gravity_m_s2, digging_exponent, side_bulldozing), at the root of the file or under `soil:`. Every
+/// test_gravity_m_s2, digging_exponent, side_bulldozing, rut_stiffness), at the root of the file or under `soil:`. Every
 /// field except name is a number; all numbers except test_gravity_m_s2 may be {mean: M, std: S}. A list under
 /// `soils:` contains several soils, of which PATH#NAME selects one. A rover file is a mapping of the fields
 /// of Rover, at the root of the file or under `rover:`. Units and checks are described in yaml_fields.hpp.

@@ -1,12 +1,14 @@
+#include <cmath>
+
 #include <talus/terramech/mobility/rut.hpp>
 
 namespace talus::terramech {
 
 Soil rutted(const Soil& soil) {
   Soil rut = soil;
-  rut.cohesive_modulus *= kReloadStiffness;
-  rut.frictional_modulus *= kReloadStiffness;
-  rut.shear_modulus_m /= kReloadShear;
+  rut.cohesive_modulus *= soil.rut_stiffness;
+  rut.frictional_modulus *= soil.rut_stiffness;
+  rut.shear_modulus_m /= std::sqrt(soil.rut_stiffness);
   return rut;
 }
 

@@ -279,7 +279,6 @@ void againstFinest(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const MotionCost cost(map);
   RefineOptions finest;
-  finest.finest_cells = 4.0;
   finest.corridor.reach_cells = 12;
   finest.corridor.points_per_edge = 6;
   finest.slides = 20;

@@ -73,6 +73,9 @@ WorldSoils drawWorld(const Truth& truth, const std::vector<costmap::GroundClass>
     std::mt19937_64 own = drawsOf(draw.seed, ground.number);
     world.classes.push_back(
         varied(stated == truth.classes.end() ? ground.soil : stated->second, truth.spread, own));
+    double& rut = world.classes.back().rut_stiffness;
+    if (truth.as_believed)
+      rut = std::max(1.0, rut + ground.rut_stiffness_std * std::normal_distribution<double>()(own));
   }
   if (truth.as_believed) world.departures = departures(classes, draw.seed);
   world.patches = truth.patches;

@@ -192,7 +192,7 @@ RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   model.effects.push_back({.name = "multipass_reload",
                            .covariate = "pass_index",
                            .channel = Channel::Sinkage,
-                           .parameters = {kReloadStiffness - 1.0, 1.0}});
+                           .parameters = {model.soil.rut_stiffness - 1.0, 1.0}});
   return model;
 }
 
