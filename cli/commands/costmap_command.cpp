@@ -7,13 +7,16 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/allowed_headings.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/ground/category_files.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/site_layers.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/place_beliefs.hpp>
+#include <talus/costmap/surface/cell_boxes.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
+#include <talus/maps/vector/vector_writer.hpp>
 
 namespace talus::cli {
 namespace {
@@ -26,6 +29,7 @@ struct CostmapOptions {
   std::string nav2;
   std::string png;
   std::string octovis;
+  std::string unsafe;
 };
 
 void bind(CLI::App& command, CostmapOptions& options) {
@@ -43,7 +47,19 @@ void bind(CLI::App& command, CostmapOptions& options) {
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
   addOutput(command, "--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
       ->type_name("FILE.ot");
+  addOutput(command, "--unsafe", options.unsafe, "polygons to write of the ground that no heading may enter")
+      ->type_name("AREA.gpkg");
   groupOptions(command, "Output");
+}
+
+void writeUnsafe(const costmap::TraversabilityMap& map, const std::string& path) {
+  HeadingsOfCells headings(map);
+  maps::Raster<std::uint8_t> unsafe(map.grid());
+  costmap::forEachCell(costmap::allOf(map.grid()), [&](maps::Cell cell) {
+    const AllowedHeadings allowed = headings.at(cell);
+    unsafe[cell] = allowed == AllowedHeadings::None || allowed == AllowedHeadings::Unknown ? 1 : 0;
+  });
+  writeFile(path, maps::areaFile(map.elevation(), unsafe, "unsafe", path));
 }
 
 void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path) {
@@ -67,6 +83,7 @@ void writeFiles(const CostmapOptions& options, const costmap::TraversabilityMap&
   if (!options.nav2.empty()) writeNav2Map(map, options.nav2);
   if (!options.png.empty()) savePicture(options.png, sceneOf(map, {.title = map.elevation().source}));
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
+  if (!options.unsafe.empty()) writeUnsafe(map, options.unsafe);
 }
 
 std::string costmapText(const Ground& site, const costmap::CategoryCounts& counts) {

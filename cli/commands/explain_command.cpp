@@ -11,7 +11,6 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/slope_rose.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/motion_options.hpp>
 #include <talus/costmap/map/explanation.hpp>
@@ -25,7 +24,6 @@ struct ExplainOptions {
   std::string at;
   std::optional<double> heading_rad;
   bool next = false;
-  std::string png;
 };
 
 void bind(CLI::App& command, ExplainOptions& options) {
@@ -42,9 +40,6 @@ void bind(CLI::App& command, ExplainOptions& options) {
       "where to drive next: the allowed place nearby whose reading is expected to tell most about "
       "ground that is not safe");
   groupOptions(command, "Place");
-  addOutput(command, "--png", options.png, "picture of cost, slip and slip angle over all headings")
-      ->type_name("FILE.png|FILE.svg");
-  groupOptions(command, "Output");
 }
 
 nlohmann::ordered_json explainJson(const costmap::Explanation& why, const maps::Point& point,
@@ -98,25 +93,6 @@ std::string addNext(const costmap::TraversabilityMap& map, const maps::Cell& cel
       at.x_m, at.y_m, turn, next->cells, next->std, next->after);
 }
 
-SlopeRose roseOf(const costmap::TraversabilityMap& map, const maps::Cell& cell, const std::string& title) {
-  constexpr int kHeadings = 72;
-  const auto grid = map.published();
-  const costmap::CellCode code = grid->at(cell);
-  SlopeRose rose{.title = title, .headings = {}, .uphill_rad = {}};
-  if (code.stepsX() != 0 || code.stepsY() != 0) rose.uphill_rad = std::atan2(code.dzDy(), code.dzDx());
-  for (int k = 0; k < kHeadings; ++k) {
-    const double heading = 2.0 * std::numbers::pi * k / kHeadings;
-    const costmap::Direction towards{std::cos(heading), std::sin(heading)};
-    const costmap::TravelState state = grid->cost().detail(code, towards);
-    rose.headings.push_back({.heading_rad = heading,
-                             .cost_J_per_m = static_cast<double>(grid->cost().costPerMetre(code, towards)),
-                             .slip = static_cast<double>(state.slip),
-                             .slip_angle_rad = grid->cost().hold(code, towards).slip_angle_rad,
-                             .refused = state.refusal != costmap::Refusal::None});
-  }
-  return rose;
-}
-
 int run(const ExplainOptions& options, Context& context) {
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -125,10 +101,6 @@ int run(const ExplainOptions& options, Context& context) {
   std::optional<costmap::Direction> heading;
   if (options.heading_rad) heading = {std::cos(*options.heading_rad), std::sin(*options.heading_rad)};
   const costmap::Explanation why = costmap::explain(site.map, cell, heading);
-  if (!options.png.empty())
-    writeFile(options.png,
-              draw(roseOf(site.map, cell, maps::describe(point, site.map.elevation()) + ": " + why.verdict),
-                   isNamed(options.png, ".svg") ? Canvas::Kind::Svg : Canvas::Kind::Png));
   nlohmann::ordered_json out = explainJson(why, point, cell);
   const std::string next = options.next ? addNext(site.map, cell, out) : "";
   if (context.json)
@@ -147,8 +119,7 @@ void addExplain(CLI::App& app, Context& context) {
        .group = Group::kMaps,
        .description = "explain the category of a cell: quantities, sources, uncertainties",
        .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
-                   "  talus explain map.ot --at 120,80 --next\n"
-                   "  talus explain map.ot --at 120,80 --png rose.png\n"},
+                   "  talus explain map.ot --at 120,80 --next\n"},
       bind, run);
 }
 

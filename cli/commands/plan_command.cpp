@@ -30,6 +30,8 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
 #include <talus/maps/vector/place_reader.hpp>
+#include <talus/maps/vector/vector_writer.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
@@ -77,6 +79,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
     request.chassis = std::make_shared<const planner::Chassis>(*std::move(chassis));
   if (options.max_risk > 0.0) request.risk_limit = RiskLimit{.immobilisation = options.max_risk};
   request.prove = !options.no_proof;
+  request.gap = options.gap;
   request.watch = context.watch("plan");
   if (options.plugin.empty()) context.answerStop();  // a plugin returns no partial route
   return request;
@@ -109,7 +112,8 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
                 const Context& context) {
   const planner::RouteOrigin origin = originOf(ground, context);
   const auto document = routeGeoJson(route, ground.map.elevation(), origin);
-  if (!options.output.empty()) writeRoute(options.output, document, ground.map.elevation(), context);
+  if (!options.output.empty() && !(options.corridor_percent > 0.0))
+    writeRoute(options.output, document, ground.map.elevation(), context);
   if (options.html.empty() && options.png.empty()) return;
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
   const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
@@ -153,6 +157,18 @@ struct Planned {
   Route route;
   double plan_s = 0.0;
 };
+
+// Writes the cells outside of which no route is within the stated excess over the cost of the route.
+void writeCorridor(const PlanOptions& options, const Planned& planned, const Context& context) {
+  const auto map = planned.ground.map.published();
+  const PlanRequest& asked = planned.request;
+  const std::vector<bool> inside = planner::LowerBound().corridor(
+      map, {asked.start, asked.goal}, asked.tolerance_m,
+      (1.0 + 0.01 * options.corridor_percent) * planned.route.summary.cost, context.watch("corridor"));
+  maps::Raster<std::uint8_t> area(map->grid(), 1);
+  for (std::size_t i = 0; i < inside.size(); ++i) area.values()[i] = inside[i] ? 1 : 0;
+  writeFile(options.output, maps::areaFile(planned.ground.map.elevation(), area, "corridor", options.output));
+}
 
 Planned timedPlan(Ground ground, PlanRequest request, const std::function<Route(const PlanRequest&)>& plan) {
   const auto begin = std::chrono::steady_clock::now();
@@ -236,6 +252,7 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   if (route.refused) return refuseOwn(options, planned, context);
   if (route.status == RouteStatus::NoRoute) drawSevered(options, planned, context);
   if (route.status != RouteStatus::Found) return refuse(route, context);
+  if (options.corridor_percent > 0.0) writeCorridor(options, planned, context);
   writeFiles(options, planned.ground, route, context);
   const Timing seconds{.load_s = planned.ground.load_s,
                        .costmap_s = planned.ground.build_s,
@@ -338,7 +355,8 @@ int run(const PlanOptions& asked, Context& context) {
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
   requirePlaces(options);
   planner::RoutePlanner planner = plannerOf(options);
-  if (!options.whole_field && needsWindows(options.ground, options.in_memory))
+  if (!options.whole_field && !(options.corridor_percent > 0.0) &&
+      needsWindows(options.ground, options.in_memory))
     return runInWindows(options, planner.capabilities(), context);
   return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);
 }

@@ -1,6 +1,7 @@
 // talus score DEM --path FILE: cost of a polyline under the planners' cost function.
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_ends.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/route_json.hpp>
 
@@ -29,6 +31,7 @@ struct ScoreOptions {
   std::string plugin, start, goal;  ///< alternative to `path`: the route of a plugin
   double time_limit_s = 0.0;        ///< time limit of the plugin; 0: no limit
   std::string chassis;
+  bool prove = false;
 };
 
 nlohmann::ordered_json scoreJson(const std::vector<planner::Violation>& violations) {
@@ -36,6 +39,22 @@ nlohmann::ordered_json scoreJson(const std::vector<planner::Violation>& violatio
   for (const auto& v : violations)
     list.push_back({{"x_m", v.place.x_m}, {"y_m", v.place.y_m}, {"reason", v.reason}});
   return list;
+}
+
+// The best route between the ends of the polyline, with a proof.
+planner::Plan provenPlan(const planner::Segment& ends, const Ground& ground, const Context& context) {
+  planner::Problem problem{.map = ground.map.published(), .start = ends.from, .goal = ends.to};
+  problem.threads = context.workers();
+  problem.prove = true;
+  problem.watch = context.watch("prove");
+  return planner::NamedPlanner().plan(problem);
+}
+
+std::string betterText(const planner::Plan& best, double cost_J) {
+  if (best.status != planner::RouteStatus::Found) return fmt::format("best route  {}\n", best.reason);
+  return fmt::format("best route  {:.6g} J", best.cost_J) +
+         (std::isfinite(cost_J) ? fmt::format(", {:.1f} % less\n", 100.0 * (1.0 - best.cost_J / cost_J))
+                                : "\n");
 }
 
 std::string scoreText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
@@ -64,6 +83,8 @@ void bind(CLI::App& command, ScoreOptions& options) {
   command.add_option("--goal", options.goal, "goal of the plugin's route")->type_name("PLACE");
   addPluginTime(command, options.time_limit_s);
   addChassisOption(command, options.chassis);
+  command.add_flag("--prove", options.prove,
+                   "also plan between the ends: the proven bound, and the cost of the best route");
   groupOptions(command, "Path");
 }
 
@@ -119,17 +140,23 @@ int run(const ScoreOptions& options, Context& context) {
   plan.cost_J = planner::MotionCost(map).along(plan.points);
   if (!violations.empty()) plan.cost_J = INFINITY;
   const planner::Segment ends{plan.points.front(), plan.points.back()};
-  plan.lower_bound_J = std::min(plan.cost_J, planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
+  std::optional<planner::Plan> best;
+  if (options.prove) best = provenPlan(ends, ground, context);
+  plan.lower_bound_J =
+      std::min(plan.cost_J,
+               best ? best->lower_bound_J : planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const planner::Route route = annotated(plan, {.map = *map, .planner = "none"});
   if (context.json) {
     auto json = summaryJson(route);
     if (!violations.empty()) json["status"] = "infeasible";
     json["violations"] = scoreJson(violations);
+    if (best)
+      json["best_cost"] = std::isfinite(best->cost_J) ? nlohmann::ordered_json(best->cost_J) : nullptr;
     json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
     printJson(json);
   } else {
-    print(scoreText(route, violations));
+    print(scoreText(route, violations) + (best ? betterText(*best, plan.cost_J) : ""));
   }
   return violations.empty() ? Exit::kDone : Exit::kNo;
 }
@@ -143,6 +170,7 @@ void addScore(CLI::App& app, Context& context) {
        .group = Group::kRoutes,
        .description = "compute the cost of a polyline and list its violations",
        .examples = "  talus score dem.tif --path route.geojson --rover mer --json\n"
+                   "  talus score dem.tif --path line.gpkg --prove\n"
                    "  talus score dem.tif --path waypoints.csv --rover mer --chassis rocker-bogie\n"},
       bind, run);
 }

@@ -40,7 +40,9 @@ struct PlanOptions {
   std::size_t in_memory = 40'000'000;
   /// True if the whole map is searched at full resolution, not a corridor around a coarse route.
   bool whole_field = false;
-  bool no_proof = false;      ///< true if no improved lower bound and no alternative corridors are computed
+  bool no_proof = false;  ///< true if no improved lower bound and no alternative corridors are computed
+  double corridor_percent = 0.0;  ///< excess over the cost of the route whose corridor is written; 0: none
+  double gap = 0.0;           ///< proven gap at which planning ends; 0: as small as the usual work allows [-]
   double time_limit_s = 0.0;  ///< time limit of planning; 0: no limit
   std::string output;
   std::string html;  ///< file for an HTML page; empty: no page

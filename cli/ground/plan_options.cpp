@@ -61,6 +61,15 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
       ->capture_default_str();
   command.add_flag("--no-proof", options.no_proof,
                    "do not search a lower bound, nor its region for a cheaper route: quicker, for loops");
+  command.add_option("--gap", options.gap, "end at this proven gap: share of the cost above its lower bound")
+      ->type_name("SHARE")
+      ->check(within(1e-4, 0.99))
+      ->excludes("--no-proof");
+  command
+      .add_option("--corridor", options.corridor_percent,
+                  "write to -o AREA.gpkg the area that every route within this excess over the cost stays in")
+      ->type_name("PERCENT")
+      ->check(within(0.01, 1000.0));
   command.add_flag(
       "--whole-field", options.whole_field,
       "read and search the whole map at full resolution instead of a corridor around a coarse route");
@@ -74,6 +83,10 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
 }
 
 void requirePlaces(const PlanOptions& options) {
+  const bool one_leg = options.pairs.empty() && options.via.empty() && options.goals.size() < 2;
+  if (options.corridor_percent > 0.0 && !(one_leg && options.output.ends_with(".gpkg")))
+    throw InputError({"--corridor", "needs one start, one goal and -o AREA.gpkg",
+                      "remove --via, --pairs and further goals, and name a file .gpkg"});
   if (!options.pairs.empty()) {
     if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
         !options.png.empty() || options.max_risk > 0.0 || !options.drive.chassis.empty() ||

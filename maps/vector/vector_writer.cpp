@@ -4,6 +4,7 @@
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
+#include <gdal_alg.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -129,6 +130,38 @@ std::string vectorFile(const std::string& driver, const ElevationMap& map,
     if (file && !document.empty()) file->SetMetadataItem(kDocument, document.c_str(), kDomain);
   }
   if (errors.any()) throw InputError({path, "GDAL cannot write it: " + errors.last(), "write GeoJSON"});
+  return std::string(memory.bytes());
+}
+
+std::string areaFile(const ElevationMap& map, const Raster<std::uint8_t>& inside, const std::string& name,
+                     const std::string& path) {
+  if (!path.ends_with(".gpkg"))
+    throw InputError({path, "areas are written as GeoPackage", "name a file .gpkg"});
+  const Grid& grid = inside.grid();
+  const Placer placed("GPKG", map, path);
+  const GdalErrors errors;
+  const CPLConfigOptionSetter date("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z", false);
+  const Dataset cells(driverNamed("MEM").Create("", grid.width, grid.height, 1, GDT_Byte, nullptr));
+  GDALRasterBand& band = *cells->GetRasterBand(1);
+  for (int row = 0; row < grid.height; ++row) {  // GDAL's first row is the northernmost
+    auto* values = const_cast<std::uint8_t*>(&inside[{0, grid.height - 1 - row}]);
+    if (band.RasterIO(GF_Write, 0, row, grid.width, 1, values, grid.width, 1, GDT_Byte, 0, 0) != CE_None)
+      break;
+  }
+  double transform[] = {
+      grid.south_west.x_m, grid.resolution_m, 0.0, grid.south_west.y_m + grid.height * grid.resolution_m, 0.0,
+      -grid.resolution_m};
+  cells->SetGeoTransform(transform);
+  const MemoryFile memory("gpkg");
+  {
+    const GDALDatasetUniquePtr file(
+        driverNamed("GPKG").Create(memory.name.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRLayer* layer =
+        file ? file->CreateLayer(name.c_str(), const_cast<OGRSpatialReference*>(placed.crs()), wkbPolygon)
+             : nullptr;
+    if (layer) GDALPolygonize(&band, &band, layer, -1, nullptr, nullptr, nullptr);
+  }
+  if (errors.any()) throw InputError({path, "GDAL cannot write it: " + errors.last(), "check the disk"});
   return std::string(memory.bytes());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,11 @@ void requireWritable(const std::string& driver, const ElevationMap& map, const s
 std::string vectorFile(const std::string& driver, const ElevationMap& map,
                        const std::vector<VectorLayer>& layers, const std::string& path,
                        const std::string& document = "");
+
+/// Returns the bytes of a GeoPackage with the cells of a raster that are not 0, as polygons in the CRS of the map.
+/// @throws InputError for a path that does not end with .gpkg
+std::string areaFile(const ElevationMap& map, const Raster<std::uint8_t>& inside, const std::string& name,
+                     const std::string& path);
 
 /// Content of a GeoPackage: the stored document, and the positions of the first line of the first layer.
 struct StoredDocument {

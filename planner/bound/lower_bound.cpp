@@ -110,16 +110,17 @@ double planeBound_J(const DirectionalCostBounds& of, const Segment& places, doub
 }  // namespace
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
-                              double goal_tolerance_m, const StopCheck& stop, double known_J) {
+                              double goal_tolerance_m, const StopCheck& stop, double known_J, double gap) {
+  const double even_J = (1.0 - std::max(kEven, gap)) * known_J;
   to_goal_.clear();
   const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
-  if (straight_J >= (1.0 - kEven) * known_J) return straight_J;
+  if (straight_J >= even_J) return straight_J;
   const auto starts = cornersAround(map->grid(), places.from, 0.0);
   if (!prepare(map, places.to, goal_tolerance_m, stop)) return straight_J;
   double bound_J = std::max(straight_J, leastAt(level_1_, map->grid(), starts));
   bound_J = std::max(bound_J, planeBound_J(octagons_->limits(), places, tolerance_m_, bound_J));
-  if (bound_J >= (1.0 - kEven) * known_J) return std::min(known_J, bound_J);
-  return std::min(known_J, std::max(bound_J, narrowed_J(places, starts, known_J, stop)));
+  if (bound_J >= even_J) return std::min(known_J, bound_J);
+  return std::min(known_J, std::max(bound_J, narrowed_J(places, starts, known_J, gap, stop)));
 }
 
 bool LowerBound::prepare(const std::shared_ptr<const costmap::CostGrid>& map, maps::Point goal,
@@ -136,6 +137,14 @@ bool LowerBound::prepare(const std::shared_ptr<const costmap::CostGrid>& map, ma
   }
   to_goal_ = level_1_;
   return !to_goal_.empty();
+}
+
+std::vector<bool> LowerBound::corridor(const std::shared_ptr<const costmap::CostGrid>& map,
+                                       const Segment& places, double goal_tolerance_m, double most_J,
+                                       const StopCheck& stop) {
+  if (!prepare(map, places.to, goal_tolerance_m, stop)) return {};
+  narrowed_J(places, cornersAround(map->grid(), places.from, 0.0), most_J, 0.0, stop);
+  return stop() || from_start_.empty() ? std::vector<bool>{} : inside_;
 }
 
 double LowerBound::toGoal_J(maps::Point place) const noexcept {
@@ -186,7 +195,8 @@ double LowerBound::costFor(std::size_t cells, double least_J, double known_J) co
 }
 
 double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
-                              const StopCheck& stop) {
+                              double gap, const StopCheck& stop) {
+  const double enough_J = (1.0 - (gap > 0.0 ? gap : kEnough)) * known_J;
   const maps::Grid& grid = map_->grid();
   const auto ends = cornersAround(grid, goal_, tolerance_m_);
   from_start_ = cornerField(map_, octagonOf(), starts, stop, RouteSense::FromStart);
@@ -204,7 +214,7 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
   double bound_J = leastAt(from_start_, grid, ends);
   for (int round = 0;; ++round) {
     forEachInside([&](maps::Cell cell, std::size_t at) { inside_[at] = throughCell_J(cell) <= known_J; });
-    if (round == kFitRounds || bound_J >= (1.0 - kEnough) * known_J) break;
+    if (round == kFitRounds || bound_J >= enough_J) break;
     const double most_J = costFor(kFitted + grid.size() / kShare, bound_J, known_J);
     bool stopped = false;
     forEachInside([&](maps::Cell cell, std::size_t at) {
@@ -234,7 +244,7 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
   fits = {};
   SubSolution::Parts parts{map_, places, tolerance_m_, 0.0, cheapestMetre_J(*map_), from_start_, {}};
   std::size_t work = 0;
-  for (std::size_t cells = kMeshCells; bound_J < (1.0 - kEnough) * known_J && work < kMeshWork; cells *= 2) {
+  for (std::size_t cells = kMeshCells; bound_J < enough_J && work < kMeshWork; cells *= 2) {
     parts.most_J = costFor(cells, bound_J, known_J);
     parts.region.assign(grid.size(), false);
     forEachInside(

@@ -29,15 +29,20 @@ class LowerBound {
  public:
   /// Returns the lower bound [J] for routes from `places.from` to within `goal_tolerance_m` of `places.to`.
   /// `known_J` is the cost of a known route; the result is between 0 and known_J. If the relative difference
-  /// of a bound from known_J is at most kEven, no further level is computed. A level that a stop ended
-  /// contributes 0.
+  /// of a bound from known_J is at most `gap` or kEven, no further level is computed. A level that a stop ended
+  /// contributes 0. `gap` 0: levels 2 and 3 end at kEnough.
   double operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                     double goal_tolerance_m, const StopCheck& stop = {},
-                    double known_J = std::numeric_limits<double>::infinity());
+                    double known_J = std::numeric_limits<double>::infinity(), double gap = 0.0);
 
   /// Computes level 1 of toGoal_J(). Returns false after a stop or if there is no bound.
   bool prepare(const std::shared_ptr<const costmap::CostGrid>& map, maps::Point goal, double goal_tolerance_m,
                const StopCheck& stop);
+
+  /// Returns the cells, by index, outside of which no route of at most `most_J` [J] leads; empty after a stop or if
+  /// there is no bound.
+  std::vector<bool> corridor(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
+                             double goal_tolerance_m, double most_J, const StopCheck& stop = {});
 
   /// Returns the best lower bound [J] of the cost from a place to the goal of the latest call, bilinear in each
   /// cell and therefore proven on cell sides only; 0 if there is none, infinite where no route leads.
@@ -45,7 +50,7 @@ class LowerBound {
 
   /// Relative difference to the cost of the known route up to which a bound suffices.
   static constexpr double kEven = 1e-4;
-  /// Relative difference up to which levels 2 and 3 suffice.
+  /// Relative difference up to which levels 2 and 3 suffice without a stated gap.
   static constexpr double kEnough = 0.02;
 
  private:
@@ -54,7 +59,7 @@ class LowerBound {
   template <typename Each>
   void forEachInside(Each each) const;
   double costFor(std::size_t cells, double least_J, double known_J) const;
-  double narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
+  double narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J, double gap,
                     const StopCheck& stop);
 
   std::shared_ptr<const costmap::CostGrid> map_;

@@ -207,7 +207,7 @@ Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyl
 void FieldPlanner::tryOverPoints(const Problem& problem, const Stage& stage, const StopCheck& stop,
                                  Plan& plan) {
   const AddedTime proof(plan.proof_s);
-  if (stop() || plan.lower_bound_J >= (1.0 - kProven) * plan.cost_J) return;
+  if (stop() || plan.lower_bound_J >= (1.0 - std::max(kProven, problem.gap)) * plan.cost_J) return;
   const MotionCost cost(problem.map);
   const auto take = [&](Polyline points) {
     const double cost_J = cost.along(points);
@@ -236,7 +236,7 @@ Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline
   const Segment ends{stage.from, stage.to};
   const auto proven_J = [&] {
     const AddedTime proof(plan.proof_s);
-    return bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J);
+    return bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J, problem.gap);
   };
   plan.lower_bound_J = std::min(plan.cost_J, problem.prove ? proven_J() : 0.0);
   return plan;

@@ -49,6 +49,7 @@ Problem problemOf(MapPointer map, const PlanRequest& request, const PlannerSetti
           .seed = settings.seed,
           .threads = settings.threads,
           .prove = request.prove,
+          .gap = request.gap,
           .hazards = request.hazards,
           .whole_field = settings.whole_field,
           .watch = request.watch,

@@ -21,7 +21,7 @@ namespace talus {
 
 /// Version of this interface. The number increases with every change of this file that is incompatible with
 /// older plugins or programs.
-inline constexpr int kPlannerInterfaceVersion = 7;
+inline constexpr int kPlannerInterfaceVersion = 8;
 
 /// Properties of a plugin (a shared library with planners), and capabilities of its configured planner.
 struct PlannerCapabilities {
@@ -85,6 +85,9 @@ struct PlanRequest {
   planner::HazardsOf hazards{};
   /// true: also compute an improved lower bound and search routes on other sides of obstacles; slow.
   bool prove = false;
+  /// With `prove`: relative gap between cost and lower bound at which the search ends, [0, 1); 0: as small as the
+  /// usual work allows.
+  double gap = 0.0;
   /// Limit of the immobilisation risk; empty: risk enters only through its weight in the cost.
   std::optional<RiskLimit> risk_limit{};
   /// Receives the progress and requests a stop. After a stop plan() returns the status Cancelled, or the best

@@ -123,6 +123,7 @@ PlanRequest requestOf(const Problem& problem, const ProgressMonitor& watch) {
                       .start_heading_rad = problem.start_heading_rad,
                       .goal_heading_rad = problem.goal_heading_rad,
                       .prove = problem.prove,
+                      .gap = problem.gap,
                       .watch = watch};
   if (problem.kinematics.turning_radius_m > 0.0 || !problem.kinematics.may_reverse)
     request.kinematics = problem.kinematics;

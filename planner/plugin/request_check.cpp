@@ -30,6 +30,7 @@ void requireRanges(const PlanRequest& request) {
   };
   finite("start_heading_rad", request.start_heading_rad);
   finite("goal_heading_rad", request.goal_heading_rad);
+  if (!(request.gap >= 0 && request.gap < 1)) outOfRange("gap", request.gap, "at least 0 and below 1");
   if (!(request.tolerance_m >= 0)) outOfRange("tolerance_m", request.tolerance_m, ">= 0");
   if (request.kinematics && !terramech::isTurningRadius(request.kinematics->turning_radius_m))
     outOfRange("kinematics.turning_radius_m", request.kinematics->turning_radius_m, "0 or 0.001 to 1000");

@@ -198,7 +198,8 @@ Plan PosePlanner::plan(const Problem& problem) {
     const Segment ends{asked.start, stops[i]};
     const auto proven_J = [&] {
       const AddedTime proof(whole.proof_s);
-      return bound_(problem.map, ends, tolerance_m, StopCheck(problem.watch, time.left_s()), leg.cost_J);
+      return bound_(problem.map, ends, tolerance_m, StopCheck(problem.watch, time.left_s()), leg.cost_J,
+                    problem.gap);
     };
     const double bound_J = problem.prove ? proven_J() : 0.0;
     whole.lower_bound_J += std::min(bound_J, leg.cost_J);

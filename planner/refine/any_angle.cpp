@@ -15,7 +15,7 @@ namespace {
 constexpr double kMarks = 96.0, kAround = 20.0;
 
 // [cells] Distance from a section of the ground on which its refinement depends.
-constexpr double kReach = 38.0;
+constexpr double kNear = 38.0;
 
 // [cells] Longest window of a search, because a search needs memory for a window's bounding box. Marks are
 // turns, and long straight legs have none.
@@ -68,7 +68,7 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
     route = std::move(tried);
   };
   const CorridorSearch search(cost, options_.corridor);
-  const WindowCut cut{kMarks * cell_m, kAround * cell_m, kReach * cell_m};
+  const WindowCut cut{kMarks * cell_m, kAround * cell_m, kNear * cell_m};
   take(overWindows(
       cutAtMarks(route, cut.length_m), cut,
       [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,

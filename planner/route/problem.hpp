@@ -30,6 +30,7 @@ struct Problem {
   /// True: the planner also computes a lower bound and searches its region for a cheaper route, which takes
   /// several times as long as the cost-to-go field. False: no lower bound.
   bool prove = false;
+  double gap = 0.0;  ///< relative gap at which the proof ends, [0, 1); 0: as small as the usual work allows
   /// Function that returns the hazard for which the rover may not enter a cell on any heading, used to
   /// describe an obstruction. If empty, every such cell is attributed to hazards. Must outlive planning.
   HazardsOf hazards{};

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7282},     {"costmap", 13096},
-                           {"planner", 24006}, {"cli", 15335},       {"examples", 1703}, {"tests", 61096}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7321},     {"costmap", 13096},
+                           {"planner", 24029}, {"cli", 15267},       {"examples", 1703}, {"tests", 61111}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

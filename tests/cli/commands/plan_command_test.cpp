@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -24,6 +25,38 @@ std::string dem() {
     text += "\n";
   }
   return text;
+}
+
+// Property: a plan that keeps out of the unsafe area costs little more; a corridor does not change the route; the proof
+// reaches a stated gap; a line is scored against the best route.
+TEST(PlanCommand, AreasAndGapAreAsStated) {
+  const Folder folder;
+  folder.write("dem.asc", dem());
+  folder.write("far.csv", "x_m,y_m\n5.5,4.5\n5.5,18.5\n26.5,4.5\n");
+  const auto run = [&folder](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(),
+                 {"dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido", "--json"});
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = runTalus(words, folder.path());
+    EXPECT_NE(ran.code, 2) << ran.err;
+    return json::parse(ran.out);
+  };
+  const std::vector<std::string> ends{"--start", "5.5,4.5", "--goal", "26.5,4.5"};
+  const auto plan = [&](std::vector<std::string> more) {
+    more.insert(more.end(), ends.begin(), ends.end());
+    return run({"plan"}, more);
+  };
+  const json best = plan({});
+  run({"costmap"}, {"--unsafe", "unsafe.gpkg"});
+  const json around = plan({"--keep-out", "unsafe.gpkg"});  // grown by half the rover's width
+  EXPECT_GE(around["cost"], best["cost"]);
+  EXPECT_LE(around["cost"].get<double>(), 1.3 * best["cost"].get<double>());
+  EXPECT_EQ(plan({"--corridor", "5", "-o", "area.gpkg"})["cost"], best["cost"]);
+  EXPECT_TRUE(std::filesystem::exists(folder / "area.gpkg"));
+  EXPECT_LE(plan({"--gap", "0.5"})["gap"].get<double>(), 0.5 / (1.0 - 0.5));
+  const json scored = run({"score", "--prove"}, {"--path", "far.csv"});
+  EXPECT_EQ(scored["best_cost"], best["cost"]);
+  EXPECT_GE(scored["lower_bound"].get<double>(), 0.9 * best["lower_bound"].get<double>());
 }
 
 // All outputs of a feasible plan are tested in one run, because the start of the program dominates the time.

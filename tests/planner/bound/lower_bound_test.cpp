@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -31,6 +32,38 @@ TEST(LowerBound, BoundIsBelowEveryPlannedRoute) {
       EXPECT_GT(bound, 0.0);
     }
   }
+}
+
+// Property: every planned route through a random place that costs at most the stated cost stays in the corridor, which
+// leaves cells out.
+TEST(LowerBound, CorridorContainsEveryRouteOfItsCost) {
+  int inside = 0, outside = 0, left_out = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const auto map = randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.1, .roughness = 0.1});
+    FieldPlanner planner;
+    Problem asked{.map = map, .start = {2.3, 2.7}, .goal = {35.2, 27.9}};
+    const Plan best = planner.plan(asked);
+    if (best.status != RouteStatus::Found) continue;
+    const double most_J = 1.1 * best.cost_J;
+    const auto corridor = LowerBound().corridor(map, {asked.start, asked.goal}, 0.0, most_J);
+    ASSERT_EQ(corridor.size(), map->grid().size());
+    left_out += static_cast<int>(std::ranges::count(corridor, false));
+    std::mt19937 random(seed);
+    for (int k = 0; k < 20; ++k) {
+      asked.via = {{0.1 * static_cast<double>(random() % 400), 0.1 * static_cast<double>(random() % 300)}};
+      const Plan plan = planner.plan(asked);
+      if (plan.status != RouteStatus::Found || plan.cost_J > most_J) {
+        ++outside;
+        continue;
+      }
+      ++inside;
+      for (const maps::Point vertex : plan.points)
+        EXPECT_TRUE(corridor[map->grid().index(*map->grid().cellAt(vertex))]) << seed << ' ' << k;
+    }
+  }
+  EXPECT_GT(inside, 10);
+  EXPECT_GT(outside, 10);
+  EXPECT_GT(left_out, 100);
 }
 
 // Ramps of one gradient and soil, 20 cells wide: ground on which the bound is close to the cost.
