@@ -233,41 +233,29 @@ bool LiftedGround::isFreed(Constraint constraint, Hazard kinds, std::size_t cell
   return false;
 }
 
-std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constraint, Hazard kinds) const {
+std::shared_ptr<const costmap::CostGrid> LiftedGround::without(Constraint constraint, Hazard kinds,
+                                                               std::optional<Constraint> also) const {
   const maps::Grid& grid = map_.grid();
-  const bool of_cells =
-      constraint == Constraint::Hazard || constraint == Constraint::Unknown || constraint == Constraint::Rim;
-  bool any = false;
-  for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = isFreed(constraint, kinds, i);
-  if (of_cells && !any) return nullptr;
+  const auto ofCells = [](Constraint c) {
+    return c == Constraint::Hazard || c == Constraint::Unknown || c == Constraint::Rim;
+  };
+  for (const Constraint each : {constraint, also.value_or(constraint)}) {
+    bool any = !ofCells(each);
+    for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = isFreed(each, kinds, i);
+    if (!any) return nullptr;
+  }
   const auto freed = [&](Cell cell, CellCode code) {
     const std::size_t i = grid.index(cell);
-    if (!isFreed(constraint, kinds, i)) return code;
+    if (!isFreed(constraint, kinds, i) && !(also && isFreed(*also, kinds, i))) return code;
     if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
-    const bool stays = constraint == Constraint::Hazard && has(solid_[i], Hazard::Step) && isSteep(code);
+    const bool climbs = also == Constraint::Slope || also == Constraint::Pitch;
+    const bool stays =
+        constraint == Constraint::Hazard && !climbs && has(solid_[i], Hazard::Step) && isSteep(code);
     return stays ? code : code.withCurve(ground_[i]);
   };
   return std::make_shared<const costmap::CostGrid>(
       revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
-                       return costWithout(constraint, map_.cost());
-                     }}));
-}
-
-std::shared_ptr<const costmap::CostGrid> LiftedGround::withoutSlopesAndSteps() const {
-  const maps::Grid& grid = map_.grid();
-  const auto isStep = [this](std::size_t i) { return isFreed(Constraint::Hazard, Hazard::Step, i); };
-  bool any = false;
-  for (std::size_t i = 0; i < kinds_.size() && !any; ++i) any = has(solid_[i], Hazard::Step) && isStep(i);
-  if (!any) return nullptr;
-  const auto freed = [&](Cell cell, CellCode code) {
-    const std::size_t i = grid.index(cell);
-    if (!isStep(i) && !isFreed(Constraint::Slope, kSolid, i)) return code;
-    if (edges_->at(cell) == StepEdges::Kind::Sheer) code = edges_->settled(cell);
-    return code.withCurve(ground_[i]);
-  };
-  return std::make_shared<const costmap::CostGrid>(
-      revised(map_, {.ranges = {{{0, 0}, {grid.width - 1, grid.height - 1}}}, .code = freed, .cost = [&] {
-                       return costWithout(Constraint::Slope, map_.cost());
+                       return costWithout(also && !ofCells(*also) ? *also : constraint, map_.cost());
                      }}));
 }
 

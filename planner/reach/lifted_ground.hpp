@@ -36,11 +36,10 @@ class LiftedGround {
   LiftedGround(const costmap::CostGrid& map, const HazardsOf& hazards, bool across = false);
 
   /// Returns the map without a constraint; null if the constraint closes no cell and excludes no heading. For
-  /// Hazard only cells that the hazards `kinds` alone close, and their clearance, are opened.
-  std::shared_ptr<const costmap::CostGrid> without(Constraint constraint,
-                                                   costmap::Hazard kinds = kSolid) const;
-  /// Returns the map without Slope and Hazard::Step; null if no cell is closed because of a step.
-  std::shared_ptr<const costmap::CostGrid> withoutSlopesAndSteps() const;
+  /// Hazard only cells that the hazards `kinds` alone close, and their clearance, are opened. `also` is removed together
+  /// with `constraint`, which must be Hazard, Unknown or Rim then.
+  std::shared_ptr<const costmap::CostGrid> without(Constraint constraint, costmap::Hazard kinds = kSolid,
+                                                   std::optional<Constraint> also = {}) const;
 
   /// Hazards that belong to Constraint::Hazard.
   static constexpr costmap::Hazard kSolid = costmap::Hazard::KeepOut | costmap::Hazard::Obstacle |

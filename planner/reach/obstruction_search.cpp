@@ -9,6 +9,7 @@
 namespace talus::planner {
 namespace {
 
+using costmap::Hazard;
 using maps::Cell;
 using maps::Point;
 
@@ -50,8 +51,7 @@ std::string text(Point p) {
   return buffer;
 }
 
-const char* remedy(costmap::Hazard hazard) noexcept {
-  using costmap::Hazard;
+const char* remedy(Hazard hazard) noexcept {
   switch (hazard) {
     case Hazard::KeepOut:
       return "keep-out areas, or cells that a layer refuses, and their clearance close every way: reduce "
@@ -94,6 +94,27 @@ const char* remedy(Constraint constraint) noexcept {
   return "";
 }
 
+const char* what(Hazard hazard) noexcept {
+  switch (hazard) {
+    case Hazard::KeepOut:
+      return "keep-out areas";
+    case Hazard::Obstacle:
+      return "impassable classes";
+    case Hazard::Rocks:
+      return "rocks";
+    case Hazard::Step:
+      return "steps";
+    default:
+      return "rough ground";
+  }
+}
+
+const char* what(Constraint constraint) noexcept {
+  constexpr const char* kWhat[] = {"the pitch limit",   "the roll limit",     "soil",  "hazards",
+                                   "unobserved ground", "the rim of the map", "slopes"};
+  return kWhat[static_cast<std::size_t>(constraint)];
+}
+
 }  // namespace
 
 Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
@@ -128,29 +149,37 @@ void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsO
                 const OpensOn& opens, const StopCheck& stop) {
   if (stop() || map.grid().size() > kTriedCells) return;
   const LiftedGround ground(map, hazards, slopesAcross(map, {found.last, found.first}));
+  const auto opensWithout = [&](Constraint constraint, Hazard kinds = LiftedGround::kSolid,
+                                std::optional<Constraint> also = {}) {
+    if (stop()) return false;
+    const auto lifted = ground.without(constraint, kinds, also);
+    return lifted && opens(*lifted);
+  };
   for (const Constraint constraint :
        {Constraint::Unknown, Constraint::Hazard, Constraint::Soil, Constraint::Pitch, Constraint::Roll,
-        Constraint::Rim, Constraint::Slope}) {
-    if (found.lifting || stop()) break;
-    const auto lifted = ground.without(constraint);
-    if (lifted && opens(*lifted)) found.lifting = constraint;
-  }
-  if (found.lifting == Constraint::Hazard && hazards) {
-    using costmap::Hazard;
+        Constraint::Rim, Constraint::Slope})
+    if (!found.lifting && opensWithout(constraint)) found.lifting = constraint;
+  // Kinds of hazards, alone or together with another constraint.
+  const auto findKind = [&] {
+    if (found.lifting != Constraint::Hazard || !hazards) return;
     for (const Hazard kind :
-         {Hazard::KeepOut, Hazard::Obstacle, Hazard::Rocks, Hazard::Step, Hazard::Roughness}) {
-      if (found.hazard || stop()) break;
-      const auto lifted = ground.without(Constraint::Hazard, kind);
-      if (lifted && opens(*lifted)) found.hazard = kind;
+         {Hazard::KeepOut, Hazard::Obstacle, Hazard::Rocks, Hazard::Step, Hazard::Roughness})
+      if (!found.hazard && opensWithout(Constraint::Hazard, kind, found.also)) found.hazard = kind;
+  };
+  findKind();
+  // The least set of two: slopes are tried as a whole before their parts.
+  for (const Constraint first : {Constraint::Hazard, Constraint::Unknown, Constraint::Rim})
+    for (const Constraint second : {Constraint::Slope, Constraint::Unknown, Constraint::Rim}) {
+      if (found.lifting || first == second || (first == Constraint::Rim && second == Constraint::Unknown))
+        continue;
+      if (!opensWithout(first, LiftedGround::kSolid, second)) continue;
+      found.lifting = first;
+      found.also = second;
+      for (const Constraint part : {Constraint::Soil, Constraint::Pitch, Constraint::Roll})
+        if (found.also == Constraint::Slope && opensWithout(first, LiftedGround::kSolid, part))
+          found.also = part;
+      findKind();
     }
-  }
-  if (!found.lifting && !stop()) {
-    const auto lifted = ground.withoutSlopesAndSteps();
-    if (lifted && opens(*lifted)) {
-      found.lifting = Constraint::Slope;
-      found.hazard = costmap::Hazard::Step;
-    }
-  }
   found.tried = !stop();
 }
 
@@ -167,11 +196,13 @@ std::string text(const Obstruction& obstruction, const Segment& places) {
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
                      " lead to the goal; " + where;
-  if (obstruction.lifting == Constraint::Slope && obstruction.hazard)
-    return line + "; slopes and steps together close every way, neither alone: choose another goal";
+  if (obstruction.also)
+    return line + "; " + (obstruction.hazard ? what(*obstruction.hazard) : what(*obstruction.lifting)) +
+           " and " + what(*obstruction.also) +
+           " close every way together, neither alone: change both, or choose another goal";
   if (obstruction.hazard) return line + "; " + remedy(*obstruction.hazard);
   if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
-  return line + (obstruction.tried ? "; more than one constraint closes every way: choose another goal"
+  return line + (obstruction.tried ? "; more than two constraints close every way: choose another goal"
                                    : "; choose another goal");
 }
 

@@ -66,9 +66,10 @@ struct Obstruction {
   /// route.
   std::optional<Constraint> lifting{};
   /// If `lifting` is Hazard: the kind of hazard whose removal, with its clearance, opens a route; empty if
-  /// several kinds must be removed. If `lifting` is Slope, the value Step means that slope limits and steps
-  /// must be removed together.
+  /// several kinds must be removed.
   std::optional<costmap::Hazard> hazard{};
+  /// Constraint that must be removed together with `lifting`, neither alone; empty if `lifting` alone suffices.
+  std::optional<Constraint> also{};
 };
 
 /// Value of a quantity that is not known, for example because the map lacks a layer.

@@ -67,6 +67,7 @@ Json obstructionJson(const Obstruction& why) {
             {"first", place(why.first)}};
   made["lifting"] = why.lifting ? Json(name(*why.lifting)) : Json(nullptr);
   if (why.hazard) made["hazard"] = name(*why.hazard);
+  if (why.also) made["also"] = name(*why.also);
   return made;
 }
 

@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7321},     {"costmap", 13096},
-                           {"planner", 24029}, {"cli", 15267},       {"examples", 1703}, {"tests", 61111}};
+                           {"planner", 24049}, {"cli", 15267},       {"examples", 1703}, {"tests", 61134}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -34,7 +34,9 @@ TEST(ObstructionSearch, ReportsBothCellSetsAndTheConstraintBetween) {
 TEST(ObstructionSearch, EachConstraintIsIdentifiedSeparately) {
   EXPECT_EQ(between(drawn({"..?..", "..?.."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting, Constraint::Unknown);
   // Two walls of different kinds: removing one of them opens no route.
-  EXPECT_FALSE(between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting);
+  const Obstruction both = between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}});
+  EXPECT_EQ(both.lifting, Constraint::Hazard);
+  EXPECT_EQ(both.also, Constraint::Unknown);
   // Ramps: one above the pitch limit on soil that allows 0.3, one above the soil's capacity.
   const auto ramp = [](double steep, double pitch) {
     maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},

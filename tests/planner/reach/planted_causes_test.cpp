@@ -1,4 +1,5 @@
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <string>
@@ -194,19 +195,39 @@ TEST(PlantedCauses, AreNamedAlone) {
     }
 }
 
-// Two obstacles, a bank and a cliff behind it: removing one of them opens no route.
-TEST(PlantedCauses, ABankAndACliffAreNamedTogether) {
-  Site site = levelSite(gridOf(kSide, kSide));
-  site.start = {5.5, 20.5};
-  site.goal = {38.5, 20.5};
-  site.rover.max_pitch_rad = site.rover.max_roll_rad = 0.2;
-  addHeights(
-      site, [](Point at) { return 0.4 * std::clamp(at.x_m - 12.0, 0.0, 6.0) + (at.x_m > 28.0 ? 0.8 : 0.0); });
-  const Plan plan = planOn(std::move(site));
-  ASSERT_EQ(plan.status, RouteStatus::NoRoute);
-  EXPECT_EQ(plan.obstruction->lifting, Constraint::Slope);
-  EXPECT_EQ(plan.obstruction->hazard, Hazard::Step);
-  EXPECT_THAT(plan.reason, ::testing::HasSubstr("slopes and steps together"));
+// Two obstacles, one behind the other: removing one of them opens no route, and both are named.
+TEST(PlantedCauses, TwoObstaclesAreNamedTogether) {
+  const auto between = [](const std::function<void(Site&)>& plant) {
+    Site site = levelSite(gridOf(kSide, kSide));
+    site.start = {5.5, 20.5};
+    site.goal = {38.5, 20.5};
+    plant(site);
+    const Plan plan = planOn(std::move(site));
+    EXPECT_EQ(plan.status, RouteStatus::NoRoute);
+    return plan;
+  };
+  const auto nothing = [](double west_m) {
+    return [west_m](Point at) {
+      return std::abs(at.x_m - west_m) <= 2.0 ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+    };
+  };
+  const Plan bank = between([](Site& site) {
+    site.rover.max_pitch_rad = site.rover.max_roll_rad = 0.2;
+    addHeights(site, [](Point at) {
+      return 0.4 * std::clamp(at.x_m - 12.0, 0.0, 6.0) + (at.x_m > 28.0 ? 0.8 : 0.0);
+    });
+  });
+  EXPECT_EQ(bank.obstruction->lifting, Constraint::Hazard);
+  EXPECT_EQ(bank.obstruction->hazard, Hazard::Step);
+  EXPECT_EQ(bank.obstruction->also, Constraint::Slope);
+  EXPECT_THAT(bank.reason, ::testing::HasSubstr("steps and slopes close every way together"));
+  const Plan unseen = between([&](Site& site) {
+    site.layers.classes = maps::Raster<std::uint8_t>(gridOf(kSide, kSide), 1);
+    for (int row = 0; row < kSide; ++row) site.layers.classes[{14, row}] = 9;
+    addHeights(site, nothing(28.0));
+  });
+  EXPECT_THAT(unseen.reason,
+              ::testing::HasSubstr("impassable classes and unobserved ground close every way"));
 }
 
 }  // namespace planted_causes_test
