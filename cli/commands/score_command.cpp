@@ -74,7 +74,9 @@ std::string scoreText(const planner::Route& route, const std::vector<planner::Vi
 
 void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("--path", options.path, "polyline: a line of a vector file, or CSV with x_m, y_m")
+  command
+      .add_option("--path", options.path,
+                  "polyline: a line of a vector file, or CSV with x_m, y_m or lat, lon")
       ->type_name("FILE");
   addPluginOption(command, options.plugin);
   command

@@ -30,7 +30,9 @@ std::span<const FileKey> vectorFileKeys() {
       {"KML", ".kml: read, and written of maps of Earth"},
       {"MapInfo File", ".tab, .mif: read"},
       {"GeoJSON", ".geojson: read, and written in longitude and latitude of the map's body"},
-      {"CSV", ".csv: columns x_m, y_m, read as a path; written with a row for each vertex"},
+      {"CSV",
+       ".csv: columns x_m, y_m (x and y, easting and northing) or lat, lon, read as a path; written with a "
+       "row for each vertex"},
   };
   return kKeys;
 }

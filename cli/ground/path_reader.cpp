@@ -2,15 +2,22 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/path_reader.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/plausible.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/terrain/place.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
+#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::cli {
 namespace {
@@ -18,29 +25,60 @@ namespace {
 using maps::Point;
 using nlohmann::json;
 
-std::size_t columnOf(const terramech::CsvReader& reader, const std::string& name, const std::string& path) {
-  const auto& header = reader.header();
-  const auto found = std::find(header.begin(), header.end(), name);
-  if (found == header.end())
-    throw InputError(
-        {path, fmt::format("no column {}", name), "a path needs the columns x_m and y_m, or a vector file"});
-  return static_cast<std::size_t>(found - header.begin());
-}
+// Columns of places by their names in lower case, with _ between words. A table is read by the first pair that it
+// has: names that state the frame precede x and y.
+struct PlaceColumns {
+  std::string_view x, y;
+  enum { Metres, Degrees, Unstated } unit;
+};
+constexpr PlaceColumns kPlaceColumns[] = {{"x_m", "y_m", PlaceColumns::Metres},
+                                          {"easting_m", "northing_m", PlaceColumns::Metres},
+                                          {"lon", "lat", PlaceColumns::Degrees},
+                                          {"lng", "lat", PlaceColumns::Degrees},
+                                          {"longitude", "latitude", PlaceColumns::Degrees},
+                                          {"lon_deg", "lat_deg", PlaceColumns::Degrees},
+                                          {"longitude_deg", "latitude_deg", PlaceColumns::Degrees},
+                                          {"easting", "northing", PlaceColumns::Unstated},
+                                          {"x", "y", PlaceColumns::Unstated}};
 
-std::vector<Point> readCsv(const std::string& path) {
+std::vector<Point> readCsv(const std::string& path, const maps::ElevationMap& map) {
   terramech::CsvReader reader(path);
-  const std::size_t x = columnOf(reader, "x_m", path), y = columnOf(reader, "y_m", path);
+  std::vector<std::string> names;
+  for (const std::string& name : reader.header()) names.push_back(maps::lower(terramech::plainName(name)));
+  const auto column = [&](std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  };
+  const auto known = std::ranges::find_if(kPlaceColumns, [&](const PlaceColumns& pair) {
+    return std::max(column(pair.x), column(pair.y)) < names.size();
+  });
+  if (known == std::end(kPlaceColumns))
+    throw InputError(
+        {path, "names no columns of places",
+         "a path needs the columns x_m and y_m (x and y, easting and northing: metres of the map), or "
+         "lat and lon (degrees)"});
+  const std::size_t x = column(known->x), y = column(known->y);
   std::vector<Point> points;
+  bool all_bare = known->unit == PlaceColumns::Unstated;
   for (terramech::CsvRow row; reader.next(row);) {
+    const std::string where = fmt::format("{}:{}", path, row.line);
     Point p;
+    const bool degrees = known->unit == PlaceColumns::Degrees;
     const bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
-                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) && plausible(p.y_m);
+                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) && plausible(p.y_m) &&
+                      (!degrees || (std::abs(p.x_m) <= 360.0 && std::abs(p.y_m) <= 90.0));
     if (!good)
-      throw InputError({fmt::format("{}:{}", path, row.line),
-                        row.fault.empty() ? fmt::format("x_m, y_m: {}", kPlausible) : row.fault,
+      throw InputError({where,
+                        !row.fault.empty() ? row.fault
+                        : degrees          ? "must be a latitude within 90 and a longitude within 360 degrees"
+                                           : fmt::format("{}, {}: {}", known->x, known->y, kPlausible),
                         "fix the row"});
+    if (degrees) p = maps::inMetres(maps::GeoPoint{p.y_m * kDegree, p.x_m * kDegree}, map, where);
+    all_bare = all_bare && maps::asDegrees(p, map);
     points.push_back(p);
   }
+  if (all_bare && !points.empty())
+    throw InputError({path, "has places of the map if its columns are in degrees, not in metres",
+                      "name them lat and lon, or x_m and y_m"});
   return points;
 }
 
@@ -129,8 +167,8 @@ std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& m
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  const bool table = extension == ".csv" || extension == ".txt";
-  std::vector<Point> points = table ? readCsv(path) : drawnPath(path, map);
+  const bool table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
+  std::vector<Point> points = table ? readCsv(path, map) : drawnPath(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});
   maps::requireFewPositions(points.size(), path);
   requireNear(points, map.grid(), path);

@@ -97,37 +97,39 @@ double withinBorder(double at_m, double from_m, int cells, double resolution_m) 
   return at_m == border_m ? border_m - 1e-6 * resolution_m : at_m;
 }
 
-// Refuses a pair in metres that lies elsewhere on the map if it is read as latitude and longitude, in either
-// order: degrees without their suffix.
-void refuseBareDegrees(Point given, const ElevationMap& map, const std::string& name) {
+}  // namespace
+
+std::optional<GeoPoint> asDegrees(Point given, const ElevationMap& map) {
   const Georeference* places = map.places();
   for (const auto& [latitude, longitude] : {std::pair{given.x_m, given.y_m}, {given.y_m, given.x_m}}) {
     if (places == nullptr || std::abs(latitude) > 90 || std::abs(longitude) > 360) continue;
     const GeoPoint as_degrees{latitude * kDegree, longitude * kDegree};
     const auto cell = map.grid().cellAt(places->forward(as_degrees));
-    if (cell && cell != map.grid().cellAt(given))
-      throw InputError({name, "metres without a suffix, and a place of the map if it is in degrees",
-                        "write " + degrees(as_degrees) + " for latitude and longitude"});
+    if (cell && cell != map.grid().cellAt(given)) return as_degrees;
   }
+  return std::nullopt;
 }
 
-}  // namespace
+Point inMetres(const Place& place, const ElevationMap& map, const std::string& name) {
+  if (const auto* point = std::get_if<Point>(&place)) return *point;
+  if (const Georeference* places = map.places()) return places->forward(std::get<GeoPoint>(place));
+  throw InputError({name,
+                    "map '" + map.source + "' has no CRS for a latitude and longitude" +
+                        (map.georeference ? " that is known without PROJ" : ""),
+                    "give x,y in map metres"});
+}
 
 Point locate(const Place& place, const ElevationMap& map, const std::string& name) {
-  const auto* geographic = std::get_if<GeoPoint>(&place);
-  const Georeference* places = map.places();
-  if (geographic != nullptr && places == nullptr)
-    throw InputError({name,
-                      "map '" + map.source + "' has no CRS for a latitude and longitude" +
-                          (map.georeference ? " that is known without PROJ" : ""),
-                      "give x,y in map metres"});
+  const Point given = inMetres(place, map, name);
+  const bool geographic = std::holds_alternative<GeoPoint>(place);
+  if (const auto bare = geographic ? std::nullopt : asDegrees(given, map))
+    throw InputError({name, "metres without a suffix, and a place of the map if it is in degrees",
+                      "write " + degrees(*bare) + " for latitude and longitude"});
   const Grid& grid = map.grid();
-  if (geographic == nullptr) refuseBareDegrees(std::get<Point>(place), map, name);
-  const Point given = geographic != nullptr ? places->forward(*geographic) : std::get<Point>(place);
   const Point point{withinBorder(given.x_m, grid.south_west.x_m, grid.width, grid.resolution_m),
                     withinBorder(given.y_m, grid.south_west.y_m, grid.height, grid.resolution_m)};
   if (grid.cellAt(point)) return point;
-  const std::string where = geographic != nullptr ? " at " + degrees(*geographic) : "";
+  const std::string where = geographic ? " at " + degrees(std::get<GeoPoint>(place)) : "";
   throw InputError({name,
                     format("x %.10g m, y %.10g m", point.x_m, point.y_m) + where + " lies outside the map",
                     "the map " + extent(map.grid())});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -14,6 +15,14 @@ using Place = std::variant<Point, GeoPoint>;
 /// Returns the position that a text states: "x,y" in map coordinates [m], or "lat,lon" in degrees with a
 /// trailing d on each number ("-4.59d,137.44d"). @throws InputError that quotes the text
 Place parsePlace(std::string_view text);
+
+/// Returns the place of the map that a pair in metres is when read as degrees, in either order; nullopt if it is none, or
+/// in the cell of the pair.
+std::optional<GeoPoint> asDegrees(Point given, const ElevationMap& map);
+
+/// Returns the map coordinates [m] of a position. @throws InputError that begins with `name` if it has a latitude and the
+/// map no georeference
+Point inMetres(const Place& place, const ElevationMap& map, const std::string& name);
 
 /// Returns the map coordinates of a position inside the map. `name` begins the error message ("--start
 /// 10,20"). @throws InputError if the position has a latitude but the map has no coordinate reference system

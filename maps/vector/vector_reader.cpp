@@ -181,7 +181,8 @@ std::vector<Point> readLine(const std::string& path, const ElevationMap& map) {
     }
   });
   if (points.empty())
-    throw InputError({path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m"});
+    throw InputError(
+        {path, "contains no line", "a path is a line of a vector file, or CSV with x_m, y_m or lat, lon"});
   return points;
 }
 

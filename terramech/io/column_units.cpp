@@ -133,28 +133,6 @@ std::optional<Kind> kindOf(std::string_view text) {
   return std::nullopt;
 }
 
-/// Returns the name with separators replaced by `_` and the signs % and degree by words: "load [N]" becomes
-/// "load_N".
-std::string plain(std::string_view name) {
-  constexpr std::string_view kDegreeSign = "\xC2\xB0", kParting = " -.,:;/()[]{}\t";
-  std::string text;
-  for (std::size_t k = 0; k < name.size(); ++k) {
-    if (name.substr(k).starts_with(kDegreeSign)) {
-      text += "_deg_";
-      k += kDegreeSign.size() - 1;
-    } else if (name[k] == '%') {
-      text += "_percent_";
-    } else {
-      text += kParting.find(name[k]) == std::string_view::npos ? name[k] : '_';
-    }
-  }
-  std::string once;
-  for (const char c : text)
-    if (c != '_' || (!once.empty() && once.back() != '_')) once += c;
-  if (once.ends_with('_')) once.pop_back();
-  return once;
-}
-
 /// Known column, split into stem and unit.
 struct KnownColumn {
   std::string name, unit{unitOf(name)}, stem{stemOf(name)};
@@ -170,7 +148,7 @@ struct KnownColumn {
 /// Returns why an unknown name is probably this known column; empty if the name is accepted as an unknown
 /// column.
 std::string faultOf(const std::string& name, const KnownColumn& column) {
-  const std::string text = plain(name);
+  const std::string text = plainName(name);
   const std::string small = lower(text), stem = lower(column.stem);
   if (small == lower(column.name)) return "resembles a known column";
   // `time` without unit may be a date, and a single letter may be an axis.
@@ -196,13 +174,33 @@ std::string remedyFor(const std::string& name, const KnownColumn& column) {
 
 }  // namespace
 
+std::string plainName(std::string_view name) {
+  constexpr std::string_view kDegreeSign = "\xC2\xB0", kParting = " -.,:;/()[]{}\t";
+  std::string text;
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    if (name.substr(k).starts_with(kDegreeSign)) {
+      text += "_deg_";
+      k += kDegreeSign.size() - 1;
+    } else if (name[k] == '%') {
+      text += "_percent_";
+    } else {
+      text += kParting.find(name[k]) == std::string_view::npos ? name[k] : '_';
+    }
+  }
+  std::string once;
+  for (const char c : text)
+    if (c != '_' || (!once.empty() && once.back() != '_')) once += c;
+  if (once.ends_with('_')) once.pop_back();
+  return once;
+}
+
 bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>& row,
                const std::string& file) {
   std::vector<std::string> names = header;
   bool any = false;
   for (std::size_t k = 0; k < row.size(); ++k) {
     if (double value = 0.0; parseNumber(row[k], value) || row.size() != header.size()) return false;
-    std::string unit = plain(row[k]);
+    std::string unit = plainName(row[k]);
     std::erase_if(unit, [&](char c) { return c == '_' && unit.starts_with('N'); });  // N m
     if (find(unit) == nullptr && unit != "percent") continue;
     any = true;

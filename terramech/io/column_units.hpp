@@ -23,6 +23,9 @@ std::string_view unitOf(std::string_view name);
 /// Returns a name without its unit ("cohesion" of "cohesion_kPa").
 std::string stemOf(std::string_view name);
 
+/// Returns a name with separators replaced by `_` and the signs % and degree by words: "load [N]" becomes "load_N".
+std::string plainName(std::string_view name);
+
 /// Appends the units of a row below the header ("N", "[m/s]", "%") to the names. Returns false and changes nothing if
 /// a field is a number or none is a known unit. @throws InputError if a name states another unit
 bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>& row,

@@ -55,6 +55,7 @@ std::optional<double> columnFactor(const std::string& unit, const std::string& k
   const std::string_view own = unitOf(known);
   if (unit == own) return 1.0;
   if (!own.empty()) return conversion(unit, own);
+  if (unit == "ratio") return 1.0;
   for (const auto& [share, factor] : kShares)
     if (unit == share) return factor;
   return std::nullopt;
@@ -101,7 +102,7 @@ void TableColumns::map(const MappedColumn& mapped, const TableFile& table) {
   if (!factor) {
     const std::string units = unitsLike(unitOf(mapped.known));
     throw InputError({table.path + ":1", fmt::format("{}: '{}' is no unit of {}", asked, unit, mapped.known),
-                      "its units are " + (units.empty() ? "none or percent" : units)});
+                      "its units are " + (units.empty() ? "ratio and percent" : units)});
   }
   *column = mapped.known;
   if (*factor != 1.0) conversions_.push_back({static_cast<std::size_t>(column - header_.begin()), *factor});

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <locale>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -43,6 +44,7 @@ constexpr Rule kRules[] = {
     // Limit above a right angle, because of measurement errors: tables of wheels pulled sideways reach 1.577.
     {"slip_angle_rad", [](double x) { return std::abs(x) <= 1.6; }, "in [-1.6, 1.6]"},
     {"slope_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
+    {"pitch_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
     {"roll_rad", [](double x) { return std::abs(x) <= 1.5; }, "in [-1.5, 1.5]"},
     {"pass_index", [](double x) { return x >= 1.0 && x <= 1e6 && x == std::floor(x); },
      "1, 2, ... up to 1e6"},
@@ -115,6 +117,21 @@ double checkedNumber(const Column& column, const std::string& field, std::string
   return value;
 }
 
+bool isFinite(double v) {
+  return std::isfinite(v);
+}
+
+// Odds that a column is in percent or degrees, of whose values some lie beyond the ratios or radians of a rover. In
+// its own unit these are faults, whose share has the prior Beta(1, 40); in another unit the share is uniform. The
+// prior odds of another unit are 0.01 (ours).
+double oddsOfOtherUnit(double beyond, double all) {
+  constexpr double kPriorOdds = 0.01, kFaults = 40.0;
+  const double within = all - beyond;
+  return kPriorOdds / kFaults *
+         std::exp(std::lgamma(within + 1.0) - std::lgamma(all + 2.0) - std::lgamma(within + kFaults) +
+                  std::lgamma(all + kFaults + 1.0));
+}
+
 class Table {
  public:
   Table(const std::vector<std::string>& header, const TelemetryOptions& options)
@@ -147,19 +164,31 @@ class Table {
     return "";
   }
 
-  /// Refuses a column most of whose numbers lie beyond its range as those of another unit do.
-  void refuseOtherUnits(const std::string& where) const {
+  /// Refuses a column that is probably in percent or degrees, unless `stated` has its unit.
+  void refuseOtherUnits(const std::string& where, const std::vector<MappedColumn>& stated) const {
+    constexpr double kMostOdds = 0.25;  // rows of another unit may hide danger
     for (const Column& column : columns_) {
-      const bool share = column.name == "slip", angle = column.name.ends_with("_rad");
-      if (column.rule == nullptr || !(share || angle)) continue;
-      const auto beyond = std::ranges::count_if(
-          column.rejected, [](double v) { return std::abs(v) > 1.6 && std::abs(v) <= 360.0; });
-      if (beyond <= std::ssize(column.numbers)) continue;
+      const bool share = column.name == "slip", angle = column.known && column.name.ends_with("_rad");
+      const auto settles = [&](const MappedColumn& m) { return m.known == column.name && !m.unit.empty(); };
+      if (!(share || angle) || std::ranges::any_of(stated, settles)) continue;
+      // Headings may turn on, and a slip angle is near pi in reverse.
+      const double most = column.name == "heading_rad"      ? 8.0 * std::numbers::pi
+                          : column.name == "slip_angle_rad" ? 3.2
+                                                            : 1.6;
+      const auto is_beyond = [&](double v) { return std::abs(v) > most && std::abs(v) <= 360.0; };
+      const auto beyond = std::ranges::count_if(column.rejected, is_beyond) +
+                          std::ranges::count_if(column.numbers, is_beyond);
+      const auto all =
+          std::ranges::count_if(column.rejected, isFinite) + std::ranges::count_if(column.numbers, isFinite);
+      if (oddsOfOtherUnit(static_cast<double>(beyond), static_cast<double>(all)) <= kMostOdds) continue;
+      const auto option = [&](const char* unit) {
+        return fmt::format("--column {0}={0}:{1}", column.name, unit);
+      };
       throw InputError({.where = where + ", column " + column.name,
-                        .reason = std::to_string(beyond) + " values are not " + column.rule->bound + ", as " +
-                                  (share ? "percent" : "degrees") + " are",
-                        .remedy = "if they are, pass --column " + column.name + "=" + column.name +
-                                  (share ? ":percent" : ":deg")});
+                        .reason = fmt::format("{} of {} values lie beyond {:.3g}, as {} do", beyond, all,
+                                              most, share ? "percent" : "degrees"),
+                        .remedy = "pass " + option(share ? "percent" : "deg") + ", or " +
+                                  option(share ? "ratio" : "rad") + " if it is right as it is"});
     }
   }
 
@@ -295,7 +324,7 @@ Telemetry readTelemetry(const TableFile& file, const TelemetryOptions& options,
     if (watch.stopped()) break;
     watch.report(reader.fraction());
   }
-  table.refuseOtherUnits(telemetry.source);
+  table.refuseOtherUnits(telemetry.source, file.columns);
   table.moveInto(telemetry);
   checkUsable(telemetry);
   return telemetry;

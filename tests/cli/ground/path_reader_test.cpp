@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <talus/cli/ground/path_reader.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 
 #include "example_scene.hpp"
@@ -12,6 +15,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+maps::ElevationMap placedMap() {
+  maps::ElevationMap map = exampleMap();
+  map.georeference.emplace(maps::CoordinateSystem{.name = "site", .ellipsoid = maps::kEarth});
+  return map;
+}
+
 std::vector<Point> read(const std::string& name, const std::string& content) {
   const Folder folder;
   return readPath(folder.write(name, content), exampleMap());
@@ -20,6 +29,28 @@ std::vector<Point> read(const std::string& name, const std::string& content) {
 TEST(PathReader, TablesAreReadWithColumnsInAnyOrder) {
   EXPECT_THAT(read("p.csv", "name,y_m,x_m\na,2,1\nb,4.5,3e1\n"), ElementsAre(Point{1, 2}, Point{30, 4.5}));
   EXPECT_THAT(read("p.TXT", "x_m,y_m\n1,2\n"), ElementsAre(Point{1, 2}));
+}
+
+// Property: the names of the columns state the frame, in any case and with units. Degrees are those of the
+// georeference of the map; without names of degrees they are refused.
+TEST(PathReader, ColumnNamesStateTheFrame) {
+  for (const char* table :
+       {"X,Y\n1,2\n", "x [m],y [m]\n1,2\n", "Easting,Northing\n1,2\n", "Y_M;X_M\n2;1\n", "x\ty\n1\t2\n"})
+    EXPECT_THAT(read("p.csv", table), ElementsAre(Point{1, 2})) << table;
+  const maps::GeoPoint place = placedMap().georeference->reverse({1300, 2100});
+  const std::string lat = fmt::format("{:.12f}", place.latitude_rad / kDegree),
+                    lon = fmt::format("{:.12f}", place.longitude_rad / kDegree);
+  const Folder folder;
+  for (const std::string names : {"lat,lon", "Latitude,Longitude", "LAT [deg],LON [deg]", "x,lat,lon"}) {
+    const std::string file =
+        folder.write("p.csv", names + (names[0] == 'x' ? "\n7," : "\n") + lat + "," + lon + "\n");
+    const Point read = readPath(file, placedMap()).front();
+    EXPECT_NEAR(read.x_m, 1300, 1e-5) << names;
+    EXPECT_NEAR(read.y_m, 2100, 1e-5) << names;
+  }
+  const std::string bare = folder.write("bare.csv", "X,Y\n" + lon + "," + lat + "\n");
+  EXPECT_THAT([&] { readPath(bare, placedMap()); },
+              ThrowsMessage<InputError>(HasSubstr("name them lat and lon")));
 }
 
 // Property: the properties x_m, y_m of a route file are read bit for bit, even if its coordinates are
@@ -69,7 +100,9 @@ TEST(PathReader, InvalidPathsAreRejectedWithOneLine) {
     const char* says;
   };
   for (const Case& c :
-       {Case{"a.csv", "x_m,z_m\n1,2\n", "no column y_m"},
+       {Case{"a.csv", "x_m,z_m\n1,2\n", "names no columns of places"},
+        {"n.csv", "lat,lon\n91,2\n", "n.csv:2: must be"},
+        {"m.csv", "lat,lon\n1,2\n", "has no CRS for a latitude"},
         {"b.csv", "x_m,y_m\n1,2\n3,inf\n", "b.csv:3"},
         {"c.csv", "x_m,y_m\n", "contains no point"},
         {"d.json", R"({"type":"FeatureCollection","features":[]})", "contains no line"},

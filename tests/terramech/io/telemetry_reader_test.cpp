@@ -51,19 +51,28 @@ TEST(TelemetryReader, RejectsPhysicallyImpossibleValues) {
   }
 }
 
-// Property: a column most of whose numbers are those of percent or degrees is refused, not thinned out to the rest.
+// Property: a column in percent or degrees is refused, not thinned out to its small values; the unit that an option
+// states is taken; single faults are rows that are left out.
 TEST(TelemetryReader, PercentAndDegreesAreRefusedWithTheOptionThatReadsThem) {
   const auto column = [](const std::string& name, std::initializer_list<double> values) {
     std::string text = "load_N," + name + "\n";
     for (const double v : values) text += "80," + std::to_string(v) + "\n";
     return text;
   };
-  EXPECT_THAT(
-      errorOf(column("slip", {12, 35, 0.4, 8, 90})),
-      HasSubstr("column slip: 4 values are not in [-1, 1], as percent are; if they are, pass --column "
-                "slip=slip:percent"));
+  const std::string gentle = column("slip", {0.7, 0.4, 0.9, 5, 0.8, 0.5, 12, 1.1, 2.2, 3});
+  EXPECT_THAT(errorOf(gentle),
+              HasSubstr("column slip: 4 of 10 values lie beyond 1.6, as percent do; pass --column "
+                        "slip=slip:percent, or --column slip=slip:ratio if"));
   EXPECT_THAT(errorOf(column("slope_rad", {10, 1, 14, -12})),
               HasSubstr("pass --column slope_rad=slope_rad:deg"));
+  EXPECT_THAT(errorOf(column("heading_rad", {90, 91, 90})),
+              HasSubstr("--column heading_rad=heading_rad:deg"));
+  const test::TemporaryFile file{gentle};
+  TableFile table(file.path());
+  table.columns = {{.known = "slip", .name = "slip", .unit = "percent"}};
+  EXPECT_NEAR(readTelemetry(table).at("slip").back(), 0.03, 1e-15);
+  table.columns = {{.known = "slip", .name = "slip", .unit = "ratio"}};
+  EXPECT_EQ(readTelemetry(table).rejected.size(), 5U);
   EXPECT_EQ(read(column("slip", {0.12, 0.35, 40, 0.08})).rejected.size(), 1U);
 }
 
