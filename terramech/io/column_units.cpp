@@ -165,6 +165,8 @@ std::string faultOf(const std::string& name, const KnownColumn& column) {
 }
 
 std::string remedyFor(const std::string& name, const KnownColumn& column) {
+  if (column.unit.empty() && plainName(name) == column.stem + "_percent")
+    return fmt::format("pass --column '{}={}:percent'", column.name, name);
   std::string how = column.unit.empty() ? ", a number without a unit" : ", in " + column.unit;
   if (!column.unit.empty())
     if (const auto factor = conversion(unitOf(name), column.unit); factor && *factor != 1.0)

@@ -117,10 +117,6 @@ double checkedNumber(const Column& column, const std::string& field, std::string
   return value;
 }
 
-bool isFinite(double v) {
-  return std::isfinite(v);
-}
-
 // Odds that a column is in percent or degrees, of whose values some lie beyond the ratios or radians of a rover. In
 // its own unit these are faults, whose share has the prior Beta(1, 40); in another unit the share is uniform. The
 // prior odds of another unit are 0.01 (ours).
@@ -164,31 +160,44 @@ class Table {
     return "";
   }
 
-  /// Refuses a column that is probably in percent or degrees, unless `stated` has its unit.
+  /// Refuses a column that is probably in another unit than its name states, unless `stated` has its unit: percent,
+  /// degrees, or times since 1970 in less than seconds.
   void refuseOtherUnits(const std::string& where, const std::vector<MappedColumn>& stated) const {
     constexpr double kMostOdds = 0.25;  // rows of another unit may hide danger
     for (const Column& column : columns_) {
-      const bool share = column.name == "slip", angle = column.known && column.name.ends_with("_rad");
       const auto settles = [&](const MappedColumn& m) { return m.known == column.name && !m.unit.empty(); };
-      if (!(share || angle) || std::ranges::any_of(stated, settles)) continue;
-      // Headings may turn on, and a slip angle is near pi in reverse.
-      const double most = column.name == "heading_rad"      ? 8.0 * std::numbers::pi
-                          : column.name == "slip_angle_rad" ? 3.2
-                                                            : 1.6;
-      const auto is_beyond = [&](double v) { return std::abs(v) > most && std::abs(v) <= 360.0; };
-      const auto beyond = std::ranges::count_if(column.rejected, is_beyond) +
-                          std::ranges::count_if(column.numbers, is_beyond);
-      const auto all =
-          std::ranges::count_if(column.rejected, isFinite) + std::ranges::count_if(column.numbers, isFinite);
-      if (oddsOfOtherUnit(static_cast<double>(beyond), static_cast<double>(all)) <= kMostOdds) continue;
-      const auto option = [&](const char* unit) {
-        return fmt::format("--column {0}={0}:{1}", column.name, unit);
+      if (!column.known || std::ranges::any_of(stated, settles)) continue;
+      const auto refuse = [&](std::ptrdiff_t beyond, std::ptrdiff_t all, double most, const char* as,
+                              const char* unit, const char* own) {
+        throw InputError({where + ", column " + column.name,
+                          fmt::format("{} of {} values lie beyond {:.3g}, as {} do", beyond, all, most, as),
+                          fmt::format("pass --column {0}={0}:{1}, or {0}={0}:{2} if it is right as it is",
+                                      column.name, unit, own)});
       };
-      throw InputError({.where = where + ", column " + column.name,
-                        .reason = fmt::format("{} of {} values lie beyond {:.3g}, as {} do", beyond, all,
-                                              most, share ? "percent" : "degrees"),
-                        .remedy = "pass " + option(share ? "percent" : "deg") + ", or " +
-                                  option(share ? "ratio" : "rad") + " if it is right as it is"});
+      const auto beyond = [&](double least, double most) {
+        const auto lies = [&](double v) { return std::abs(v) > least && std::abs(v) <= most; };
+        return std::ranges::count_if(column.rejected, lies) + std::ranges::count_if(column.numbers, lies);
+      };
+      constexpr double kMost = std::numeric_limits<double>::max(), kCenturies_s = 1e11;
+      const auto all = beyond(-1.0, kMost);
+      const auto refuseIfOdd = [&](double most, const char* as, const char* unit, const char* own) {
+        const auto odd = beyond(most, 360.0);
+        if (oddsOfOtherUnit(static_cast<double>(odd), static_cast<double>(all)) > kMostOdds)
+          refuse(odd, all, most, as, unit, own);
+      };
+      if (column.name == "slip") refuseIfOdd(1.6, "percent", "percent", "ratio");
+      // Headings may turn on, and a slip angle is near pi in reverse.
+      if (column.name.ends_with("_rad"))
+        refuseIfOdd(column.name == "heading_rad"      ? 8.0 * std::numbers::pi
+                    : column.name == "slip_angle_rad" ? 3.2
+                                                      : 1.6,
+                    "degrees", "deg", "rad");
+      if (const auto late = beyond(kCenturies_s, kMost); column.name == "time_s" && 2 * late > all)
+        refuse(late, all, kCenturies_s, "times since 1970 in less than seconds",
+               2 * beyond(1e17, kMost) > all   ? "ns"
+               : 2 * beyond(1e14, kMost) > all ? "us"
+                                               : "ms",
+               "s");
     }
   }
 

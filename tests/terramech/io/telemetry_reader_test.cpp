@@ -62,11 +62,14 @@ TEST(TelemetryReader, PercentAndDegreesAreRefusedWithTheOptionThatReadsThem) {
   const std::string gentle = column("slip", {0.7, 0.4, 0.9, 5, 0.8, 0.5, 12, 1.1, 2.2, 3});
   EXPECT_THAT(errorOf(gentle),
               HasSubstr("column slip: 4 of 10 values lie beyond 1.6, as percent do; pass --column "
-                        "slip=slip:percent, or --column slip=slip:ratio if"));
+                        "slip=slip:percent, or slip=slip:ratio if"));
   EXPECT_THAT(errorOf(column("slope_rad", {10, 1, 14, -12})),
               HasSubstr("pass --column slope_rad=slope_rad:deg"));
   EXPECT_THAT(errorOf(column("heading_rad", {90, 91, 90})),
               HasSubstr("--column heading_rad=heading_rad:deg"));
+  for (const auto& [digits, unit] : {std::pair{"000", "ms"}, {"000000", "us"}, {"000000000", "ns"}})
+    EXPECT_THAT(errorOf("load_N,time_s\n80,1700000000" + std::string(digits) + "\n"),
+                HasSubstr("--column time_s=time_s:" + std::string(unit) + ","));
   const test::TemporaryFile file{gentle};
   TableFile table(file.path());
   table.columns = {{.known = "slip", .name = "slip", .unit = "percent"}};
