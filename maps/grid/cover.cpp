@@ -2,8 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
-#include <span>
+#include <utility>
 
 #include <talus/maps/grid/cover.hpp>
 
@@ -42,6 +41,13 @@ double turnOf(const Corners& p) {
 struct Span {
   int first = 0, last = -1;
 };
+
+// Indices of the cells that contain a point of the interval [least, most]; coordinates in cells.
+Span cellsIn(double least, double most, int cells) {
+  if (!(least < cells) || !(most >= 0.0)) return {};
+  return {static_cast<int>(std::max(0.0, std::floor(least))),
+          static_cast<int>(std::min(cells - 1.0, std::floor(most)))};
+}
 
 // Indices of the cells that the interval [least, most] overlaps; coordinates in cells.
 Span span(double least, double most, int cells) {
@@ -101,22 +107,38 @@ struct Edge {
   }
 };
 
-template <class Map>
-void addEdges(const Ring& ring, bool outer, const Map& placed, std::vector<Edge>& edges) {
-  for (std::size_t i = 0; i < ring.size(); ++i)
-    edges.push_back({placed(ring[i]), placed(ring[(i + 1) % ring.size()]), outer});
-}
-
-template <class Map>
-std::vector<Edge> edgesOf(const Polygon& polygon, const Map& placed) {
-  std::size_t positions = polygon.outer.size();
-  for (const Ring& hole : polygon.holes) positions += hole.size();
+// Edges of all rings, relative to a point and in units of `size_m`.
+std::vector<Edge> edgesOf(const Polygon& polygon, Point from, double size_m) {
   std::vector<Edge> edges;
-  edges.reserve(positions);
-  addEdges(polygon.outer, true, placed, edges);
-  for (const Ring& hole : polygon.holes) addEdges(hole, false, placed, edges);
+  const auto add = [&](const Ring& ring, bool outer) {
+    const auto placed = [&](std::size_t i) {
+      const Point p = ring[i % ring.size()];
+      return Point{(p.x_m - from.x_m) / size_m, (p.y_m - from.y_m) / size_m};
+    };
+    for (std::size_t i = 0; i < ring.size(); ++i) edges.push_back({placed(i), placed(i + 1), outer});
+  };
+  add(polygon.outer, true);
+  for (const Ring& hole : polygon.holes) add(hole, false);
   return edges;
 }
+
+/// The edges that reach a band of heights; bands must rise.
+class Sweep {
+ public:
+  explicit Sweep(std::vector<Edge> edges) : edges_(std::move(edges)) {
+    std::ranges::sort(edges_, {}, &Edge::least);
+  }
+
+  const std::vector<Edge>& at(double low, double high) {
+    for (; next_ < edges_.size() && edges_[next_].least() <= high; ++next_) reached_.push_back(edges_[next_]);
+    std::erase_if(reached_, [&](const Edge& edge) { return edge.greatest() < low; });
+    return reached_;
+  }
+
+ private:
+  std::vector<Edge> edges_, reached_{};
+  std::size_t next_ = 0;
+};
 
 /// Winding number of the outer ring at a point, and whether the point lies inside an odd number of holes.
 struct Inside {
@@ -132,183 +154,91 @@ struct Inside {
   bool ground() const { return windings != 0 && !hole; }
 };
 
-// True if the rings enclose ground at height y. `edges`: all edges, or those that reach y.
-template <class Edges>
-bool hasGroundAt(double y, double thinnest, const Edges& edges) {
-  struct Crossing {
-    double x = 0.0;
-    int direction = 0;
-    const Edge* edge = nullptr;
-  };
-  std::vector<Crossing> crossings;
+// True if the rings enclose ground at height y.
+bool hasGroundAt(double y, double thinnest, const std::vector<Edge>& edges) {
+  std::vector<std::pair<double, const Edge*>> crossings;
   for (const Edge& edge : edges)
-    if (const int direction = edge.through(y); direction != 0)
-      crossings.push_back({edge.at(y), direction, &edge});
-  std::ranges::sort(crossings, {}, &Crossing::x);
+    if (edge.through(y) != 0) crossings.emplace_back(edge.at(y), &edge);
+  std::ranges::sort(crossings);
   Inside inside;
   for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-    inside.cross(*crossings[i].edge, crossings[i].direction);
-    if (inside.ground() && crossings[i + 1].x - crossings[i].x > thinnest) return true;
+    inside.cross(*crossings[i].second, crossings[i].second->through(y));
+    if (inside.ground() && crossings[i + 1].first - crossings[i].first > thinnest) return true;
   }
   return false;
 }
-
-// True if the rings enclose ground. Tests one height between each two neighbouring heights of positions.
-bool hasGround(double thinnest_x, double thinnest_y, std::vector<Edge>& edges) {
-  std::vector<double> heights;
-  heights.reserve(edges.size());
-  for (const Edge& edge : edges) heights.push_back(edge.a.y_m);
-  std::ranges::sort(heights);
-  std::ranges::sort(edges, {}, &Edge::least);
-  std::vector<Edge> reached;
-  auto next = edges.begin();
-  for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
-    if (heights[i + 1] - heights[i] <= thinnest_y) continue;
-    const double y = heights[i] + 0.5 * (heights[i + 1] - heights[i]);
-    for (; next != edges.end() && next->least() <= y; ++next) reached.push_back(*next);
-    std::erase_if(reached, [&](const Edge& edge) { return edge.greatest() < y; });
-    if (hasGroundAt(y, thinnest_x, reached)) return true;
-  }
-  return false;
-}
-
-/// One row of cells: the winding at the cell centres and the cells that an edge touches. Only the cells from
-/// the first to the last edge of the row are visited.
-class RowCover {
- public:
-  explicit RowCover(int width) : crossings_(static_cast<std::size_t>(width)), touched_(crossings_.size()) {}
-
-  void add(const Edge& edge, int row) {
-    const double low = std::max(edge.least(), static_cast<double>(row)),
-                 high = std::min(edge.greatest(), row + 1.0);
-    double from = edge.at(low), to = edge.at(high);
-    if (edge.a.y_m == edge.b.y_m) to = edge.b.x_m;
-    if (from > to) std::swap(from, to);
-    const auto width = static_cast<double>(touched_.size());
-    if (to >= 0.0 && from < width) {
-      const auto first = static_cast<std::size_t>(std::max(0.0, std::floor(from))),
-                 last = static_cast<std::size_t>(std::min(width - 1.0, std::floor(to)));
-      visit(first, last);
-      for (std::size_t c = first; c <= last; ++c) touched_[c] |= edge.outer ? kOuter : kHole;
-    }
-    const double middle = row + 0.5;
-    if (const int direction = edge.through(middle); direction != 0) {
-      const double first = std::max(0.0, std::ceil(edge.at(middle) - 0.5));
-      const auto c = static_cast<std::size_t>(std::min(first, width - 1.0));
-      visit(c, c);
-      if (first < width) crossings_[c].cross(edge, direction);
-    }
-  }
-
-  /// Sets the covered cells of the row, clears its edges, and returns true if any cell is covered. A cell
-  /// that no outer edge touches lies entirely inside or outside the outer ring; its centre is therefore
-  /// tested.
-  bool close(std::uint8_t* cells) {
-    Inside inside;
-    bool any = false;
-    for (std::size_t c = first_; c < end_; ++c) {
-      inside.windings += crossings_[c].windings;
-      inside.hole ^= crossings_[c].hole;
-      if (inside.ground() || (touched_[c] & kOuter) != 0 || (inside.windings != 0 && touched_[c] != 0)) {
-        cells[c] = 1;
-        any = true;
-      }
-      crossings_[c] = {};
-      touched_[c] = 0;
-    }
-    first_ = crossings_.size();
-    end_ = 0;
-    return any;
-  }
-
- private:
-  static constexpr std::uint8_t kOuter = 1, kHole = 2;
-
-  void visit(std::size_t first, std::size_t last) {
-    first_ = std::min(first_, first);
-    end_ = std::max(end_, last + 1);
-  }
-
-  std::vector<Inside> crossings_;  // change of the winding from the centre of the previous cell
-  std::vector<std::uint8_t> touched_;
-  std::size_t first_ = crossings_.size(), end_ = 0;  // range of the cells that are visited
-};
-
-/// Edges grouped by the row of cells in which they begin. Edges that begin below the grid are in the first
-/// row, and omitted if they also end below.
-class EdgesByRow {
- public:
-  EdgesByRow(const std::vector<Edge>& edges, int rows) : ends_(static_cast<std::size_t>(rows) + 1, 0) {
-    const auto reaches = [rows](const Edge& edge) { return edge.greatest() >= 0.0 && edge.least() < rows; };
-    for (const Edge& edge : edges)
-      if (reaches(edge)) ++ends_[rowOf(edge) + 1];
-    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
-    edges_.resize(ends_.back());
-    for (const Edge& edge : edges)
-      if (reaches(edge)) edges_[ends_[rowOf(edge)]++] = &edge;
-  }
-
-  std::span<const Edge* const> begunIn(int row) const {
-    const auto at = static_cast<std::size_t>(row);
-    const std::size_t first = at == 0 ? 0 : ends_[at - 1];
-    return std::span(edges_).subspan(first, ends_[at] - first);
-  }
-
-  /// Returns the index of the first row in which an edge begins; the height of the grid if there is no edge.
-  int firstRow() const {
-    return static_cast<int>(std::ranges::find_if(ends_, [](std::size_t end) { return end > 0; }) -
-                            ends_.begin());
-  }
-
- private:
-  static std::size_t rowOf(const Edge& edge) {
-    return static_cast<std::size_t>(std::max(0.0, std::floor(edge.least())));
-  }
-
-  std::vector<std::size_t> ends_;  // number of edges that begin in this row and in all rows before
-  std::vector<const Edge*> edges_{};
-};
 
 }  // namespace
 
 bool enclosesGround(const Polygon& polygon) {
   if (polygon.outer.empty()) return false;
-  const Point first = polygon.outer.front();
-  std::vector<Edge> edges = edgesOf(polygon, [&](Point p) {
-    return Point{p.x_m - first.x_m, p.y_m - first.y_m};
-  });
-  double west = 0.0, east = 0.0, south = 0.0, north = 0.0;
+  const std::vector<Edge> edges = edgesOf(polygon, polygon.outer.front(), 1.0);
+  std::vector<double> heights;
+  double west = 0.0, east = 0.0;
+  for (const Edge& edge : edges) {
+    west = std::min(west, edge.a.x_m);
+    east = std::max(east, edge.a.x_m);
+    heights.push_back(edge.a.y_m);
+  }
+  std::ranges::sort(heights);
+  constexpr double kThinnest = 1e-9;
+  Sweep sweep(edges);
+  for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+    const double y = heights[i] + 0.5 * (heights[i + 1] - heights[i]);
+    if (heights[i + 1] - heights[i] > kThinnest * (heights.back() - heights.front()) &&
+        hasGroundAt(y, kThinnest * (east - west), sweep.at(y, y)))
+      return true;
+  }
+  return false;
+}
+
+bool cover(const Polygon& polygon, Raster<std::uint8_t>& mask) {
+  const Grid& grid = mask.grid();
+  const std::vector<Edge> edges = edgesOf(polygon, grid.south_west, grid.resolution_m);
+  double west = grid.width, east = -1.0, south = grid.height, north = -1.0;
   for (const Edge& edge : edges) {
     west = std::min(west, edge.a.x_m);
     east = std::max(east, edge.a.x_m);
     south = std::min(south, edge.a.y_m);
     north = std::max(north, edge.a.y_m);
   }
-  constexpr double kThinnest = 1e-9;
-  const double thinnest_x = kThinnest * (east - west), thinnest_y = kThinnest * (north - south);
-  // Most rings enclose ground at one of these two heights, so that no sort is needed.
-  for (const double part : {0.381966, 0.618034})
-    if (hasGroundAt(south + part * (north - south), thinnest_x, edges)) return true;
-  return hasGround(thinnest_x, thinnest_y, edges);
-}
-
-bool cover(const Polygon& polygon, Raster<std::uint8_t>& mask) {
-  const Grid& grid = mask.grid();
-  const std::vector<Edge> edges = edgesOf(polygon, [&](Point p) {
-    return Point{(p.x_m - grid.south_west.x_m) / grid.resolution_m,
-                 (p.y_m - grid.south_west.y_m) / grid.resolution_m};
-  });
-  const EdgesByRow waiting(edges, grid.height);
-  std::vector<const Edge*> reached;
-  RowCover cells(grid.width);
+  const Span columns = cellsIn(west, east, grid.width), rows = cellsIn(south, north, grid.height);
+  // Of each cell of a row: the change of the winding from the centre of the previous cell, and the rings whose edges
+  // touch the cell.
+  struct Mark {
+    Inside change;
+    bool outer = false, hole = false;
+  };
+  std::vector<Mark> marks(static_cast<std::size_t>(columns.last + 1 - columns.first));
+  const auto mark = [&](int column) -> Mark& {
+    return marks[static_cast<std::size_t>(column - columns.first)];
+  };
+  Sweep sweep(edges);
   bool any = false;
-  for (int row = waiting.firstRow(); row < grid.height; ++row) {
-    const auto begun = waiting.begunIn(row);
-    reached.insert(reached.end(), begun.begin(), begun.end());
-    std::erase_if(reached, [&](const Edge* edge) { return edge->greatest() < row; });
-    if (reached.empty()) continue;
-    for (const Edge* edge : reached) cells.add(*edge, row);
-    any |= cells.close(mask.row(row));
+  for (int row = rows.first; row <= rows.last; ++row) {
+    std::ranges::fill(marks, Mark{});
+    const double middle = row + 0.5;
+    // An edge on the border of two rows belongs to the northern one.
+    for (const Edge& edge : sweep.at(row, std::nextafter(row + 1.0, middle))) {
+      const double a = edge.at(std::max(edge.least(), row + 0.0)),
+                   b = edge.a.y_m == edge.b.y_m ? edge.b.x_m : edge.at(std::min(edge.greatest(), row + 1.0));
+      const Span touched = cellsIn(std::min(a, b), std::max(a, b), grid.width);
+      for (int column = touched.first; column <= touched.last; ++column)
+        (edge.outer ? mark(column).outer : mark(column).hole) = true;
+      if (edge.through(middle) == 0) continue;
+      const double next = std::max(columns.first + 0.0, std::ceil(edge.at(middle) - 0.5));
+      if (next <= columns.last) mark(static_cast<int>(next)).change.cross(edge, edge.through(middle));
+    }
+    // A cell that no outer edge touches lies entirely inside or outside the outer ring: its centre is tested.
+    Inside inside;
+    for (int column = columns.first; column <= columns.last; ++column) {
+      const Mark& here = mark(column);
+      inside.windings += here.change.windings;
+      inside.hole ^= here.change.hole;
+      if (!inside.ground() && !here.outer && (inside.windings == 0 || !here.hole)) continue;
+      mask[{column, row}] = 1;
+      any = true;
+    }
   }
   return any;
 }
