@@ -13,7 +13,7 @@
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/motion_options.hpp>
-#include <talus/cli/ground/plugin_option.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
 #include <talus/common/input_error.hpp>

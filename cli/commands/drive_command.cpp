@@ -14,7 +14,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/plugin_option.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/simulated_worlds.hpp>

@@ -21,7 +21,6 @@
 #include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/plan_pairs.hpp>
 #include <talus/cli/route/provenance.hpp>

@@ -11,7 +11,7 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
-#include <talus/cli/ground/plugin_option.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/vector/place_reader.hpp>
 #include <talus/planner/bound/lower_bound.hpp>

@@ -169,31 +169,25 @@ auto fieldsOf(const costmap::TravelPolicy& p) {
 // A built map has its own grid, layers, soils, rover and policy; conflicting options of the call are refused.
 // With an additional elevation map, options may repeat how that map is read and how the built map was built.
 void checkAgainstMap(const GroundOptions& options, const std::string& path, const Context& context) {
-  if (!options.layers.keep_out.empty())
-    throw InputError({path, "is a built map, on which --keep-out has no effect",
-                      "give --keep-out to talus costmap, or plan on the elevation map"});
-  if (!options.layers.costs.empty())
-    throw InputError({path, "is a built map, on which --layer has no effect",
-                      "give --layer to talus costmap, or plan on the elevation map"});
-  if (fieldsOf(options.policy) != fieldsOf(costmap::TravelPolicy{}))
-    throw InputError({path, "is a built map, on which options of thresholds, weights and risk have no effect",
-                      "give them to talus costmap, or plan on the elevation map"});
   const bool alone = isBuiltAlone(options, path);
   if (alone) refuseReadOptions(options.dem);
-  const std::pair<std::string, bool> given[] = {
-      {"--below", alone && options.dem.below_m.has_value()},
-      {"--terrain", !options.layers.terrain.empty() || options.layers.terrain_band},
-      {"--rocks", !options.layers.rocks.empty() || options.layers.rocks_band},
-      {"--soils", !options.soils.empty()},
-      {"--soil", !options.soil.empty()},
-      {"--model", !options.model.empty()},
-      {"--footprint", options.footprint_m != 0.0}};
-  for (const auto& [name, present] : given) {
-    if (!present) continue;
-    if (alone)
+  const std::tuple<std::string, bool, bool> given[] = {
+      {"--keep-out", true, !options.layers.keep_out.empty()},
+      {"--layer", true, !options.layers.costs.empty()},
+      {"an option of thresholds, weights and risk", true,
+       fieldsOf(options.policy) != fieldsOf(costmap::TravelPolicy{})},
+      {"--below", alone, alone && options.dem.below_m.has_value()},
+      {"--terrain", alone, !options.layers.terrain.empty() || options.layers.terrain_band},
+      {"--rocks", alone, !options.layers.rocks.empty() || options.layers.rocks_band},
+      {"--soils", alone, !options.soils.empty()},
+      {"--soil", alone, !options.soil.empty()},
+      {"--model", alone, !options.model.empty()},
+      {"--footprint", alone, options.footprint_m != 0.0}};
+  for (const auto& [name, refused, present] : given) {
+    if (present && refused)
       throw InputError({path, "is a built map, on which " + name + " has no effect",
                         "give " + name + " to talus costmap, or plan on the elevation map"});
-    context.warn(name + " has no effect: " + path + " has its own");
+    if (present) context.warn(name + " has no effect: " + path + " has its own");
   }
 }
 

@@ -25,47 +25,53 @@ namespace {
 using maps::Point;
 using nlohmann::json;
 
-// Columns of places by their names in lower case, with _ between words. A table is read by the first pair that it
-// has: names that state the frame precede x and y.
+// Columns of places by their names in lower case, without a unit. A table is read by the first pair that it has: names
+// that state the frame or the unit precede x and y.
 struct PlaceColumns {
-  std::string_view x, y;
-  enum { Metres, Degrees, Unstated } unit;
+  std::string_view x, y, unit;
+  bool stated;
 };
-constexpr PlaceColumns kPlaceColumns[] = {{"x_m", "y_m", PlaceColumns::Metres},
-                                          {"easting_m", "northing_m", PlaceColumns::Metres},
-                                          {"lon", "lat", PlaceColumns::Degrees},
-                                          {"lng", "lat", PlaceColumns::Degrees},
-                                          {"longitude", "latitude", PlaceColumns::Degrees},
-                                          {"lon_deg", "lat_deg", PlaceColumns::Degrees},
-                                          {"longitude_deg", "latitude_deg", PlaceColumns::Degrees},
-                                          {"easting", "northing", PlaceColumns::Unstated},
-                                          {"x", "y", PlaceColumns::Unstated}};
+constexpr PlaceColumns kPlaceColumns[] = {{"x", "y", "m", true},
+                                          {"lon", "lat", "deg", true},
+                                          {"lng", "lat", "deg", true},
+                                          {"longitude", "latitude", "deg", true},
+                                          {"easting", "northing", "m", false},
+                                          {"x", "y", "m", false}};
 
 std::vector<Point> readCsv(const std::string& path, const maps::ElevationMap& map) {
   terramech::CsvReader reader(path);
-  std::vector<std::string> names;
-  for (const std::string& name : reader.header()) names.push_back(maps::lower(terramech::plainName(name)));
-  const auto column = [&](std::string_view name) {
-    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  const auto& header = reader.header();
+  // Returns the place of a column in the header and the factor to its unit.
+  const auto find = [&](std::string_view stem,
+                        const PlaceColumns& pair) -> std::optional<std::pair<std::size_t, double>> {
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      const std::string name = maps::lower(terramech::plainName(header[k]));
+      const std::string_view unit = terramech::unitOf(name);
+      const auto factor = unit.empty() ? 1.0 : terramech::conversion(unit, pair.unit);
+      if (terramech::stemOf(name) == stem && factor && (!unit.empty() || !pair.stated || pair.unit != "m"))
+        return std::pair{k, *factor};
+    }
+    return std::nullopt;
   };
-  const auto known = std::ranges::find_if(kPlaceColumns, [&](const PlaceColumns& pair) {
-    return std::max(column(pair.x), column(pair.y)) < names.size();
-  });
+  const auto known = std::ranges::find_if(
+      kPlaceColumns, [&](const PlaceColumns& pair) { return find(pair.x, pair) && find(pair.y, pair); });
   if (known == std::end(kPlaceColumns))
     throw InputError(
         {path, "names no columns of places",
          "a path needs the columns x_m and y_m (x and y, easting and northing: metres of the map), or "
          "lat and lon (degrees)"});
-  const std::size_t x = column(known->x), y = column(known->y);
+  const auto [x, x_factor] = *find(known->x, *known);
+  const auto [y, y_factor] = *find(known->y, *known);
+  const bool degrees = known->unit == "deg";
   std::vector<Point> points;
-  bool all_bare = known->unit == PlaceColumns::Unstated;
+  bool bare = !known->stated;  // whether all places are places of the map in degrees
   for (terramech::CsvRow row; reader.next(row);) {
     const std::string where = fmt::format("{}:{}", path, row.line);
     Point p;
-    const bool degrees = known->unit == PlaceColumns::Degrees;
-    const bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
-                      terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) && plausible(p.y_m) &&
-                      (!degrees || (std::abs(p.x_m) <= 360.0 && std::abs(p.y_m) <= 90.0));
+    bool good = row.fault.empty() && terramech::parseNumber(row.fields[x], p.x_m) &&
+                terramech::parseNumber(row.fields[y], p.y_m) && plausible(p.x_m) && plausible(p.y_m);
+    p = {p.x_m * x_factor, p.y_m * y_factor};
+    good = good && (!degrees || (std::abs(p.x_m) <= 360.0 && std::abs(p.y_m) <= 90.0));
     if (!good)
       throw InputError({where,
                         !row.fault.empty() ? row.fault
@@ -73,10 +79,10 @@ std::vector<Point> readCsv(const std::string& path, const maps::ElevationMap& ma
                                            : fmt::format("{}, {}: {}", known->x, known->y, kPlausible),
                         "fix the row"});
     if (degrees) p = maps::inMetres(maps::GeoPoint{p.y_m * kDegree, p.x_m * kDegree}, map, where);
-    all_bare = all_bare && maps::asDegrees(p, map);
+    bare = bare && maps::asDegrees(p, map);
     points.push_back(p);
   }
-  if (all_bare && !points.empty())
+  if (bare && !points.empty())
     throw InputError({path, "has places of the map if its columns are in degrees, not in metres",
                       "name them lat and lon, or x_m and y_m"});
   return points;
@@ -88,14 +94,9 @@ std::vector<Point> ownMetres(const std::string& path) {
   std::vector<Point> points;
   std::ifstream file(path);
   const json document = json::parse(file, nullptr, false);
-  if (!document.is_object() || document.value("type", "") != "FeatureCollection" ||
-      !document.contains("features"))
-    return points;
-  const json& features = document["features"];
-  if (!features.is_array() || features.empty() || !features[0].contains("properties")) return points;
-  const json& properties = features[0]["properties"];
-  if (!properties.is_object() || !properties.contains("x_m") || !properties.contains("y_m")) return points;
-  const json &x = properties["x_m"], &y = properties["y_m"];
+  const json::json_pointer properties("/features/0/properties");
+  if (!document.contains(properties / "x_m") || !document.contains(properties / "y_m")) return points;
+  const json &x = document[properties / "x_m"], &y = document[properties / "y_m"];
   if (!x.is_array() || !y.is_array() || x.size() != y.size()) return points;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!x[i].is_number() || !y[i].is_number()) return {};
@@ -136,37 +137,24 @@ std::vector<Point> drawnPath(const std::string& path, const maps::ElevationMap& 
   return own;
 }
 
-// Limits the distance from the map and the length of a path, because the path is checked piece by piece and
-// cell by cell.
+// Limits the length of a path and of the way to it, because it is checked piece by piece and cell by cell.
 void requireNear(const std::vector<Point>& points, const maps::Grid& grid, const std::string& path) {
-  const double around_m = 1e6 * grid.resolution_m;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double east = points[i].x_m - grid.south_west.x_m, north = points[i].y_m - grid.south_west.y_m;
-    const bool near = east >= -around_m && north >= -around_m &&
-                      east <= grid.width * grid.resolution_m + around_m &&
-                      north <= grid.height * grid.resolution_m + around_m;
-    if (!near)
-      throw InputError(
-          {path,
-           fmt::format("vertex {} at {:.6g},{:.6g} lies farther than {:.6g} m, a million cells, from the map",
-                       i + 1, points[i].x_m, points[i].y_m, around_m),
-           "check the coordinate system"});
-  }
   constexpr double kMostCells = 4e6;  // from one distant corner to the other
   double length_m = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    length_m += std::hypot(points[i].x_m - points[i - 1].x_m, points[i].y_m - points[i - 1].y_m);
+  Point last = grid.south_west;
+  for (const Point p : points) {
+    length_m += std::hypot(p.x_m - last.x_m, p.y_m - last.y_m);
+    last = p;
+  }
   if (length_m > kMostCells * grid.resolution_m)
-    throw InputError(
-        {path, fmt::format("is {:.6g} m long, more than 4 million cells", length_m), "split it"});
+    throw InputError({path, fmt::format("is {:.6g} m long from the map, more than 4 million cells", length_m),
+                      "check its coordinate system, or split it"});
 }
 
 }  // namespace
 
 std::vector<Point> readPath(const std::string& path, const maps::ElevationMap& map) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = maps::lower(std::filesystem::path(path).extension().string());
   const bool table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
   std::vector<Point> points = table ? readCsv(path, map) : drawnPath(path, map);
   if (points.empty()) throw InputError({path, "contains no point", "a path needs at least one"});

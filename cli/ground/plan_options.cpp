@@ -5,7 +5,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/cli/ground/plugin_option.hpp>
 #include <talus/common/input_error.hpp>
 
 namespace talus::cli {
@@ -22,6 +21,26 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
 }
 
 }  // namespace
+
+void addPluginOption(CLI::App& command, std::string& plugin) {
+  command
+      .add_option("--plugin", plugin,
+                  "plan by a planner plugin instead; its route is checked, and the cost is the program's own")
+      ->type_name("FILE.so");
+}
+
+void addPluginTime(CLI::App& command, double& time_limit_s) {
+  command
+      .add_option("--time", time_limit_s,
+                  "time limit of the plugin for each plan, which it is ended a second after (default: none)")
+      ->type_name("S")
+      ->check(positive())
+      ->needs(command.get_option("--plugin"));
+}
+
+planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& planner) {
+  return planner::PluginPlanner(plugin, planner == "field" ? std::string() : planner);
+}
 
 void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);

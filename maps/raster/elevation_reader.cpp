@@ -26,8 +26,6 @@ void check(const ReadOptions& options) {
   const auto require = [](bool holds, const char* option, const char* bound) {
     if (!holds) throw InputError({option, bound, ""});
   };
-  require(!options.resolution_m || (std::isfinite(*options.resolution_m) && *options.resolution_m > 0),
-          "--resolution", "must be a number of metres above 0");
   require(!options.resolution_m || (*options.resolution_m >= 1e-3 && *options.resolution_m <= 1e6),
           "--resolution", "must be 0.001 to 1000000 metres");
   require(!options.vertical_scale ||

@@ -88,6 +88,22 @@ Dataset inMemory(Quantity& quantity, GDALDataset& file, int band, const Elevatio
   return copy;
 }
 
+// Number of a layer's band, and its values in memory (inMemory()).
+struct LayerBand {
+  int number;
+  Dataset pixels;
+};
+
+LayerBand layerBand(Kind kind, const LayerSource& source, const ElevationMap& map, BandCriteria wish) {
+  const Dataset file = openRaster(source.path);
+  std::vector<std::string> notes;
+  wish.path = source.path;
+  wish.band = source.band;
+  const int number = chooseBand(*file, wish, notes);
+  Quantity quantity(kind, *file, number, source.path);
+  return {number, inMemory(quantity, *file, number, map, source.path)};
+}
+
 // Pixel corners [m] relative to the south-west corner of the map.
 class PixelCorners {
  public:
@@ -204,10 +220,7 @@ class ClassRanks {
 Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map,
                                         std::span<const int> weakest_last) {
   const GdalErrors quiet;
-  Dataset file = openRaster(source.path);
-  std::vector<std::string> notes;
-  const int band =
-      chooseBand(*file, {.path = source.path, .band = source.band, .words = {"class"}, .others = {}}, notes);
+  const auto [band, pixels] = layerBand(Kind::Classes, source, map, {.words = {"class"}});
   const ClassRanks ranks(weakest_last);
   const auto ranked = [&](float v) {
     if (std::isnan(v)) return ranks.rank(kNoClass);
@@ -217,10 +230,8 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
                         "name the band of classes"});
     return ranks.rank(static_cast<std::uint8_t>(v));
   };
-  Quantity numbers(Kind::Classes, *file, band, source.path);
-  Dataset ranks_of_file = inMemory(numbers, *file, band, map, source.path);
-  changePixels(*ranks_of_file, source.path, ranked);
-  const Raster<float> weakest = greatest(*ranks_of_file, map, source.path);
+  changePixels(*pixels, source.path, ranked);
+  const Raster<float> weakest = greatest(*pixels, map, source.path);
   Raster<std::uint8_t> classes(map.grid(), kNoClass);
   bool any = false;
   for (std::size_t i = 0; i < weakest.values().size(); ++i)
@@ -234,12 +245,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
 
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
-  Dataset file = openRaster(source.path);
-  const int number_of_band = source.band.value_or(1);
-  if (number_of_band < 1 || number_of_band > file->GetRasterCount())
-    throw InputError({source.path, "has no band " + std::to_string(number_of_band), "name one that it has"});
-  Quantity joules(Kind::Added_J_per_m, *file, number_of_band, source.path);
-  Dataset band = inMemory(joules, *file, number_of_band, map, source.path);
+  const Dataset band = layerBand(Kind::Added_J_per_m, source, map, {}).pixels;
   AddedJoules added;
   // Unknown and impassable pixels are represented by values beyond any cost, because the maximum ignores NaN.
   constexpr float kMost = 1e6F, kUnknown = 1e38F, kBetween = 2e38F, kRefused = 3e38F;
@@ -268,16 +274,8 @@ AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map) 
 
 RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& map) {
   const GdalErrors quiet;
-  Dataset file = openRaster(source.path);
-  std::vector<std::string> notes;
-  const int number_of_band = chooseBand(*file,
-                                        {.path = source.path,
-                                         .band = source.band,
-                                         .words = {"rock", "abundance", "_ra"},
-                                         .others = {"slope", "dem"}},
-                                        notes);
-  Quantity shares(Kind::Rocks, *file, number_of_band, source.path);
-  Dataset band = inMemory(shares, *file, number_of_band, map, source.path);
+  const auto [number_of_band, band] = layerBand(
+      Kind::Rocks, source, map, {.words = {"rock", "abundance", "_ra"}, .others = {"slope", "dem"}});
   changePixels(*band, source.path, [&](float v) {
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(number_of_band),

@@ -95,26 +95,18 @@ constexpr SuffixUnit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"
                                 {"m_s", Kind::Speed}, {"radps", Kind::Rate},  {"rad_s", Kind::Rate}};
 constexpr std::string_view kPrefixes[] = {"", "n", "u", "m", "c", "d", "h", "k", "M", "G"};
 
+// Other units of each kind, each between blanks.
 constexpr SuffixUnit kOther[] = {
-    {"metre", Kind::Length},      {"meter", Kind::Length},      {"millimetre", Kind::Length},
-    {"millimeter", Kind::Length}, {"centimetre", Kind::Length}, {"centimeter", Kind::Length},
-    {"kilometre", Kind::Length},  {"kilometer", Kind::Length},  {"inch", Kind::Length},
-    {"inches", Kind::Length},     {"ft", Kind::Length},         {"feet", Kind::Length},
-    {"newton", Kind::Force},      {"t", Kind::Force},           {"kgf", Kind::Force},
-    {"gf", Kind::Force},          {"lb", Kind::Force},          {"lbs", Kind::Force},
-    {"lbf", Kind::Force},         {"tonne", Kind::Force},       {"lbft", Kind::Torque},
-    {"ftlb", Kind::Torque},       {"lb_ft", Kind::Torque},      {"ft_lb", Kind::Torque},
-    {"kgm", Kind::Torque},        {"kgcm", Kind::Torque},       {"kgfm", Kind::Torque},
-    {"kgfcm", Kind::Torque},      {"psi", Kind::Pressure},      {"ncm", Kind::Torque},
-    {"nmm", Kind::Torque},        {"radian", Kind::Angle},      {"deg", Kind::Angle},
-    {"degree", Kind::Angle},      {"gon", Kind::Angle},         {"second", Kind::Time},
-    {"min", Kind::Time},          {"minute", Kind::Time},       {"h", Kind::Time},
-    {"hour", Kind::Time},         {"kmh", Kind::Speed},         {"km_h", Kind::Speed},
-    {"kmph", Kind::Speed},        {"kph", Kind::Speed},         {"mph", Kind::Speed},
-    {"fps", Kind::Speed},         {"ft_s", Kind::Speed},        {"rpm", Kind::Rate},
-    {"deg_s", Kind::Rate},        {"degps", Kind::Rate},        {"percent", Kind::Share},
-    {"percentage", Kind::Share},  {"pct", Kind::Share},         {"permille", Kind::Share},
-    {"promille", Kind::Share}};
+    {" metre meter millimetre millimeter centimetre centimeter kilometre kilometer inch inches ft feet ",
+     Kind::Length},
+    {" newton t kgf gf lb lbs lbf tonne ", Kind::Force},
+    {" lbft ftlb lb_ft ft_lb kgm kgcm kgfm kgfcm ncm nmm ", Kind::Torque},
+    {" psi ", Kind::Pressure},
+    {" radian deg degree gon ", Kind::Angle},
+    {" second min minute h hour ", Kind::Time},
+    {" kmh km_h kmph kph mph fps ft_s ", Kind::Speed},
+    {" rpm deg_s degps ", Kind::Rate},
+    {" percent percentage pct permille promille ", Kind::Share}};
 
 std::string lower(std::string_view text) {
   std::string small(text);
@@ -125,8 +117,9 @@ std::string lower(std::string_view text) {
 /// Returns the kind of a unit, ignoring case; empty if the text is not a unit.
 std::optional<Kind> kindOf(std::string_view text) {
   const std::string small = lower(text);
-  for (const SuffixUnit& unit : kOther)
-    if (small == unit.name || small == std::string(unit.name) + "s") return unit.kind;
+  for (const SuffixUnit& units : kOther)
+    for (const std::string& one : {small, small.substr(0, small.size() - (small.ends_with('s') ? 1 : 0))})
+      if (units.name.find(" " + one + " ") != units.name.npos) return units.kind;
   for (const SuffixUnit& unit : kBase)
     for (const std::string_view prefix : kPrefixes)
       if (small == lower(std::string(prefix) + std::string(unit.name))) return unit.kind;

@@ -74,7 +74,7 @@ TEST(InfoCommand, ErrorsAreOneLineWithCodeTwo) {
       {{"info", folder.path().string()}, "is a directory"},
       {{"info", folder.write("text.tif", "no raster")}, "GDAL opens no raster"},
       {{"info", map}, "no CRS; pass --resolution METRES"},
-      {{"info", map, "--resolution", "0"}, "--resolution: must be a number of metres above 0"},
+      {{"info", map, "--resolution", "0"}, "--resolution: must be 0.001 to 1000000 metres"},
       {{"info", map, "--resolution", "x"}, "--resolution"},
       {{"info", map, "--resolution", "2", "--band", "3"}, "no such band"},
       {{"info", map, "--resolution", "2", "--window", "1,2,3"}, "has not 4 numbers"},

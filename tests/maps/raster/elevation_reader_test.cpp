@@ -249,7 +249,7 @@ TEST(ElevationReader, InvalidInputYieldsAOneLineErrorWithARemedy) {
       {write({.rows = kHill, .crs = ""}, folder / "nowhere.tif"), {}, "no CRS; pass --resolution METRES"},
       {good, {.ignore_crs = true}, "its cell size is unknown; pass --resolution"},
       {good, {.band = 2}, "band 2: no such band; it has 1 band"},
-      {good, {.resolution_m = -3.0}, "--resolution: must be a number of metres above 0"},
+      {good, {.resolution_m = -3.0}, "--resolution: must be 0.001 to 1000000 metres"},
       {good, {.resolution_m = std::nan("")}, "--resolution"},
       {good,
        {.window = parseWindow("0,0,10,10")},

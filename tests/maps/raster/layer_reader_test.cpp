@@ -266,7 +266,7 @@ TEST(LayerReader, CostLayerOnTheMapGridIsExact) {
   EXPECT_THAT(refusal([&] { readAddedJoules({.path = less}, map(folder)); }),
               HasSubstr("value -0.5 J/m is not 0 to 1e6"));
   EXPECT_THAT(refusal([&] { readAddedJoules({.path = path, .band = 2}, map(folder)); }),
-              HasSubstr("has no band 2"));
+              HasSubstr("no such band"));
 }
 
 TEST(LayerReader, RockAbundanceBandIsFoundByNameAndMustBeAFraction) {
