@@ -149,7 +149,8 @@ TEST(CompleteFile, TruncatedFileOfAnyFormatIsRejectedOrNoData) {
 // Property: a raster of plain numbers with one byte more or fewer anywhere is rejected: all pixels behind it would
 // be other numbers.
 TEST(CompleteFile, InsertedOrRemovedByteIsRejected) {
-  const std::set<std::string> plain{"ENVI", "EHdr", "PDS", "PDS4", "ISIS3", "VICAR", "SRTMHGT", "netCDF"};
+  const std::set<std::string> plain{"ENVI",  "EHdr",    "PDS",    "PDS4", "ISIS3",
+                                    "VICAR", "SRTMHGT", "netCDF", "GTiff"};
   for (const Format& format : formats()) {
     if (!plain.contains(format.driver)) continue;
     const TemporaryFolder folder;
@@ -157,7 +158,9 @@ TEST(CompleteFile, InsertedOrRemovedByteIsRejected) {
     format.make(path);
     const std::string bytes = slurped(data);
     // The size is the reason, not implausible numbers; GDAL knows SRTMHGT by its size alone.
-    const char* reason = format.driver == "SRTMHGT" ? "GDAL opens no raster" : " bytes";
+    const char* reason = format.driver == "SRTMHGT" ? "GDAL opens no raster"
+                         : format.driver == "GTiff" ? "blocks"
+                                                    : " bytes";
     for (std::size_t k = 0; k < 16; ++k) {
       const std::size_t at = bytes.size() * (k / 2 + 9) / 17;  // in the second half: behind the label
       spill(data, bytes.substr(0, at) + (k % 2 == 0 ? "x" : "") + bytes.substr(at + k % 2));
@@ -390,13 +393,47 @@ TEST(TextGrid, ClassAndRockGridsAreValidatedEqually) {
   EXPECT_THROW(readRockAbundance({.path = junk}, dem), InputError);
 }
 
-// GDAL reads lines of pixels without the bytes behind them.
-TEST(CompleteFile, PaddedLinesOfEhdrAreRejected) {
+// Property: what a label states and GDAL does not read, and statements that contradict each other, are refused.
+TEST(CompleteFile, LabelThatGdalMisreadsIsRejected) {
+  struct Edit {
+    const char *driver, *from, *to, *reason;
+  };
+  for (const Edit& edit :
+       std::initializer_list<Edit>{{"PDS", "END_OBJECT = IMAGE\r\n", "END_OBJECT = TABLE\r\n",
+                                    "ends an object TABLE that does not begin"},
+                                   {"PDS4", "Left to Right", "Right to Left", "states Right to Left"},
+                                   {"EHdr", "XDIM", "XDUM", "states only a part of ULXMAP"},
+                                   {"AAIGrid", "xllcorner", "xxlcorner", "states only a part of xllcorner"},
+                                   {"XYZ", "150", "15\x80", "holds the byte 128 among its numbers"},
+                                   {"netCDF", "", "@", "is cut short within its header"}}) {
+    SCOPED_TRACE(edit.reason);
+    const auto all = formats();
+    const Format& format = *std::ranges::find(all, edit.driver, &Format::driver);
+    const TemporaryFolder folder;
+    const std::string path = folder / format.name;
+    format.make(path);
+    const std::string label = format.driver == "EHdr" ? folder / "k.hdr" : path;
+    std::string bytes = slurped(label);
+    const std::size_t at = format.driver == "netCDF" ? 12 : bytes.find(edit.from);  // number of dimensions
+    ASSERT_NE(at, bytes.npos);
+    bytes.replace(at, std::max<std::size_t>(std::string_view(edit.from).size(), 1), edit.to);
+    spill(label, bytes);
+    EXPECT_THAT(refusal([&] { readElevation(path, format.options); }), HasSubstr(edit.reason));
+  }
   const TemporaryFolder folder;
-  const std::string path = folder.write("p.bil", std::string(160, '\0'));
   folder.write("p.hdr", "NROWS 5\nNCOLS 6\nNBITS 32\nPIXELTYPE FLOAT\nTOTALROWBYTES 32\n");
-  EXPECT_THAT(refusal([&] { openRaster(path); }),
+  EXPECT_THAT(refusal([&] { openRaster(folder.write("p.bil", std::string(160, '\0'))); }),
               HasSubstr("has lines of 32 bytes (TOTALROWBYTES), which GDAL reads"));
+  folder.write("s.hdr", "NROWS 5\nNCOLS 6\nNBITS 8\nPIXELTYPE SIGNEDINT\n");
+  EXPECT_THAT(refusal([&] { openRaster(folder.write("s.bil", std::string(30, '\1'))); }),
+              HasSubstr("holds signed bytes"));
+  const std::string moon =
+      write({.rows = heights(), .driver = "ISIS3", .crs = "+proj=eqc +R=1737400"}, folder / "m.cub");
+  std::string cube = slurped(moon);
+  cube.replace(cube.find("PixelResolution      = "), 25, "PixelResolution      = 99");
+  spill(moon, cube);
+  EXPECT_THAT(refusal([&] { openRaster(moon); }),
+              HasSubstr("size of pixels and pixels per degree that differ"));
 }
 
 // Property: a block that lies in the header of a GeoTIFF is refused, whether or not a value stands for no data.

@@ -103,6 +103,7 @@ TEST_F(SourceFiles, NeighboursMustBeRegularFiles) {
   for (const char* name : {"map.tif.aux.xml", "map.tif.ovr", "map.tif.msk", "map.prj", "map.TFW"}) {
     ASSERT_EQ(::mkfifo((folder_ / name).c_str(), 0600), 0);
     EXPECT_THAT(opened("map.tif"), HasSubstr("is a device, a FIFO")) << name;
+    EXPECT_THAT(refusal([&] { openVector(folder_ / "map.tif"); }), HasSubstr("is a device, a FIFO")) << name;
     fs::remove(folder_ / name);
   }
   EXPECT_EQ(opened("map.tif"), "accepted");
@@ -113,6 +114,8 @@ TEST_F(SourceFiles, SideFileThatGdalDoesNotUseIsRejected) {
   write({.rows = kHill}, folder_ / "map.tif");
   folder_.write("map.tif.msk", std::string("II*\0\x08\0\0\0", 8));
   EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.msk: belongs to the raster by its name"));
+  write({.rows = kHill, .type = GDT_Byte}, folder_ / "map.tif.msk");
+  EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.msk: lacks INTERNAL_MASK_FLAGS"));
   fs::remove(folder_ / "map.tif.msk");
   folder_.write("map.tif.aux.xml", "<PAMDataset><Metadata></PAMDataset>");
   EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.aux.xml: is no XML"));
@@ -129,6 +132,7 @@ TEST_F(SourceFiles, AuxiliaryFileMustAgreeWithTheRaster) {
   EXPECT_EQ(with("<Scale>0.5</Scale><UnitType>m</UnitType>"), "accepted");
   EXPECT_THAT(with("", "<GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform>"),
               HasSubstr("another place than the raster"));
+  EXPECT_THAT(with("", "<SRS>EPSG:4326</SRS>"), HasSubstr("another CRS than the raster"));
   // GDAL prefers what the TIFF itself states of its bands.
   for (const char* band : {"<Scale>2</Scale>", "<UnitType>ft</UnitType>", "<NoDataValue>7</NoDataValue>"}) {
     const std::string answer = with(band);
@@ -136,6 +140,11 @@ TEST_F(SourceFiles, AuxiliaryFileMustAgreeWithTheRaster) {
                                             "heights = raw x 0.5 m, unit 'm' (file), no-data -1 (file)")
         << answer;
   }
+  fs::remove(folder_ / "map.tif.aux.xml");
+  write({.rows = kHill, .driver = "ENVI", .nodata = -1}, folder_ / "map.tif");
+  std::ofstream(folder_ / "map.hdr", std::ios::app) << "data gain values = {0.5}\ndata offset values = {7}\n";
+  EXPECT_THAT(with("<Scale>2</Scale>"), HasSubstr("another scale than the raster"));
+  EXPECT_THAT(with("<Scale>0.5</Scale><Offset>2</Offset>"), HasSubstr("another offset than the raster"));
 }
 
 // Property: the manifest holds every file of a raster or vector, and a checksum beside any of them is compared, also
