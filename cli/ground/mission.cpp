@@ -47,29 +47,25 @@ double ranged(const YamlFields& fields, const std::string& name, const CLI::Vali
   return value;
 }
 
-// A place as "x,y", from a text, a vector file or a list of two numbers.
-std::string place(const YamlFields& fields, const std::string& name, const std::filesystem::path& folder) {
-  if (!fields.has(name)) return "";
-  try {
-    const auto numbers = fields.numbers(name);
-    if (numbers.size() == 2) return fmt::format("{},{}", numbers[0], numbers[1]);
-  } catch (const InputError&) {
-  }
-  const std::string word = fields.word(name);
-  return maps::isNamedAsVector(word) ? beside(word, folder) : word;
-}
-
-// One place or a list of places.
+// One place or a list of places: texts, vector files or one list of two numbers.
 std::vector<std::string> places(const YamlFields& fields, const std::string& name,
                                 const std::filesystem::path& folder) {
   try {
-    if (fields.numbers(name).size() == 2) return {place(fields, name, folder)};
+    if (const auto numbers = fields.numbers(name); numbers.size() == 2)
+      return {fmt::format("{},{}", numbers[0], numbers[1])};
   } catch (const InputError&) {
   }
   std::vector<std::string> words = fields.texts(name);
   for (std::string& word : words)
     if (maps::isNamedAsVector(word)) word = beside(word, folder);
   return words;
+}
+
+// One place; empty without the key.
+std::string place(const YamlFields& fields, const std::string& name, const std::filesystem::path& folder) {
+  const auto found = fields.has(name) ? places(fields, name, folder) : std::vector<std::string>();
+  if (found.size() > 1) fields.refuse(name, name + " is a list of places", "write one place");
+  return found.empty() ? "" : found.front();
 }
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,22 +23,23 @@ struct Unit {
 };
 
 constexpr Unit kUnits[] = {
-    {"rad", 'a', 1.0},   {"deg", 'a', kDegree},                                            // angle
-    {"Pa", 'p', 1.0},    {"hPa", 'p', 1e2},       {"kPa", 'p', 1e3},   {"MPa", 'p', 1e6},  // pressure
-    {"N", 'f', 1.0},     {"mN", 'f', 1e-3},       {"kN", 'f', 1e3},                        // force
-    {"m", 'l', 1.0},     {"mm", 'l', 1e-3},       {"cm", 'l', 1e-2},   {"dm", 'l', 0.1},
-    {"km", 'l', 1e3},    {"Nm", 't', 1.0},        {"mNm", 't', 1e-3},  {"Ncm", 't', 1e-2},
-    {"kNm", 't', 1e3},                                                                            // torque
-    {"mps", 'v', 1.0},   {"mmps", 'v', 1e-3},     {"cmps", 'v', 1e-2}, {"kmph", 'v', 1.0 / 3.6},  // speed
-    {"m_s", 'v', 1.0},   {"mm_s", 'v', 1e-3},     {"cm_s", 'v', 1e-2}, {"km_h", 'v', 1.0 / 3.6},
-    {"kg", 'm', 1.0},    {"g", 'm', 1e-3},        {"t", 'm', 1e3},  // mass
-    {"s", 's', 1.0},     {"ms", 's', 1e-3},       {"us", 's', 1e-6},   {"ns", 's', 1e-9},
-    {"min", 's', 60.0},  {"h", 's', 3600.0},                                                 // time
-    {"W", 'w', 1.0},     {"mW", 'w', 1e-3},       {"kW", 'w', 1e3},                          // power
-    {"J", 'e', 1.0},     {"kJ", 'e', 1e3},        {"MJ", 'e', 1e6},    {"Wh", 'e', 3600.0},  // energy
-    {"m_s2", 'g', 1.0},  {"g0", 'g', 9.80665},                                               // acceleration
-    {"kg_m3", 'd', 1.0}, {"g_cm3", 'd', 1e3},     {"t_m3", 'd', 1e3},                        // density
-    {"rad_s", 'o', 1.0}, {"deg_s", 'o', kDegree},                                            // turning rate
+    {"rad", 'a', 1.0},      {"deg", 'a', kDegree},                                            // angle
+    {"Pa", 'p', 1.0},       {"hPa", 'p', 1e2},       {"kPa", 'p', 1e3},   {"MPa", 'p', 1e6},  // pressure
+    {"N", 'f', 1.0},        {"mN", 'f', 1e-3},       {"kN", 'f', 1e3},                        // force
+    {"m", 'l', 1.0},        {"mm", 'l', 1e-3},       {"cm", 'l', 1e-2},   {"dm", 'l', 0.1},
+    {"km", 'l', 1e3},       {"Nm", 't', 1.0},        {"mNm", 't', 1e-3},  {"Ncm", 't', 1e-2},
+    {"kNm", 't', 1e3},                                                                               // torque
+    {"mps", 'v', 1.0},      {"mmps", 'v', 1e-3},     {"cmps", 'v', 1e-2}, {"kmph", 'v', 1.0 / 3.6},  // speed
+    {"m_s", 'v', 1.0},      {"mm_s", 'v', 1e-3},     {"cm_s", 'v', 1e-2}, {"km_h", 'v', 1.0 / 3.6},
+    {"kg", 'm', 1.0},       {"g", 'm', 1e-3},        {"t", 'm', 1e3},  // mass
+    {"s", 's', 1.0},        {"ms", 's', 1e-3},       {"us", 's', 1e-6},   {"ns", 's', 1e-9},
+    {"min", 's', 60.0},     {"h", 's', 3600.0},                                                 // time
+    {"W", 'w', 1.0},        {"mW", 'w', 1e-3},       {"kW", 'w', 1e3},                          // power
+    {"J", 'e', 1.0},        {"kJ", 'e', 1e3},        {"MJ", 'e', 1e6},    {"Wh", 'e', 3600.0},  // energy
+    {"m_s2", 'g', 1.0},     {"g0", 'g', 9.80665},                         // acceleration
+    {"kg_m3", 'd', 1.0},    {"g_cm3", 'd', 1e3},     {"t_m3", 'd', 1e3},  // density
+    {"rad_s", 'o', 1.0},    {"deg_s", 'o', kDegree},                      // turning rate
+    {"percent", '1', 0.01}, {"pct", '1', 0.01},      {"%", '1', 0.01},    {"permille", '1', 0.001},  // share
 };
 
 const Unit* find(std::string_view name) {
@@ -82,21 +84,15 @@ namespace {
 
 enum class Kind { Length, Force, Torque, Pressure, Angle, Time, Speed, Rate, Share };
 
-/// Unit as written in a suffix.
-struct SuffixUnit {
-  std::string_view name;
-  Kind kind;
-};
-
 // Units that also occur with an SI prefix. A load in kilograms is converted to a force.
-constexpr SuffixUnit kBase[] = {{"m", Kind::Length},  {"N", Kind::Force},     {"g", Kind::Force},
-                                {"Nm", Kind::Torque}, {"N_m", Kind::Torque},  {"s", Kind::Time},
-                                {"rad", Kind::Angle}, {"Pa", Kind::Pressure}, {"mps", Kind::Speed},
-                                {"m_s", Kind::Speed}, {"radps", Kind::Rate},  {"rad_s", Kind::Rate}};
+constexpr std::pair<std::string_view, Kind> kBase[] = {
+    {"m", Kind::Length},   {"N", Kind::Force},   {"g", Kind::Force},    {"Nm", Kind::Torque},
+    {"N_m", Kind::Torque}, {"s", Kind::Time},    {"rad", Kind::Angle},  {"Pa", Kind::Pressure},
+    {"mps", Kind::Speed},  {"m_s", Kind::Speed}, {"radps", Kind::Rate}, {"rad_s", Kind::Rate}};
 constexpr std::string_view kPrefixes[] = {"", "n", "u", "m", "c", "d", "h", "k", "M", "G"};
 
 // Other units of each kind, each between blanks.
-constexpr SuffixUnit kOther[] = {
+constexpr std::pair<std::string_view, Kind> kOther[] = {
     {" metre meter millimetre millimeter centimetre centimeter kilometre kilometer inch inches ft feet ",
      Kind::Length},
     {" newton t kgf gf lb lbs lbf tonne ", Kind::Force},
@@ -117,12 +113,12 @@ std::string lower(std::string_view text) {
 /// Returns the kind of a unit, ignoring case; empty if the text is not a unit.
 std::optional<Kind> kindOf(std::string_view text) {
   const std::string small = lower(text);
-  for (const SuffixUnit& units : kOther)
+  for (const auto& [units, kind] : kOther)
     for (const std::string& one : {small, small.substr(0, small.size() - (small.ends_with('s') ? 1 : 0))})
-      if (units.name.find(" " + one + " ") != units.name.npos) return units.kind;
-  for (const SuffixUnit& unit : kBase)
+      if (units.find(" " + one + " ") != units.npos) return kind;
+  for (const auto& [unit, kind] : kBase)
     for (const std::string_view prefix : kPrefixes)
-      if (small == lower(std::string(prefix) + std::string(unit.name))) return unit.kind;
+      if (small == lower(std::string(prefix) + std::string(unit))) return kind;
   return std::nullopt;
 }
 
@@ -182,11 +178,10 @@ std::string plainName(std::string_view name) {
       text += kParting.find(name[k]) == std::string_view::npos ? name[k] : '_';
     }
   }
-  std::string once;
-  for (const char c : text)
-    if (c != '_' || (!once.empty() && once.back() != '_')) once += c;
-  if (once.ends_with('_')) once.pop_back();
-  return once;
+  const auto twice = std::ranges::unique(text, [](char a, char b) { return a == '_' && b == '_'; });
+  text.erase(twice.begin(), twice.end());
+  if (text.ends_with('_')) text.pop_back();
+  return text.starts_with('_') ? text.substr(1) : text;
 }
 
 bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>& row,
@@ -197,7 +192,7 @@ bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>&
     if (double value = 0.0; parseNumber(row[k], value) || row.size() != header.size()) return false;
     std::string unit = plainName(row[k]);
     std::erase_if(unit, [&](char c) { return c == '_' && unit.starts_with('N'); });  // N m
-    if (find(unit) == nullptr && unit != "percent") continue;
+    if (find(unit) == nullptr) continue;
     any = true;
     if (const std::string_view own = unitOf(names[k]); own.empty() && !names[k].ends_with("_" + unit))
       names[k] += '_' + unit;

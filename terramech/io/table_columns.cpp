@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -15,29 +13,10 @@
 namespace talus::terramech {
 namespace {
 
-constexpr std::pair<std::string_view, double> kShares[] = {
-    {"percent", 0.01}, {"pct", 0.01}, {"%", 0.01}, {"permille", 0.001}};
-
 // Common symbols of known columns.
 constexpr std::pair<std::string_view, const char*> kSymbols[] = {
     {"Fz", "load_N"},       {"Fn", "load_N"},    {"Fx", "drawbar_pull_N"}, {"DP", "drawbar_pull_N"},
     {"Fy", "side_force_N"}, {"Mx", "torque_Nm"}, {"My", "torque_Nm"},      {"Mt", "torque_Nm"}};
-
-// Returns the unit at the end of a name, including percent; empty for a name without a unit.
-std::string suffixOf(const std::string& name) {
-  for (const auto& [share, factor] : kShares)
-    if (name.ends_with("_" + std::string(share))) return std::string(share);
-  return std::string(unitOf(name));
-}
-
-std::string stemWithoutShare(const std::string& name) {
-  return name.substr(0, name.size() - (suffixOf(name).empty() ? 0 : suffixOf(name).size() + 1));
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr};
-}
 
 // Replaces a decimal comma: "1,5" becomes "1.5". Used if commas are not separators.
 void withPoint(std::string& field) {
@@ -53,12 +32,10 @@ void withPoint(std::string& field) {
 
 std::optional<double> columnFactor(const std::string& unit, const std::string& known) {
   const std::string_view own = unitOf(known);
-  if (unit == own) return 1.0;
+  if (unit == own || (own.empty() && unit == "ratio")) return 1.0;
   if (!own.empty()) return conversion(unit, own);
-  if (unit == "ratio") return 1.0;
-  for (const auto& [share, factor] : kShares)
-    if (unit == share) return factor;
-  return std::nullopt;
+  const auto percent = conversion(unit, "percent");
+  return percent ? std::optional(0.01 * *percent) : std::nullopt;
 }
 
 TableColumns::TableColumns(std::vector<std::string> header, const TableFile& table, bool decimal_commas)
@@ -73,7 +50,7 @@ TableColumns::TableColumns(std::vector<std::string> header, const TableFile& tab
       throw InputError(
           {table.path + ":1", "has column " + name + ", which is also given by an option", "remove one"});
     header_.push_back(name);
-    constants_.push_back(shortest(value));
+    constants_.push_back(fmt::format("{}", value));
   }
 }
 
@@ -93,7 +70,7 @@ void TableColumns::map(const MappedColumn& mapped, const TableFile& table) {
   if (mapped.name != mapped.known && has(mapped.known))
     throw InputError(
         {table.path + ":1", fmt::format("has column {} already ({})", mapped.known, asked), "remove one"});
-  const std::string suffix = suffixOf(mapped.name);
+  const std::string suffix(unitOf(mapped.name));
   const std::string unit = !mapped.unit.empty() ? mapped.unit
                            : columnFactor(suffix, mapped.known).has_value()
                                ? suffix
@@ -116,13 +93,10 @@ void TableColumns::convertUnits(const TableFile& table) {
   std::vector<std::string> all = knownTelemetryColumns();
   all.insert(all.end(), table.also.begin(), table.also.end());
   for (const std::string& known : all) {
-    if (has(known) || stemWithoutShare(known).size() < 2)
-      continue;  // a single letter, as in z_mm, may be any quantity
+    if (has(known) || stemOf(known).size() < 2) continue;  // a single letter, as in z_mm, may be any quantity
     for (const std::string& name : std::vector<std::string>(header_)) {
-      if (name.empty() || has(known) || stemWithoutShare(name) != stemWithoutShare(known) ||
-          suffixOf(name).empty())
-        continue;
-      if (columnFactor(suffixOf(name), known)) map({.known = known, .name = name}, table);
+      if (name.empty() || has(known) || stemOf(name) != stemOf(known) || unitOf(name).empty()) continue;
+      if (columnFactor(std::string(unitOf(name)), known)) map({.known = known, .name = name}, table);
     }
   }
 }
@@ -141,11 +115,11 @@ void TableColumns::apply(std::vector<std::string>& fields, bool whole) const {
   for (std::size_t k = 0; k < std::min(own_, fields.size()); ++k)
     if (double value = 0.0; fields[k].ends_with('%') && unitOf(header_[k]).empty() &&
                             parseNumber(fields[k].substr(0, fields[k].size() - 1), value))
-      fields[k] =
-          shortest(std::ranges::count(conversions_, k, &Conversion::column) > 0 ? value : 0.01 * value);
+      fields[k] = fmt::format(
+          "{}", std::ranges::count(conversions_, k, &Conversion::column) > 0 ? value : 0.01 * value);
   for (const Conversion& c : conversions_)
     if (double value = 0.0; c.column < fields.size() && parseNumber(fields[c.column], value))
-      fields[c.column] = shortest(value * c.factor);
+      fields[c.column] = fmt::format("{}", value * c.factor);
   if (constants_.empty()) return;
   if (whole) fields.resize(own_);
   fields.insert(fields.end(), constants_.begin(), constants_.end());

@@ -167,37 +167,32 @@ class Table {
     for (const Column& column : columns_) {
       const auto settles = [&](const MappedColumn& m) { return m.known == column.name && !m.unit.empty(); };
       if (!column.known || std::ranges::any_of(stated, settles)) continue;
-      const auto refuse = [&](std::ptrdiff_t beyond, std::ptrdiff_t all, double most, const char* as,
-                              const char* unit, const char* own) {
-        throw InputError({where + ", column " + column.name,
-                          fmt::format("{} of {} values lie beyond {:.3g}, as {} do", beyond, all, most, as),
-                          fmt::format("pass --column {0}={0}:{1}, or {0}={0}:{2} if it is right as it is",
-                                      column.name, unit, own)});
-      };
-      const auto beyond = [&](double least, double most) {
+      const auto count = [&](double least, double most) {
         const auto lies = [&](double v) { return std::abs(v) > least && std::abs(v) <= most; };
         return std::ranges::count_if(column.rejected, lies) + std::ranges::count_if(column.numbers, lies);
       };
-      constexpr double kMost = std::numeric_limits<double>::max(), kCenturies_s = 1e11;
-      const auto all = beyond(-1.0, kMost);
-      const auto refuseIfOdd = [&](double most, const char* as, const char* unit, const char* own) {
-        const auto odd = beyond(most, 360.0);
+      constexpr double kMost = std::numeric_limits<double>::max();
+      const auto all = count(-1.0, kMost);
+      const auto refuseIfOdd = [&](double least, double most, const char* as, const char* unit,
+                                   const char* own) {
+        const auto odd = count(least, most);
         if (oddsOfOtherUnit(static_cast<double>(odd), static_cast<double>(all)) > kMostOdds)
-          refuse(odd, all, most, as, unit, own);
+          throw InputError({where + ", column " + column.name,
+                            fmt::format("{} of {} values lie beyond {:.3g}, as {} do", odd, all, least, as),
+                            fmt::format("pass --column {0}={0}:{1}, or {0}={0}:{2} if it is right as it is",
+                                        column.name, unit, own)});
       };
-      if (column.name == "slip") refuseIfOdd(1.6, "percent", "percent", "ratio");
+      const std::string& name = column.name;
+      if (name == "slip") refuseIfOdd(1.6, 360.0, "percent", "percent", "ratio");
       // Headings may turn on, and a slip angle is near pi in reverse.
-      if (column.name.ends_with("_rad"))
-        refuseIfOdd(column.name == "heading_rad"      ? 8.0 * std::numbers::pi
-                    : column.name == "slip_angle_rad" ? 3.2
-                                                      : 1.6,
-                    "degrees", "deg", "rad");
-      if (const auto late = beyond(kCenturies_s, kMost); column.name == "time_s" && 2 * late > all)
-        refuse(late, all, kCenturies_s, "times since 1970 in less than seconds",
-               2 * beyond(1e17, kMost) > all   ? "ns"
-               : 2 * beyond(1e14, kMost) > all ? "us"
-                                               : "ms",
-               "s");
+      const double turn = name == "heading_rad"      ? 8.0 * std::numbers::pi
+                          : name == "slip_angle_rad" ? 3.2
+                                                     : 1.6;
+      if (name.ends_with("_rad")) refuseIfOdd(turn, 360.0, "degrees", "deg", "rad");
+      if (name != "time_s") continue;
+      refuseIfOdd(1e11, 1e14, "milliseconds since 1970", "ms", "s");
+      refuseIfOdd(1e14, 1e17, "microseconds since 1970", "us", "s");
+      refuseIfOdd(1e17, kMost, "nanoseconds since 1970", "ns", "s");
     }
   }
 

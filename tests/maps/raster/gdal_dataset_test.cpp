@@ -1,6 +1,12 @@
+#include <algorithm>
 #include <filesystem>
 
+#include <sys/stat.h>
+
+#include <talus/common/input_file.hpp>
+#include <talus/maps/raster/elevation_reader.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/vector/vector_reader.hpp>
 
 #include "raster_fixture.hpp"
 
@@ -88,4 +94,178 @@ TEST(GdalDataset, MissingDriverIsReported) {
 }
 
 }  // namespace gdal_dataset_test
+
+namespace source_files_test {
+
+using testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+constexpr const char* kForeign = "which is no file of its own folder";
+
+class SourceFiles : public testing::Test {
+ protected:
+  // Answer to opening a file of the folder as a raster.
+  std::string opened(const std::string& name, bool allow_vrt = false) const {
+    return refusal([&] { openRaster(folder_ / name, allow_vrt); });
+  }
+  std::string openedVrt(const std::string& source, const std::string& more = "") const {
+    folder_.write("label.vrt",
+                  "<VRTDataset rasterXSize=\"4\" rasterYSize=\"5\"><VRTRasterBand dataType=\"Float32\" "
+                  "band=\"1\">" +
+                      more + "<SimpleSource><SourceFilename relativeToVRT=\"1\">" + source +
+                      "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>");
+    return opened("label.vrt", true);
+  }
+
+  const TemporaryFolder folder_;
+  const TemporaryFolder elsewhere_;
+};
+
+TEST_F(SourceFiles, VirtualRasterRequiresPermissionAndPlainNames) {
+  write({.rows = kHill}, folder_ / "a.tif");
+  EXPECT_EQ(openedVrt("a.tif"), "accepted");
+  EXPECT_EQ(openedVrt("<![CDATA[a.tif]]>"), "accepted");
+  EXPECT_THAT(opened("label.vrt"),
+              HasSubstr("is a virtual raster, which names other files; pass --allow-vrt"));
+  const std::string secret = write({.rows = kHill}, elsewhere_ / "secret.tif");
+  for (const std::string& source :
+       {secret, "../" + fs::path(secret).parent_path().filename().string() + "/secret.tif",
+        "<![CDATA[" + secret + "]]>", std::string("/vsicurl/http://127.0.0.1:9/a.tif"),
+        std::string("NETCDF:a.nc:z"), std::string("GTIFF_DIR:1:a.tif")})
+    EXPECT_THAT(openedVrt(source), HasSubstr(kForeign)) << source;
+  folder_.write("code.vrt",
+                "<VRTDataset rasterXSize=\"4\" rasterYSize=\"5\"><VRTRasterBand dataType=\"Float32\" "
+                "band=\"1\" subClass=\"VRTDerivedRasterBand\"><PixelFunctionType>x"
+                "</PixelFunctionType></VRTRasterBand></VRTDataset>");
+  EXPECT_THAT(opened("code.vrt", true), HasSubstr("contains code"));
+}
+
+TEST_F(SourceFiles, NestedSourcesAreChecked) {
+  const std::string secret = write({.rows = kHill}, elsewhere_ / "secret.tif");
+  openedVrt(secret);
+  fs::rename(folder_ / "label.vrt", folder_ / "inner.vrt");
+  EXPECT_THAT(openedVrt("inner.vrt"), HasSubstr(kForeign));
+  openedVrt("inner.vrt");
+  fs::rename(folder_ / "label.vrt", folder_ / "outer.vrt");
+  openedVrt("outer.vrt");
+  fs::rename(folder_ / "label.vrt", folder_ / "inner.vrt");
+  EXPECT_THAT(opened("inner.vrt", true), HasSubstr("names itself"));
+}
+
+TEST_F(SourceFiles, LabelsOutOfTheFolderAreRejected) {
+  const std::string numbers(100 * 400, '\0');
+  elsewhere_.write("h.img", numbers);
+  const auto label = [&](const std::string& name) {
+    folder_.write(
+        "h.lbl",
+        "PDS_VERSION_ID = PDS3\nRECORD_TYPE = FIXED_LENGTH\nRECORD_BYTES = 400\nFILE_RECORDS = 100\n"
+        "^IMAGE = \"" +
+            name +
+            "\"\nOBJECT = IMAGE\nLINES = 100\nLINE_SAMPLES = 100\nSAMPLE_TYPE = PC_REAL\n"
+            "SAMPLE_BITS = 32\nEND_OBJECT = IMAGE\nEND\n");
+    return opened("h.lbl");
+  };
+  EXPECT_THAT(label("../" + fs::path(elsewhere_ / "h.img").parent_path().filename().string() + "/h.img"),
+              HasSubstr(kForeign));
+  fs::create_symlink(elsewhere_ / "h.img", folder_ / "link.img");
+  EXPECT_THAT(label("link.img"), HasSubstr(kForeign));
+  folder_.write("h.img", numbers);
+  EXPECT_EQ(label("h.img"), "accepted");
+}
+
+// If the given file is a link, the folder of the target is also allowed.
+TEST_F(SourceFiles, LinkedFileMayHaveItsFilesBesideTheTarget) {
+  write({.rows = kHill, .driver = "ENVI"}, elsewhere_ / "hill.img");
+  fs::create_symlink(elsewhere_ / "hill.img", folder_ / "hill.img");
+  fs::create_symlink(elsewhere_ / "hill.hdr", folder_ / "hill.hdr");
+  EXPECT_EQ(opened("hill.img"), "accepted");
+}
+
+TEST_F(SourceFiles, NeighboursMustBeRegularFiles) {
+  write({.rows = kHill}, folder_ / "map.tif");
+  for (const char* name : {"map.tif.aux.xml", "map.tif.ovr", "map.tif.msk", "map.prj", "map.TFW"}) {
+    ASSERT_EQ(::mkfifo((folder_ / name).c_str(), 0600), 0);
+    EXPECT_THAT(opened("map.tif"), HasSubstr("is a device, a FIFO")) << name;
+    EXPECT_THAT(refusal([&] { openVector(folder_ / "map.tif"); }), HasSubstr("is a device, a FIFO")) << name;
+    fs::remove(folder_ / name);
+  }
+  EXPECT_EQ(opened("map.tif"), "accepted");
+}
+
+// GDAL silently ignores a damaged mask or auxiliary file and would read all pixels as valid.
+TEST_F(SourceFiles, SideFileThatGdalDoesNotUseIsRejected) {
+  write({.rows = kHill}, folder_ / "map.tif");
+  folder_.write("map.tif.msk", std::string("II*\0\x08\0\0\0", 8));
+  EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.msk: belongs to the raster by its name"));
+  write({.rows = kHill, .type = GDT_Byte}, folder_ / "map.tif.msk");
+  EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.msk: lacks INTERNAL_MASK_FLAGS"));
+  fs::remove(folder_ / "map.tif.msk");
+  folder_.write("map.tif.aux.xml", "<PAMDataset><Metadata></PAMDataset>");
+  EXPECT_THAT(opened("map.tif"), HasSubstr("map.tif.aux.xml: is no XML"));
+}
+
+TEST_F(SourceFiles, AuxiliaryFileMustAgreeWithTheRaster) {
+  write({.rows = kHill, .nodata = -1, .scale = 0.5, .unit = "m"}, folder_ / "map.tif");
+  const auto with = [&](const std::string& band, const std::string& more = "") {
+    folder_.write("map.tif.aux.xml", "<PAMDataset>" + more + "<PAMRasterBand band=\"1\">" + band +
+                                         "</PAMRasterBand></PAMDataset>");
+    return opened("map.tif");
+  };
+  EXPECT_EQ(with("<Description>dem</Description><NoDataValue>-1</NoDataValue>"), "accepted");
+  EXPECT_EQ(with("<Scale>0.5</Scale><UnitType>m</UnitType>"), "accepted");
+  EXPECT_THAT(with("", "<GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform>"),
+              HasSubstr("another place than the raster"));
+  EXPECT_THAT(with("", "<SRS>EPSG:4326</SRS>"), HasSubstr("another CRS than the raster"));
+  // GDAL prefers what the TIFF itself states of its bands.
+  for (const char* band : {"<Scale>2</Scale>", "<UnitType>ft</UnitType>", "<NoDataValue>7</NoDataValue>"}) {
+    const std::string answer = with(band);
+    EXPECT_TRUE(answer != "accepted" || readElevation(folder_ / "map.tif").reading ==
+                                            "heights = raw x 0.5 m, unit 'm' (file), no-data -1 (file)")
+        << answer;
+  }
+  fs::remove(folder_ / "map.tif.aux.xml");
+  write({.rows = kHill, .driver = "ENVI", .nodata = -1}, folder_ / "map.tif");
+  std::ofstream(folder_ / "map.hdr", std::ios::app) << "data gain values = {0.5}\ndata offset values = {7}\n";
+  EXPECT_THAT(with("<Scale>2</Scale>"), HasSubstr("another scale than the raster"));
+  EXPECT_THAT(with("<Scale>0.5</Scale><Offset>2</Offset>"), HasSubstr("another offset than the raster"));
+}
+
+// Property: the manifest holds every file of a raster or vector, and a checksum beside any of them is compared, also
+// beside sources and masks.
+TEST_F(SourceFiles, ChecksumOfEveryFileIsCompared) {
+  if (sha256OfFile("/dev/null").empty()) GTEST_SKIP() << "built without nettle";
+  const auto expectAllChecked = [&](const std::string& name, const auto& read) {
+    const InputRecord manifest;
+    ASSERT_EQ(refusal([&] { read(); }), "accepted") << name;
+    std::vector<std::string> beside, listed;
+    for (const auto& entry : fs::directory_iterator(fs::path(folder_ / name).parent_path()))
+      beside.push_back(entry.path().string());
+    for (const InputFile& file : filesRead()) {
+      listed.push_back(file.path);
+      EXPECT_EQ(file.size, fs::file_size(file.path)) << file.path;
+      EXPECT_EQ(file.sha256, sha256OfFile(file.path)) << file.path;
+    }
+    EXPECT_THAT(listed, testing::UnorderedElementsAreArray(beside));
+    for (const std::string& file : beside) {
+      folder_.write(fs::path(file).filename().string() + ".sha256", sha256OfFile(file) + "  file\n");
+      EXPECT_EQ(refusal([&] { read(); }), "accepted") << file;
+      folder_.write(fs::path(file).filename().string() + ".sha256", std::string(64, '0'));
+      EXPECT_THAT(refusal([&] { read(); }), HasSubstr(file + ": is not the file of")) << file;
+      fs::remove(file + ".sha256");
+    }
+    for (const std::string& file : beside) fs::remove(file);
+  };
+  for (const char* driver : {"GTiff", "ENVI", "EHdr", "PDS4", "ISIS3", "AAIGrid"}) {
+    const std::string name = std::string("hill") + (driver == std::string("PDS4") ? ".xml" : ".bil");
+    write({.rows = kHill, .driver = driver, .nodata = -1}, folder_ / name);
+    expectAllChecked(name, [&] { readElevation(folder_ / name, {.resolution_m = 10.0}); });
+  }
+  write({.rows = kHill}, folder_ / "a.tif");
+  openedVrt("a.tif", "<NoDataValue>-1</NoDataValue>");
+  expectAllChecked("label.vrt", [&] { openRaster(folder_ / "label.vrt", true); });
+}
+
+}  // namespace source_files_test
+
 }  // namespace talus::maps
