@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22479}, {"maps", 7321},     {"costmap", 13096},
-                           {"planner", 24049}, {"cli", 15267},       {"examples", 1703}, {"tests", 61134}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13096},
+                           {"planner", 24049}, {"cli", 15266},       {"examples", 1703}, {"tests", 61134}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

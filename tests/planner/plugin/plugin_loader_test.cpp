@@ -57,7 +57,7 @@ TEST(PluginLoader, LibraryStaysLoadedWhileItsPlannersExist) {
 TEST(PluginLoader, OtherInterfaceVersionIsRejected) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
-                                              HasSubstr("this program has 7"), HasSubstr("rebuild"))));
+                                              HasSubstr("this program has 8"), HasSubstr("rebuild"))));
 }
 
 // The dynamic linker ends the process without a signal if the table of relative relocations contains another

@@ -33,7 +33,7 @@ TEST(FileKeys, EveryRoverAndSoilKeyIsAccepted) {
                                                     : "0.2") +
              "\n";
   for (const std::string& name : namesOf(soilKeys()))
-    soil += name + ": " + (name == "name" ? "s" : "0.3") + "\n";
+    soil += name + ": " + (name == "name" ? "s" : name == "rut_stiffness" ? "4" : "0.3") + "\n";
   EXPECT_EQ(readRover(YamlFields::text(rover, "r.yaml")).steering, Steering::Ackermann);
   EXPECT_EQ(readSoil(YamlFields::text(soil, "s.yaml")).mean.name, "s");
 }
