@@ -222,7 +222,7 @@ Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const Elevati
   const GdalErrors quiet;
   const auto [band, pixels] = layerBand(Kind::Classes, source, map, {.words = {"class"}});
   const ClassRanks ranks(weakest_last);
-  const auto ranked = [&](float v) {
+  const auto ranked = [&, band = band](float v) {
     if (std::isnan(v)) return ranks.rank(kNoClass);
     if (!(v >= 0 && v <= kNoClass) || v != std::floor(v))
       throw InputError({source.path + ", band " + std::to_string(band),
@@ -276,7 +276,7 @@ RockAbundance readRockAbundance(const LayerSource& source, const ElevationMap& m
   const GdalErrors quiet;
   const auto [number_of_band, band] = layerBand(
       Kind::Rocks, source, map, {.words = {"rock", "abundance", "_ra"}, .others = {"slope", "dem"}});
-  changePixels(*band, source.path, [&](float v) {
+  changePixels(*band, source.path, [&, number_of_band = number_of_band](float v) {
     if (v < 0 || v > 1)
       throw InputError({source.path + ", band " + std::to_string(number_of_band),
                         "rock abundance " + number(static_cast<double>(v)) + " is not a fraction from 0 to 1",

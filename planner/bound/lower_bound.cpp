@@ -111,7 +111,8 @@ double planeBound_J(const DirectionalCostBounds& of, const Segment& places, doub
 
 double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places,
                               double goal_tolerance_m, const StopCheck& stop, double known_J, double gap) {
-  const double even_J = (1.0 - std::max(kEven, gap)) * known_J;
+  const double even_J = (1.0 - std::max(kEven, gap)) * known_J,
+               enough_J = (1.0 - (gap > 0.0 ? gap : kEnough)) * known_J;
   to_goal_.clear();
   const double straight_J = straightBoundOver_J(*map, places, goal_tolerance_m, known_J, stop);
   if (straight_J >= even_J) return straight_J;
@@ -120,7 +121,7 @@ double LowerBound::operator()(const std::shared_ptr<const costmap::CostGrid>& ma
   double bound_J = std::max(straight_J, leastAt(level_1_, map->grid(), starts));
   bound_J = std::max(bound_J, planeBound_J(octagons_->limits(), places, tolerance_m_, bound_J));
   if (bound_J >= even_J) return std::min(known_J, bound_J);
-  return std::min(known_J, std::max(bound_J, narrowed_J(places, starts, known_J, gap, stop)));
+  return std::min(known_J, std::max(bound_J, narrowed_J(places, starts, known_J, enough_J, stop)));
 }
 
 bool LowerBound::prepare(const std::shared_ptr<const costmap::CostGrid>& map, maps::Point goal,
@@ -143,7 +144,7 @@ std::vector<bool> LowerBound::corridor(const std::shared_ptr<const costmap::Cost
                                        const Segment& places, double goal_tolerance_m, double most_J,
                                        const StopCheck& stop) {
   if (!prepare(map, places.to, goal_tolerance_m, stop)) return {};
-  narrowed_J(places, cornersAround(map->grid(), places.from, 0.0), most_J, 0.0, stop);
+  narrowed_J(places, cornersAround(map->grid(), places.from, 0.0), most_J, (1.0 - kEnough) * most_J, stop);
   return stop() || from_start_.empty() ? std::vector<bool>{} : inside_;
 }
 
@@ -195,8 +196,7 @@ double LowerBound::costFor(std::size_t cells, double least_J, double known_J) co
 }
 
 double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
-                              double gap, const StopCheck& stop) {
-  const double enough_J = (1.0 - (gap > 0.0 ? gap : kEnough)) * known_J;
+                              double enough_J, const StopCheck& stop) {
   const maps::Grid& grid = map_->grid();
   const auto ends = cornersAround(grid, goal_, tolerance_m_);
   from_start_ = cornerField(map_, octagonOf(), starts, stop, RouteSense::FromStart);

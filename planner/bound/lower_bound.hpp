@@ -59,8 +59,8 @@ class LowerBound {
   template <typename Each>
   void forEachInside(Each each) const;
   double costFor(std::size_t cells, double least_J, double known_J) const;
-  double narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J, double gap,
-                    const StopCheck& stop);
+  double narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
+                    double enough_J, const StopCheck& stop);
 
   std::shared_ptr<const costmap::CostGrid> map_;
   std::optional<FittedOctagons> octagons_;

@@ -178,8 +178,8 @@ std::string plainName(std::string_view name) {
       text += kParting.find(name[k]) == std::string_view::npos ? name[k] : '_';
     }
   }
-  const auto twice = std::ranges::unique(text, [](char a, char b) { return a == '_' && b == '_'; });
-  text.erase(twice.begin(), twice.end());
+  text.erase(std::unique(text.begin(), text.end(), [](char a, char b) { return a == '_' && b == '_'; }),
+             text.end());
   if (text.ends_with('_')) text.pop_back();
   return text.starts_with('_') ? text.substr(1) : text;
 }
