@@ -1,6 +1,5 @@
 // talus explain DEM --at P [--heading RAD]: explains the category and cost of a cell.
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 
@@ -9,8 +8,6 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/number_check.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/motion_options.hpp>
 #include <talus/costmap/map/explanation.hpp>

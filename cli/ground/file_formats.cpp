@@ -74,15 +74,4 @@ std::string formatsText() {
   return text;
 }
 
-std::string formatsMarkdown() {
-  std::string text;
-  for (const FileFormat& format : fileFormats()) {
-    text += fmt::format("## {}\n\n{}\n\n| name | meaning |\n|---|---|\n", format.title, format.about);
-    for (const FileKey& key : format.keys) text += fmt::format("| `{}` | {} |\n", key.name, key.meaning);
-    text += "\n";
-  }
-  text.pop_back();
-  return text;
-}
-
 }  // namespace talus::cli

@@ -21,7 +21,4 @@ std::vector<FileFormat> fileFormats();
 /// Returns the output of `talus help formats`.
 std::string formatsText();
 
-/// Returns the formats as Markdown: docs/formats.md from its first format heading onwards.
-std::string formatsMarkdown();
-
 }  // namespace talus::cli

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
@@ -12,6 +14,18 @@ namespace file_formats_test {
 
 using terramech::FileKey;
 using testing::HasSubstr;
+
+// The formats as Markdown.
+std::string formatsMarkdown() {
+  std::string text;
+  for (const FileFormat& format : fileFormats()) {
+    text += fmt::format("## {}\n\n{}\n\n| name | meaning |\n|---|---|\n", format.title, format.about);
+    for (const FileKey& key : format.keys) text += fmt::format("| `{}` | {} |\n", key.name, key.meaning);
+    text += "\n";
+  }
+  text.pop_back();
+  return text;
+}
 
 TEST(FileFormats, DocumentMatchesTheReaders) {
   const std::string document = fileContent(TALUS_SOURCE_DIR "/docs/formats.md");
