@@ -59,10 +59,12 @@ std::string betterText(const planner::Plan& best, double cost_J) {
 
 std::string scoreText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
   const planner::RouteSummary& s = route.summary;
-  std::string text = fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
-                     fmt::format("energy      {:.6g} J\ntime        {:.6g} s\nlength      {:.6g} m\n",
-                                 s.energy_J, s.time_s, s.length_m) +
-                     fmt::format("violations  {}\n", violations.size());
+  std::string text =
+      fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
+      (std::isnan(s.time_s)
+           ? ""
+           : fmt::format("energy      {:.6g} J\ntime        {:.6g} s\n", s.energy_J, s.time_s)) +
+      fmt::format("length      {:.6g} m\n", s.length_m) + fmt::format("violations  {}\n", violations.size());
   std::string last;
   for (const auto& v : violations) {
     const std::string line = fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
@@ -74,6 +76,7 @@ std::string scoreText(const planner::Route& route, const std::vector<planner::Vi
 
 void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
+  addCostCurve(command, options.ground);
   command
       .add_option("--path", options.path,
                   "polyline: a line of a vector file, or CSV with x_m, y_m or lat, lon")

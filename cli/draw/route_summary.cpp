@@ -96,7 +96,7 @@ std::string groundText(const Route& route) {
     text += fmt::format("{} {:.1f} %", terramech::name(static_cast<terramech::Category>(c)),
                         100.0 * length[c] / total);
   }
-  return text;
+  return length[3] < total ? text : "";
 }
 
 std::string wheelText(const Route& route) {
@@ -127,7 +127,7 @@ std::string statusText(const Route& route) {
 
 std::string riskText(double probability) {
   if (probability > 0.99) return "immobilisation probability > 0.99";
-  return fmt::format("immobilisation probability {:.2g}", probability);
+  return std::isnan(probability) ? "" : fmt::format("immobilisation probability {:.2g}", probability);
 }
 
 std::string driveText(const Route& route) {
@@ -187,6 +187,18 @@ std::string atMost(double p90, Text text) {
   return p90 > 0.0 ? fmt::format(", 9 of 10 drives at most {}", text(p90)) : "";
 }
 
+std::string timeText(const planner::RouteSummary& s) {
+  if (std::isnan(s.time_s)) return "";
+  return fmt::format("{}{}, mean speed {:.3g} m/s", durationText(s.time_s),
+                     atMost(s.time_p90_s, durationText), s.length_m / s.time_s);
+}
+
+std::string effortText(const planner::RouteSummary& s) {
+  return fmt::format("{} ({:.4g} Wh), {:.4g} J/m{}; cost including time and risk {}", energyText(s.energy_J),
+                     s.energy_J / 3600.0, s.energy_J / s.length_m, atMost(s.energy_p90_J, energyText),
+                     energyText(s.cost));
+}
+
 Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
@@ -196,22 +208,22 @@ Facts summaryOf(const Route& route) {
                                   energyText(s.energy_J))}};
   if (!(s.length_m > 0.0)) return {{"route", "empty: the start is at the goal, or within its tolerance"}};
   const double risk = route.vertices.back().immobilisation_risk;
-  Facts facts{{"route", statusText(route)},
-              {"length", lengthText(s.length_m) + straightText(route)},
-              {"driving time", fmt::format("{}{}, mean speed {:.3g} m/s", durationText(s.time_s),
-                                           atMost(s.time_p90_s, durationText), s.length_m / s.time_s)},
-              {"energy", fmt::format("{} ({:.4g} Wh), {:.4g} J/m{}; cost including time and risk {}",
-                                     energyText(s.energy_J), s.energy_J / 3600.0, s.energy_J / s.length_m,
-                                     atMost(s.energy_p90_J, energyText), energyText(s.cost))},
-              {"manoeuvres", driveText(route)},
-              {"elevation", climbText(route)},
-              {"slope", slopeText(route)},
-              {"slip", slipText(route)},
-              {"wheel", wheelText(route)},
-              {"drawbar-pull margin", marginText(route)},
-              {"traversability", groundText(route)},
-              {"risk", riskText(risk)},
-              {"warning", warningOf(route).value_or(RouteWarning{}).text}};
+  Facts facts{
+      {"route", statusText(route)},
+      {"length", lengthText(s.length_m) + straightText(route)},
+      {"driving time", timeText(s)},
+      {"energy", std::isnan(s.time_s) ? "" : effortText(s)},
+      {"cost",
+       std::isnan(s.time_s) ? fmt::format("{:.6g}, {:.4g} a metre", s.cost, s.cost / s.length_m) : ""},
+      {"manoeuvres", driveText(route)},
+      {"elevation", climbText(route)},
+      {"slope", slopeText(route)},
+      {"slip", slipText(route)},
+      {"wheel", wheelText(route)},
+      {"drawbar-pull margin", marginText(route)},
+      {"traversability", groundText(route)},
+      {"risk", riskText(risk)},
+      {"warning", warningOf(route).value_or(RouteWarning{}).text}};
   std::erase_if(facts, [](const auto& fact) { return fact.second.empty(); });
   return facts;
 }

@@ -37,6 +37,17 @@ std::span<const FileKey> vectorFileKeys() {
   return kKeys;
 }
 
+std::span<const FileKey> costCurveKeys() {
+  static constexpr FileKey kKeys[] = {
+      {"gradient_along", "rise over run along the heading, climbing > 0, -1 to 1, required"},
+      {"gradient_across",
+       "rise over run across the heading, left and right equal, 0 to 2; default: no effect"},
+      {"class", "number of a terrain class, with `--terrain`"},
+      {"cost_per_m", "cost of a horizontal metre, above 0; empty or inf: refused, required"},
+  };
+  return kKeys;
+}
+
 }  // namespace
 
 std::vector<FileFormat> fileFormats() {
@@ -58,6 +69,11 @@ std::vector<FileFormat> fileFormats() {
        vectorFileKeys()},
       {"Telemetry", "CSV with a header row, columns in any order; others are kept as they are.",
        terramech::telemetryKeys()},
+      {"Cost curve",
+       "CSV of `--cost-curve` in any unit of cost, interpolated between the gradients and refused beyond "
+       "them; costs "
+       "must not fall across the slope.",
+       costCurveKeys()},
   };
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -15,9 +16,11 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
+#include <talus/cli/ground/cost_curve_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
+#include <talus/costmap/cost/travel_states.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
@@ -308,6 +311,45 @@ std::vector<int> weakestLast(const std::vector<costmap::GroundClass>& classes,
   return numbers;
 }
 
+costmap::GroundModel::Parts partsOf(const GroundOptions& options, const maps::ElevationMap& dem,
+                                    std::vector<int>& weakest_last, const Context& context) {
+  const Assumed& assumed = assumedOn(dem);
+  warnOfAssumptions(options, assumed, context);
+  costmap::GroundModel::Parts parts;
+  parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
+  warnOfRover(parts.rover, context);
+  parts.classes = blamingFiles(options, [&] { return groundClasses(options, assumed, parts.rover); });
+  parts.policy = options.policy;
+  weakest_last = weakestLast(parts.classes, parts.rover);
+  return parts;
+}
+
+// Ground of stated costs, for which the class of greater cost on level ground is the weaker.
+costmap::GroundModel::Parts statedParts(const GroundOptions& options, std::vector<int>& weakest_last) {
+  costmap::TravelPolicy policy = options.policy;
+  policy.allow_unknown = false;
+  if (!options.rover.empty() || !options.soil.empty() || !options.soils.empty() || !options.model.empty() ||
+      !options.layers.rocks.empty() || fieldsOf(policy) != fieldsOf(costmap::TravelPolicy{}))
+    throw InputError(
+        {"--cost-curve " + options.cost_curve,
+         "stands in place of --rover, --soil, --soils, --model, --rocks and the options of thresholds",
+         "remove them, or remove --cost-curve"});
+  CostCurves curves = readCostCurves(options.cost_curve);
+  if (curves.classed != !options.layers.terrain.empty())
+    throw InputError(
+        {options.cost_curve, "a column class and --terrain belong together", "give both, or neither"});
+  costmap::GroundModel::Parts parts{.policy = options.policy, .stated = std::move(curves.costs)};
+  std::vector<std::pair<float, int>> by_cost;
+  for (std::size_t i = 0; i < curves.numbers.size(); ++i) {
+    parts.classes.push_back({.number = curves.numbers[i]});
+    by_cost.emplace_back(parts.stated->states[i]->at(0, costmap::TravelCurve::kBins / 2).energy_J_per_m,
+                         curves.numbers[i]);
+  }
+  std::ranges::sort(by_cost);
+  for (const auto& [cost, number] : by_cost) weakest_last.push_back(number);
+  return parts;
+}
+
 }  // namespace
 
 std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map) {
@@ -344,6 +386,13 @@ void addGroundChoices(CLI::App& command, GroundOptions& options) {
   addPolicy(command, options.policy);
 }
 
+void addCostCurve(CLI::App& command, GroundOptions& options) {
+  command
+      .add_option("--cost-curve", options.cost_curve,
+                  "cost a metre over gradient_along and gradient_across, in place of rover and soil")
+      ->type_name("FILE.csv");
+}
+
 std::vector<InputFile> filesOf(const GroundOptions& options) {
   std::vector<InputFile> files;
   const auto add = [&](const std::string& path, const char* role) {
@@ -358,6 +407,7 @@ std::vector<InputFile> filesOf(const GroundOptions& options) {
                                    {options.soil, "soil"},
                                    {options.model, "model"},
                                    {options.rover, "rover"},
+                                   {options.cost_curve, "cost curve"},
                                    {options.mission, "mission"}})
     if (std::ifstream(path).good()) add(path, role);
   for (const std::string& path : layers.keep_out) add(path, "keep-out");
@@ -366,30 +416,32 @@ std::vector<InputFile> filesOf(const GroundOptions& options) {
 }
 
 Ground readGround(const GroundOptions& options, const Context& context) {
+  if (!options.cost_curve.empty() && (!options.map_file.empty() || isBeliefMap(options.dem.path)))
+    throw InputError({"--cost-curve " + options.cost_curve,
+                      "has no effect on a built map, which has its own costs", "plan on the elevation map"});
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
   const InputRecord record;
   maps::ElevationMap dem = readMap(options.dem, context);
-  const Assumed& assumed = assumedOn(dem);
-  warnOfAssumptions(options, assumed, context);
-  costmap::GroundModel::Parts parts;
-  parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
-  warnOfRover(parts.rover, context);
-  parts.classes = blamingFiles(options, [&] { return groundClasses(options, assumed, parts.rover); });
-  parts.policy = options.policy;
-  Layers layers = readLayers(options.layers, dem, weakestLast(parts.classes, parts.rover));
+  std::vector<int> weakest_last;
+  const bool stated = !options.cost_curve.empty();
+  costmap::GroundModel::Parts parts =
+      stated ? statedParts(options, weakest_last) : partsOf(options, dem, weakest_last, context);
+  Layers layers = readLayers(options.layers, dem, weakest_last);
   for (const std::string& note : layers.notes) context.warn(note);
   const double load_s = since_s(begin);
   begin = Clock::now();
   const double own_m = std::hypot(parts.rover.wheelbase_m, parts.rover.track_m),
                widest_m = std::max(kFootprints * own_m, 2.0 * dem.grid().resolution_m);
-  if (options.footprint_m > widest_m)
+  if (!stated && options.footprint_m > widest_m)
     throw InputError(
         {"--footprint " + fmt::format("{:.6g}", options.footprint_m),
          fmt::format("planes over more than {:.3g} m hide the steps and slopes that rover '{}' meets",
                      widest_m, parts.rover.name),
          "leave it out, or make it smaller"});
+  const double nearest_m = std::numbers::sqrt2 * dem.grid().resolution_m,  // 3 x 3 cells
+      footprint_m = stated && options.footprint_m == 0.0 ? nearest_m : options.footprint_m;
   std::vector<InputFile> files = manifestOf(options);
   dem.files = files;
   costmap::MapLayers content{std::move(dem),
@@ -402,7 +454,7 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   costmap::TraversabilityMap map = blamingFiles(options, [&] {
     return costmap::TraversabilityMap(
         std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
-        {.footprint_radius_m = options.footprint_m, .threads = context.workers()}, context.watch("costmap"));
+        {.footprint_radius_m = footprint_m, .threads = context.workers()}, context.watch("costmap"));
   });
   return {std::move(map), std::move(files), load_s, since_s(begin)};
 }

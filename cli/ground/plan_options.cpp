@@ -44,6 +44,7 @@ planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& pl
 
 void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
+  addCostCurve(command, options.ground);
   command
       .add_option("--start", options.start,
                   "start: x,y in map metres; lat,lon with the suffix d on each; or a vector file")

@@ -9,38 +9,54 @@
 namespace talus::costmap {
 
 TabulatedStates::TabulatedStates(std::vector<TravelState> states) : states_(std::move(states)) {
-  if (states_.size() != TravelCurve::kBins)
-    throw std::invalid_argument("travel states: " + std::to_string(states_.size()) + " states, must be " +
-                                std::to_string(TravelCurve::kBins));
+  if (states_.empty() || states_.size() % TravelCurve::kBins != 0)
+    throw std::invalid_argument("travel states: " + std::to_string(states_.size()) +
+                                " states, must be a multiple of " + std::to_string(TravelCurve::kBins));
 }
 
-TravelState TabulatedStates::at(int, int bin) const {
-  return states_[static_cast<std::size_t>(bin)];
+TravelState TabulatedStates::at(int row, int bin) const {
+  const int last = static_cast<int>(states_.size()) / TravelCurve::kBins - 1;
+  return states_[static_cast<std::size_t>(std::min(row, last) * TravelCurve::kBins + bin)];
 }
 
 TravelCurve TabulatedStates::curve(const CostWeights& weights) const {
+  const auto term = [](double weight, float value) {  // a quantity without a weight may be unknown
+    return weight > 0.0 ? weight * static_cast<double>(value) : 0.0;
+  };
+  std::vector<float> costs;
+  for (const TravelState& s : states_)
+    costs.push_back(s.refusal == Refusal::None ? static_cast<float>(term(weights.energy, s.energy_J_per_m) +
+                                                                    term(weights.time_W, s.time_s_per_m) +
+                                                                    term(weights.risk_J, s.risk_per_m))
+                                               : std::numeric_limits<float>::infinity());
   TravelCurve curve;
-  for (std::size_t bin = 0; bin < states_.size(); ++bin) {
-    const TravelState& s = states_[bin];
-    curve.cost_J_per_m[bin] =
-        s.refusal == Refusal::None
-            ? static_cast<float>(weights.energy * static_cast<double>(s.energy_J_per_m) +
-                                 weights.time_W * static_cast<double>(s.time_s_per_m) +
-                                 weights.risk_J * static_cast<double>(s.risk_per_m))
-            : std::numeric_limits<float>::infinity();
-  }
+  std::copy_n(costs.begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
+  if (costs.size() > TravelCurve::kBins)
+    curve.crossing = std::make_shared<const std::vector<float>>(std::move(costs));
   return curve;
 }
 
 TravelForecast TabulatedStates::forecast(const terramech::Gradient& gradient) const {
-  const auto place = TravelCurve::between(std::clamp(
-      gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0, TravelCurve::kLastPlace));
-  const TravelState here = at(0, place.whole),
-                    state = place.share > 0.0F ? between(here, at(0, place.whole + 1), place.share) : here;
+  const auto place = TravelCurve::between(
+                 std::clamp(gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0,
+                            TravelCurve::kLastPlace)),
+             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
+  const auto inRow = [&](int k) {
+    const TravelState here = at(k, place.whole);
+    return place.share > 0.0F ? between(here, at(k, place.whole + 1), place.share) : here;
+  };
+  const TravelState state =
+      row.share > 0.0F ? between(inRow(row.whole), inRow(row.whole + 1), row.share) : inRow(row.whole);
   TravelForecast out;
   out.energy_J_per_m.fill(state.energy_J_per_m);
   out.time_s_per_m.fill(state.time_s_per_m);
   return out;
+}
+
+std::shared_ptr<const TravelStates> TabulatedStates::withAdded(double added_J_per_m) const {
+  std::vector<TravelState> states = states_;
+  for (TravelState& state : states) state.energy_J_per_m += static_cast<float>(added_J_per_m);
+  return std::make_shared<const TabulatedStates>(std::move(states));
 }
 
 }  // namespace talus::costmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <talus/costmap/cost/travel_cost.hpp>
@@ -26,6 +27,8 @@ class TravelStates {
   virtual double steepest(double gradient) const { return gradient; }
   /// Returns energy and time over the strength of the ground.
   virtual TravelForecast forecast(const terramech::Gradient& gradient) const = 0;
+  /// Returns the same ground with another energy added to each metre.
+  virtual std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const = 0;
 
  protected:
   TravelStates() = default;
@@ -33,15 +36,17 @@ class TravelStates {
   TravelStates& operator=(const TravelStates&) = default;
 };
 
-/// States that depend on the gradient along the heading alone, and on no uncertainty.
+/// States that depend on the gradients alone, and on no uncertainty.
 class TabulatedStates final : public TravelStates {
  public:
-  /// Takes the states at the nodes of TravelCurve, TravelCurve::kBins in number.
+  /// Takes the states at the nodes of TravelCurve, row by row; TravelCurve::kBins in each row, one row or more.
+  /// Costs must not decrease from row to row.
   explicit TabulatedStates(std::vector<TravelState> states);
 
   TravelState at(int row, int bin) const override;
   TravelCurve curve(const CostWeights& weights) const override;
   TravelForecast forecast(const terramech::Gradient& gradient) const override;
+  std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
   std::vector<TravelState> states_;

@@ -72,7 +72,7 @@ CellCode::Curve CostCurveTable::learned(int class_index, int other_class, const 
 
 GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m) const {
   const TravelPolicy& policy = model_->parts().policy;
-  const auto states = dynamic_cast<const GroundStates&>(*ground.states).withAdded(added_J_per_m);
+  const auto states = ground.states->withAdded(added_J_per_m);
   return {
       .curve = states->curve({.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J}),
       .states = states,
@@ -117,6 +117,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
 // over the variance between places.
 SoilUncertainty CostCurveTable::uncertainty() const {
   const GroundModel::Parts& parts = model_->parts();
+  if (parts.stated) return {};
   SoilUncertainty uncertainty{.correlation_length_m = parts.policy.correlation_length_m,
                               .entrapment = parts.policy.held()};
   for (std::size_t i = 0; i < classes(); ++i) {

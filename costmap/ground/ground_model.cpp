@@ -73,9 +73,15 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   check.within("unmonitored_entrapment", parts_.policy.unmonitored_entrapment, {0.0, 1.0});
   check.atLeast("risk_weight_J", parts_.policy.risk_weight_J, 0.0);
   check.above("correlation_length_m", parts_.policy.correlation_length_m, 0.0);
+  if (parts_.stated && parts_.stated->states.size() != parts_.classes.size())
+    throw std::invalid_argument("ground model: stated must hold the states of each class");
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
+    if (parts_.stated) {
+      references_.emplace_back();
+      continue;
+    }
     // referenceOf() throws if a field of the class is out of range: an invalid class is refused here, not at
     // the first use of its curve.
     const GroundClass rut = rutOf(c);
@@ -170,6 +176,10 @@ std::shared_ptr<const GroundStates> GroundModel::states(int class_index, int oth
 }
 
 GroundCost GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
+  if (parts_.stated) {
+    const auto& states = parts_.stated->states[static_cast<std::size_t>(class_index)];
+    return {.curve = states->curve({.energy = 1.0, .time_W = 0.0, .risk_J = 0.0}), .states = states};
+  }
   const auto states = this->states(class_index, other_class, belief);
   GroundCost ground{
       .curve = states->curve(
@@ -197,6 +207,9 @@ TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
 
 TravelCost::Limits GroundModel::limits() const {
   const terramech::Rover& rover = parts_.rover;
+  if (const auto& stated = parts_.stated)
+    return {
+        .max_along = stated->max_along, .max_across = stated->max_across, .stance = nullptr, .outline = {}};
   const bool tips = rover.centre_of_mass_height_m > 0.0;
   return {.max_along = std::tan(rover.max_pitch_rad),
           .max_across = std::tan(rover.max_roll_rad),

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,13 @@ struct SteadyWheel {
   double hold = 0.0;  ///< side force that resists sideways motion, over load [-]
 };
 
+/// Travel states that are stated, not computed from a rover and soils. The rover is a point, the cost is the energy,
+/// and turning is free.
+struct StatedCosts {
+  std::vector<std::shared_ptr<const TravelStates>> states;  ///< of each class, by class index
+  double max_along = 1.0, max_across = 2.0;                 ///< greatest gradients, rise over run [-]
+};
+
 /// Ground model of one rover on one body: the lattice of equilibria of each terrain class, and the cost of
 /// driving for any estimated strength of the ground. At the reference slip, a class has a thrust H = torque /
 /// (load * radius), a resistance R and a pull P = H - R, all over load. Ground with the estimated pull P - d has
@@ -79,6 +87,7 @@ class GroundModel {
     /// True if slopes across the heading add cost. False: they have no effect, for comparison only;
     /// unsafe for driving.
     bool prices_crossing = true;
+    std::optional<StatedCosts> stated{};  ///< costs in place of those of rover and soils
   };
 
   /// Throws std::invalid_argument if there is no terrain class, if two classes have the same number, or if a
@@ -123,6 +132,7 @@ class GroundModel {
   /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and
   /// the probability of that category under the uncertainty of `belief`.
   RankedCategory category(const GroundBelief& belief, double gradient) const {
+    if (parts_.stated) return {terramech::Category::Safe, 1.0};
     return rules_->category.ranked(belief, gradient);
   }
 

@@ -115,7 +115,7 @@ GroundStates::GroundStates(std::shared_ptr<const GroundRules> rules, std::vector
       belief_(belief),
       added_J_per_m_(added_J_per_m) {}
 
-std::shared_ptr<const GroundStates> GroundStates::withAdded(double added_J_per_m) const {
+std::shared_ptr<const TravelStates> GroundStates::withAdded(double added_J_per_m) const {
   return std::make_shared<const GroundStates>(rules_, classes_, belief_, added_J_per_m_ + added_J_per_m);
 }
 

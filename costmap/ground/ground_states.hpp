@@ -51,8 +51,7 @@ class GroundStates final : public TravelStates {
 
   /// Returns the state on a slope without gradient across, interpolated between nodes.
   TravelState onClimb(double gradient) const;
-  /// Returns the same ground with another energy added to each metre.
-  std::shared_ptr<const GroundStates> withAdded(double added_J_per_m) const;
+  std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
   // Terms of the cost of a node; infinite if refused.

@@ -79,7 +79,8 @@ void forEachGiven(const maps::Raster<T>& layer, const maps::CellBox& window, con
 MapSurface::MapSurface(MapLayers layers, std::shared_ptr<const GroundModel> model,
                        const ShapeOptions& options)
     : site_(siteOf(layers, std::move(model))),
-      limits_(HazardLimits::of(site_->model->rover())),
+      limits_(site_->model->parts().stated ? HazardLimits::ofPoint()
+                                           : HazardLimits::of(site_->model->rover())),
       options_(options),
       declared_(std::move(layers.declared)),
       hazards_(grid(), Hazard::None) {

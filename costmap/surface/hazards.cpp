@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <talus/common/constants.hpp>
 #include <talus/costmap/surface/cell_boxes.hpp>
 #include <talus/costmap/surface/hazards.hpp>
 
@@ -34,6 +35,14 @@ bool onEdge(const maps::Raster<Hazard>& hazards, maps::Cell cell, Hazard spreadi
 }
 
 }  // namespace
+
+HazardLimits HazardLimits::ofPoint() {
+  return {.max_gradient = kInfinity,
+          .max_step_m = kInfinity,
+          .max_roughness_m = kInfinity,
+          .rock_diameter_m = kInfinity,
+          .max_rock_probability = 1.0};
+}
 
 HazardLimits HazardLimits::of(const terramech::Rover& rover) {
   const double width_m = rover.track_m + rover.wheel.width_m;

@@ -32,6 +32,8 @@ struct HazardLimits {
   /// Returns the limits of a rover: step and relief up to the ground clearance, rocks up to twice the
   /// clearance, roughness up to a third of the clearance, inflation by half the rover's width.
   static HazardLimits of(const terramech::Rover& rover);
+  /// Returns limits that no shape and no rock exceeds, for a point that only its cost restricts.
+  static HazardLimits ofPoint();
 };
 
 /// Returns the share of a height difference that counts as a step: min(1, wheelbase_m / span_m). span_m [m]

@@ -147,7 +147,7 @@ class Annotator {
     made.energy_J = energy_J_;
     made.time_s = time_s_;
     made.length_m = length_m_;
-    made.max_slip = max_slip_;
+    made.max_slip = std::isnan(time_s_) ? kNotKnown : max_slip_;  // a stated cost has no slip
     made.max_slope_rad = max_slope_rad_;
     made.max_slope_across_rad = max_slope_across_rad_;
     made.max_slip_angle_rad = max_slip_angle_rad_;
@@ -183,7 +183,7 @@ class Annotator {
       vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
       vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
       vertex.category = state_.category;
-      vertex.hazard_per_m = std::isfinite(state_.risk_per_m) ? static_cast<double>(state_.risk_per_m) : 0.0;
+      vertex.hazard_per_m = std::isinf(state_.risk_per_m) ? 0.0 : static_cast<double>(state_.risk_per_m);
       vertex.soil_class = state_.class_index;
       const auto& shared = input_.map.cost().uncertainty().shared;
       vertex.shared_variance_share = state_.class_index < shared.size() ? shared[state_.class_index] : 0.0;
@@ -238,7 +238,7 @@ class Annotator {
   }
 
   void spend(const RouteVertex& vertex, double metres) {
-    const auto finite = [](float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; };
+    const auto finite = [](float value) { return std::isinf(value) ? 0.0 : static_cast<double>(value); };
     energy_J_ += finite(state_.energy_J_per_m) * metres;
     time_s_ += finite(state_.time_s_per_m) * metres;
     hazard_ += finite(state_.risk_per_m) * metres;
@@ -329,7 +329,7 @@ void setForecast(Route& route, const costmap::CostGrid& map, const TurnCost& tur
     const double ratio = total > 0.0 && effort.mean > 0.0 ? (effort.mean + certain) / total : 1.0;
     for (RouteVertex& vertex : route.vertices) vertex.*of *= ratio;
     total *= ratio;
-    return std::max(effort.p90 + certain, total);
+    return std::isnan(total) ? total : std::max(effort.p90 + certain, total);
   };
   RouteSummary& made = route.summary;
   made.energy_p90_J = set(&RouteVertex::energy_J, made.energy_J, turns.energy_J, drive.energy_J);
