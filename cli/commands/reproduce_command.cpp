@@ -16,6 +16,16 @@ void bind(CLI::App& command, ReproduceOptions& options) {
   command.add_option("-o,--output", options.output, "folder for validation.md and validation/*.png")
       ->type_name("DIR")
       ->capture_default_str();
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--published",
+          [&options](const std::vector<std::string>& names) {
+            options.published = true;
+            options.published_name = names.empty() ? "" : names.front();
+          },
+          "only rebuild the published results, or the one of this name: theirs, ours, error, source")
+      ->expected(0, 1)
+      ->type_name("NAME");
   command.add_flag("--goals", options.goals_only, "only measure the estimators and print the table");
   command.add_option("--soils", options.soils, "number of soils sampled from thesis Table 2.1")
       ->check(CLI::Range(8, 100000))
@@ -52,8 +62,9 @@ void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOpt
       app, context,
       {.name = "reproduce",
        .group = Group::kSoil,
-       .description = "reproduce the thesis; measure the accuracy of the estimators",
-       .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"},
+       .description = "reproduce the thesis and other published results; measure the estimators",
+       .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"
+                   "  talus reproduce --published rowe-ross --json\n"},
       bind, run);
 }
 

@@ -15,6 +15,8 @@ struct ReproduceOptions {
   std::string output = ".";
   std::string measured;
   bool goals_only = false;
+  bool published = false;      ///< print the published results alone
+  std::string published_name;  ///< one of them; empty: all
   int soils = 500;
 };
 

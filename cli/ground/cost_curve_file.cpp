@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -102,38 +101,20 @@ double between(const std::map<double, double>& table, double at, double beyond) 
   return std::max(low->second + share * (high->second - low->second), 0.0);
 }
 
-// The states at the nodes of TravelCurve. A node just beyond a limit that the cost function checks has the value that
-// continues the table, because costs at the limit are interpolated to it.
+// A node just beyond a limit that the cost function checks has the value that continues the table, because costs at
+// the limit are interpolated to it.
 std::shared_ptr<const costmap::TravelStates> statesOf(const Rows& rows, const costmap::StatedCosts& limits,
-                                                      int index) {
-  const double bin = 1.0 / TravelCurve::kBinsPerUnit, step = 1.0 / TravelCurve::kRowsPerUnit;
+                                                      std::size_t index) {
+  constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
   const bool level = rows.size() == 1;
-  const int count = level ? 1 : static_cast<int>(std::ceil(limits.max_across / step)) + 1;
-  std::vector<costmap::TravelState> states;
-  for (int row = 0; row < count; ++row)
-    for (int k = 0; k < TravelCurve::kBins; ++k) {
-      const double along = TravelCurve::gradient(k);
-      std::map<double, double> over_across;
-      for (const auto& [across, of] : rows) {
-        const bool checked = std::abs(along) >= limits.max_along;
-        double cost = between(of, along, checked ? bin : 0.0);
-        if (!over_across.empty()) cost = std::max(cost, over_across.rbegin()->second);
-        over_across.emplace(across, cost);
-      }
-      const double cost = level ? over_across.begin()->second : between(over_across, row * step, step);
-      constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
-      costmap::TravelState state{.slip = unknown,
-                                 .sinkage_m = unknown,
-                                 .torque_Nm = unknown,
-                                 .energy_J_per_m = static_cast<float>(cost),
-                                 .time_s_per_m = unknown,
-                                 .risk_per_m = unknown,
-                                 .pull_margin = unknown,
-                                 .class_index = static_cast<std::uint8_t>(index)};
-      if (!(cost < kInfinity)) state.refusal = costmap::Refusal::Pull;
-      states.push_back(state);
-    }
-  return std::make_shared<const costmap::TabulatedStates>(std::move(states));
+  const auto cost = [&](const terramech::Gradient& gradient) {
+    const double beyond = std::abs(gradient.along) >= limits.max_along ? kBin : 0.0;
+    if (level) return between(rows.begin()->second, gradient.along, beyond);
+    std::map<double, double> over_across;
+    for (const auto& [across, row] : rows) over_across.emplace(across, between(row, gradient.along, beyond));
+    return between(over_across, gradient.across, kRow);
+  };
+  return costmap::statedStates(cost, level ? 0.0 : limits.max_across, static_cast<std::uint8_t>(index));
 }
 
 }  // namespace
@@ -154,7 +135,7 @@ CostCurves readCostCurves(const std::string& path) {
   }
   costs.max_across = across;
   for (const auto& [number, rows] : classes) {
-    costs.states.push_back(statesOf(rows, costs, static_cast<int>(curves.numbers.size())));
+    costs.states.push_back(statesOf(rows, costs, curves.numbers.size()));
     curves.numbers.push_back(number);
   }
   return curves;

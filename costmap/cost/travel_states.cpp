@@ -59,4 +59,33 @@ std::shared_ptr<const TravelStates> TabulatedStates::withAdded(double added_J_pe
   return std::make_shared<const TabulatedStates>(std::move(states));
 }
 
+std::shared_ptr<const TravelStates> statedStates(
+    const std::function<double(const terramech::Gradient&)>& cost_per_m, double max_across,
+    std::uint8_t class_index) {
+  constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+  const int rows = static_cast<int>(std::ceil(max_across * TravelCurve::kRowsPerUnit)) + 1;
+  std::vector<TravelState> states;
+  for (int row = 0; row < rows; ++row)
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      const double cost =
+          cost_per_m({TravelCurve::gradient(bin), static_cast<double>(row) / TravelCurve::kRowsPerUnit});
+      TravelState state{.slip = unknown,
+                        .sinkage_m = unknown,
+                        .torque_Nm = unknown,
+                        .energy_J_per_m = static_cast<float>(cost),
+                        .time_s_per_m = unknown,
+                        .risk_per_m = unknown,
+                        .pull_margin = unknown,
+                        .refusal = std::isfinite(cost) ? Refusal::None : Refusal::Pull,
+                        .class_index = class_index};
+      if (row > 0) {
+        const TravelState& before = states[states.size() - TravelCurve::kBins];
+        state.energy_J_per_m = std::max(state.energy_J_per_m, before.energy_J_per_m);
+        if (before.refusal != Refusal::None) state.refusal = before.refusal;
+      }
+      states.push_back(state);
+    }
+  return std::make_shared<const TabulatedStates>(std::move(states));
+}
+
 }  // namespace talus::costmap

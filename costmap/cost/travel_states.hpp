@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -51,5 +53,12 @@ class TabulatedStates final : public TravelStates {
  private:
   std::vector<TravelState> states_;
 };
+
+/// Returns the states of ground with a stated cost per horizontal metre over the gradients, as their energy, and with
+/// no other quantity (NaN). The cost is sampled at the nodes of TravelCurve, in rows up to the gradient `max_across`
+/// (0: gradients across have no effect), and raised to that of rows with less gradient across; infinite: refused.
+std::shared_ptr<const TravelStates> statedStates(
+    const std::function<double(const terramech::Gradient&)>& cost_per_m, double max_across,
+    std::uint8_t class_index = 0);
 
 }  // namespace talus::costmap

@@ -13,6 +13,7 @@
 #include <talus/common/progress_monitor.hpp>
 
 #include "goal_study.hpp"
+#include "published.hpp"
 #include "thesis_figures.hpp"
 
 namespace talus::reproduce {
@@ -26,6 +27,58 @@ std::string goalTable(const std::vector<GoalLine>& lines) {
   for (const GoalLine& l : lines)
     text += fmt::format("| {} | {} | {} |\n", l.quantity, l.reached, l.goal.empty() ? "-" : l.goal);
   return text;
+}
+
+std::vector<PublishedCase> publishedCases(const std::string& name, const ProgressMonitor& watch) {
+  std::vector<PublishedCase> cases = publishedWheels(name, watch);
+  for (PublishedCase& of : publishedRoutes(name, watch)) cases.push_back(std::move(of));
+  if (cases.empty() && !watch.stopped())
+    throw InputError({"--published " + name, "is no published result", "leave the name out for a list"});
+  return cases;
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
+
+std::string errorText(const PublishedLine& line) {
+  if (!std::isfinite(line.error())) return "-";
+  return line.relative ? fmt::format("{:+.2f} %", 100.0 * line.error())
+                       : fmt::format("{:+.3f}", line.error());
+}
+
+std::string publishedTable(const std::vector<PublishedCase>& cases) {
+  std::string text = "| case | quantity | theirs | ours | error |\n|---|---|---|---|---|\n";
+  for (const PublishedCase& of : cases)
+    for (const PublishedLine& l : of.lines)
+      text += fmt::format("| {} | {} | {} | {} | {} |\n", of.name, l.quantity, number(l.theirs),
+                          number(l.ours), errorText(l));
+  text += "\n| case | source | inputs and remarks |\n|---|---|---|\n";
+  for (const PublishedCase& of : cases)
+    text += fmt::format("| {} | {} | {} |\n", of.name, of.source, of.remark);
+  return text;
+}
+
+nlohmann::ordered_json publishedJson(const std::vector<PublishedCase>& cases) {
+  auto list = nlohmann::ordered_json::array();
+  for (const PublishedCase& of : cases) {
+    for (const PublishedLine& l : of.lines)
+      list.push_back({{"case", of.name},
+                      {"quantity", l.quantity},
+                      {"theirs", l.theirs},
+                      {"ours", l.ours},
+                      {"error", l.error()},
+                      {"relative", l.relative},
+                      {"source", of.source}});
+    if (of.lines.empty())
+      list.push_back({{"case", of.name},
+                      {"theirs", nullptr},
+                      {"ours", nullptr},
+                      {"error", nullptr},
+                      {"source", of.source},
+                      {"remark", of.remark}});
+  }
+  return list;
 }
 
 std::string pictureName(const ThesisFigure& figure) {
@@ -134,6 +187,16 @@ std::filesystem::path madeFolder(const ReproduceOptions& options) {
 }  // namespace
 
 int run(const ReproduceOptions& options, Context& context) {
+  if (options.published) {
+    const ProgressMonitor watch = context.watch("published");
+    const auto cases = publishedCases(options.published_name, watch);
+    if (watch.stopped()) return Exit::kCancelled;
+    if (context.json)
+      printJson(publishedJson(cases));
+    else
+      print(publishedTable(cases));
+    return Exit::kDone;
+  }
   const auto folder = options.goals_only ? std::filesystem::path() : madeFolder(options);
   const GoalOptions study{.seed = context.seed, .soils = options.soils, .measured = options.measured};
   const ProgressMonitor watch = context.watch("soils");
