@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <thread>
 #include <utility>
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/mpi_launch.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/common/parallel_for.hpp>
 
 #ifdef TALUS_MPI
@@ -45,6 +47,22 @@ std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::stri
 }
 
 }  // namespace
+
+Part::Part(const std::string& text) {
+  if (text.empty()) return;
+  int index = 0, parts = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%5d/%5d%n", &index, &parts, &end) != 2 ||
+      end != static_cast<int>(text.size()) || index < 1 || index > parts || parts > 10000)
+    throw InputError({"--part " + text, "is not K/N with K from 1 to N", "write --part 1/4"});
+  index_ = static_cast<std::size_t>(index - 1);
+  parts_ = static_cast<std::size_t>(parts);
+}
+
+std::vector<std::size_t> Part::of(std::size_t count) const {
+  std::vector<std::size_t> jobs;
+  for (std::size_t i = index_; i < count; i += parts_) jobs.push_back(i);
+  return jobs;
+}
 
 #ifdef TALUS_MPI
 

@@ -17,6 +17,21 @@ struct JobOutcome {
   std::string text;      ///< result of the job, or reason of its failure
 };
 
+/// Part K of N of a list of jobs, for array jobs of a queue: the jobs k with k modulo N = K - 1.
+class Part {
+ public:
+  /// Reads "K/N" with 1 <= K <= N <= 10000; empty: the whole list. @throws InputError
+  explicit Part(const std::string& text);
+  /// Returns the indices of the part's jobs of `count`.
+  std::vector<std::size_t> of(std::size_t count) const;
+  std::string fileName() const {
+    return "part_" + std::to_string(index_ + 1) + "_of_" + std::to_string(parts_) + ".csv";
+  }
+
+ private:
+  std::size_t index_ = 0, parts_ = 1;
+};
+
 /// Runs independent jobs: one after another, several at a time, or distributed over the ranks (processes) of
 /// an MPI run, if mpirun started the program and the program was built with Boost.MPI. Job i runs on rank i
 /// modulo the number of ranks; the results do not depend on the number of ranks.

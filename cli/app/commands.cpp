@@ -5,6 +5,7 @@ namespace talus::cli {
 void addCommands(CLI::App& app, Context& context) {
   addAssess(app, context);
   addBench(app, context);
+  addCheck(app, context);
   addCostmap(app, context);
   addDoctor(app, context);
   addDrive(app, context);

@@ -12,6 +12,7 @@ struct Context;
 // cli/commands/NAME_command.cpp and uses addCommand() of cli/app/command.hpp.
 void addAssess(CLI::App& app, Context& context);
 void addBench(CLI::App& app, Context& context);
+void addCheck(CLI::App& app, Context& context);
 void addCostmap(CLI::App& app, Context& context);
 void addDoctor(CLI::App& app, Context& context);
 void addDrive(CLI::App& app, Context& context);

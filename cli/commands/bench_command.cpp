@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <map>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -16,10 +17,13 @@
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
+#include <talus/common/checksum.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/bench/benchmark_log.hpp>
 #include <talus/planner/sampling/sampling_settings.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::cli {
 namespace {
@@ -29,7 +33,7 @@ struct BenchOptions {
   std::vector<std::string> planners, plugins;
   int runs = 3;
   double time_limit_s = 2.0;
-  std::string folder = "bench";
+  std::string folder = "bench", part;
 };
 
 void bind(CLI::App& command, BenchOptions& options) {
@@ -66,6 +70,12 @@ void bind(CLI::App& command, BenchOptions& options) {
   command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
+  command
+      .add_option(
+          "--part", options.part,
+          "run part K of N alone, and keep its results in the folder; the call that finds the last part "
+          "there writes the comparison")
+      ->type_name("K/N");
   groupOptions(command, "Cases and runs");
   addReadOptions(command, options.suite.ground.dem);
   addGroundChoices(command, options.suite.ground);
@@ -115,20 +125,72 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
-// Runs all jobs. After a requested stop, only the runs completed before are returned.
-std::vector<planner::BenchmarkRun> allRuns(const planner::BenchmarkPlan& plan, const Campaign& campaign,
-                                           const Context& context) {
+// Results by job; missing jobs are of another part, or were stopped.
+using Results = std::map<std::size_t, std::string>;
+
+std::vector<planner::BenchmarkRun> runsOf(const planner::BenchmarkPlan& plan, const Results& results) {
   const auto jobs = planner::jobsOf(plan);
+  std::vector<planner::BenchmarkRun> runs;
+  for (const auto& [job, text] : results) runs.push_back(planner::benchmarkRun(jobs[job], text));
+  return runs;
+}
+
+// Runs the jobs of a part. After a requested stop, only the results completed before are returned.
+Results resultsOf(const planner::BenchmarkPlan& plan, const Part& part, const Campaign& campaign,
+                  const Context& context) {
+  const auto jobs = planner::jobsOf(plan);
+  const std::vector<std::size_t> own = part.of(jobs.size());
   context.answerStop();
   const ProgressMonitor watch =
       campaign.leads() ? context.watch("bench") : ProgressMonitor{.progress = {}, .stop = context.stop};
   const auto outcomes = campaign.run(
-      jobs.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[i], watch); }, watch);
-  std::vector<planner::BenchmarkRun> runs;
+      own.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[own[i]], watch); }, watch);
+  Results results;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (!outcomes[i].stopped)
-      runs.push_back(planner::benchmarkRun(jobs[i], outcomes[i].failed ? std::string() : outcomes[i].text));
-  return runs;
+    if (!outcomes[i].stopped) results[own[i]] = outcomes[i].failed ? std::string() : outcomes[i].text;
+  return results;
+}
+
+// Rows of the parts: job, hash of suite, planners, seeds and time limit, and the result as hexadecimal digits.
+std::string rowsOf(const Results& results, const std::string& hash) {
+  std::string rows = "job,hash,result\n";
+  for (const auto& [job, text] : results) {
+    rows += fmt::format("{},{},", job, hash);
+    for (const char c : text) rows += fmt::format("{:02x}", static_cast<unsigned char>(c));
+    rows += "\n";
+  }
+  return rows;
+}
+
+// Results of all parts in the folder.
+Results partsIn(const std::string& folder, const std::string& hash) {
+  Results results;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.path().filename().string().starts_with("part_")) continue;
+    terramech::CsvReader reader(entry.path().string());
+    for (terramech::CsvRow row; reader.next(row);) {
+      double job = 0.0;
+      if (!row.fault.empty() || row.fields.size() != 3 || !terramech::parseNumber(row.fields[0], job) ||
+          row.fields[1] != hash)
+        throw InputError({fmt::format("{}:{}", entry.path().string(), row.line),
+                          "is not of this suite and its options", "name another folder with -o"});
+      std::string& text = results[static_cast<std::size_t>(job)];
+      for (std::size_t i = 0; i + 1 < row.fields[2].size(); i += 2)
+        text += static_cast<char>(std::stoi(row.fields[2].substr(i, 2), nullptr, 16));
+    }
+  }
+  return results;
+}
+
+std::string hashOf(const planner::BenchmarkPlan& plan, const Context& context) {
+  std::string text = fmt::format("{} {} {}", plan.seeds, plan.time_limit_s, context.seed);
+  for (const std::string& planner : plan.planners) text += "\n" + planner;
+  for (const auto& one : plan.cases)
+    text +=
+        fmt::format("\n{} {} {} {} {}", one.name, one.start.x_m, one.start.y_m, one.goal.x_m, one.goal.y_m);
+  Checksum sum;
+  sum.add(text.data(), text.size());
+  return fmt::format("{:016x}", sum.value());
 }
 
 // Writes the results of completed runs and reports the cancellation on stderr, so that stdout contains either
@@ -166,8 +228,21 @@ int run(const BenchOptions& options, Context& context) {
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   plan.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
-  const auto runs = allRuns(plan, campaign, context);
+  const Part part(options.part);
+  Results results = resultsOf(plan, part, campaign, context);
   if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
+  if (!options.part.empty() && !context.stop.stop_requested()) {
+    const std::string hash = hashOf(plan, context);
+    writeFile(std::filesystem::path(options.folder) / part.fileName(), rowsOf(results, hash));
+    results = partsIn(options.folder, hash);
+    const std::size_t all = planner::jobsOf(plan).size();
+    if (results.size() < all) {
+      print(fmt::format("part {}: {} of {} runs are in {}\n", options.part, results.size(), all,
+                        options.folder));
+      return Exit::kDone;
+    }
+  }
+  const auto runs = runsOf(plan, results);
   if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
   write(options.folder, plan, runs);
   const auto lines = compared(plan, runs);

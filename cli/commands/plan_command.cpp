@@ -207,7 +207,7 @@ int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context
                                {.map = ground.map.published(),
                                 .request = requestOf(options, planner.capabilities(), ground, context),
                                 .settings = settingsOf(options, context)},
-                               planner, campaign);
+                               planner, campaign, Part(options.part));
   if (!campaign.leads()) return Exit::kDone;
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));

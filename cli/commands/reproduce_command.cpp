@@ -62,7 +62,7 @@ void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOpt
       app, context,
       {.name = "reproduce",
        .group = Group::kSoil,
-       .description = "reproduce the thesis and other published results; measure the estimators",
+       .description = "reproduce the thesis and published results; measure the estimators",
        .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"
                    "  talus reproduce --published rowe-ross --json\n"},
       bind, run);

@@ -31,6 +31,7 @@ struct PlanOptions {
   std::vector<std::string> goals;  ///< positions of the goals; the route leads to the goal of least cost
   std::vector<std::string> via;
   std::string pairs;  ///< CSV table of starts and goals; empty: one route
+  std::string part;   ///< K/N: the part of the pairs to plan; empty: all
   double tolerance_m = 0.0;
   std::string planner = "field";
   std::string plugin;  ///< shared library of an external planner; empty: a built-in planner is used

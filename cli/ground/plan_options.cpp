@@ -60,6 +60,11 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
                   "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
       ->type_name("FILE.csv");
   command
+      .add_option("--part", options.part,
+                  "plan part K of N of the pairs alone; the rows of the parts make the table")
+      ->type_name("K/N")
+      ->needs("--pairs");
+  command
       .add_option("--tolerance", options.tolerance_m,
                   "goal tolerance: largest distance between the end of the route and the goal")
       ->type_name("METRES")

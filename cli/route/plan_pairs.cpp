@@ -86,13 +86,14 @@ std::vector<PlacePair> readPairs(const std::string& path) {
 }
 
 std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const PairedRequest& common,
-                            planner::RoutePlanner& planner, const Campaign& campaign) {
+                            planner::RoutePlanner& planner, const Campaign& campaign, const Part& part) {
+  const std::vector<std::size_t> own = part.of(pairs.size());
   const auto outcomes = campaign.run(
-      pairs.size(), [&](std::size_t i) { return jsonText(planned(pairs[i], common, planner)); },
+      own.size(), [&](std::size_t i) { return jsonText(planned(pairs[own[i]], common, planner)); },
       common.request.watch);
   std::vector<Json> lines;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    Json line{{"pair", i + 1}};
+    Json line{{"pair", own[i] + 1}};
     if (outcomes[i].failed)
       line.update(Json{{"status", "failed"}, {"reason", outcomes[i].text}});
     else

@@ -13,6 +13,7 @@
 namespace talus::cli {
 
 class Campaign;
+class Part;
 
 /// Start and goal of one of several routes.
 struct PlacePair {
@@ -36,13 +37,13 @@ struct PairedRequest {
   PlannerSettings settings{};
 };
 
-/// Plans the routes of all pairs, distributed over the ranks of the campaign. Returns one JSON object per
+/// Plans the routes of the pairs of a part, distributed over the ranks of the campaign. Returns one JSON object per
 /// pair in order: the output of `talus plan --json` with `pair`, or status, planner and `reason` if there is
 /// no route. An error in one pair becomes the reason of that pair and stops no other pair. Returns an empty
 /// vector on ranks other than 0.
 std::vector<nlohmann::ordered_json> planPairs(const std::vector<PlacePair>& pairs,
                                               const PairedRequest& common, planner::RoutePlanner& planner,
-                                              const Campaign& campaign);
+                                              const Campaign& campaign, const Part& part);
 
 /// Returns the results of planPairs() as CSV: pair, status, planner, cost, energy_J, time_s, length_m,
 /// max_slip, max_slope_rad, lower_bound, gap, immobilisation_risk, reason.

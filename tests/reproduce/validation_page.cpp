@@ -136,23 +136,51 @@ constexpr const char* kNotes =
     "optimistic.\n"
     "\n";
 
+// The picture of a case: its own, or theirs and ours line by line.
+std::vector<Plot> picturesOf(const PublishedCase& of) {
+  if (!of.plots.empty() || of.lines.empty()) return of.plots;
+  Series theirs{.name = "theirs", .mark = Series::Mark::Points},
+      ours{.name = "ours", .mark = Series::Mark::Points};
+  for (const PublishedLine& line : of.lines) {
+    const auto place = static_cast<double>(theirs.x.size() + 1);
+    theirs.x.push_back(place), theirs.y.push_back(line.theirs);
+    ours.x.push_back(place), ours.y.push_back(line.ours);
+  }
+  return {{.title = of.name, .x = {"line of the table"}, .y = {"value"}, .series = {theirs, ours}}};
+}
+
+std::string pictureName(const PublishedCase& of) {
+  return "validation/published_" + of.name + ".png";
+}
+
 std::string page(const std::vector<ThesisFigure>& figures, const std::vector<GoalLine>& goals,
-                 const ReproduceOptions& options, std::uint64_t seed) {
+                 const std::vector<PublishedCase>& published, const ReproduceOptions& options,
+                 std::uint64_t seed) {
   const std::string call =
       fmt::format("talus reproduce -o DIR --soils {} --seed {}{}", options.soils, seed,
                   options.measured.empty()
                       ? ""
                       : " --measured " + std::filesystem::path(options.measured).filename().string());
   std::string text =
-      "# Reproduction of the thesis\n"
+      "# Held against published results\n"
       "\n"
       "Every number and figure on this page comes from one command, `" +
       call +
       "`, which also writes this page.\n"
       "The thesis is kang_2003 in REFERENCES.bib.\n"
       "Deviations are marked and explained.\n"
+      "No number is tuned to a line: soils and rovers are those published, and what was fitted is named.\n"
       "\n"
-      "## Figures\n"
+      "## Published results\n"
+      "\n"
+      "`talus reproduce --published [NAME]`, with TALUS_MEASURED_DATA and TALUS_REAL_MAPS for cases of "
+      "measured data and "
+      "real maps.\n"
+      "The error is ours less theirs, or a share of theirs (%).\n"
+      "\n" +
+      publishedTable(published) +
+      "\n"
+      "## Figures of the thesis\n"
       "\n"
       "| figure | thesis | result | verdict |\n"
       "|---|---|---|---|\n";
@@ -168,6 +196,8 @@ std::string page(const std::vector<ThesisFigure>& figures, const std::vector<Goa
       "\n";
   text += kNotes;
   text += goalTable(goals) + "\n" + kErrata + "## Pictures\n\n";
+  for (const PublishedCase& of : published)
+    if (!of.lines.empty()) text += fmt::format("### {}\n\n![{}]({})\n\n", of.name, of.name, pictureName(of));
   for (const ThesisFigure& f : figures)
     text += fmt::format("### Figure {}: {}\n\n![{}]({})\n\n", f.number, f.title, f.title, pictureName(f));
   return text;
@@ -213,7 +243,11 @@ int run(const ReproduceOptions& options, Context& context) {
   for (ThesisFigure& f : traversabilityFigures(context.seed)) figures.push_back(std::move(f));
   for (ThesisFigure& f : appendixFigures(context.seed)) figures.push_back(std::move(f));
   for (const ThesisFigure& f : figures) save(folder / pictureName(f), f.plots);
-  writeFile(folder / "validation.md", page(figures, goals, options, context.seed));
+  const auto published = publishedCases("", context.watch("published"));
+  if (watch.stopped()) return Exit::kCancelled;
+  for (const PublishedCase& of : published)
+    if (!of.lines.empty()) save(folder / pictureName(of), picturesOf(of));
+  writeFile(folder / "validation.md", page(figures, goals, published, options, context.seed));
   if (context.json) {
     printJson({{"page", (folder / "validation.md").string()}, {"figures", figures.size()}});
   } else {

@@ -20,7 +20,7 @@ TEST(Commands, EachCommandHasANameGroupAndExamples) {
   }
   // Subcommands of the stable interface.
   for (const char* promised : {"info", "wheel", "estimate", "assess", "trace", "predict", "costmap", "update",
-                               "plan", "score", "explain", "drive", "bench", "view", "plugins"})
+                               "plan", "score", "explain", "drive", "bench", "check", "view", "plugins"})
     EXPECT_TRUE(names.contains(promised)) << promised;
 }
 

@@ -50,6 +50,23 @@ TEST(BenchCommand, ComparisonWritesLogsTableAndPage) {
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
 
+// Property: parts in any order give the comparison of the whole; a part of another suite is refused.
+TEST(BenchCommand, PartsGiveTheComparisonOfTheWhole) {
+  const Folder folder;
+  const std::string scen = room(folder);
+  const auto bench = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"bench", scen, "--planners", "field", "--runs", "2", "--json", "-o"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words);
+  };
+  const std::string parts = folder / "parts";
+  EXPECT_THAT(bench({parts, "--part", "3/3"}).out, HasSubstr("2 of 6 runs"));
+  EXPECT_THAT(bench({parts, "--part", "1/3"}).out, HasSubstr("4 of 6 runs"));
+  EXPECT_EQ(lasting(bench({parts, "--part", "2/3"}).out), lasting(bench({folder / "whole"}).out));
+  EXPECT_THAT(bench({parts, "--part", "1/3", "--seed", "9"}).err, HasSubstr("is not of this suite"));
+  EXPECT_EQ(bench({parts, "--part", "4/3"}).code, 2);
+}
+
 TEST(BenchCommand, GeneratedSiteIsAccepted) {
   const Folder folder;
   const Ran ran = runTalus({"bench", "--planners", "field", "--runs", "1", "--pairs", "1", "--side", "64",

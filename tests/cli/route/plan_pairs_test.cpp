@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -60,6 +61,13 @@ TEST(PlanPairs, ResultsAreWrittenAsATable) {
   EXPECT_THAT(text, HasSubstr("pair,status,planner,cost,"));
   EXPECT_THAT(text, HasSubstr("\n5,found,hybrid,"));
   EXPECT_THAT(text, HasSubstr("\n3,start_invalid,hybrid,"));
+  std::string parts;
+  for (const char* part : {"2/2", "1/2"})
+    parts += runTalus({"plan", hills(folder), "--pairs", pairs(folder), "--soil", "sandy_loam", "--rover",
+                       "fido", "--resolution", "1", "--planner", "hybrid", "--quiet", "--part", part})
+                 .out;
+  std::stringstream rows(text);
+  for (std::string row; std::getline(rows, row);) EXPECT_THAT(parts, HasSubstr(row));
 }
 
 TEST(PlanPairs, MpiRanksReproduceTheSingleProcessResult) {
