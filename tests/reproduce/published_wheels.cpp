@@ -111,15 +111,16 @@ PublishedCase heldOut(const std::string& name, const std::string& file, const st
                 "(golub_1979) of the same rows"};
   const std::string path = sharedFile("TALUS_MEASURED_DATA", file);
   if (path.empty()) return made;
-  const TraceInput input = traceInput(readTraceTable(path), {}, {});
+  const TraceInput input = traceInput(readTraceTable(path), baseModel("", ""), {});
   constexpr std::array kNames{"DP/W", "z/r", "T/(rW)", "F/W"};
   for (const LeftOut& left : leftOut(input.rows.trial, request, path)) {
     if (watch.stopped()) return made;
     const LeftOutErrors errors = traceWithout(input.rows.model, input.rows.trial, left, input.options, watch);
     for (std::size_t k = 0; k < kNames.size() && k < errors.refined.size(); ++k)
       if (std::isfinite(errors.refined[k]))
-        made.lines.push_back({fmt::format("{}, {} [-]", errors.what, kNames[k]), errors.regression[k],
-                              errors.refined[k], false});
+        made.lines.push_back({fmt::format("{}, {} [-] (without effects {:.3f}, scatter {:.3f})", errors.what,
+                                          kNames[k], errors.base[k], errors.floor[k]),
+                              errors.regression[k], errors.refined[k], false});
   }
   return made;
 }
