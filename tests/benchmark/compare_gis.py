@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-UPHILL, DOWNHILL = 11, 12  # bands of `talus costmap --geotiff`
+UPHILL, DOWNHILL = "energy_per_metre_uphill", "energy_per_metre_downhill"  # bands of `talus costmap --geotiff`
 
 
 def cpu_s():
@@ -40,8 +40,12 @@ class Map:
         self.file = gdal.Open(path)
         self.west, self.cell, _, self.north, _, _ = self.file.GetGeoTransform()
 
-    def band(self, number):
-        return self.file.GetRasterBand(number).ReadAsArray().astype(float)
+    def band(self, name):
+        for number in range(1, self.file.RasterCount + 1):
+            band = self.file.GetRasterBand(number)
+            if band.GetDescription() == name:
+                return band.ReadAsArray().astype(float)
+        raise ValueError(f"no band {name}")
 
     def index(self, place):
         return int((self.north - place[1]) / self.cell), int((place[0] - self.west) / self.cell)
