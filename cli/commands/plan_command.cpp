@@ -347,14 +347,14 @@ void checkMissionOutput(const PlanOptions& options) {
 
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
-  if (isMission(options.ground.dem.path)) {
+  if (!options.ground.is_cost && isMission(options.ground.dem.path)) {
     readMission(options);
     if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
   }
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
   requirePlaces(options);
   planner::RoutePlanner planner = plannerOf(options);
-  if (!options.whole_field && !(options.corridor_percent > 0.0) &&
+  if (!options.whole_field && !(options.corridor_percent > 0.0) && !options.ground.is_cost &&
       needsWindows(options.ground, options.in_memory))
     return runInWindows(options, planner.capabilities(), context);
   return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);

@@ -17,6 +17,7 @@
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/cost_curve_file.hpp>
+#include <talus/cli/ground/cost_raster.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
@@ -324,16 +325,23 @@ costmap::GroundModel::Parts partsOf(const GroundOptions& options, const maps::El
   return parts;
 }
 
-// Ground of stated costs, for which the class of greater cost on level ground is the weaker.
-costmap::GroundModel::Parts statedParts(const GroundOptions& options, std::vector<int>& weakest_last) {
+// Costs that are stated replace rover and soils.
+void refuseRover(const GroundOptions& options) {
   costmap::TravelPolicy policy = options.policy;
   policy.allow_unknown = false;
+  const std::string stated = options.is_cost ? "--cost" : "--cost-curve";
   if (!options.rover.empty() || !options.soil.empty() || !options.soils.empty() || !options.model.empty() ||
-      !options.layers.rocks.empty() || fieldsOf(policy) != fieldsOf(costmap::TravelPolicy{}))
+      !options.layers.rocks.empty() || (options.is_cost && !options.layers.terrain.empty()) ||
+      fieldsOf(policy) != fieldsOf(costmap::TravelPolicy{}))
     throw InputError(
-        {"--cost-curve " + options.cost_curve,
+        {stated,
          "stands in place of --rover, --soil, --soils, --model, --rocks and the options of thresholds",
-         "remove them, or remove --cost-curve"});
+         "remove them, or remove " + stated});
+}
+
+// Ground of stated costs, for which the class of greater cost on level ground is the weaker.
+costmap::GroundModel::Parts statedParts(const GroundOptions& options, std::vector<int>& weakest_last) {
+  refuseRover(options);
   CostCurves curves = readCostCurves(options.cost_curve);
   if (curves.classed != !options.layers.terrain.empty())
     throw InputError(
@@ -347,6 +355,13 @@ costmap::GroundModel::Parts statedParts(const GroundOptions& options, std::vecto
   }
   std::ranges::sort(by_cost);
   for (const auto& [cost, number] : by_cost) weakest_last.push_back(number);
+  return parts;
+}
+
+costmap::GroundModel::Parts partsOf(const CostRaster& raster, const costmap::TravelPolicy& policy) {
+  costmap::GroundModel::Parts parts{.policy = policy, .stated = raster.costs};
+  for (int k = 0; k < static_cast<int>(raster.costs.states.size()); ++k)
+    parts.classes.push_back({.number = k});
   return parts;
 }
 
@@ -391,6 +406,11 @@ void addCostCurve(CLI::App& command, GroundOptions& options) {
       .add_option("--cost-curve", options.cost_curve,
                   "cost a metre over gradient_along and gradient_across, in place of rover and soil")
       ->type_name("FILE.csv");
+  command
+      .add_flag("--cost", options.is_cost,
+                "the map is a raster of costs a metre, or the YAML file of a Nav2 map, in place of heights, "
+                "rover and soil")
+      ->excludes("--cost-curve");
 }
 
 std::vector<InputFile> filesOf(const GroundOptions& options) {
@@ -398,7 +418,7 @@ std::vector<InputFile> filesOf(const GroundOptions& options) {
   const auto add = [&](const std::string& path, const char* role) {
     if (std::ranges::count(files, path, &InputFile::path) == 0) files.push_back({.path = path, .role = role});
   };
-  add(options.dem.path, "elevation");
+  add(options.dem.path, options.is_cost ? "cost" : "elevation");
   const LayerOptions& layers = options.layers;
   for (const auto& [path, role] : {std::pair{options.map_file, "map"},
                                    {layers.terrain, "terrain classes"},
@@ -423,12 +443,17 @@ Ground readGround(const GroundOptions& options, const Context& context) {
   if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
   auto begin = Clock::now();
   const InputRecord record;
-  maps::ElevationMap dem = readMap(options.dem, context);
+  if (options.is_cost) refuseRover(options);
+  std::optional<CostRaster> raster;
+  if (options.is_cost) raster = readCostRaster(options.dem, context);
+  maps::ElevationMap dem = raster ? std::move(raster->map) : readMap(options.dem, context);
   std::vector<int> weakest_last;
-  const bool stated = !options.cost_curve.empty();
-  costmap::GroundModel::Parts parts =
-      stated ? statedParts(options, weakest_last) : partsOf(options, dem, weakest_last, context);
+  const bool stated = raster || !options.cost_curve.empty();
+  costmap::GroundModel::Parts parts = raster   ? partsOf(*raster, options.policy)
+                                      : stated ? statedParts(options, weakest_last)
+                                               : partsOf(options, dem, weakest_last, context);
   Layers layers = readLayers(options.layers, dem, weakest_last);
+  if (raster) layers.classes = std::move(raster->classes);
   for (const std::string& note : layers.notes) context.warn(note);
   const double load_s = since_s(begin);
   begin = Clock::now();

@@ -25,6 +25,7 @@ struct GroundOptions {
   std::string soil;
   std::string model;  ///< refined model from `talus trace` for ground without a class, instead of `soil`
   std::string rover;  ///< library name or YAML file of the rover; empty: default of the body
+  bool is_cost = false;      ///< dem.path is a raster of costs a metre, in place of heights, rover and soils
   std::string cost_curve{};  ///< CSV file of a cost over gradients in place of rover and soils; empty: none
   std::string mission{};     ///< mission file that stated options of the call; empty: none
   double footprint_m = 0.0;  ///< radius of the disc for slope fits; 0: derived from the rover
@@ -38,7 +39,7 @@ void addGroundOptions(CLI::App& command, GroundOptions& options);
 /// --footprint, and those of the policy.
 void addGroundChoices(CLI::App& command, GroundOptions& options);
 
-/// Declares the option --cost-curve.
+/// Declares the options --cost and --cost-curve.
 void addCostCurve(CLI::App& command, GroundOptions& options);
 
 /// A traversability map, with its files and computing times.

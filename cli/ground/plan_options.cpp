@@ -20,6 +20,19 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
   groupOptions(command, "Output");
 }
 
+void addPairs(CLI::App& command, PlanOptions& options) {
+  command
+      .add_option("--pairs", options.pairs,
+                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
+                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
+      ->type_name("FILE.csv");
+  command
+      .add_option("--part", options.part,
+                  "plan part K of N of the pairs alone; the rows of the parts make the table")
+      ->type_name("K/N")
+      ->needs("--pairs");
+}
+
 }  // namespace
 
 void addPluginOption(CLI::App& command, std::string& plugin) {
@@ -54,16 +67,7 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
                   "goal, in the same formats; may be repeated: the goal of least cost is chosen")
       ->type_name("PLACE");
   command.add_option("--via", options.via, "via point; may be repeated")->type_name("PLACE");
-  command
-      .add_option("--pairs", options.pairs,
-                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
-                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
-      ->type_name("FILE.csv");
-  command
-      .add_option("--part", options.part,
-                  "plan part K of N of the pairs alone; the rows of the parts make the table")
-      ->type_name("K/N")
-      ->needs("--pairs");
+  addPairs(command, options);
   command
       .add_option("--tolerance", options.tolerance_m,
                   "goal tolerance: largest distance between the end of the route and the goal")

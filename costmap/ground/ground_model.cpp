@@ -75,6 +75,10 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   check.above("correlation_length_m", parts_.policy.correlation_length_m, 0.0);
   if (parts_.stated && parts_.stated->states.size() != parts_.classes.size())
     throw std::invalid_argument("ground model: stated must hold the states of each class");
+  if (parts_.stated) {  // a point
+    parts_.policy.pose_error_m = 0.0;
+    parts_.rover = {.wheel = {.radius_m = 0.0, .width_m = 0.0}};
+  }
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");

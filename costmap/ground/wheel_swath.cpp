@@ -14,7 +14,7 @@ constexpr int kHeadings = 16;  // headings over 180 degrees: forward and backwar
 // Returns the number of positions of the centre along a side of the cell: spaced at most a quarter of the
 // track.
 int placesAcross(double side_m, double track_m) {
-  return std::clamp(static_cast<int>(std::ceil(4.0 * side_m / track_m)), 1, 8) + 1;
+  return static_cast<int>(std::clamp(std::ceil(4.0 * side_m / track_m), 1.0, 8.0)) + 1;
 }
 
 struct Offset {

@@ -296,9 +296,9 @@ void requireRegularNeighbours(const std::string& path) {
 namespace {
 
 // Formats of elevation and layers. Drivers that access the network or run code are excluded.
-constexpr const char* kDrivers[] = {"GTiff",   "COG",    "PDS4",        "PDS", "ISIS3", "ENVI",
-                                    "AAIGrid", "netCDF", "JP2OpenJPEG", "PNG", "JPEG",  "USGSDEM",
-                                    "SRTMHGT", "EHdr",   "GSAG",        "XYZ", "VICAR", nullptr};
+constexpr const char* kDrivers[] = {"GTiff",  "COG",         "PDS4",  "PDS",  "ISIS3",   "ENVI",    "AAIGrid",
+                                    "netCDF", "JP2OpenJPEG", "PNG",   "JPEG", "USGSDEM", "SRTMHGT", "EHdr",
+                                    "GSAG",   "XYZ",         "VICAR", "PNM",  nullptr};
 
 // Formats of points, lines and areas in files without external schemas or styles.
 constexpr const char* kVectorDrivers[] = {"GPKG", "ESRI Shapefile", "FlatGeobuf", "GPX",

@@ -101,5 +101,42 @@ TEST(CostCurveFile, ErrorsAreOneLineWithTheirExitCode) {
   refuse(good, "belong together", {"--terrain", "plane.asc"});
 }
 
+// A wall with a gap at its end, in a Nav2 map and as costs a metre: the shortest way turns at the wall's corner.
+TEST(CostRaster, CostsAMetreAndNav2MapsAreGroundOfTheirOwn) {
+  const Folder folder;
+  std::string pgm = "P5\n40 20\n255\n", costs = "ncols 40\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 40; ++column) {
+      const bool wall = column == 20 && row >= 5;
+      pgm += static_cast<char>(wall ? 0 : column < 2 ? 205 : 254);
+      costs += wall ? "inf " : "2 ";
+    }
+  folder.write("nav.pgm", pgm);
+  folder.write("nav.yaml",
+               "image: nav.pgm\nresolution: 0.5\norigin: [-10, 5, 0]\nnegate: 0\noccupied_thresh: "
+               "0.65\nfree_thresh: 0.19\n");
+  folder.write("costs.asc", costs);
+  const auto plan = [&](const Words& more) {
+    Words words{"plan", "--cost", "--json", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runTalus(words, folder.path());
+  };
+  const double way =
+      2.0 * std::hypot(10.0 - 0.5, 9.5);  // cells from (10.5, 5.5) by the corners (20, 15), (21, 15)
+  const Ran nav = plan({"nav.yaml", "--start=-4.75,7.75", "--goal=5.25,7.75"}),
+            raster = plan({"costs.asc", "--resolution", "1", "--start", "10.5,5.5", "--goal", "30.5,5.5"});
+  ASSERT_EQ(nav.code, 0) << nav.err;
+  ASSERT_EQ(raster.code, 0) << raster.err;
+  EXPECT_NEAR(json::parse(nav.out)["cost"], 0.5 * (way + 1.0), 0.02);
+  EXPECT_NEAR(json::parse(raster.out)["cost"], 2.0 * (way + 1.0), 0.05);
+  EXPECT_EQ(plan({"nav.yaml", "--start=-9.75,7.75", "--goal=5.25,7.75"}).code, 2);  // unknown ground
+  EXPECT_THAT(
+      plan({"costs.asc", "--resolution", "1", "--start", "1,1", "--goal", "9,9", "--rover", "mer"}).err,
+      HasSubstr("in place of --rover"));
+  folder.write("costs.asc", costs.replace(costs.rfind("2 "), 2, "0 "));
+  EXPECT_THAT(plan({"costs.asc", "--resolution", "1", "--start", "1,1", "--goal", "9,9"}).err,
+              HasSubstr("above 0"));
+}
+
 }  // namespace cost_curve_file_test
 }  // namespace talus::cli

@@ -64,10 +64,13 @@ std::vector<Format> formats() {
                           written("netCDF", "g.nc"),         written("JP2OpenJPEG", "h.jp2", GDT_Int16),
                           written("PNG", "i.png", GDT_Byte), written("JPEG", "j.jpg", GDT_Byte),
                           written("EHdr", "k.bil"),          written("GSAG", "l.grd"),
-                          written("XYZ", "m.xyz"),           written("VICAR", "n.vic")};
-  for (Format& format : all)
-    if (format.driver == "GSAG" || format.driver == "XYZ" || format.driver == "VICAR")
+                          written("XYZ", "m.xyz"),           written("VICAR", "n.vic"),
+                          written("PNM", "p.pgm", GDT_Byte)};
+  for (Format& format : all) {
+    format.options.ignore_crs = format.driver == "PNM";
+    if (std::set<std::string>{"GSAG", "XYZ", "VICAR", "PNM"}.contains(format.driver))
       format.options.resolution_m = 10.0;
+  }
   all.push_back(
       {"PDS",
        "o.img",
