@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/planner/route/large_array.hpp>
+#include <talus/planner/route/kernels.hpp>
 
 namespace talus::planner {
-namespace large_array_test {
+namespace kernels_test {
 
 // Property: every element is writable. Arrays of a cache line and more are aligned to a cache line, and
 // arrays from two huge pages on to a huge page of 2 MiB.
@@ -28,5 +28,5 @@ TEST(LargeArray, ExcessiveSizeThrowsBadAlloc) {
   EXPECT_THROW(makeLargeArray<std::uint64_t>(std::size_t{1} << 58), std::bad_alloc);
 }
 
-}  // namespace large_array_test
+}  // namespace kernels_test
 }  // namespace talus::planner

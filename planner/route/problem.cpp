@@ -1,8 +1,8 @@
 #include <string>
 
-#include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

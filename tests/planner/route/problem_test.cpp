@@ -1,11 +1,28 @@
+#include <cmath>
+#include <stop_token>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <talus/planner/route/legs.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
-namespace legs_test {
+namespace problem_test {
+
+// Property: a stop request takes precedence over an elapsed time limit.
+TEST(PlanEnd, StoppedPlanNamesItsCause) {
+  std::stop_source source;
+  const StopCheck late(ProgressMonitor{.progress = {}, .stop = source.get_token()}, 0.0);
+  const Plan timed_out = cancelledPlan(late);
+  EXPECT_EQ(timed_out.status, RouteStatus::TimedOut);
+  EXPECT_THAT(timed_out.reason, ::testing::HasSubstr("time limit"));
+  source.request_stop();
+  const Plan cancelled = cancelledPlan(late);
+  EXPECT_EQ(cancelled.status, RouteStatus::Cancelled);
+  EXPECT_THAT(cancelled.reason, ::testing::HasSubstr("cancelled"));
+}
 
 Problem threeLegs() {
   Problem problem;
@@ -41,22 +58,6 @@ TEST(Legs, EachLegStartsAtTheEndOfThePreviousLeg) {
   EXPECT_EQ(progress.back(), 1.0);
 }
 
-TEST(Legs, FirstFailedLegIsTheResult) {
-  int calls = 0;
-  const Plan whole = planByLegs(threeLegs(), [&](const Problem& leg) {
-    if (++calls == 2) {
-      Plan none;
-      none.status = RouteStatus::NoRoute;
-      none.reason = "a wall";
-      return none;
-    }
-    return Plan{RouteStatus::Found, {}, {leg.start, leg.goal}, 1.0, 1.0};
-  });
-  EXPECT_EQ(whole.status, RouteStatus::NoRoute);
-  EXPECT_EQ(whole.reason, "a wall");
-  EXPECT_EQ(calls, 2);
-}
-
 // Property: if a leg fails at one of its ends, a via point is named by its number, because the user's start
 // and goal are others.
 TEST(Legs, FailingViaPointIsNamedByItsNumber) {
@@ -79,5 +80,5 @@ TEST(Legs, FailingViaPointIsNamedByItsNumber) {
   EXPECT_EQ(reason(3, "goal 2,2 lies outside the map"), "goal 2,2 lies outside the map");
 }
 
-}  // namespace legs_test
+}  // namespace problem_test
 }  // namespace talus::planner
