@@ -6,6 +6,5 @@
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/explanation.hpp>
 #include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/map/map_tree.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>

@@ -2,15 +2,79 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
-#include <talus/costmap/evidence/block_grid.hpp>
 #include <talus/costmap/evidence/class_evidence.hpp>
 #include <talus/costmap/evidence/evidence_bricks.hpp>
-#include <talus/costmap/evidence/evidence_reach.hpp>
 #include <talus/costmap/site/ground_site.hpp>
 
 namespace talus::costmap {
+
+/// Grid of blocks. A block is a square of cells whose evidence is stored together. The side of a block is the
+/// largest power of two of cells, 1 to 256, that does not exceed a quarter of the correlation length of the
+/// soil; at least one cell. Blocks are aligned with the octree. A block is identified by its south-west cell,
+/// which may lie outside the map, or by its column and row from the map's south-west corner. Immutable.
+class BlockGrid {
+ public:
+  explicit BlockGrid(std::shared_ptr<const GroundSite> site);
+
+  int columns() const noexcept { return columns_; }
+  int rows() const noexcept { return rows_; }
+  /// Returns the side length of a block: side() in cells, side_m() in metres.
+  int side() const noexcept { return 1 << shift_; }
+  double side_m() const noexcept { return side() * site_->grid().resolution_m; }
+  /// Returns the number of blocks that one correlation length spans, rounded up.
+  int reach() const noexcept;
+
+  /// Returns the column and the row of the block that contains a cell.
+  int columnOf(maps::Cell cell) const noexcept { return (cell.column - first_.column) >> shift_; }
+  int rowOf(maps::Cell cell) const noexcept { return (cell.row - first_.row) >> shift_; }
+  /// Returns the south-west cell of a block: blockOf() of the block that contains a cell, blockAt() of the
+  /// block in a column and row.
+  maps::Cell blockOf(maps::Cell cell) const noexcept;
+  maps::Cell blockAt(int column, int row) const noexcept {
+    return {first_.column + column * side(), first_.row + row * side()};
+  }
+  /// Returns the map coordinates of the middle of a block.
+  maps::Point middleOf(maps::Cell block) const noexcept;
+
+ private:
+  std::shared_ptr<const GroundSite> site_;
+  int shift_;
+  maps::Cell first_;
+  int columns_, rows_;
+};
+
+/// Set of the patches that evidence can affect. A patch is 8x8 blocks, and a block is a square of cells whose
+/// evidence is stored together. The estimates of a patch are computed from all evidence that can affect any
+/// block of the patch; a changed block therefore changes whole patches. Not thread-safe while changed.
+class EvidenceReach {
+ public:
+  static constexpr int kPatchBlocks = 8;
+
+  explicit EvidenceReach(std::shared_ptr<const GroundSite> site);
+
+  /// Adds the evidence of a block whose position uncertainty is reach_m >= 0 [m]. Returns the box of the
+  /// cells of all patches within the correlation length plus reach_m of the block.
+  maps::CellBox add(const BlockOfClass& block, double reach_m);
+
+  /// Returns the boxes of cells that evidence can affect, one for each patch.
+  std::vector<maps::CellBox> boxes() const;
+
+  /// Returns the greatest position uncertainty of a block [m].
+  double farthest_m() const noexcept { return farthest_m_; }
+
+ private:
+  maps::CellBox cellsOf(const maps::CellBox& patches) const noexcept;
+
+  std::shared_ptr<const GroundSite> site_;
+  BlockGrid blocks_;
+  std::set<std::pair<int, int>> patches_;  // patches by row and column
+  double farthest_m_ = 0.0;
+};
 
 /// Data of an EvidenceField: blocks (squares of cells), their readings, the evidence of terrain classes, and
 /// the patches of blocks that evidence can affect. Internal to EvidenceField and to the computation of

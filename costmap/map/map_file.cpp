@@ -21,10 +21,15 @@
 #include <talus/common/output_file.hpp>
 #include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/map_text.hpp>
-#include <talus/costmap/map/map_tree.hpp>
+#include <talus/costmap/map/place_beliefs.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {
 namespace {
+
+Surface surfaceOf(const TraversabilityMap& map) {
+  return {map.elevation().elevation_m, map.surface().keys()};
+}
 
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
@@ -265,6 +270,17 @@ void requireSane(const maps::Grid& grid, const std::string& name) {
 }
 
 }  // namespace
+
+TraversabilityTree treeOf(const TraversabilityMap& map) {
+  PlaceBeliefs beliefs(map);
+  return surfaceTree(surfaceOf(map), [&](maps::Cell cell) { return beliefs.at(cell); });
+}
+
+void writeTree(const TraversabilityMap& map, std::ostream& stream) {
+  PlaceBeliefs beliefs(map);
+  writeSurfaceTree(
+      surfaceOf(map), [&](maps::Cell cell) { return beliefs.at(cell); }, stream);
+}
 
 void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   writeTree(map, stream);

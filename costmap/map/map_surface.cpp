@@ -7,9 +7,7 @@
 #include <talus/costmap/map/map_surface.hpp>
 #include <talus/costmap/site/surface_patch.hpp>
 #include <talus/costmap/surface/cell_boxes.hpp>
-#include <talus/costmap/surface/rock_hazard.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
-#include <talus/costmap/surface/unseen_slope.hpp>
 
 namespace talus::costmap {
 namespace {

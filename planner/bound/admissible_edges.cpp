@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <talus/planner/bound/admissible_edges.hpp>
-#include <talus/planner/bound/cheapest_metre.hpp>
+#include <talus/planner/bound/straight_bound.hpp>
 
 namespace talus::planner {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include <talus/planner/bound/fitted_octagon.hpp>
-#include <talus/planner/bound/lanes.hpp>
+#include <talus/planner/route/kernels.hpp>
 
 namespace talus::planner {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <talus/planner/bound/directional_cost_bounds.hpp>
-#include <talus/planner/field/grid_heading.hpp>
+#include <talus/planner/field/edge_units.hpp>
 
 namespace talus::planner {
 

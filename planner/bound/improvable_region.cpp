@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
+#include <talus/planner/bound/straight_bound.hpp>
 
 namespace talus::planner {
 namespace {

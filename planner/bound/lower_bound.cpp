@@ -6,10 +6,10 @@
 #include <utility>
 
 #include <talus/common/constants.hpp>
-#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/bound/sub_solution_check.hpp>
-#include <talus/planner/route/cells_within.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 namespace {

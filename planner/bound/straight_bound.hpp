@@ -8,6 +8,11 @@
 
 namespace talus::planner {
 
+/// Returns the lowest cost per metre [J/m] over all cost curves (kinds of ground, costmap::TravelCurve) that
+/// occur on the map and all gradients; 0 if no cell has a cost curve. Only row 0 of each cost curve (no
+/// gradient across the heading) is read, because no other row has a lower cost.
+double cheapestMetre_J(const costmap::CostGrid& map);
+
 /// Returns a lower bound [J] of the cost of any motion from `places.from` to within `tolerance_m` of
 /// `places.to`: the distance times the lowest cost per metre of all cost curves (kinds of ground). The
 /// function reads no cell.

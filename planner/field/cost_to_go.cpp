@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include <talus/planner/field/cost_to_go.hpp>
+#include <talus/planner/field/edge_layer.hpp>
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
-
-#include <talus/planner/field/cost_to_go.hpp>
-#include <talus/planner/field/descent.hpp>
 
 namespace talus::planner {
 namespace {
@@ -83,6 +83,22 @@ struct Surroundings {
     __builtin_prefetch(at + stride, 1);
   }
 };
+
+template <typename Motion>
+std::vector<GridLink> links(const MotionCost& cost, maps::Point place, Motion motion) {
+  std::vector<GridLink> found;
+  const maps::Grid& grid = cost.map().grid();
+  const auto own = grid.cellAt(place);
+  if (!own) return found;
+  for (int row = own->row - 1; row <= own->row + 1; ++row)
+    for (int column = own->column - 1; column <= own->column + 1; ++column) {
+      const maps::Cell cell{column, row};
+      if (!grid.contains(cell)) continue;
+      const double link_J = cost(motion(grid.centre(cell)));
+      if (std::isfinite(link_J)) found.push_back({cell, link_J});
+    }
+  return found;
+}
 
 }  // namespace
 
@@ -205,6 +221,70 @@ std::vector<maps::Cell> CostToGo::path(maps::Cell from) const {
   return descent(
       *edges_, from, [this](std::size_t index) { return distance_[index]; },
       [this](std::size_t index) { return atGoal(index); });
+}
+
+// Returns the smallest distance of any cell with a changed step. The paths of nearer cells contain no changed
+// step, neither before nor after the change, because the last cell with a changed step leaves by an unchanged
+// step.
+std::uint32_t CostToGo::leastTouched(CellBox changed) const noexcept {
+  const PaddedGrid& padded = edges_->padded();
+  const CellBox box = grown(changed, 1, padded);
+  std::uint32_t least = kUnreached;
+  for (int row = box.first.row; row <= box.last.row; ++row)
+    for (int column = box.first.column; column <= box.last.column; ++column)
+      least = std::min(least, units({column, row}));
+  return least;
+}
+
+void CostToGo::repair(CellBox changed) {
+  const std::uint64_t front = queued_ > 0 ? current_ << shift_ : kUnreached;
+  const std::uint64_t stays = std::min<std::uint64_t>(leastTouched(changed), front);
+  if (stays == kUnreached) return;
+  for (Bucket& bucket : buckets_) bucket.clear();
+  queued_ = settled_ = 0;
+  // Cells that keep their values but have steps to reset cells are processed again.
+  const std::uint64_t again = stays - std::min<std::uint64_t>(stays, EdgeLayer::kBlocked);
+  current_ = again >> shift_;
+  for (std::size_t cell = 0; cell < edges_->padded().size(); ++cell) {
+    if (distance_[cell] >= stays) distance_[cell] = kUnreached;
+    if (distance_[cell] >> shift_ < current_)
+      ++settled_;
+    else if (distance_[cell] != kUnreached)
+      enqueue(cell);
+  }
+  seedGoals();
+}
+
+std::vector<GridLink> linksFrom(const MotionCost& cost, maps::Point place) {
+  return links(cost, place, [place](maps::Point centre) { return Segment{place, centre}; });
+}
+
+std::vector<GridLink> linksTo(const MotionCost& cost, maps::Point place) {
+  return links(cost, place, [place](maps::Point centre) { return Segment{centre, place}; });
+}
+
+std::vector<FieldGoal> fieldGoals(const MotionCost& cost, maps::Point goal, double tolerance_m) {
+  std::vector<FieldGoal> goals;
+  for (const GridLink& link : linksTo(cost, goal)) goals.push_back({link.cell, link.cost_J});
+  const maps::Grid& grid = cost.map().grid();
+  const double reach = tolerance_m / grid.resolution_m;
+  const auto lowest = [reach](double origin, double at, double side) {
+    return static_cast<int>(std::max(0.0, std::floor((at - origin) / side - reach - 1)));
+  };
+  const auto highest = [reach](double origin, double at, double side, int count) {
+    return static_cast<int>(std::min(count - 1.0, std::ceil((at - origin) / side + reach + 1)));
+  };
+  if (!(tolerance_m > 0.0)) return goals;
+  const int last_row = highest(grid.south_west.y_m, goal.y_m, grid.resolution_m, grid.height);
+  const int last_column = highest(grid.south_west.x_m, goal.x_m, grid.resolution_m, grid.width);
+  for (int row = lowest(grid.south_west.y_m, goal.y_m, grid.resolution_m); row <= last_row; ++row)
+    for (int column = lowest(grid.south_west.x_m, goal.x_m, grid.resolution_m); column <= last_column;
+         ++column) {
+      const maps::Point centre = grid.centre({column, row});
+      const bool near = std::hypot(centre.x_m - goal.x_m, centre.y_m - goal.y_m) <= tolerance_m;
+      if (near && cost.allowed(centre)) goals.push_back({{column, row}, 0.0});
+    }
+  return goals;
 }
 
 }  // namespace talus::planner

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+
+#include <talus/planner/field/edge_units.hpp>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
-
-#include <talus/planner/field/cost_range.hpp>
-#include <talus/planner/field/edge_units.hpp>
 
 namespace talus::planner {
 namespace {
@@ -57,6 +57,22 @@ std::uint64_t placed(double place, int stride, int shift) {
 }
 
 }  // namespace
+
+CostRange costRange(const costmap::TravelCost& cost) {
+  CostRange range;
+  constexpr int kBins = costmap::TravelCurve::kBins;
+  for (const auto& curve : cost.curves())
+    for (int i = 0; i < (curve.lastRow() + 1) * kBins; ++i) {
+      const auto value = static_cast<double>(curve.rows()[i]);
+      const double gradient = costmap::TravelCurve::gradient(i % kBins);
+      // The node just beyond the limit is included, because costs between the last node within the limit and
+      // that node are interpolated.
+      if (!std::isfinite(value) || std::abs(gradient) >= cost.limits().max_along + 1.0 / 256) continue;
+      range.least_J_per_m = std::min(range.least_J_per_m, value);
+      range.most_J_per_m = std::max(range.most_J_per_m, value);
+    }
+  return range;
+}
 
 EdgeUnits::Places EdgeUnits::places(const TravelCost::Limits& limits, double per_step, int shift) const {
   const int most = per_step == 1.0 ? 2048 : 4096;  // range of CellCode's steps

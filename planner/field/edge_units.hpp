@@ -5,12 +5,35 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include <talus/costmap/cost/travel_cost.hpp>
-#include <talus/planner/field/grid_heading.hpp>
+#include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
+
+/// The eight headings of a grid, counter-clockwise from east.
+enum GridHeading : int { kEast, kNorthEast, kNorth, kNorthWest, kWest, kSouthWest, kSouth, kSouthEast };
+
+/// Column and row offset of a step along each heading.
+inline constexpr std::array<maps::Cell, 8> kStep{
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+
+/// Returns the opposite heading.
+constexpr int opposite(int heading) noexcept {
+  return heading ^ 4;
+}
+
+/// Lowest and highest cost per metre over all cost curves (kinds of ground, costmap::TravelCurve) and all
+/// allowed gradients along and across the heading.
+struct CostRange {
+  /// Lowest cost; infinite if no motion is allowed.
+  double least_J_per_m = std::numeric_limits<double>::infinity();
+  double most_J_per_m = 0.0;  ///< highest finite cost
+};
+/// Returns the cost range of a cost function.
+CostRange costRange(const costmap::TravelCost& cost);
 
 /// Costs of half steps as integer multiples of an energy unit, so that sums do not depend on their order. A
 /// half step leads from the centre of a cell to a side or corner of the cell, in one of the eight headings of

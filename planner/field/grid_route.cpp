@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/field/patched_field.hpp>
 

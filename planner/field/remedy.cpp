@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <talus/planner/field/remedy.hpp>
-#include <talus/planner/route/cells_within.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 namespace {

@@ -5,19 +5,17 @@
 #include <utility>
 
 #include <talus/common/constants.hpp>
-#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
+#include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/field/grid_route.hpp>
-#include <talus/planner/field/map_change.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/obstruction_search.hpp>
-#include <talus/planner/refine/close_vertices.hpp>
-#include <talus/planner/refine/settled_vertices.hpp>
-#include <talus/planner/route/added_time.hpp>
-#include <talus/planner/route/legs.hpp>
-#include <talus/planner/route/plan_end.hpp>
+#include <talus/planner/refine/vertices.hpp>
+#include <talus/planner/route/problem.hpp>
+#include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
 

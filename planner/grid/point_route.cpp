@@ -8,13 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include <talus/planner/bound/cheapest_metre.hpp>
-#include <talus/planner/grid/node_route.hpp>
+#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/refine/edge_crossings.hpp>
-#include <talus/planner/refine/settled_vertices.hpp>
-#include <talus/planner/route/cells_within.hpp>
+#include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/grid/windowed_plan.hpp>
-#include <talus/planner/route/legs.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

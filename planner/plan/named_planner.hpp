@@ -12,6 +12,14 @@
 
 namespace talus::planner {
 
+/// Returns the cheapest of the plans to the goals of `problem`. `plan` plans to a single goal; Plan::goal of
+/// the result is the index of the selected goal. Goals are tried in the order of their straight-line lower
+/// bounds. A goal is skipped if its lower bound is not below the best cost; therefore the result equals the
+/// best of the plans to all goals. A goal that cannot be reached does not prevent plans to the other goals.
+/// If no goal can be reached, status and reason are those of the first goal tried. The time limit applies to
+/// all goals together.
+Plan planToCheapest(const Problem& problem, const std::function<Plan(const Problem& one_goal)>& plan);
+
 /// Planner selected by name. The planners are the field planner (polylines from a cost-to-go field), the
 /// planner of drives (arcs with a turning radius), and planners of OMPL, which improve the route of the field
 /// planner. The cost-to-go field of a map and a goal is kept for later plans. Not thread-safe: use one object

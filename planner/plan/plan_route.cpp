@@ -29,4 +29,10 @@ Route planRoute(WindowedMap& map, const PlanRequest& request, const PlannerSetti
                              .watch = request.watch});
 }
 
+std::unique_ptr<GlobalPlanner> makePlanner(const std::string& name) {
+  auto planner = std::make_unique<OwnPlanner>();
+  planner->configure({.planner = name});
+  return planner;
+}
+
 }  // namespace talus::planner

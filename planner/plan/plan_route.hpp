@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/grid/windowed_map.hpp>
@@ -21,5 +22,10 @@ Route planRoute(const std::shared_ptr<const costmap::CostGrid>& map, const PlanR
 /// `settings.planner` must be "field" or empty. The status NoRoute is not a proof, because routes that the
 /// overview does not resolve are missed. Of the optional constraints only via points are supported.
 Route planRoute(WindowedMap& map, const PlanRequest& request, const PlannerSettings& settings = {});
+
+/// Creates one of Talus' own planners with default settings; no shared library is loaded. `name` is the name
+/// of the planner; an empty name selects the default planner. GlobalPlanner::capabilities().planners contains
+/// the names. Throws std::invalid_argument for an unknown name.
+std::unique_ptr<GlobalPlanner> makePlanner(const std::string& name = {});
 
 }  // namespace talus::planner

@@ -6,14 +6,15 @@
 
 #include <poll.h>
 #include <signal.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <talus/planner/plugin/child_process.hpp>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 namespace talus::planner {
 namespace {

@@ -14,7 +14,7 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 
-/// Interface of all planners. Talus' own planners are created by plan/make_planner.hpp or called by
+/// Interface of all planners. Talus' own planners are created by makePlanner() or called by
 /// plan/plan_route.hpp. A planner in a shared library is exported as an object named `talus_planner`
 /// (plugin/plugin_export.hpp) and is loaded by plugin/plugin_loader.hpp.
 namespace talus {

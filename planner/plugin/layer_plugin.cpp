@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <talus/common/input_error.hpp>
+#include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/layer_plugin.hpp>
-#include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_export.hpp>
 
 namespace talus::planner {

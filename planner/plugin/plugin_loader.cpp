@@ -14,7 +14,6 @@
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
 #include <talus/planner/plugin/child_process.hpp>
-#include <talus/planner/plugin/plugin_answer.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/request_check.hpp>
 

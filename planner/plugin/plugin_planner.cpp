@@ -11,13 +11,13 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plugin/plugin_answer.hpp>
+#include <talus/planner/plugin/child_process.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
-#include <talus/planner/route/added_time.hpp>
 #include <talus/planner/route/motion_cost.hpp>
-#include <talus/planner/route/plan_end.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/problem.hpp>
+#include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
 namespace {

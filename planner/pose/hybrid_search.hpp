@@ -1,18 +1,106 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
+#include <talus/planner/route/heading_cost.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
+
+/// Table of the lowest cost found at every cell and discrete heading. The headings of a cell are contiguous
+/// in memory (a block), because a search reads neighbouring headings. A cell that was not reached needs four
+/// bytes.
+class PoseTable {
+ public:
+  PoseTable(std::size_t cells, std::size_t headings) : block_(cells, 0), headings_(headings) {
+    costs_.resize(headings);  // block 0 belongs to no cell
+  }
+
+  /// Returns the cost at a cell index and heading index; infinite until set. The reference is valid until the
+  /// next call.
+  float& at(std::size_t cell, std::size_t heading) {
+    std::uint32_t& block = block_[cell];
+    if (block == 0) {
+      block = static_cast<std::uint32_t>(costs_.size() / headings_);
+      costs_.resize(costs_.size() + headings_, std::numeric_limits<float>::infinity());
+    }
+    return costs_[block * headings_ + heading];
+  }
+
+ private:
+  std::vector<std::uint32_t> block_;  // index of the block of each cell; 0: no block
+  std::size_t headings_;
+  std::vector<float> costs_;
+};
+
+/// Motions that a search tries from every pose, computed once per heading: straight, arcs with the curvatures
+/// 1 / r and 1 / (3 r), where r is the turning radius, the same motions in reverse if permitted, and turns in
+/// place if r = 0. The discrete headings are `offset_rad` + k 2 pi / headings; every motion ends at one of
+/// them.
+class MotionSet {
+ public:
+  struct Options {
+    int headings = 72;        ///< number of discrete headings
+    double step_cells = 1.5;  ///< length of a motion in cells
+    double offset_rad = 0.0;  ///< heading with index 0
+  };
+
+  /// Section of a motion. Its cost is that of the cell at its centre.
+  struct Stretch {
+    double dx_m, dy_m;  ///< position of the centre relative to the pose
+    double length_m;    ///< length of the section
+    HeadingCost cost;   ///< cost per metre for the heading of the section
+  };
+
+  /// Motion that begins at one discrete heading.
+  struct Motion {
+    PosePath::Leg leg;
+    double dx_m = 0.0, dy_m = 0.0;  ///< position of the end relative to the pose
+    int heading = 0;                ///< index of the heading at the end
+    int direction = 0;              ///< +1 forward, -1 in reverse, 0 turn in place
+    double turn_rad = 0.0;          ///< sum of the magnitudes of all changes of heading, >= 0
+    std::vector<Stretch> stretches{};
+  };
+
+  MotionSet(const costmap::CostGrid& map, const Kinematics& kinematics, const Options& options);
+
+  /// Returns the motions that begin at the heading with an index.
+  const std::vector<Motion>& from(int heading) const noexcept {
+    return motions_[static_cast<std::size_t>(heading)];
+  }
+
+  double heading_rad(int heading) const noexcept { return options_.offset_rad + heading * bin_rad_; }
+  int headings() const noexcept { return options_.headings; }
+
+  /// Returns the relative computing effort of all motions from one heading: 1 for small turning radii, more
+  /// for longer motions.
+  std::uint64_t work() const noexcept;
+
+  /// Returns the approximate cost [J] of a motion from a point, with the costs of the cells at the centres of
+  /// its sections. Infinite if a section is not allowed or leaves the map.
+  double quickCost(const Motion& motion, maps::Point from) const noexcept;
+
+ private:
+  Motion made(const PosePath::Leg& leg, int heading, int turned) const;
+  std::vector<PosePath::Leg> legs() const;
+
+  const costmap::CostGrid& map_;
+  Kinematics kinematics_;
+  Options options_;
+  double bin_rad_;
+  double inverse_resolution_;
+  std::vector<std::vector<Motion>> motions_;
+};
 
 /// Input of the search for a drive (route of arcs and turns in place). Points are map coordinates [m].
 struct PoseProblem {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <talus/common/progress_monitor.hpp>
 #include <talus/maps/grid/grid.hpp>
 #include <talus/maps/grid/point_heights.hpp>
 
@@ -58,5 +60,11 @@ pybind11::array viewOf(const maps::Raster<T>& raster, pybind11::handle owner) {
       raster.values().data(), {raster.grid().height, raster.grid().width},
       {width * static_cast<pybind11::ssize_t>(sizeof(T)), static_cast<pybind11::ssize_t>(sizeof(T))}, owner);
 }
+
+/// Runs `work` in a separate thread without the GIL. Meanwhile the calling thread checks for Ctrl-C 20 times
+/// per second and calls `progress` (may be None) with the completed share of the work, [0, 1]. Ctrl-C or an
+/// exception of `progress` requests a stop of the work; the exception is rethrown after the work has ended.
+/// Exceptions of the work are also rethrown.
+void inBackground(const std::function<void(const ProgressMonitor&)>& work, const pybind11::object& progress);
 
 }  // namespace talus::planner

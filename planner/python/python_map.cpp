@@ -17,9 +17,8 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/map/map_file.hpp>
-#include <talus/planner/plan/make_planner.hpp>
+#include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/python/arrays.hpp>
-#include <talus/planner/python/background.hpp>
 #include <talus/planner/python/python_map.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>

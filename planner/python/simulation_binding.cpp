@@ -5,7 +5,6 @@
 
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/arrays.hpp>
-#include <talus/planner/python/background.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/planner/python/python_map.hpp>
 #include <talus/planner/simulation/drive/simulation_site.hpp>

@@ -3,7 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <talus/common/progress_monitor.hpp>
-#include <talus/planner/python/background.hpp>
+#include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/contact/rover.hpp>

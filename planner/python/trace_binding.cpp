@@ -8,7 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <talus/common/progress_monitor.hpp>
-#include <talus/planner/python/background.hpp>
+#include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>

@@ -8,8 +8,7 @@
 
 #include <talus/planner/reach/cell_chain.hpp>
 #include <talus/planner/reach/cell_route.hpp>
-#include <talus/planner/reach/side_cover.hpp>
-#include <talus/planner/route/cells_within.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
 namespace {

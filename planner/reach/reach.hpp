@@ -8,7 +8,7 @@
 
 #include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/planner/reach/cell_side.hpp>
-#include <talus/planner/route/cells_within.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {

@@ -3,9 +3,8 @@
 #include <utility>
 
 #include <talus/planner/refine/any_angle.hpp>
-#include <talus/planner/refine/fewer_turns.hpp>
-#include <talus/planner/refine/longer_tacks.hpp>
 #include <talus/planner/refine/route_windows.hpp>
+#include <talus/planner/refine/vertices.hpp>
 
 namespace talus::planner {
 namespace {
@@ -75,11 +74,6 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
       stop));
   take(withFewerTurns(cost, withLongerTacks(cost, route)));
   return route;
-}
-
-Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options,
-                 const StopCheck& stop) {
-  return Refiner(options)(cost, std::move(route), 1, stop);
 }
 
 }  // namespace talus::planner

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <talus/planner/refine/corridor_search.hpp>
-#include <talus/planner/refine/refinement_cache.hpp>
+#include <talus/planner/refine/route_windows.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
@@ -42,9 +42,5 @@ class Refiner {
   RefineOptions options_;
   RefinementCache memo_;
 };
-
-/// Refines one route without kept results.
-Polyline refined(const MotionCost& cost, Polyline route, const RefineOptions& options = {},
-                 const StopCheck& stop = {});
 
 }  // namespace talus::planner

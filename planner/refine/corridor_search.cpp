@@ -4,15 +4,133 @@
 #include <cmath>
 #include <limits>
 
-#include <talus/planner/refine/corridor.hpp>
+#include <talus/common/constants.hpp>
 #include <talus/planner/refine/corridor_search.hpp>
+#include <talus/planner/route/heading_cost.hpp>
 
 namespace talus::planner {
 namespace {
 
-using costmap::CellCode;
+constexpr int kReach = 1;       // positions to each side of a turn
+constexpr double kFiner = 0.7;  // factor of the spacing of positions from round to round
+constexpr int kPlaces = 2 * kReach + 1;
+constexpr double kClear = 1.0 / 64;  // [cells] smallest distance of turns from corners
+
+constexpr double kEnd = 2.0;  // [cells] a step that leaves the ends of a path only their own position
+
+using Turn = EdgePath::Turn;
+
+// Points to which a turn may move; the first of `places` is the present point of the turn.
+struct Choice {
+  std::array<Turn, kPlaces> places;
+  std::array<double, kPlaces> best{};
+  std::array<int, kPlaces> next{};
+  int count = 0;
+};
+
+Choice choiceAround(Turn turn, double step) {
+  Choice choice;
+  choice.places[static_cast<std::size_t>(choice.count++)] = turn;
+  const double at = turn.on_vertical ? turn.y : turn.x, cell = std::floor(at);
+  for (int k = 1; k <= kReach; ++k)
+    for (const double moved : {at + k * step, at - k * step}) {
+      if (moved < cell + kClear || moved > cell + 1.0 - kClear) continue;
+      Turn place = turn;
+      (turn.on_vertical ? place.y : place.x) = moved;
+      choice.places[static_cast<std::size_t>(choice.count++)] = place;
+    }
+  return choice;
+}
+
+// The cell of a motion, and the cells before and after it. A turn on an edge touches both adjacent cells, so
+// these must allow the heading, too.
+struct Passage {
+  costmap::CellCode cell, before, after;
+};
+
+// Straight motion between two positions within a cell.
+struct Straight {
+  HeadingCost cost;
+  double length;
+
+  Straight(const costmap::TravelCost& drive, double dx, double dy) noexcept
+      : Straight(drive, dx, dy, std::sqrt(dx * dx + dy * dy)) {}
+  Straight(const costmap::TravelCost& drive, double dx, double dy, double far) noexcept
+      : cost(drive, far > 0.0 ? costmap::Direction{dx / far, dy / far} : costmap::Direction{1.0, 0.0}),
+        length(far) {}
+
+  double within(costmap::CellCode cell) const noexcept {
+    return length > 0.0 ? length * static_cast<double>(cost(cell)) : 0.0;
+  }
+  bool mayTurn(const Passage& passage) const noexcept {
+    return !(length > 0.0) || (std::isfinite(cost(passage.before)) && std::isfinite(cost(passage.after)));
+  }
+};
+
+void choose(const costmap::TravelCost& drive, const Passage& passage, Choice& from, const Choice& to) {
+  for (std::size_t a = 0; a < static_cast<std::size_t>(from.count); ++a) {
+    from.best[a] = kInfinity;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(to.count); ++b) {
+      const Straight motion(drive, to.places[b].x - from.places[a].x, to.places[b].y - from.places[a].y);
+      const double through = motion.within(passage.cell) + to.best[b];
+      if (!(through < from.best[a]) || !motion.mayTurn(passage)) continue;
+      from.best[a] = through;
+      from.next[a] = static_cast<int>(b);
+    }
+  }
+}
+
+std::vector<Passage> passagesOf(const costmap::CostGrid& map, const EdgePath& path) {
+  std::vector<Passage> passages;
+  const std::size_t n = path.cells.size();
+  const auto at = [&](std::size_t k) { return map.at(path.cells[k]); };
+  for (std::size_t i = 0; i < n; ++i)
+    passages.push_back({at(i), at(i > 0 ? i - 1 : i), at(i + 1 < n ? i + 1 : i)});
+  return passages;
+}
+
+void slideOnce(const costmap::TravelCost& drive, const std::vector<Passage>& passages, double step,
+               std::vector<Choice>& choices, EdgePath& path) {
+  const std::size_t n = path.turns.size();
+  choices[n - 1] = choiceAround(path.turns[n - 1], kEnd);
+  for (std::size_t i = n - 1; i-- > 0;) {
+    choices[i] = choiceAround(path.turns[i], i == 0 ? kEnd : step);
+    choose(drive, passages[i], choices[i], choices[i + 1]);
+  }
+  for (std::size_t i = 0, a = 0; i < n; ++i) {
+    path.turns[i] = choices[i].places[a];
+    a = static_cast<std::size_t>(choices[i].next[a]);
+  }
+}
+
 using maps::Cell;
 using maps::Point;
+
+// Returns the cells along a path, sampled at steps of less than a cell.
+std::vector<Cell> cellsOf(const maps::Grid& grid, const std::vector<Point>& along) {
+  std::vector<Cell> on;
+  const auto add = [&](double x, double y) {
+    const Cell c{std::clamp(static_cast<int>(x), 0, grid.width - 1),
+                 std::clamp(static_cast<int>(y), 0, grid.height - 1)};
+    if (on.empty() || !(on.back() == c)) on.push_back(c);
+  };
+  const auto inCells = [&](Point p) {
+    return EdgeSpot{(p.x_m - grid.south_west.x_m) / grid.resolution_m,
+                    (p.y_m - grid.south_west.y_m) / grid.resolution_m};
+  };
+  EdgeSpot before = inCells(along.front());
+  for (const Point p : along) {
+    const EdgeSpot here = inCells(p);
+    const int steps =
+        1 + static_cast<int>(std::max(std::abs(here.x - before.x), std::abs(here.y - before.y)));
+    for (int k = 1; k <= steps; ++k)
+      add(before.x + (here.x - before.x) * k / steps, before.y + (here.y - before.y) * k / steps);
+    before = here;
+  }
+  return on;
+}
+
+using costmap::CellCode;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNone = Corridor::kNone;
@@ -260,6 +378,65 @@ EdgePath EdgePointSearch::run(const Segment& ends, double below_J) {
 
 }  // namespace
 
+std::vector<maps::Point> EdgePath::points(const maps::Grid& grid) const {
+  std::vector<maps::Point> points;
+  for (const Turn& turn : turns)
+    points.push_back(
+        {grid.south_west.x_m + turn.x * grid.resolution_m, grid.south_west.y_m + turn.y * grid.resolution_m});
+  return points;
+}
+
+void slideTurns(const costmap::CostGrid& map, EdgePath& path, double coarsest_cells, int rounds) {
+  if (path.turns.size() < 3) return;
+  const auto passages = passagesOf(map, path);
+  std::vector<Choice> choices(path.turns.size());
+  double step = coarsest_cells;
+  for (int k = 0; k < rounds; ++k, step *= kFiner) slideOnce(map.cost(), passages, step, choices, path);
+}
+
+Corridor::Corridor(const costmap::CostGrid& map, const EdgeCrossings& crossings,
+                   const std::vector<Point>& along, int reach_cells)
+    : first_{map.grid().width, map.grid().height} {
+  const auto on = cellsOf(map.grid(), along);
+  Cell last{-1, -1};
+  for (const Cell c : on) {
+    first_ = {std::min(first_.column, c.column), std::min(first_.row, c.row)};
+    last = {std::max(last.column, c.column), std::max(last.row, c.row)};
+  }
+  const int margin = reach_cells + 2;
+  first_ = {first_.column - margin, first_.row - margin};
+  columns_ = static_cast<std::size_t>(last.column + margin - first_.column + 1);
+  const std::size_t cells = columns_ * static_cast<std::size_t>(last.row + margin - first_.row + 1);
+  codes_.assign(cells, costmap::CellCode());
+  free_.assign(cells, 0);
+  open_.assign(cells, 0);
+  holder_.assign(cells, kNone);
+  for (const Cell c : on) open(map, crossings, c, reach_cells);
+}
+
+void Corridor::open(const costmap::CostGrid& map, const EdgeCrossings& crossings, Cell around,
+                    int reach_cells) {
+  const int last_row = std::min(around.row + reach_cells, map.grid().height - 1),
+            last_column = std::min(around.column + reach_cells, map.grid().width - 1);
+  for (int row = std::max(around.row - reach_cells, 0); row <= last_row; ++row)
+    for (int column = std::max(around.column - reach_cells, 0); column <= last_column; ++column) {
+      const std::size_t at = local({column, row});
+      if (open_[at] != 0) continue;
+      open_[at] = 1;
+      codes_[at] = map.at({column, row});
+      free_[at] = crossings.free(codes_[at]) ? 1 : 0;
+      hold(at);
+    }
+}
+
+void Corridor::hold(std::size_t cell) {
+  for (const std::size_t each : {cell, cell + 1, cell + columns_}) {
+    if (holder_[each] != kNone) continue;
+    holder_[each] = static_cast<std::uint32_t>(held_.size());
+    held_.push_back(static_cast<std::uint32_t>(each));
+  }
+}
+
 CorridorSearch::CorridorSearch(const MotionCost& cost, const CorridorOptions& options)
     : cost_(cost),
       options_(options),
@@ -271,11 +448,6 @@ EdgePath CorridorSearch::operator()(const std::vector<Point>& along, double belo
   Corridor corridor(cost_.map(), crossings_, along, options_.reach_cells);
   return EdgePointSearch(cost_, crossings_, corridor, queueFor(range_, options_.points_per_edge))
       .run({along.front(), along.back()}, below_J);
-}
-
-EdgePath searchCorridor(const MotionCost& cost, const std::vector<Point>& along, double below_J,
-                        const CorridorOptions& options) {
-  return CorridorSearch(cost, options)(along, below_J);
 }
 
 }  // namespace talus::planner

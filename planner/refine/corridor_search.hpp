@@ -1,14 +1,98 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
-#include <talus/planner/field/cost_range.hpp>
 #include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/refine/edge_crossings.hpp>
-#include <talus/planner/refine/edge_path.hpp>
 #include <talus/planner/route/kernels.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
+
+/// Path from cell to cell, straight within each cell, with turns only on edges between cells. Coordinates are
+/// in cells from the south-west corner of the map.
+struct EdgePath {
+  /// Point on a cell edge at which the path may turn.
+  struct Turn {
+    double x = 0.0;
+    double y = 0.0;
+    /// True: the point is on an edge between two columns, and y may vary. False: the point is on an edge
+    /// between two rows, and x may vary.
+    bool on_vertical = false;
+  };
+  std::vector<Turn> turns;        ///< turns in order; the first and the last are the fixed ends of the path
+  std::vector<maps::Cell> cells;  ///< cells[i] contains the motion from turns[i] to turns[i + 1]
+
+  bool empty() const noexcept { return turns.empty(); }
+  /// Returns the turns in map coordinates [m].
+  std::vector<maps::Point> points(const maps::Grid& grid) const;
+};
+
+/// Moves the turns along their edges to reduce the cost. Each of the `rounds` rounds is a dynamic programme
+/// over a few positions around each turn; the spacing of the positions decreases from `coarsest_cells`
+/// [cells]. The cost never increases.
+void slideTurns(const costmap::CostGrid& map, EdgePath& path, double coarsest_cells, int rounds);
+
+/// Corridor around a path: the cells within a distance of the path, copied from the map into a box with a
+/// margin of two cells (a path that ends on an edge touches the next cell). The other cells of the box are
+/// unknown and not drivable. Cells have local indices, row by row in the box.
+class Corridor {
+ public:
+  /// Holder number of a cell that is not a holder.
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// Copies the cells within `reach_cells` of the path `along`, which must lie inside the map.
+  Corridor(const costmap::CostGrid& map, const EdgeCrossings& crossings,
+           const std::vector<maps::Point>& along, int reach_cells);
+
+  /// Returns the local index of a cell.
+  std::size_t local(maps::Cell c) const noexcept {
+    return static_cast<std::size_t>(c.row - first_.row) * columns_ +
+           static_cast<std::size_t>(c.column - first_.column);
+  }
+  /// Returns the cell with a local index.
+  maps::Cell cell(std::size_t local) const noexcept {
+    return {first_.column + static_cast<int>(local % columns_),
+            first_.row + static_cast<int>(local / columns_)};
+  }
+
+  /// Returns the local index of the cell adjacent to `cell` across a side (CellSide).
+  std::size_t beyond(std::size_t cell, int side) const noexcept {
+    return side == kWestSide    ? cell - 1
+           : side == kEastSide  ? cell + 1
+           : side == kSouthSide ? cell - columns_
+                                : cell + columns_;
+  }
+
+  costmap::CellCode code(std::size_t cell) const noexcept { return codes_[cell]; }
+
+  /// Returns true if every heading is allowed in the cell.
+  bool free(std::size_t cell) const noexcept { return free_[cell] != 0; }
+
+  /// Returns the holder number of a cell. Data of edges are stored with holder cells: the west and south
+  /// edges of a cell belong to this cell. The holders are the cells of the corridor and their neighbours to
+  /// the east and north; they are numbered from 0.
+  std::uint32_t holder(std::size_t cell) const noexcept { return holder_[cell]; }
+  /// Returns the local index of the cell with a holder number.
+  std::size_t held(std::uint32_t holder) const noexcept { return held_[holder]; }
+  std::size_t holders() const noexcept { return held_.size(); }
+
+  /// Assigns holder numbers to a cell and its eastern and northern neighbours. The cell must be at least one
+  /// row inside the box.
+  void hold(std::size_t cell);
+
+ private:
+  void open(const costmap::CostGrid& map, const EdgeCrossings& crossings, maps::Cell around, int reach_cells);
+
+  maps::Cell first_;
+  std::size_t columns_ = 0;
+  std::vector<costmap::CellCode> codes_;
+  std::vector<std::uint8_t> free_, open_;
+  std::vector<std::uint32_t> holder_, held_;
+};
 
 /// Parameters of the search.
 struct CorridorOptions {
@@ -36,9 +120,5 @@ class CorridorSearch {
   EdgeCrossings crossings_;
   CostRange range_;
 };
-
-/// Runs a single search with a temporary CorridorSearch.
-EdgePath searchCorridor(const MotionCost& cost, const std::vector<maps::Point>& along, double below_J,
-                        const CorridorOptions& options = {});
 
 }  // namespace talus::planner

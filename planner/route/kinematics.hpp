@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <talus/costmap/cost/travel_cost.hpp>
-#include <talus/planner/route/arc.hpp>
+#include <talus/maps/grid/grid.hpp>
 #include <talus/terramech/contact/rover.hpp>
 
 namespace talus::costmap {
@@ -13,7 +13,29 @@ class GroundModel;
 }
 
 /// Constraints on the motion of a rover in the map plane, and costs of turning.
+
 namespace talus::planner {
+
+/// Position and heading of the rover.
+struct Pose {
+  maps::Point place;         ///< map coordinates [m]
+  double heading_rad = 0.0;  ///< heading, counter-clockwise from x (east)
+};
+
+/// Path section of constant curvature: a circular arc or a straight line.
+struct Arc {
+  double length_m = 0.0;       ///< signed length, > 0 forward, < 0 in reverse
+  double curvature_1_m = 0.0;  ///< curvature [1/m], > 0 for an arc to the left of the heading
+};
+
+/// Returns the pose at the end of an arc that starts at `from`.
+Pose after(const Pose& from, const Arc& arc) noexcept;
+
+/// Returns the shortest path without reversing from `from` to `to`, with arcs of the turning radius
+/// `radius_m` > 0 (dubins_1957), in the closed forms of shkel_lumelsky_2001. The implementation of OMPL 1.5.2
+/// is not used: it compares the length with a bound, which long paths miss by rounding, and then aborts the
+/// process.
+std::vector<Arc> shortestForward(const Pose& from, const Pose& to, double radius_m);
 
 using costmap::TurnCost;
 using costmap::TurnCosts;
@@ -43,7 +65,7 @@ struct Kinematics {
 Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::TravelCost& cost);
 
 /// Shortest paths between two poses for a turning radius > 0: paths of Reeds and Shepp if the rover may
-/// reverse (reeds_shepp_1990, implementation of OMPL), otherwise paths of Dubins (dubins.hpp). Immutable,
+/// reverse (reeds_shepp_1990, implementation of OMPL), otherwise paths of Dubins. Immutable,
 /// safe to share between threads.
 class ShortestCurves {
  public:

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <talus/common/progress_monitor.hpp>
@@ -12,6 +15,7 @@
 #include <talus/maps/grid/grid.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
+#include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
 
@@ -59,5 +63,36 @@ struct Plan {
   /// Drive with arcs and turns in place, of which `points` are the chords; no legs for a polyline.
   PosePath drive{};
 };
+
+/// Returns a plan without a route, with the given status and reason.
+inline Plan failedPlan(RouteStatus status, std::string reason) {
+  Plan plan;
+  plan.status = status;
+  plan.reason = std::move(reason);
+  return plan;
+}
+
+/// Returns the failed plan of a search that `stop` ended: status Cancelled or TimedOut.
+inline Plan cancelledPlan(const StopCheck& stop) {
+  if (stop.cancelled()) return failedPlan(RouteStatus::Cancelled, "cancelled before a route was found");
+  return failedPlan(RouteStatus::TimedOut, "the time limit passed before a route was found; increase it");
+}
+
+/// Returns the plan unchanged, or a plan with status NoneFound if the cost of the plan is infinite. The cost
+/// of a Found plan is infinite if the rover would tip during a turn between two legs.
+inline Plan withoutTipping(Plan plan) {
+  if (plan.status != RouteStatus::Found || std::isfinite(plan.cost_J)) return plan;
+  return failedPlan(RouteStatus::NoneFound,
+                    "no route found, nor a proof that there is none: on the one found, turns pass headings "
+                    "in which the rover tips; "
+                    "choose other places, or a rover with a lower centre of mass");
+}
+
+/// Plans a route through the via points of `problem`, leg by leg, with `plan_leg`. A leg starts at the end of
+/// the previous leg and ends exactly at the next via point or the goal; only the last leg uses the goal
+/// tolerance. The cost is the sum of the costs of the legs and of the turns at via points; the lower bound is
+/// the sum of the lower bounds of the legs. If a leg is not Found, its plan is returned, with the number of
+/// the via point, from 1, in the reason. Progress is reported to Problem::watch.
+Plan planByLegs(const Problem& problem, const std::function<Plan(const Problem& leg)>& plan_leg);
 
 }  // namespace talus::planner

@@ -1,15 +1,54 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <ompl/base/Planner.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
 
 #include <talus/maps/grid/grid.hpp>
 
 namespace talus::planner {
+
+/// Guard that suppresses the log output of OMPL while at least one guard exists in any thread. The last guard
+/// restores the log handler of the program.
+class QuietOmpl {
+ public:
+  QuietOmpl();
+  ~QuietOmpl();
+  QuietOmpl(const QuietOmpl&) = delete;
+  QuietOmpl& operator=(const QuietOmpl&) = delete;
+};
+
+/// Calls `make` with the process-wide seed generator of OMPL set to `seed`. Calls of this function exclude
+/// each other. Objects that `make` creates get the same random numbers, regardless of previous runs.
+void withOmplSeed(std::uint64_t seed, const std::function<void()>& make);
+
+/// RRT* [karaman_frazzoli_2011] with a tree that initially contains a known route, so that all samples
+/// improve an existing solution. For states of MapSpace.
+class SeededRRTstar : public ompl::geometric::RRTstar {
+ public:
+  /// Parameters in addition to those of RRT*.
+  struct Seed {
+    std::vector<maps::Point> route;  ///< known route from start to goal; empty: RRT* without a known route
+    double spacing_m = 1.0;  ///< length of the parts into which the legs of the route are divided, > 0
+    bool informed = false;   ///< true: sample only where the best cost can be reduced [gammell_2014]
+  };
+
+  SeededRRTstar(const ompl::base::SpaceInformationPtr& space, Seed seed);
+
+  ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& done) override;
+
+ private:
+  void plant();
+  Motion* plantRoot();
+  Motion* grow(Motion* parent, maps::Point place);
+
+  Seed seed_;
+};
 
 /// Input of makeOmplPlanner().
 struct PlannerParts {

@@ -7,6 +7,11 @@
 
 namespace talus::planner {
 
+/// Runs one OMPL planner for a problem without via points. Start and goal of the problem must lie in cells
+/// that allow some heading. `known` is the plan with the known route from which the planner may start. The
+/// status of the result is Found only if every motion and turn of the route is allowed.
+Plan runOmpl(const Problem& leg, const SamplingSettings& settings, const Plan& known);
+
 /// Function that returns an initial route for a problem without via points. A status other than Found means
 /// that no initial route is known.
 using InitialPathProvider = std::function<Plan(const Problem& leg)>;

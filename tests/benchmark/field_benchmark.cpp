@@ -17,7 +17,7 @@
 
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
@@ -255,7 +255,7 @@ void refinement(benchmark::State& state) {
     route.push_back(map->grid().centre(cell));
   const MotionCost cost(map);
   double refined_J = 0.0;
-  for (auto _ : state) refined_J = cost.along(refined(cost, route));
+  for (auto _ : state) refined_J = cost.along(Refiner()(cost, route));
   state.counters["grid_over_refined"] = cost.along(route) / refined_J;
 }
 
@@ -292,8 +292,8 @@ void againstFinest(benchmark::State& state) {
                          {0.5 * side, 0.5 * side}};
       const auto route = gridRoute(cost, field, ends);
       if (route.empty()) continue;
-      const double plain_J = cost.along(refined(cost, route)),
-                   finest_J = cost.along(refined(cost, route, finest));
+      const double plain_J = cost.along(Refiner()(cost, route)),
+                   finest_J = cost.along(Refiner(finest)(cost, route));
       gaps.push_back(100.0 * (plain_J / std::min(plain_J, finest_J) - 1.0));
     }
   std::sort(gaps.begin(), gaps.end());

@@ -31,17 +31,6 @@ TEST(CostGrid, RevisionChangesOnlyItsRange) {
     }
 }
 
-TEST(CostGrid, RevisionSharesUnchangedTiles) {
-  const CostGrid before = plain(200);
-  const CostGrid after = revised(before, {.ranges = {{{0, 0}, {5, 5}}},
-                                          .code = [](maps::Cell, CellCode code) { return code; },
-                                          .cost = [&] { return before.content().cost; }});
-  int shared = 0;
-  for (std::size_t i = 0; i < before.content().tiles.size(); ++i)
-    shared += before.content().tiles[i] == after.content().tiles[i] ? 1 : 0;
-  EXPECT_EQ(shared, 15);  // Closed form: 4x4 tiles, one touched
-}
-
 TEST(CostGrid, ElevationMatchesTheSourceRaster) {
   maps::Raster<float> heights(plain(150).grid());
   for (int row = 0; row < 150; ++row)
@@ -57,16 +46,6 @@ TEST(CostGrid, ElevationMatchesTheSourceRaster) {
   EXPECT_FALSE(grid.elevation_m({150.5, 1.0}));
   content.elevation_m = HeightTable(1, grid.content().elevation_m[0]);
   EXPECT_THROW(CostGrid{content}, std::invalid_argument);
-}
-
-TEST(CostGrid, RetiledElevationLeavesEarlierVersionsUnchanged) {
-  maps::Raster<float> heights(plain(150).grid(), 1.0F);
-  const HeightTable before = tiled(heights);
-  heights[{70, 10}] = 5.0F;
-  const HeightTable after = retiled(before, heights, {{70, 10}, {71, 10}});
-  EXPECT_EQ(before.tile(1).cells[10 * 64 + 6], 1.0F);
-  EXPECT_EQ(after.tile(1).cells[10 * 64 + 6], 5.0F);
-  for (const std::size_t other : {0U, 2U, 3U, 8U}) EXPECT_EQ(after[other], before[other]) << "shared";
 }
 
 // Property: after any sequence of shared tiles is set in several tables, each table equals a plain list.

@@ -257,32 +257,6 @@ TEST(SlopeLattice, CostIsMonotoneInSlopeLattice) {
   }
 }
 
-// Property: weaker or less certain ground is never cheaper in any heading, and is never allowed where
-// stronger ground is refused. Tolerance 0.5 %: as CostCurveTable.TabulatedCostIsNeverBelowTheExactCost.
-TEST(SlopeLattice, CostIsMonotoneInSoilStrength) {
-  std::mt19937 random(4);
-  const auto between = [&random](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  for (int soils = 0; soils < 12; ++soils) {
-    const GroundModel model = modelOf(drawn(random));
-    GroundBelief strong = model.prior(0);
-    strong.pull = {strong.pull.value + between(-0.1, 0.1), between(0.0, 0.1)};
-    GroundBelief weak = strong;
-    weak.pull.value -= between(0.0, 0.05);
-    weak.pull.std += between(0.0, 0.03);
-    const TravelCost stronger = costOf(model, strong), weaker = costOf(model, weak);
-    for (double steepness = 0.0; steepness < 0.36; steepness += 0.02)
-      for (int k = 0; k < 36; ++k) {
-        const double heading = k * std::numbers::pi / 18;
-        const CellCode cell = plane(steepness, 0.0);
-        const Direction towards{std::cos(heading), std::sin(heading)};
-        ASSERT_GE(weaker.costPerMetre(cell, towards), 0.995F * stronger.costPerMetre(cell, towards))
-            << soils << ' ' << steepness << ' ' << k;
-      }
-  }
-}
-
 TEST(SlopeLattice, SideForceFailureIsReported) {
   terramech::Soil loose = testSand();
   loose.cohesion_Pa = 0.0;

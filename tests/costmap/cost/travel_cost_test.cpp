@@ -41,23 +41,6 @@ TEST(CellCode, GradientsAreRoundedToHalfAStepAndClamped) {
   EXPECT_EQ(CellCode({50.0, -50.0, 0}).dzDy(), -2.0);
 }
 
-TEST(TravelCost, CostUsesTheGradientAlongTheHeading) {
-  const TravelCost cost({.max_along = 0.9, .max_across = 0.9}, std::vector<TravelCurve>{numbered()});
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> gradient(-0.6, 0.6), angle(-3.2, 3.2);
-  for (int i = 0; i < 2000; ++i) {
-    const CellCode cell({gradient(random), gradient(random), 0});
-    const double heading = angle(random);
-    const double along = cell.dzDx() * std::cos(heading) + cell.dzDy() * std::sin(heading);
-    const double across = -cell.dzDx() * std::sin(heading) + cell.dzDy() * std::cos(heading);
-    const float seen = cost.costPerMetre(cell, towards(heading));
-    if (std::abs(along) > 0.9 || std::abs(across) > 0.9)
-      EXPECT_TRUE(std::isinf(seen));
-    else  // Closed form: linear between nodes at k/256 whose costs are k; single precision.
-      EXPECT_NEAR(static_cast<double>(seen), along * 256.0 + 256.0, 1e-4);
-  }
-}
-
 // Closed form, by brute force: bilinear in the four nodes around a gradient, in double precision; infinite
 // if a node with a weight above zero is refused.
 TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
@@ -108,24 +91,6 @@ TEST(TravelCost, UnknownAndBlockedCellsAreInfeasibleInEveryHeading) {
       EXPECT_EQ(cost.detail(CellCode({0.0, 0.0, curve}), towards(heading)).refusal,
                 curve == CellCode::kBlocked ? Refusal::Blocked : Refusal::Unknown);
     }
-}
-
-// Property: the cost is finite if and only if detail() has no refusal.
-TEST(TravelCost, CostIsFiniteExactlyWhereTheStateIsFeasible) {
-  const auto model = testGround();
-  const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> gradient(-0.7, 0.7), angle(-3.2, 3.2);
-  int allowed = 0;
-  for (int i = 0; i < 5000; ++i) {
-    const CellCode cell({gradient(random), gradient(random), 0});
-    const Direction heading = towards(angle(random));
-    const bool finite = std::isfinite(cost.costPerMetre(cell, heading));
-    ASSERT_EQ(finite, cost.detail(cell, heading).refusal == Refusal::None);
-    allowed += finite ? 1 : 0;
-  }
-  EXPECT_GT(allowed, 100);
-  EXPECT_LT(allowed, 4900);
 }
 
 TEST(TravelCost, InfeasibilityNamesTheExceededLimit) {

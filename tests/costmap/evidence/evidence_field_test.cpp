@@ -50,21 +50,6 @@ TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {
   EXPECT_LE(far.pull.std, before.pull.std);
 }
 
-TEST(TraversabilityMap, PublishingAddsEvidenceAndKeepsEarlierVersions) {
-  TraversabilityMap map = mapOf(wide());
-  const auto old = map.published();
-  for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
-  EXPECT_EQ(map.published(), old) << "nothing shows before publish()";
-  map.publish();
-  const auto fresh = map.published();
-  EXPECT_GT(fresh->version(), old->version());
-  const auto cost = [](const CostGrid& grid, maps::Cell c) {
-    return grid.cost().costPerMetre(grid.at(c), {});
-  };
-  EXPECT_GT(cost(*fresh, {30, 30}), cost(*old, {30, 30}));
-  EXPECT_EQ(old->at({30, 30}).curve(), 0);
-}
-
 TEST(TraversabilityMap, EvidenceDoesNotAffectOtherClasses) {
   std::vector<std::string> site = wide();
   for (auto& row : site) row.replace(31, 29, 29, '2');
@@ -73,19 +58,6 @@ TEST(TraversabilityMap, EvidenceDoesNotAffectOtherClasses) {
   for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
   map.publish();
   EXPECT_EQ(map.ground({32, 30})->pull.value, dust.pull.value);
-}
-
-TEST(TraversabilityMap, EvidenceRoundTripsExactly) {
-  TraversabilityMap map = mapOf(wide(), 0.05);
-  for (int i = 0; i < 40; ++i) map.learn(soft(20.5 + 0.3 * i, 30.5));
-  map.publish();
-  std::stringstream stream, again;
-  writeMap(map, stream);
-  const TraversabilityMap back = readMap(stream, {.name = "map.ot", .threads = 1});
-  writeMap(back, again);
-  EXPECT_EQ(stream.str(), again.str());
-  for (int column = 0; column < 60; ++column)
-    EXPECT_EQ(back.belief({column, 30}), map.belief({column, 30})) << column;
 }
 
 TEST(TraversabilityMap, ObservationsOutsideTheMapAreRejected) {

@@ -16,20 +16,13 @@ WheelObservation possible() {
   return {.place = {}, .pull = {0.1, 0.05}, .sinkage = {0.2, kInf}};
 }
 
-TEST(ObservationFault, ValidObservationsAreAccepted) {
-  EXPECT_EQ(fault(possible()), "");
-  WheelObservation bound = possible();
-  bound.pull = bound.sinkage = {std::nan(""), std::nan("")};
-  bound.here = {-0.1, 2.0};
-  EXPECT_EQ(fault(bound), "") << "a bound alone";
-}
-
 TEST(ObservationFault, ImpossibleObservationsNameTheField) {
   using O = WheelObservation;
   struct Case {
     std::function<void(O&)> change;
     const char* named;
   };
+  EXPECT_EQ(fault(possible()), "");
   for (const Case& c :
        std::vector<Case>{{[](O& o) { o.pull.value = kInf; }, "pull = inf, must be finite and within 100"},
                          {[](O& o) { o.pull.value = std::nan(""); }, "pull = nan"},

@@ -40,17 +40,6 @@ TEST(GroundKind, RoundingIsConservative) {
   }
 }
 
-TEST(GroundKind, RoundingStepsMatchTheirDefinition) {
-  const GroundClass ground{.soil = testSand()};
-  // Closed form: pull from 0.137 down six steps of 0.005 to 0.107, standard deviation 0.03 up to 0.09 *
-  // 2^(-12/8), sinkage from 0.23 up nine steps of 0.02.
-  const GroundBelief belief{.pull = {0.108, 0.03}, .sinkage = {0.405, 0.1}};
-  const GroundBelief kind = GroundKind::of(kPrior, 0, 0, belief).belief(kPrior, ground);
-  EXPECT_DOUBLE_EQ(kind.pull.value, 0.107);
-  EXPECT_DOUBLE_EQ(kind.pull.std, 0.09 * std::pow(2.0, -1.5));
-  EXPECT_DOUBLE_EQ(kind.sinkage.value, 0.41);
-}
-
 // Property: an estimate no worse than the prior of its class is rounded to a value no worse than the prior.
 TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
   std::mt19937_64 random(4);

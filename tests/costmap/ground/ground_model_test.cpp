@@ -101,24 +101,6 @@ TEST(GroundModel, FollowingWheelsUseMultipassEffects) {
   EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
 }
 
-TEST(GroundModel, ClimbingCostsMoreThanDescending) {
-  const auto model = testGround();
-  const GroundBelief belief = certain(*model);
-  EXPECT_GT(model->state(0, belief, 0.1).energy_J_per_m, model->state(0, belief, -0.1).energy_J_per_m);
-}
-
-TEST(GroundModel, CategoryFollowsTheRequiredPull) {
-  const auto model = testGround();
-  const double margin = model->parts().policy.slope_margin_rad;
-  const auto at = [&](double pull) {
-    return model->category({.pull = {pull, 0.0}, .sinkage = {0.1, 0.0}}, std::tan(0.2)).category;
-  };
-  // Closed form: thesis 3.5, edges at tan(slope -+ margin).
-  EXPECT_EQ(at(std::tan(0.2 + margin) + 1e-9), Category::Safe);
-  EXPECT_EQ(at(std::tan(0.2 + margin) - 1e-9), Category::Marginal);
-  EXPECT_EQ(at(std::tan(0.2 - margin) - 1e-9), Category::Dangerous);
-}
-
 TEST(GroundModel, CategoryProbabilityIsTheNormalTailProbability) {
   const auto model = testGround();
   const double edge = std::tan(model->parts().policy.slope_margin_rad);
@@ -137,15 +119,6 @@ TEST(GroundModel, InfeasibilityNamesItsReason) {
   EXPECT_EQ(model->state(0, weak, 0.2).refusal, Refusal::Pull);
   belief.sinkage.value *= 1e3;
   EXPECT_EQ(model->state(0, belief, 0.0).refusal, Refusal::Sinkage);
-}
-
-TEST(GroundModel, UncertaintyIncreasesRiskAndCost) {
-  const auto model = testGround();
-  GroundBelief doubtful = certain(*model);
-  doubtful.pull.std = 0.1;
-  EXPECT_GT(model->state(0, doubtful, 0.05).risk_per_m, model->state(0, certain(*model), 0.05).risk_per_m);
-  EXPECT_GT(model->ground(0, doubtful).curve.price(0.05, 0.0),
-            model->ground(0, certain(*model)).curve.price(0.05, 0.0));
 }
 
 TEST(GroundModel, CostIsFiniteExactlyWhereTheStateIsFeasible) {

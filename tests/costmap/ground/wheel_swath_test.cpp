@@ -31,34 +31,6 @@ WheelSwath::Ground& at(Around& around, const WheelSwath& swath, maps::Cell offse
                                          swath.reach())];
 }
 
-TEST(WheelSwath, UniformGroundIsUnchanged) {
-  const WheelSwath swath(testRover(), 1.0, 0.0);
-  const WheelSwath::Judged judged = swath.judged(all(swath, strong()));
-  EXPECT_DOUBLE_EQ(judged.belief.pull.value, 0.3);
-  EXPECT_EQ(judged.weakest_class, 0);
-}
-
-TEST(WheelSwath, PullIsTheMeanOverTheWheels) {
-  const WheelSwath swath(testRover(), 1.0, 0.0);
-  Around around = all(swath, strong());
-  for (int row = -swath.reach(); row <= swath.reach(); ++row) at(around, swath, {1, row}) = trap();
-  const WheelSwath::Judged judged = swath.judged(around);
-  // Closed form: if the edge runs along a diagonal of the rover, one wheel stands beyond the edge, and the
-  // two wheels on the diagonal touch the ground beyond with their width: three of four wheels.
-  EXPECT_NEAR(judged.belief.pull.value, 0.25 * 0.3 - 0.75 * 0.25, 1e-12);
-  EXPECT_EQ(judged.weakest_class, 1);
-  EXPECT_DOUBLE_EQ(judged.belief.sinkage.value, 0.8) << "the deepest wheel";
-  EXPECT_DOUBLE_EQ(judged.belief.pull.std, 0.05) << "the greatest doubt";
-}
-
-TEST(WheelSwath, DiagonalNeighboursAreIncluded) {
-  const WheelSwath swath(testRover(), 1.0, 0.0);
-  Around around = all(swath, strong());
-  at(around, swath, {1, 1}) = trap();
-  // Closed form: a quarter of the wheels, with the centre at the corner of the cells.
-  EXPECT_LE(swath.judged(around).belief.pull.value, 0.75 * 0.3 - 0.25 * 0.25 + 1e-12);
-}
-
 TEST(WheelSwath, PoseErrorExtendsTheReach) {
   const WheelSwath exact(testRover(), 0.25, 0.0), unsure(testRover(), 0.25, 0.6);
   EXPECT_GE(unsure.reach(), exact.reach() + 2);

@@ -253,12 +253,6 @@ TEST_F(EvidenceJournalTest, DamagedSchemaErrorIsOnePrintableLine) {
   EXPECT_GT(quoted, 0);
 }
 
-TEST_F(EvidenceJournalTest, NewerFormatIsRejected) {
-  { EvidenceJournal(path()).append(kIdA, {row(7)}); }
-  change(path(), "PRAGMA user_version = 99");
-  EXPECT_THROW(EvidenceJournal{path()}, InputError);
-}
-
 TEST_F(EvidenceJournalTest, FilesThatAreNoJournalAreRejected) {
   std::ofstream(path("text.db")) << std::string(5000, 'x');
   EXPECT_THROW(EvidenceJournal{path("text.db")}, InputError);

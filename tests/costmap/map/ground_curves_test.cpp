@@ -94,36 +94,6 @@ TEST(GroundCurves, UnusedClassesDoNotAffectCosts) {
   EXPECT_TRUE(same());
 }
 
-// Property: publishing after each of many drives yields the same costs as publishing once. Curve numbers may
-// differ, costs may not. The class means are fixed, because ground with evidence keeps its curve number while
-// its class mean changes by less than a step.
-TEST(GroundCurves, IncrementalPublicationEqualsFullPublication) {
-  std::mt19937_64 random(21);
-  GroundModel::Parts parts = testGround()->parts();
-  for (GroundClass& ground : parts.classes) ground.mean_std = 1e-9;
-  const auto model = std::make_shared<const GroundModel>(parts);
-  for (int trial = 0; trial < 6; ++trial) {
-    TraversabilityMap map(anySite(random), model, {});
-    for (int drive = 0; drive < 3; ++drive) {
-      learnSomething(map, random, 5);
-      if (drive == 1) map.refuse({110.5, 210.5}, 1.5);
-      map.publish();
-    }
-    const auto step_by_step = map.published();
-    map.publishAll();
-    const auto at_once = map.published();
-    int different = 0;
-    for (int row = 0; row < kSide; ++row)
-      for (int column = 0; column < kSide; ++column)
-        for (int k = 0; k < 16; ++k) {
-          const maps::Cell cell{column, row};
-          different += !equal(step_by_step->cost().detail(step_by_step->at(cell), heading(k)),
-                              at_once->cost().detail(at_once->at(cell), heading(k)));
-        }
-    EXPECT_EQ(different, 0) << trial;
-  }
-}
-
 // Property: a heading that explain() rates dangerous or unknown has infinite cost; an allowed heading has
 // finite cost, equal to that of the detailed state.
 TEST(GroundCurves, DangerousAndUnknownHeadingsHaveInfiniteCost) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 #include <sstream>
 
@@ -9,6 +10,21 @@
 
 namespace talus::costmap {
 namespace map_file_test {
+
+TEST(MapTree, TreeContainsEveryCellAtItsHeight) {
+  const TraversabilityMap map =
+      mapOf({"11111222", "11111222", "11?11222", "11111#22", "11111122", "30111122"}, 0.3);
+  const TraversabilityTree tree = treeOf(map);
+  for (int row = 0; row < map.grid().height; ++row)
+    for (int column = 0; column < map.grid().width; ++column) {
+      const maps::Cell cell{column, row};
+      const double elevation = static_cast<double>(map.elevation().elevation_m[cell]);
+      if (std::isnan(elevation)) continue;
+      const CellBelief* found = tree.find(map.surface().keys().key(cell, elevation));
+      ASSERT_NE(found, nullptr);
+      EXPECT_EQ(*found, map.belief(cell)) << column << ' ' << row;
+    }
+}
 
 TraversabilityMap site() {
   return mapOf({"1122", "1?22", "11#2", "1111"}, 0.05);
@@ -59,19 +75,6 @@ TEST(MapFile, CostLayersRoundTrip) {
   EXPECT_EQ(back.surface().hazards({0, 0}), map.surface().hazards({0, 0}));
 }
 
-TEST(MapFile, CoordinateSystemRoundTrips) {
-  MapLayers layers = drawn({"11", "11"});
-  maps::CoordinateSystem moon{
-      .name = "Moon pole", .ellipsoid = maps::kMoon, .projection = {}, .wkt = "A\nB\\n"};
-  moon.projection = {.method = maps::ProjectionMethod::PolarStereographic,
-                     .latitude_of_origin_rad = 1.5707963267948966};
-  layers.elevation.georeference.emplace(moon);
-  const TraversabilityMap back = fromBytes(bytesOf(TraversabilityMap(std::move(layers), testGround(), {})));
-  ASSERT_TRUE(back.elevation().georeference.has_value());
-  EXPECT_EQ(back.elevation().georeference->system().wkt, moon.wkt);
-  EXPECT_EQ(back.elevation().georeference->system().ellipsoid, moon.ellipsoid);
-}
-
 // Property: without PROJ a map has metric coordinates only, but preserves its coordinate system for a machine
 // with PROJ.
 TEST(MapFile, UnsupportedSystemRoundTripsWithoutGeographicCoordinates) {
@@ -94,47 +97,6 @@ TEST(MapFile, UnsupportedSystemRoundTripsWithoutGeographicCoordinates) {
          return maps::Georeference({.name = read.name, .ellipsoid = maps::kEarth});
        }});
   EXPECT_NE(known.elevation().places(), nullptr);
-}
-
-TEST(MapFile, GroundEffectsRoundTrip) {
-  GroundModel::Parts parts = testGround()->parts();
-  terramech::Effect curve{.name = "empirical",
-                          .covariate = "slip",
-                          .channel = terramech::Channel::Sinkage,
-                          .parameters = {0.0, 0.01, 0.02},
-                          .knots = {0.0, 0.4, 0.9}};
-  curve.only_column = "session";
-  curve.only_value = "a b\nc";
-  parts.classes[0].effects = {{.name = "slip_sinkage_ding", .covariate = "slip", .parameters = {0.4}}, curve};
-  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
-  const TraversabilityMap back = fromBytes(bytesOf(map));
-  EXPECT_EQ(bytesOf(back), bytesOf(map));
-  ASSERT_EQ(back.model().parts().classes[0].effects.size(), 2U);
-  const terramech::Effect& read = back.model().parts().classes[0].effects[1];
-  EXPECT_EQ(read.knots, curve.knots);
-  EXPECT_EQ(read.parameters, curve.parameters);
-  EXPECT_EQ(read.channel, curve.channel);
-  EXPECT_EQ(read.only_value, curve.only_value);
-  // Property: a class with slip sinkage has a different prior from that of its soil alone.
-  EXPECT_NE(back.model().prior(0).pull.value, testGround()->prior(0).pull.value);
-}
-
-TEST(MapFile, CrossSlopeParametersRoundTrip) {
-  GroundModel::Parts parts = testGround()->parts();
-  parts.classes[0].soil.digging_exponent = 0.1;
-  parts.classes[0].soil.slip_sinkage_exponent = 0.3;
-  parts.classes[0].soil.side_bulldozing = 0.0;
-  parts.rover.centre_of_mass_ahead_m = 0.1;
-  parts.rover.centre_of_mass_left_m = -0.05;
-  const TraversabilityMap map(drawn({"11", "12"}), std::make_shared<GroundModel>(parts), {});
-  const TraversabilityMap back = fromBytes(bytesOf(map));
-  EXPECT_EQ(bytesOf(back), bytesOf(map));
-  const GroundModel::Parts& read = back.model().parts();
-  EXPECT_EQ(read.classes[0].soil.digging_exponent, 0.1);
-  EXPECT_EQ(read.classes[0].soil.slip_sinkage_exponent, 0.3);
-  EXPECT_EQ(read.classes[0].soil.side_bulldozing, 0.0);
-  EXPECT_EQ(read.rover.centre_of_mass_ahead_m, 0.1);
-  EXPECT_EQ(read.rover.centre_of_mass_left_m, -0.05);
 }
 
 // Property: a refused place stays refused after a map is written and read.

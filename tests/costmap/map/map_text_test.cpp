@@ -18,13 +18,16 @@ MapText example() {
   text.ground = testGround()->parts();
   text.ground.rover.steering = terramech::Steering::Ackermann;
   text.ground.policy.allow_unknown = true;
+  text.ground.classes[0].soil.digging_exponent = 0.1;
+  text.ground.classes[0].soil.slip_sinkage_exponent = 0.3;
+  text.ground.classes[0].soil.side_bulldozing = 0.0;
   text.ground.classes[1].effects = {{.name = "empirical",
                                      .covariate = "slip",
                                      .channel = terramech::Channel::Torque,
                                      .parameters = {0.1, -0.2},
                                      .knots = {0.0, 0.7},
                                      .only_column = "wheel",
-                                     .only_value = "front left"}};
+                                     .only_value = "front\nleft"}};
   return text;
 }
 
@@ -43,9 +46,13 @@ TEST(MapText, RoundTripIsExact) {
   EXPECT_EQ(back.ground.rover.steering, terramech::Steering::Ackermann);
   EXPECT_TRUE(back.ground.policy.allow_unknown);
   ASSERT_EQ(back.ground.classes.size(), 2U);
+  EXPECT_EQ(back.ground.classes[0].soil.digging_exponent, 0.1);
+  EXPECT_EQ(back.ground.classes[0].soil.slip_sinkage_exponent, 0.3);
+  EXPECT_EQ(back.ground.classes[0].soil.side_bulldozing, 0.0);
+  EXPECT_EQ(back.ground.classes[1].effects[0].knots, (std::vector<double>{0.0, 0.7}));
   EXPECT_EQ(back.ground.classes[1].effects[0].parameters, (std::vector<double>{0.1, -0.2}));
   EXPECT_EQ(back.ground.classes[1].effects[0].channel, terramech::Channel::Torque);
-  EXPECT_EQ(back.ground.classes[1].effects[0].only_value, "front left");
+  EXPECT_EQ(back.ground.classes[1].effects[0].only_value, "front\nleft");
   EXPECT_EQ(written(back), written(example()));
 }
 

@@ -129,25 +129,6 @@ TEST(AddedCost, AddedLayerNeverLowersACost) {
   }
 }
 
-// Property: if 254 curves do not suffice for the values, no cost is below the requested one, and coarser
-// steps block no cell that was open.
-TEST(AddedCost, CurveOverflowNeverLowersACost) {
-  std::mt19937 random(12);
-  const MapLayers ground = hills(60);
-  const maps::Grid grid = ground.elevation.grid();
-  CostLayer own = layer(grid, "own", 0.0F);
-  for (float& v : own.added_J_per_m.values()) v = static_cast<float>(std::pow(10.0, 3.0 * uniform(random)));
-  const TraversabilityMap plain = with(ground, {}), dearer = with(ground, {own});
-  int allowed = 0;
-  inEachHeading(grid, [&](Cell c, int k) {
-    const double cost = costAt(dearer, c, k), before = costAt(plain, c, k);
-    ASSERT_GE(cost, (before + static_cast<double>(own.added_J_per_m[c])) * (1.0 - 3e-7));
-    ASSERT_EQ(std::isfinite(cost), std::isfinite(before));
-    allowed += std::isfinite(cost);
-  });
-  EXPECT_GT(allowed, 10000);
-}
-
 TEST(AddedCost, RefusedAndNoDataCellsFollowThePolicy) {
   const MapLayers ground = drawn({"11111111", "11111111", "11111111", "11111111", "11111111", "11111111"});
   const maps::Grid grid = ground.elevation.grid();

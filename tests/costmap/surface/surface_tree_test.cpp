@@ -7,7 +7,7 @@
 #include <octomap/ColorOcTree.h>
 #include <site_map.hpp>
 
-#include <talus/costmap/map/map_tree.hpp>
+#include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {
@@ -71,22 +71,6 @@ TEST(SurfaceTree, StreamedBytesEqualTheTree) {
     map.publish();
     EXPECT_EQ(streamed(map), held(map));
   }
-}
-
-// Property: every leaf of the stream equals that of the tree.
-TEST(SurfaceTree, StreamedLeavesEqualTheTree) {
-  TraversabilityMap map = mapOf(std::vector<std::string>(20, std::string(33, '1')), 0.2);
-  map.learn({.time_s = 1.0, .place = {110.0, 210.0}, .pull = {0.1, 0.05}, .sinkage = {0.2, 0.05}});
-  map.publish();
-  const TraversabilityTree tree = treeOf(map);
-  std::istringstream stream(streamed(map));
-  std::size_t leaves = 0;
-  readLeaves(stream, "map.ot", [&](const TreeLeaf& leaf) {
-    ++leaves;
-    ASSERT_NE(tree.find(leaf.low), nullptr);
-    EXPECT_EQ(*tree.find(leaf.low), leaf.belief);
-  });
-  EXPECT_EQ(leaves, tree.getNumLeafNodes());
 }
 
 TEST(SurfaceTree, WithoutElevationTheTreeIsEmpty) {

@@ -91,20 +91,6 @@ TEST(AddDrive, WeakGroundIsDetectedForReversedRowsAndWrongClock) {
   }
 }
 
-TEST(DriveIntake, PartsEqualTheWhole) {
-  TraversabilityMap whole = mapOf(wide()), parts = mapOf(wide());
-  const DriveReport expected = addDrive(whole, drive());
-  DriveIntake intake(parts, nullptr, {.settles = true});
-  for (std::ptrdiff_t first = 0; first < 100; first += 5) intake.add(partOf(drive(), first, first + 5));
-  intake.settle();
-  parts.publishAll();
-  // Property: settled rows in the same order give the same result however the drive is divided.
-  EXPECT_EQ(intake.report().used, expected.used);
-  EXPECT_EQ(intake.report().rejected, expected.rejected);
-  EXPECT_EQ(intake.report().findings, expected.findings);
-  EXPECT_EQ(bytesOf(parts), bytesOf(whole));
-}
-
 // Property: a log that is sent again after it has grown adds only its new rows.
 TEST(AddDrive, GrownFileAddsOnlyItsNewRows) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("grown" + std::to_string(::getpid()));

@@ -1,11 +1,230 @@
+// Tests of the bounds from each channel of one reading.
 #include <cmath>
+#include <limits>
+#include <random>
+#include <string>
 
+#include <site_fixture.hpp>
 #include <site_map.hpp>
 
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 
 namespace talus::costmap {
 namespace telemetry_processor_test {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+TelemetryReading level(double slip, double sinkage_over_radius, double torque_Nm = kNone) {
+  return {.place = {},
+          .load_N = terramech::wheelLoad_N(testRover()),
+          .slip = slip,
+          .torque_Nm = torque_Nm,
+          .sinkage_m = sinkage_over_radius * testRover().wheel.radius_m,
+          .drawbar_pull_N = kNone};
+}
+
+TEST(DangerWatch, OrdinaryReadingsYieldNoBound) {
+  const auto model = testGround();
+  for (const double slip : {-1.0, -0.2, 0.3, 0.69, kNone, -kInfinite})
+    for (const double z : {0.0, 0.49, kNone})
+      EXPECT_FALSE(DangerWatch(*model).bound(0, level(slip, z), 0.0).any());
+}
+
+// Closed form: ground whose pull is below tan(slope - margin) is dangerous on that slope.
+TEST(DangerWatch, EachChannelBoundsIndependently) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  const double margin = model->parts().policy.slope_margin_rad;
+  const double level_limit = std::tan(-margin);
+  const double never = std::tan(-model->rover().max_pitch_rad - margin);
+  EXPECT_LT(watch.bound(0, level(0.85, kNone), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, 99.0), 0.0).most_pull, level_limit);
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, kInfinite), 0.0).most_pull, level_limit);
+  for (const TelemetryReading& held :
+       {level(0.93, kNone), level(kInfinite, kNone), level(1.2, 0.0), level(0.1, 0.8), level(kNone, 0.8),
+        level(0.1, 2.3), level(0.1, kInfinite)})
+    EXPECT_LT(watch.bound(0, held, 0.3).most_pull, never) << held.slip << ' ' << held.sinkage_m;
+  TelemetryReading spinning = level(kNone, kNone);
+  spinning.speed_slip = 0.95;
+  EXPECT_LT(watch.bound(0, spinning, 0.3).most_pull, never);
+  const GroundBound deep = watch.bound(0, level(0.1, 0.6), 0.0);
+  EXPECT_TRUE(std::isnan(deep.most_pull));
+  EXPECT_NEAR(deep.least_sinkage, 0.6, 1e-12);
+  // The torque is at the limit of the motor, in the braking direction.
+  EXPECT_LT(watch.bound(0, level(0.1, kNone, -99.0), 0.0).most_pull, level_limit);
+}
+
+// Closed form: at(slip) is the pull of the class at the slip. The deficit is at(slip) minus the gradient
+// minus 0.05 (two standard deviations). In a rut, at(slip) is the pull of the class in a rut.
+TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  for (const double slip : {0.7, 0.72, 0.79})
+    for (const int pass : {1, 3}) {
+      TelemetryReading reading = level(slip, kNone);
+      reading.pass = pass;
+      const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
+      EXPECT_NEAR(watch.bound(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05,
+                  1e-12);
+    }
+  EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).gradient,
+            model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);
+}
+
+// Closed form: two standard deviations of reading and class combined.
+TEST(DangerWatch, SuspectedPullFarBelowTheClassBounds) {
+  const auto model = testGround();
+  const double prior = model->prior(0).pull.value, class_std = model->parts().classes[0].pull_std;
+  const double far = 2.0 * std::hypot(0.05, class_std);
+  const auto bound = [&](double pull) {
+    WheelObservation suspected{.place = {}, .pull = {pull, 0.05}, .sinkage = {}};
+    return DangerWatch(*model).bound(0, suspected).most_pull;
+  };
+  EXPECT_TRUE(std::isnan(bound(prior + 1.0)));
+  EXPECT_TRUE(std::isnan(bound(prior - far + 1e-6)));
+  EXPECT_EQ(bound(prior - far - 1e-6), prior - far - 1e-6);
+  EXPECT_EQ(bound(-1e14), -10.0);
+  EXPECT_TRUE(std::isnan(bound(kNone)));
+}
+
+// Property: more slip, more sinkage or a lower slope never loosens a bound.
+TEST(DangerWatch, BoundsAreMonotoneInSlipSinkageAndSlope) {
+  const auto model = testGround();
+  const DangerWatch watch(*model);
+  const auto most = [](const GroundBound& b) { return std::isnan(b.most_pull) ? 9.0 : b.most_pull; };
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double slip = 1.2 * share(random), z = 1.2 * share(random), gradient = share(random) - 0.5;
+    const double before = most(watch.bound(i % 2, level(slip, z), gradient));
+    EXPECT_LE(most(watch.bound(i % 2, level(slip + 0.1 * share(random), z), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.bound(i % 2, level(slip, z + 0.1 * share(random)), gradient)), before + 1e-9);
+    EXPECT_LE(most(watch.bound(i % 2, level(slip, z), gradient - 0.1 * share(random))), before + 1e-9);
+  }
+}
+
+TelemetryReading at(double time_s, double slip) {
+  return {.time_s = time_s,
+          .place = {},
+          .load_N = 50.0,
+          .slip = slip,
+          .torque_Nm = 1.0 + 0.01 * slip,
+          .sinkage_m = 0.01};
+}
+
+TEST(SensorWatch, QuietDriveIsAccepted) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3))).has_value());
+  EXPECT_TRUE(watch.findings().empty());
+}
+
+TEST(SensorWatch, StuckValuesAndSpikesAreRejected) {
+  const auto model = testGround();
+  SensorWatch watch(*model, {.stuck_rows = 8});
+  for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
+  EXPECT_EQ(watch.refuse("w", at(2.0, 0.9)).value_or(""), "spike");
+  EXPECT_FALSE(watch.refuse("w", at(2.1, 0.12)).has_value()) << "one spike does not spoil what follows";
+  std::optional<std::string> last;
+  for (int i = 0; i < 8; ++i) last = watch.refuse("w", at(3.0 + i, 0.13));
+  EXPECT_EQ(last.value_or(""), "readings are stuck");
+  EXPECT_EQ(watch.findings().size(), 2U);
+}
+
+// Property: rows with decreasing time are accepted; a file in reverse order keeps its evidence of weak
+// ground.
+TEST(SensorWatch, DecreasingTimeStartsANewSeries) {
+  const auto model = testGround();
+  SensorWatch watch(*model, {.stuck_rows = 8});
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_FALSE(watch.refuse("w", at(10.0 - 0.1 * i, 0.1 + 0.01 * (i % 3))).has_value()) << i;
+  }
+  ASSERT_EQ(watch.findings().size(), 1U);
+  EXPECT_NE(watch.findings()[0].find("39 rows: time decreases"), std::string::npos) << watch.findings()[0];
+  // Property: equal readings before a decrease of time are not counted.
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(10.0 + i, 0.2)).has_value()) << i;
+  for (int i = 0; i < 7; ++i) EXPECT_FALSE(watch.refuse("v", at(1.0 + i, 0.2)).has_value()) << i;
+}
+
+// Property: one stuck sensor of several is reported; a sensor with coarse rounding is not.
+TEST(SensorWatch, SingleStuckSensorIsNamed) {
+  const auto model = testGround();
+  const auto reading = [](int i) {
+    TelemetryReading r = at(0.1 * i, 0.1 + 0.001 * (i % 7));
+    r.torque_Nm = 0.5 + 0.003 * (i % 11);
+    r.sinkage_m = 0.001 * (i / 40);  // rounded to millimetres
+    return r;
+  };
+  SensorWatch watch(*model);
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(watch.refuse("w", reading(i)).has_value()) << i;
+  int believed = 0;
+  for (int i = 40; i < 100; ++i) {
+    TelemetryReading r = reading(i);
+    r.torque_Nm = 0.51;
+    const auto reason = watch.refuse("w", r);
+    believed += reason ? 0 : 1;
+    EXPECT_EQ(reason.value_or("torque is stuck"), "torque is stuck");
+  }
+  EXPECT_EQ(believed, 24);  // Closed form: the 25th equal reading is the first to be rejected
+  EXPECT_FALSE(watch.refuse("w", reading(100)).has_value()) << "it moves again";
+}
+
+TEST(SensorWatch, PersistentStepIsNotASpike) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  for (int i = 0; i < 10; ++i) watch.refuse("w", at(0.1 * i, 0.1 + 0.01 * (i % 3)));
+  int refused = 0;
+  for (int i = 0; i < 10; ++i) refused += watch.refuse("w", at(2.0 + 0.1 * i, 0.6 + 0.01 * (i % 3))) ? 1 : 0;
+  EXPECT_LE(refused, 3);  // Closed form: the median of five changes after three readings
+}
+
+TEST(SensorWatch, TorqueOffsetIsDetectedAgainstTheSlope) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  for (int i = 0; i < 40; ++i)
+    watch.compare({.place = {}, .pull = {}, .sinkage = {}, .demand = 0.02, .from_torque = 0.09});
+  EXPECT_TRUE(watch.biased());
+  EXPECT_NEAR(watch.bias().value_or(0.0), 0.07, 1e-12);
+  EXPECT_EQ(watch.findings().size(), 1U);
+}
+
+TEST(SensorWatch, NegativeSlipOfADrivenWheelUphillIsRejected) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  TelemetryReading up = at(1.0, -0.1);
+  up.gradient = 0.1;
+  EXPECT_NE(watch.refuse("w", up).value_or("").find("biased"), std::string::npos);
+  TelemetryReading down = at(2.0, -0.1);
+  down.gradient = -0.1;
+  EXPECT_FALSE(watch.refuse("w", down).has_value()) << "braking downhill is no lie";
+  TelemetryReading pushed = at(3.0, -0.1);
+  pushed.gradient = 0.1;
+  pushed.torque_Nm = -1.0;
+  EXPECT_FALSE(watch.refuse("w", pushed).has_value()) << "a braked wheel may be pushed";
+}
+
+TEST(SensorWatch, JumpAtAllWheelsIsNotASpike) {
+  const auto model = testGround();
+  SensorWatch watch(*model);
+  const auto moment = [&](double time_s, double left, double right) {
+    return watch.refuse({{"left", at(time_s, left)}, {"right", at(time_s, right)}});
+  };
+  for (int i = 0; i < 10; ++i) moment(0.1 * i, 0.1 + 0.01 * (i % 3), 0.1 + 0.01 * (i % 2));
+  const auto one = moment(2.0, 0.9, 0.1);
+  EXPECT_EQ(one[0].value_or(""), "spike");
+  EXPECT_FALSE(one[1].has_value());
+  const auto both = moment(3.0, 0.9, 0.91);
+  EXPECT_FALSE(both[0].has_value());
+  EXPECT_FALSE(both[1].has_value());
+  // A wheel that is refused for another reason does not turn the common jump of the others into spikes.
+  TelemetryReading backwards = at(4.0, -0.5);
+  backwards.gradient = 0.3;
+  const auto three = watch.refuse({{"left", at(4.0, 0.1)}, {"right", at(4.0, 0.1)}, {"rear", backwards}});
+  EXPECT_FALSE(three[0].has_value()) << three[0].value_or("");
+  EXPECT_FALSE(three[1].has_value());
+  EXPECT_TRUE(three[2].has_value());
+}
 
 // Telemetry of one wheel that moves slowly east on level ground, column by column.
 terramech::Telemetry quiet(int count) {

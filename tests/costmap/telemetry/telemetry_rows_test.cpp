@@ -94,17 +94,6 @@ TEST(TelemetryRows, MomentContainsAllWheelsOfOneTime) {
   EXPECT_EQ(momentOf(rows, {2, 3}, map.model().rover()).readings.size(), 2U);
 }
 
-// Property: the order of wheels and runs at one time has no effect; a second row of a wheel at that time
-// begins another moment.
-TEST(TelemetryRows, MomentsAreIndependentOfRowOrderWithinATime) {
-  const TraversabilityMap map = ramp();
-  terramech::Telemetry t = table();
-  t.numbers[4].values.assign(5, 1.0);
-  t.words = {{"wheel", {"b", "a", "a", "b", "b"}}, {"run", {"r", "s", "r", "s", "r"}}};
-  EXPECT_EQ(TelemetryRows(t, map, 0.5).byMoment(),
-            (std::vector<std::vector<std::size_t>>{{2, 0}, {4}, {1, 3}}));
-}
-
 TEST(TelemetryRows, LeastGradientWithoutHeadingIsTheSteepestDescent) {
   const TraversabilityMap map = ramp();
   terramech::Telemetry t = table();

@@ -66,37 +66,6 @@ TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
   EXPECT_GT(sharp, 50);
 }
 
-// Closed form: on uniform ground of 10 J/m all headings cost the same. The edges of the octagon under that
-// circle are at least cos(22.5 degrees) of its radius; rounding to whole units takes 1/256.
-TEST(AdmissibleEdges, UniformGroundBoundIsNearTheOctagonMetric) {
-  const auto map = drawn({"....", "....", "...."});
-  const auto edges = admissibleEdges(map, octagonsOf(map));
-  ASSERT_TRUE(edges);
-  EXPECT_EQ(edges->padded().width, 5);  // corners, one more than cells
-  EXPECT_EQ(edges->padded().height, 4);
-  for (std::size_t k = 0; k < 8; ++k) {
-    const double step_J = edges->into(edges->padded().index({2, 2}))[k] * edges->units().unit_J();
-    const double exact_J = 10.0 * std::hypot(kStep[k].column, kStep[k].row);
-    EXPECT_LE(step_J, exact_J);
-    EXPECT_GT(step_J, 0.92 * exact_J * 255 / 256);
-  }
-}
-
-// Closed form: a step along a side takes the cheaper of its two cells, 10 of 10 and 50 J/m; no step exists
-// across a blocked cell or off the map.
-TEST(AdmissibleEdges, SideEdgeUsesTheCheaperCellAndBlockedCellsHaveNone) {
-  const auto map = drawn({"44", "..", "##"});
-  const auto edges = admissibleEdges(map, octagonsOf(map));
-  const auto step_J = [&](maps::Cell into, int heading) {
-    return edges->into(edges->padded().index(into))[heading] * edges->units().unit_J();
-  };
-  EXPECT_LE(step_J({1, 2}, kEast), 10.0);
-  EXPECT_GT(step_J({1, 3}, kEast), 40.0);
-  EXPECT_EQ(edges->into(edges->padded().index({1, 0}))[kEast], EdgeLayer::kBlocked);
-  EXPECT_EQ(edges->into(edges->padded().index({1, 1}))[kSouthEast], EdgeLayer::kBlocked);
-  EXPECT_EQ(edges->into(edges->padded().index({2, 2}))[kEast], EdgeLayer::kBlocked);
-}
-
 TEST(AdmissibleEdges, StopYieldsNoEdges) {
   std::stop_source source;
   source.request_stop();

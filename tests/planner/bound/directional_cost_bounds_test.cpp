@@ -59,18 +59,6 @@ TEST(DirectionalCostBounds, GaugeIsBelowTheCost) {
   }
 }
 
-// Closed form: on level ground a metre costs 10 J in all directions; the chords of 64 sectors lower the
-// limit by the cosine of half a sector.
-TEST(DirectionalCostBounds, LevelGroundLimitIsReducedByCosineOfHalfASector) {
-  const auto cost = testing::driveCost();
-  DirectionalCostBounds::Limits limits;
-  ASSERT_TRUE(DirectionalCostBounds(*cost).of(costmap::CellCode({.curve = 0}), limits));
-  for (const float limit : limits) {
-    EXPECT_LE(static_cast<double>(limit), 10.0 * std::cos(0.5 * kSector));
-    EXPECT_NEAR(static_cast<double>(limit), 10.0 * std::cos(0.5 * kSector), 0.002);
-  }
-}
-
 // Property: for a cost that is smooth and convex over headings, the limits are within half a percent of the
 // cost.
 TEST(DirectionalCostBounds, LimitsAreTightForASmoothCost) {

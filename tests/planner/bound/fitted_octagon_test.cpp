@@ -90,27 +90,5 @@ TEST(FittedOctagon, OctagonHasACornerAtTheWantedPlane) {
   }
 }
 
-// Property: for an allowed heading the weight is finite and not above the cost of the heading, also if gravity
-// exceeds the rolling resistance many times.
-TEST(FittedOctagon, WeightsAreFiniteForAllowedHeadingsAndBelowTheCost) {
-  for (const double level_J_per_m : {100.0, 10.0, 1.0}) {
-    costmap::TravelCurve curve;
-    for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
-      curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
-          std::max(0.1 * level_J_per_m, level_J_per_m + 1000.0 * costmap::TravelCurve::gradient(bin)));
-    const costmap::TravelCost cost(costmap::TravelCost::Limits{}, std::vector{curve});
-    FittedOctagons octagons(cost);
-    for (int x = -380; x <= 380; x += 19)
-      for (int y = -380; y <= 380; y += 19) {
-        const costmap::CellCode cell({.dz_dx = x / 1024.0, .dz_dy = y / 1024.0, .curve = 0});
-        for (std::size_t k = 0; k < 8; ++k) {
-          const double length = std::hypot(kStep[k].column, kStep[k].row);
-          const float exact = cost.costPerMetre(cell, {kStep[k].column / length, kStep[k].row / length});
-          ASSERT_LE(octagons.of(cell)[k], exact) << level_J_per_m << ": " << x << "," << y << " " << k;
-        }
-      }
-  }
-}
-
 }  // namespace fitted_octagon_test
 }  // namespace talus::planner

@@ -13,6 +13,13 @@ namespace straight_bound_test {
 
 using testing::drawn;
 
+// Closed form: the minimum over the curves that occur in cells: 10 J times the number of the curve plus one.
+TEST(CheapestMetre, MinimumIsTakenOverCurvesInUse) {
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"234", "#?4"})), 30.0, 1e-5);
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"4.4"})), 10.0, 1e-5);
+  EXPECT_EQ(cheapestMetre_J(*drawn({"#?"})), 0.0);
+}
+
 // Closed form: 10 J/m on level ground in every direction; the cheaper gradients of a ramp elsewhere do not
 // count.
 TEST(StraightBound, BoundEqualsStraightLineCostOnUniformGround) {

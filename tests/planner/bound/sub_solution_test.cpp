@@ -3,8 +3,8 @@
 #include <numbers>
 #include <random>
 
-#include <talus/planner/bound/cheapest_metre.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/bound/sub_solution_check.hpp>
 #include <talus/planner/grid/point_route.hpp>
 

@@ -1,5 +1,7 @@
 #include <cmath>
 #include <queue>
+#include <random>
+#include <set>
 #include <stop_token>
 
 #include <talus/common/progress_monitor.hpp>
@@ -67,28 +69,6 @@ TEST(CostToGo, MatchesDijkstraOnRandomMaps) {
   }
 }
 
-TEST(CostToGo, PathLeadsFromStartToGoalOverAllowedEdges) {
-  const auto map = drawn({".....", ".###.", "...#.", "####.", "....."});
-  CostToGo field(edgesOf(map), {{.cell = {0, 0}}});
-  ASSERT_TRUE(field.settleAll());
-  const auto path = field.path({0, 2});
-  ASSERT_FALSE(path.empty());
-  EXPECT_EQ(path.front(), (maps::Cell{0, 2}));
-  EXPECT_EQ(path.back(), (maps::Cell{0, 0}));
-  const MotionCost cost(map);
-  double sum = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    sum += cost({map->grid().centre(path[i - 1]), map->grid().centre(path[i])});
-  EXPECT_NEAR(sum, *field.cost_J({0, 2}), 0.002 * sum);
-}
-
-TEST(CostToGo, UnreachableCellHasNoCostAndNoPath) {
-  CostToGo field(edgesOf(drawn({"..#..", "..#..", "..#.."})), {{.cell = {0, 0}}});
-  ASSERT_TRUE(field.settleAll());
-  EXPECT_FALSE(field.cost_J({4, 1}));
-  EXPECT_TRUE(field.path({4, 1}).empty());
-}
-
 TEST(CostToGo, SearchResumesAfterSettlingACell) {
   const auto map = randomMap({.width = 60, .height = 50, .seed = 5});
   CostToGo whole(edgesOf(map), {{.cell = {3, 4}}}), parts(edgesOf(map), {{.cell = {3, 4}}});
@@ -136,6 +116,109 @@ TEST(CostToGo, VectorAndScalarKernelsAreIdentical) {
   for (int row = 0; row < 71; ++row)
     for (int column = 0; column < 83; ++column)
       ASSERT_EQ(one.units({column, row}), other.units({column, row}));
+}
+
+// Property: for any change of a patch, with a complete or partial field, the repaired field equals the
+// recomputed field.
+TEST(CostToGo, RepairEqualsRecomputation) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&random](unsigned limit) { return static_cast<int>(random() % limit); };
+    const auto map = randomMap({.width = 70, .height = 60, .seed = seed, .blocked = 0.2});
+    maps::Raster<costmap::CellCode> cells(map->grid());
+    for (int row = 0; row < 60; ++row)
+      for (int column = 0; column < 70; ++column) cells[{column, row}] = map->at({column, row});
+    const EdgeUnits units(map->cost(), 1.0);
+    const auto edges = std::make_shared<EdgeLayer>(map, units);
+    const FieldGoal goal{.cell = {below(70), below(60)}};
+    const maps::Cell until{below(70), below(60)};
+    CostToGo field(edges, {goal});
+    ASSERT_TRUE(seed % 2 == 0 ? field.settle(until) : field.settleAll());
+    for (int round = 0; round < 4; ++round) {
+      const maps::Cell first{below(60), below(50)};
+      const CellBox box{first, {first.column + below(10), first.row + below(10)}};
+      for (int row = box.first.row; row <= box.last.row; ++row)
+        for (int column = box.first.column; column <= box.last.column; ++column)
+          cells[{column, row}] =
+              costmap::CellCode({.dz_dx = 0.004 * below(100) - 0.2,
+                                 .dz_dy = 0.1,
+                                 .curve = static_cast<std::uint8_t>(below(3) == 0 ? 255 : below(5))});
+      const auto newer = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, map->content().cost));
+      edges->update(newer, units, box);
+      field.repair(box);
+      CostToGo anew(std::make_shared<EdgeLayer>(newer, units), {goal});
+      ASSERT_TRUE(field.settle(until) && anew.settle(until));
+      ASSERT_EQ(field.units(until), anew.units(until)) << seed;
+      if (seed % 2 == 0 && round < 3) continue;
+      ASSERT_TRUE(field.settleAll() && anew.settleAll());
+      for (int row = 0; row < 60; ++row)
+        for (int column = 0; column < 70; ++column)
+          ASSERT_EQ(field.units({column, row}), anew.units({column, row}))
+              << seed << ": " << column << "," << row;
+    }
+  }
+}
+
+// Property: links are all cells whose centre is at most one cell away in column and row and that the exact
+// motion reaches, at its cost; the cost there and that back are separate.
+TEST(GridLinks, LinksAreTheAllowedMotionsToNeighbours) {
+  int found = 0, uneven = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const MotionCost cost(randomMap({.width = 9, .height = 7, .seed = seed, .roughness = 0.4}));
+    const maps::Grid& grid = cost.map().grid();
+    for (const maps::Point place : {maps::Point{4.3, 3.6}, {0.1, 6.9}, {8.9, 0.2}, {3.0, 2.5}}) {
+      const auto from = linksFrom(cost, place), to = linksTo(cost, place);
+      std::size_t expected_from = 0, expected_to = 0;
+      const maps::Cell own = *grid.cellAt(place);
+      for (int row = 0; row < 7; ++row)
+        for (int column = 0; column < 9; ++column) {
+          if (std::abs(row - own.row) > 1 || std::abs(column - own.column) > 1) continue;
+          const maps::Point centre = grid.centre({column, row});
+          expected_from += std::isfinite(cost({place, centre}));
+          expected_to += std::isfinite(cost({centre, place}));
+        }
+      ASSERT_EQ(from.size(), expected_from);
+      ASSERT_EQ(to.size(), expected_to);
+      for (const GridLink& link : from) EXPECT_EQ(link.cost_J, cost({place, grid.centre(link.cell)}));
+      for (const GridLink& link : to) EXPECT_EQ(link.cost_J, cost({grid.centre(link.cell), place}));
+      found += static_cast<int>(from.size());
+      uneven += !from.empty() && !to.empty() && from[0].cost_J != to[0].cost_J;
+    }
+  }
+  EXPECT_GT(found, 50);
+  EXPECT_GT(uneven, 5);
+}
+
+TEST(GridLinks, PlacesOutsideTheMapHaveNoLinks) {
+  const MotionCost cost(drawn({"...", "..."}));
+  EXPECT_TRUE(linksFrom(cost, {-0.1, 0.5}).empty());
+  EXPECT_TRUE(linksTo(cost, {1.5, 2.0}).empty());
+}
+
+// Property: the goal cells, with cost 0, are all cells whose centres lie in the circle, also around a goal
+// off the map; by brute force.
+TEST(GridLinks, GoalCellsAreAllAllowedCellsWithinTolerance) {
+  const auto map = randomMap({.width = 25, .height = 19, .seed = 3, .blocked = 0.3});
+  const MotionCost cost(map);
+  for (const maps::Point goal : {maps::Point{12.2, 9.9}, {0.5, 0.5}, {24.9, 18.9}, {-2.0, 10.0}})
+    for (const double tolerance_m : {0.0, 0.6, 3.0, 7.7}) {
+      std::set<std::pair<int, int>> expected, found;
+      for (int row = 0; row < 19; ++row)
+        for (int column = 0; column < 25; ++column) {
+          const maps::Point centre = map->grid().centre({column, row});
+          const double away_m = std::hypot(centre.x_m - goal.x_m, centre.y_m - goal.y_m);
+          if (tolerance_m > 0.0 && away_m <= tolerance_m && cost.allowed(centre))
+            expected.emplace(column, row);
+        }
+      const auto goals = fieldGoals(cost, goal, tolerance_m);
+      const std::size_t links = linksTo(cost, goal).size();
+      ASSERT_GE(goals.size(), links);
+      for (std::size_t k = links; k < goals.size(); ++k) {
+        EXPECT_EQ(goals[k].cost_J, 0.0);
+        found.emplace(goals[k].cell.column, goals[k].cell.row);
+      }
+      EXPECT_EQ(found, expected) << goal.x_m << " " << tolerance_m;
+    }
 }
 
 }  // namespace cost_to_go_test

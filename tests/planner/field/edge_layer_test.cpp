@@ -1,10 +1,13 @@
 #include <cmath>
+#include <set>
 #include <stop_token>
 
 #include <talus/common/progress_monitor.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
+#include "changed_map.hpp"
 #include "drawn_map.hpp"
 
 namespace talus::planner {
@@ -78,6 +81,88 @@ TEST(EdgeLayer, ResultIsIndependentOfThreadCount) {
   const auto one = edgesOf(map, 1), three = edgesOf(map, 3);
   for (std::size_t i = 0; i < one->padded().size(); ++i)
     for (int k = 0; k < 8; ++k) ASSERT_EQ(one->into(i)[k], three->into(i)[k]);
+}
+
+using testing::drawn;
+
+std::vector<maps::Cell> descentOf(const CostToGo& field, maps::Cell from) {
+  return descent(
+      field.edges(), from, [&](std::size_t at) { return field.units(field.edges().padded().cell(at)); },
+      [&](std::size_t at) { return field.atGoal(at); });
+}
+
+// Property: successive cells of a descent are neighbours, and the sum of their edges, with the cost at the
+// goal, equals the field to the unit.
+TEST(Descent, DescentCostEqualsTheField) {
+  int walked = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const auto edges = edgesOf(randomMap({.seed = seed, .blocked = 0.2, .roughness = 0.3}));
+    CostToGo field(edges, {{.cell = {3, 4}, .cost_J = 20.0}, {.cell = {16, 12}}});
+    ASSERT_TRUE(field.settleAll());
+    for (int row = 0; row < 20; ++row)
+      for (int column = 0; column < 20; ++column) {
+        const auto path = descentOf(field, {column, row});
+        if (path.empty()) {
+          EXPECT_EQ(field.units({column, row}), CostToGo::kUnreached);
+          continue;
+        }
+        ++walked;
+        std::uint32_t sum = field.atGoal(edges->padded().index(path.back()));
+        for (std::size_t i = 1; i < path.size(); ++i) {
+          const maps::Cell back{path[i - 1].column - path[i].column, path[i - 1].row - path[i].row};
+          const auto heading = std::ranges::find(kStep, back) - kStep.begin();
+          ASSERT_LT(heading, 8);
+          sum += edges->into(edges->padded().index(path[i]))[heading];
+        }
+        ASSERT_EQ(sum, field.units({column, row})) << seed;
+      }
+  }
+  EXPECT_GT(walked, 1'000);
+}
+
+TEST(Descent, UnsettledFieldYieldsNoDescent) {
+  CostToGo field(edgesOf(drawn({"....."})), {{.cell = {0, 0}}});
+  EXPECT_TRUE(descentOf(field, {4, 0}).empty());  // the distance is unknown
+  const auto flat = [](std::size_t) { return 5U; };
+  EXPECT_TRUE(descent(field.edges(), {4, 0}, flat, [](std::size_t) { return 0U; }).empty());
+}
+
+using costmap::CellCode;
+
+std::shared_ptr<const costmap::CostGrid> with(const costmap::CostGrid& map,
+                                              const std::vector<maps::Cell>& cells) {
+  costmap::Revision revision{
+      .code = [](maps::Cell, CellCode code) { return code.withCurve(CellCode::kBlocked); },
+      .cost = [cost = map.content().cost] { return cost; }};
+  for (const maps::Cell cell : cells) revision.ranges.push_back({cell, cell});
+  return std::make_shared<costmap::CostGrid>(costmap::revised(map, revision));
+}
+
+// Property: the result is the smallest box that contains the changed cells, across tiles of 64 cells and at
+// the map's border.
+TEST(MapChange, ChangeIsTheMinimalBoxOfDifferingCells) {
+  const auto map = randomMap({.width = 150, .height = 140, .seed = 4, .blocked = 0.0});
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    testing::Below below(seed);
+    std::vector<maps::Cell> cells;
+    CellBox box{{150, 140}, {-1, -1}};
+    for (int k = below(4); k >= 0; --k) {
+      cells.push_back({below(150), below(140)});
+      box.first = {std::min(box.first.column, cells.back().column),
+                   std::min(box.first.row, cells.back().row)};
+      box.last = {std::max(box.last.column, cells.back().column), std::max(box.last.row, cells.back().row)};
+    }
+    const auto found = changedCells(*map, *with(*map, cells));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->first, box.first) << seed;
+    EXPECT_EQ(found->last, box.last) << seed;
+  }
+}
+
+TEST(MapChange, EqualMapsHaveNoChange) {
+  const auto map = randomMap({.width = 70, .height = 70, .blocked = 1.0});
+  EXPECT_FALSE(changedCells(*map, *map));
+  EXPECT_FALSE(changedCells(*map, *with(*map, {{5, 5}, {68, 2}})));  // rewritten with the same values
 }
 
 }  // namespace edge_layer_test

@@ -2,7 +2,7 @@
 #include <stop_token>
 
 #include <talus/common/progress_monitor.hpp>
-#include <talus/planner/field/grid_links.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 
 #include "changed_map.hpp"

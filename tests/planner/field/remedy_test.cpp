@@ -36,15 +36,6 @@ TEST(Remedy, InvalidPlaceNamesItsHazard) {
             "can be reached");
 }
 
-TEST(Remedy, CellRefusedInEveryHeadingIsDangerous) {
-  maps::Raster<costmap::CellCode> steep({.width = 2, .height = 1, .resolution_m = 1.0, .south_west = {}},
-                                        costmap::CellCode({.dz_dx = 0.9, .dz_dy = 0.9, .curve = 0}));
-  const costmap::CostGrid map = costmap::flattened(steep, testing::driveCost());
-  EXPECT_EQ(invalidPlace(map, "start", {0.5, 0.5}),
-            "start 0.50,0.50 lies on a dangerous cell: no heading is allowed there; no cell of this map is "
-            "traversable");
-}
-
 TEST(Remedy, GoalIsValidWithinItsTolerance) {
   const MotionCost cost(drawn({"..#..", "..#.."}));
   EXPECT_TRUE(mayEnd(cost, {1.5, 0.5}, 0.0));

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stop_token>
 
 #include <talus/planner/plan/route_planner.hpp>
 
@@ -55,14 +57,64 @@ TEST(RoutePlanner, PluginRejectsARiskLimit) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("risk_limit is not honoured")));
 }
 
-TEST(RoutePlanner, ReplanningIsDeterministic) {
-  const auto map = randomMap({.width = 60, .height = 50, .seed = 11, .blocked = 0.05});
-  RoutePlanner planner;
-  const PlanRequest there{.start = map->grid().centre({2, 3}), .goal = map->grid().centre({55, 45})};
-  const PlanRequest back{.start = there.goal, .goal = there.start};
-  const double first = planner.plan(map, there, {}).summary.cost;
-  planner.plan(map, back, {});
-  EXPECT_EQ(planner.plan(map, there, {}).summary.cost, first);
+TEST(OwnPlanner, ReplansOnAnUpdatedMap) {
+  OwnPlanner planner;
+  PlanRequest request;
+  request.start = {0.5, 1.5};
+  request.goal = {3.5, 1.5};
+  planner.set_map(testing::drawn({"....", "....", "...."}));
+  const double open_m = planner.plan(request).summary.length_m;
+  planner.update(testing::drawn({"....", ".##.", "...."}));
+  EXPECT_GT(planner.plan(request).summary.length_m, open_m);
+  planner.update(testing::drawn({".##.", ".##.", ".##."}));
+  EXPECT_EQ(planner.plan(request).status, RouteStatus::NoRoute);
+  EXPECT_THROW(planner.update(testing::drawn({"....", "...."})), std::invalid_argument);
+}
+
+TEST(OwnPlanner, ViaPointsAndCheapestGoalAreUsed) {
+  OwnPlanner planner;
+  EXPECT_TRUE(planner.capabilities().via_points);
+  EXPECT_TRUE(planner.capabilities().several_goals);
+  planner.set_map(testing::drawn({"..........", "..........", ".........."}));
+  PlanRequest request;
+  request.start = {1.5, 1.5};
+  request.goal = {9.5, 1.5};
+  request.other_goals = {{4.5, 1.5}};
+  EXPECT_NEAR(planner.plan(request).summary.length_m, 3.0, 1e-9);  // Closed form: to the nearer goal
+  request.via = {{7.5, 1.5}};
+  const Route route = planner.plan(request);  // Closed form: 6 m to the via point, 2 m to the goal
+  EXPECT_NEAR(route.summary.length_m, 8.0, 1e-9);
+  EXPECT_TRUE(std::ranges::any_of(route.vertices, [](const RouteVertex& v) { return v.x_m == 7.5; }));
+}
+
+TEST(OwnPlanner, InvalidSettingsAreRejectedByName) {
+  OwnPlanner planner;
+  EXPECT_THAT([&] { planner.configure({.planner = "PRM*"}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("refused")));
+  EXPECT_THAT([&] { planner.configure({.planner = "field", .threads = 0}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("threads = 0, must be >= 1")));
+  EXPECT_THROW(planner.configure({.planner = "field", .time_limit_s = -1}), std::invalid_argument);
+  EXPECT_THROW(planner.plan({}), std::logic_error);
+  EXPECT_THROW(planner.set_map(nullptr), std::invalid_argument);
+}
+
+TEST(OwnPlanner, CreatedPlannerHasDefaultSettingsAndNoMap) {
+  OwnPlanner planner;
+  planner.configure({.planner = "hybrid"});
+  planner.set_map(testing::drawn({"....", "...."}));
+  EXPECT_TRUE(planner.capabilities().headings);
+  const auto another = planner.create();
+  EXPECT_EQ(another->capabilities().planner, "field");
+  EXPECT_THROW(another->plan({}), std::logic_error);
+}
+
+// Property: rejected settings change nothing.
+TEST(OwnPlanner, RejectedSettingsLeaveThePlannerUnchanged) {
+  OwnPlanner planner;
+  planner.configure({.planner = "hybrid"});
+  EXPECT_THROW(planner.configure({.planner = "no-such"}), std::invalid_argument);
+  EXPECT_THROW(planner.configure({.planner = "field", .time_limit_s = NAN}), std::invalid_argument);
+  EXPECT_EQ(planner.capabilities().planner, "hybrid");
 }
 
 }  // namespace route_planner_test

@@ -38,13 +38,6 @@ TEST(PluginLoader, LoadsAPluginAndPlans) {
   EXPECT_GE(route.vertices.size(), 4u);  // Property: a detour around two cells has two turns or more
 }
 
-TEST(PluginLoader, PlannerOutlivesItsLoader) {
-  std::unique_ptr<GlobalPlanner> another;
-  const auto planner = loadPlugin(TALUS_PLUGIN);
-  another = planner->create();
-  EXPECT_EQ(another->capabilities().name, "talus");
-}
-
 TEST(PluginLoader, LibraryStaysLoadedWhileItsPlannersExist) {
   std::unique_ptr<GlobalPlanner> another = loadPlugin(TALUS_PLUGIN)->create();
   another->set_map(testing::drawn({"....", "...."}));

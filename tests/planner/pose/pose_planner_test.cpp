@@ -201,18 +201,6 @@ TEST(RouteCheckOfDrives, ViolationsMatchDenseSamplingOfRandomArcs) {
   EXPECT_LE(grazing, 2);
 }
 
-TEST(RouteCheckOfDrives, ArcBeyondItsChordIsChecked) {
-  // The chord of this quarter circle of radius 3 about (4, 1) runs through (1.9, 3.1); the arc crosses the
-  // blocked corner cell that the chord misses.
-  const auto map = testing::drawn({".....", ".#...", ".....", ".....", "....."});
-  const PosePath arc{.start = {{1.0, 1.0}, std::numbers::pi / 2},
-                     .legs = {{{3.0 * std::numbers::pi / 2, -1.0 / 3.0}, 0.0}}};
-  EXPECT_TRUE(violations(*map, std::vector<maps::Point>{{1.0, 1.0}, {4.0, 4.0}}).empty());
-  EXPECT_FALSE(violations(*map, arc, 3.0).empty());
-  EXPECT_NE(violations(*map, arc, 4.0).front().reason.find("below the minimum turning radius"),
-            std::string::npos);
-}
-
 TEST(RouteCheckOfDrives, TurnInPlaceRequiresEveryHeading) {
   const auto steep = testing::drawn({">"});
   const costmap::CostGrid grid({.grid = steep->grid(),

@@ -2,6 +2,8 @@
 #include <queue>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/reach/cell_route.hpp>
 #include <talus/planner/reach/reach.hpp>
@@ -18,27 +20,6 @@ Polyline routed(const std::shared_ptr<const costmap::CostGrid>& map, const Segme
   const MotionCost cost(map);
   HeadingSets headings(map->cost());
   return cellRoute(cost, headings, places, tolerance_m).points;
-}
-
-TEST(CellRoute, RouteFollowsAContourInAnyDirection) {
-  for (int k = 0; k < 24; ++k) {
-    const double contour = 0.13 + k * 0.2618;
-    const maps::Point from{20.0 - 15.0 * std::cos(contour), 20.0 - 15.0 * std::sin(contour)};
-    const maps::Point to{20.0 + 15.0 * std::cos(contour), 20.0 + 15.0 * std::sin(contour)};
-    const auto map = testing::contourPlane(contour);
-    const Polyline way = routed(map, {from, to});
-    ASSERT_FALSE(way.empty()) << contour;
-    EXPECT_TRUE(violations(*map, way).empty()) << contour;
-  }
-}
-
-// Property: if the allowed headings lie near both directions of a contour, the route climbs the plane by
-// tacking.
-TEST(CellRoute, RouteTacksUphill) {
-  const auto map = testing::contourPlane(0.4);
-  const Polyline way = routed(map, {{18.3, 18.2}, {20.4, 22.9}});
-  ASSERT_FALSE(way.empty());
-  EXPECT_TRUE(violations(*map, way).empty());
 }
 
 // Property: on random steep maps every route is allowed, and a route is found in nearly all cases without a

@@ -31,25 +31,6 @@ TEST(ObstructionSearch, ReportsBothCellSetsAndTheConstraintBetween) {
                                ::testing::HasSubstr("keep-out")));
 }
 
-TEST(ObstructionSearch, EachConstraintIsIdentifiedSeparately) {
-  EXPECT_EQ(between(drawn({"..?..", "..?.."}), {{0.5, 0.5}, {3.5, 1.5}}).lifting, Constraint::Unknown);
-  // Two walls of different kinds: removing one of them opens no route.
-  const Obstruction both = between(drawn({".?#.", ".?#."}), {{0.5, 0.5}, {3.5, 1.5}});
-  EXPECT_EQ(both.lifting, Constraint::Hazard);
-  EXPECT_EQ(both.also, Constraint::Unknown);
-  // Ramps: one above the pitch limit on soil that allows 0.3, one above the soil's capacity.
-  const auto ramp = [](double steep, double pitch) {
-    maps::Raster<costmap::CellCode> cells({.width = 5, .height = 3, .resolution_m = 1.0, .south_west = {}},
-                                          costmap::CellCode({.dz_dx = steep, .dz_dy = 0.0, .curve = 0}));
-    return std::make_shared<costmap::CostGrid>(
-        costmap::flattened(cells, std::make_shared<costmap::TravelCost>(
-                                      costmap::TravelCost::Limits{.max_along = pitch, .max_across = 0.05},
-                                      std::vector{testing::curve({})})));
-  };
-  EXPECT_EQ(between(ramp(0.2, 0.1), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Pitch);
-  EXPECT_EQ(between(ramp(0.4, 0.5), {{0.5, 1.5}, {4.5, 1.5}}).lifting, Constraint::Soil);
-}
-
 // Property: a stop ends the flood fill between the sets and the search for a constraint; the result contains
 // the places only.
 TEST(ObstructionSearch, StopEndsTheSearch) {

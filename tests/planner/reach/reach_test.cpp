@@ -14,21 +14,12 @@
 namespace talus::planner {
 namespace reach_test {
 
-using testing::drawn;
 using testing::randomMap;
 
 bool reaches(const costmap::CostGrid& map, maps::Point from, maps::Point to) {
   HeadingSets headings(map.cost());
   Reach reach(map, headings, Reach::Sense::From, from);
   return reach.reaches(to, 0.0);
-}
-
-TEST(Reach, WallSeparatesStartFromGoal) {
-  const auto map = drawn({"..#..", "..#..", "..#.."});
-  EXPECT_FALSE(reaches(*map, {0.5, 0.5}, {4.5, 1.5}));
-  EXPECT_TRUE(reaches(*map, {0.5, 0.5}, {1.5, 2.5}));
-  // Two cells that touch at a corner between blocked cells are not connected.
-  EXPECT_FALSE(reaches(*drawn({"#.", ".#"}), {0.5, 0.5}, {1.5, 1.5}));
 }
 
 // A slope that may only be descended, and not along its contour: bin 0 contains climbs of up to 0.002.

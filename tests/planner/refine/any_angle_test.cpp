@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/planner/refine/any_angle.hpp>
-#include <talus/planner/refine/settled_vertices.hpp>
+#include <talus/planner/refine/vertices.hpp>
 
 #include "drawn_map.hpp"
 
@@ -14,7 +14,7 @@ using testing::randomMap;
 TEST(AnyAngle, RouteIsStraightOnFlatGround) {
   const MotionCost cost(drawn(std::vector<std::string>(40, std::string(60, '.'))));
   const std::vector<maps::Point> grid{{0.5, 0.5}, {30.5, 30.5}, {55.5, 30.5}};
-  const auto route = refined(cost, grid);
+  const auto route = Refiner()(cost, grid);
   // Closed form: on ground of one cost the straight line is best.
   EXPECT_NEAR(cost.along(route), 10.0 * std::hypot(55.0, 30.0), 1e-3);
   EXPECT_EQ(route.size(), 2U);
@@ -32,7 +32,7 @@ TEST(AnyAngle, RouteRefractsByTheLawOfSnell) {
     const double J = 10 * std::hypot(60 - a.x_m, y - a.y_m) + 30 * std::hypot(b.x_m - 60, b.y_m - y);
     if (J < best) best = J, best_y = y;
   }
-  const auto route = withSettledVertices(cost, refined(cost, {a, {60.5, best_y + 3.0}, b}));
+  const auto route = withSettledVertices(cost, Refiner()(cost, {a, {60.5, best_y + 3.0}, b}));
   EXPECT_NEAR(cost.along(route), best, 5e-4 * best);
 }
 
@@ -43,7 +43,7 @@ TEST(AnyAngle, CostNeverIncreases) {
         randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.0, .roughness = 0.1}));
     const std::vector<maps::Point> grid{{1.5, 1.5}, {20.5, 1.5}, {20.5, 20.5}, {38.5, 38.5}};
     const double before = cost.along(grid);
-    const auto route = refined(cost, grid);
+    const auto route = Refiner()(cost, grid);
     EXPECT_LT(cost.along(route), before);
     EXPECT_EQ(route.front(), grid.front());
     EXPECT_EQ(route.back(), grid.back());

@@ -21,14 +21,6 @@ std::vector<CellCode> randomCells() {
   return cells;
 }
 
-// Closed form: the points of a side are the centres of equal parts, from south or west on.
-TEST(EdgeCrossings, EdgePointsAreCentredInEqualParts) {
-  EXPECT_EQ(edgeSpot(kWestSide, 0, 2).y, 0.25);
-  EXPECT_EQ(edgeSpot(kEastSide, 1, 2).x, 1.0);
-  EXPECT_EQ(edgeSpot(kSouthSide, 2, 3).x, 2.5 / 3);
-  EXPECT_EQ(edgeSpot(kNorthSide, 0, 1).y, 1.0);
-}
-
 // Property: the cost of each motion is TravelCost in its heading times its length, to float rounding; each
 // point of the other sides occurs once.
 TEST(EdgeCrossings, CostIsDriveCostTimesLength) {

@@ -9,6 +9,27 @@
 namespace talus::planner {
 namespace route_windows_test {
 
+const Polyline kWindow{{0.0, 0.0}, {10.0, 4.0}}, kResult{{0.0, 0.0}, {5.0, 1.0}, {10.0, 4.0}};
+
+// Closed form: the window's box, 0 to 10 by 0 to 4 m, grown by a reach of 2 m; corners in any order.
+TEST(RefinementCache, WindowsNearChangedGroundAreDropped) {
+  struct Case {
+    Segment corners;
+    bool forgotten;
+  };
+  for (const Case& c : {Case{{{12.1, 0.0}, {20.0, 4.0}}, false},
+                        {{{20.0, 4.0}, {11.9, 0.0}}, true},
+                        {{{-9.0, -9.0}, {20.0, -2.1}}, false},
+                        {{{4.0, 6.1}, {5.0, 9.0}}, false},
+                        {{{4.0, 9.0}, {5.0, 5.9}}, true},
+                        {{{-99.0, -99.0}, {99.0, 99.0}}, true}}) {
+    RefinementCache cache;
+    cache.keep(kWindow, kResult, 2.0);
+    cache.forget(c.corners);
+    EXPECT_EQ(!cache.find(kWindow), c.forgotten) << c.corners.from.x_m << "," << c.corners.from.y_m;
+  }
+}
+
 Polyline wave(double from_m, double to_m) {
   Polyline line;
   for (double x = from_m; x <= to_m; x += 1.0) line.push_back({x, 3.0 * std::sin(0.2 * x)});

@@ -9,8 +9,6 @@
 namespace talus::planner {
 namespace polyline_test {
 
-using maps::Point;
-
 Polyline wandering(unsigned seed, int points) {
   std::mt19937 random(seed);
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
@@ -37,17 +35,6 @@ TEST(Polyline, PiecesAreMeasuredFromTheEnd) {
     EXPECT_GT(length_m(pieces.front()), 3.5 - 1e-9);
     EXPECT_LE(length_m(pieces.front()), 10.5 + 1e-9);
   }
-}
-
-// Property: a change before a cut does not move the cut, to the bit.
-TEST(Polyline, CutsBehindAChangeAreUnaffected) {
-  Polyline line = wandering(5, 40);
-  const auto before = cutFromEnd(line, 9.0, 9.0);
-  line[1].y_m += 3.0;
-  line.insert(line.begin(), {-20.0, 4.0});
-  const auto after = cutFromEnd(line, 9.0, 9.0);
-  for (std::size_t k = 1; k + 3 < before.size(); ++k)
-    EXPECT_EQ(before[before.size() - k], after[after.size() - k]) << k;
 }
 
 TEST(Polyline, SplitLeavesTheGivenLength) {

@@ -21,16 +21,5 @@ TEST(Route, StatusNamesMatchTheFileFormat) {
   for (const auto& [status, word] : promised) EXPECT_EQ(name(status), word);
 }
 
-// Property: an unknown value is NaN, which compares false with any value; a route that was not planned has
-// no vertices.
-TEST(Route, UnknownValuesAreNan) {
-  const RouteVertex vertex;
-  for (const double value :
-       {vertex.elevation_m, vertex.slip, vertex.sinkage_m, vertex.torque_Nm, vertex.drawbar_pull_margin})
-    EXPECT_TRUE(std::isnan(value));
-  EXPECT_EQ(vertex.category, terramech::Category::Unknown);
-  EXPECT_EQ(Route{}.status, RouteStatus::NoneFound);
-}
-
 }  // namespace route_test
 }  // namespace talus::planner

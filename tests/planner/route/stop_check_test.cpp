@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/planner/route/plan_end.hpp>
+#include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {

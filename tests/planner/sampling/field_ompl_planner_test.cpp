@@ -5,7 +5,6 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/sampling/field_ompl_planner.hpp>
 #include <talus/planner/sampling/map_space.hpp>
-#include <talus/planner/sampling/map_validity.hpp>
 #include <talus/planner/sampling/travel_objective.hpp>
 
 #include "drawn_map.hpp"
@@ -63,16 +62,6 @@ TEST(FieldOmplPlanner, UnsolvableAndInvalidProblemsAreReported) {
   EXPECT_FALSE(bool(planner.solve(ob::plannerNonTerminatingCondition())));
   planner.setProblemDefinition(asked.from({2.5, 0.5}, {4.5, 0.5}));
   EXPECT_EQ(planner.solve(ob::plannerNonTerminatingCondition()), ob::PlannerStatus::INVALID_START);
-}
-
-TEST(FieldOmplPlanner, TerminationConditionEndsTheSearch) {
-  const auto map = testing::randomMap({.width = 300, .height = 300, .blocked = 0.0});
-  const Asked asked(map);
-  FieldOmplPlanner planner(asked.info, map);
-  planner.setProblemDefinition(asked.from({1.5, 1.5}, {290.5, 290.5}));
-  planner.setup();
-  const auto status = planner.solve(ob::plannerAlwaysTerminatingCondition());
-  EXPECT_TRUE(status == ob::PlannerStatus::TIMEOUT || status == ob::PlannerStatus::EXACT_SOLUTION);
 }
 
 }  // namespace field_ompl_planner_test

@@ -1,5 +1,13 @@
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
+
 #include <talus/planner/route/planner_names.hpp>
-#include <talus/planner/sampling/ompl_guard.hpp>
 #include <talus/planner/sampling/ompl_planner.hpp>
 
 #include "drawn_map.hpp"
@@ -8,7 +16,98 @@
 namespace talus::planner {
 namespace ompl_planner_test {
 
+class Counter : public ompl::msg::OutputHandler {
+ public:
+  void log(const std::string&, ompl::msg::LogLevel, const char*, int) override { ++lines; }
+  int lines = 0;
+};
+
+// Property: OMPL is silent while any guard exists, with any nesting; afterwards the host's handler is
+// restored.
+TEST(OmplGuard, HostOutputHandlerIsRestored) {
+  Counter counter;
+  ompl::msg::OutputHandler* const host = ompl::msg::getOutputHandler();
+  ompl::msg::useOutputHandler(&counter);
+  OMPL_WARN("before");
+  EXPECT_EQ(counter.lines, 1);
+  {
+    const QuietOmpl outer;
+    OMPL_WARN("within");
+    { const QuietOmpl inner; }
+    OMPL_WARN("still within");
+    EXPECT_EQ(counter.lines, 1);
+  }
+  OMPL_WARN("after");
+  EXPECT_EQ(counter.lines, 2);
+  ompl::msg::useOutputHandler(host);
+}
+
+std::vector<double> drawnWith(std::uint64_t seed) {
+  std::vector<double> numbers;
+  withOmplSeed(seed, [&] {
+    ompl::RNG generator;
+    for (int k = 0; k < 8; ++k) numbers.push_back(generator.uniform01());
+  });
+  return numbers;
+}
+
+// Property: the random numbers depend on the seed only, not on earlier draws. Seeds above 32 bits and zero,
+// which OMPL ignores, are valid.
+TEST(OmplGuard, RandomNumbersDependOnTheSeedOnly) {
+  const auto first = drawnWith(1);
+  EXPECT_NE(first, drawnWith(2));
+  EXPECT_EQ(first, drawnWith(1));
+  EXPECT_EQ(drawnWith(0), drawnWith(0));
+  EXPECT_NE(drawnWith(0), first);
+  EXPECT_NE(drawnWith(std::uint64_t{1} << 40), first);
+  EXPECT_THROW(withOmplSeed(1, [] { throw std::runtime_error("made nothing"); }), std::runtime_error);
+  EXPECT_EQ(first, drawnWith(1));  // the seed is not locked
+}
+
+namespace ob = ompl::base;
+
 const Segment kEnds{{2.5, 10.5}, {27.5, 10.5}};
+
+// Cost of the solution of a planner with this seed route after a number of iterations.
+double costAfter(int rounds, const SeededRRTstar::Seed& seed) {
+  const QuietOmpl quiet;
+  const testing::OmplGround ground(testing::drawn(std::vector<std::string>(20, std::string(30, '.'))), kEnds);
+  double cost_J = INFINITY;
+  withOmplSeed(1, [&] {
+    SeededRRTstar planner(ground.space, seed);
+    planner.setRange(8.0);
+    planner.setProblemDefinition(ground.definition);
+    planner.setup();
+    int round = 0;
+    planner.solve(ob::PlannerTerminationCondition([&] { return round++ >= rounds; }));
+    const auto path = ground.definition->getSolutionPath();
+    if (path && ground.definition->hasExactSolution())
+      cost_J = path->cost(ground.definition->getOptimizationObjective()).value();
+  });
+  return cost_J;
+}
+
+// Closed form: the seed's three legs at 10 J/m are the first solution; the cost never increases, and
+// decreases with time.
+TEST(SeededRRTstar, SeedRouteIsAvailableImmediatelyAndImproved) {
+  const std::vector<maps::Point> known{kEnds.from, {10.5, 18.5}, {20.5, 3.5}, kEnds.to};
+  double seed_J = 0.0;
+  for (std::size_t i = 1; i < known.size(); ++i)
+    seed_J += 10.0 * std::hypot(known[i].x_m - known[i - 1].x_m, known[i].y_m - known[i - 1].y_m);
+  for (const bool informed : {false, true}) {
+    const SeededRRTstar::Seed seed{.route = known, .spacing_m = 2.0, .informed = informed};
+    EXPECT_NEAR(costAfter(1, seed), seed_J, 0.01 * seed_J);
+    const double improved_J = costAfter(2'000, seed);
+    EXPECT_LT(improved_J, 0.9 * seed_J);
+    EXPECT_GE(improved_J, 250.0 - 1e-3);  // the straight line
+  }
+  EXPECT_TRUE(std::isinf(costAfter(1, {})));  // without a seed nothing is known yet
+}
+
+// Property: a seed that does not reach the goal is extended, and is no solution.
+TEST(SeededRRTstar, SeedThatMissesTheGoalIsNoSolution) {
+  EXPECT_TRUE(std::isinf(costAfter(1, {.route = {kEnds.from, {20.5, 10.5}}, .spacing_m = 2.0})));
+}
 
 // Property: exactly the names of OMPL's planners create an OMPL planner, with the given problem and range.
 TEST(OmplPlanner, CreatesExactlyTheOmplPlanners) {

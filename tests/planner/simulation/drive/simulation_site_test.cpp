@@ -28,29 +28,6 @@ std::vector<std::string> plain() {
   return std::vector<std::string>(30, std::string(40, '1'));
 }
 
-Truth random(int patches) {
-  Truth truth;
-  truth.spread = 0.1;
-  truth.random_patches = patches;
-  truth.patch_radius_m = 2.0;
-  truth.patch_soil = testDust();
-  return truth;
-}
-
-TEST(SimulationSite, WorldDependsOnItsNumberOnly) {
-  const auto map = costmap::mapOf(plain());
-  const SimulationSite site(map, across(random(3)));
-  const auto all = site.worlds({.belief = SoilKnowledge::OnLine, .first = 0, .count = 4});
-  const auto late = site.worlds({.belief = SoilKnowledge::OnLine, .first = 2, .count = 2});
-  ASSERT_EQ(all.size(), 4U);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(all[2 + i].drive.energy_J, late[i].drive.energy_J);
-    EXPECT_EQ(all[2 + i].drive.outcome, late[i].drive.outcome);
-    EXPECT_EQ(all[2 + i].categories_changed, late[i].categories_changed);
-  }
-  EXPECT_NE(all[0].drive.energy_J, all[1].drive.energy_J);
-}
-
 TEST(SimulationSite, PerfectKnowledgeUsesTheTrueSoilOfEveryPatch) {
   const auto map = costmap::mapOf(plain());
   Truth truth;
