@@ -10,7 +10,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/wheel_case_table.hpp>
-#include <talus/cli/soil/wheel_report.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
@@ -24,8 +23,6 @@ namespace {
 struct WheelOptions {
   std::string soil, rover;
   double load_N = std::nan(""), slip = std::nan(""), slip_angle_rad = 0.0;
-  std::string html;
-  std::vector<std::string> others;
   double inflation_Pa = std::nan(""), carcass_Pa = 0.0, torque_Nm = std::nan("");
   bool hard_ground = false;
   std::string cases, output;
@@ -49,13 +46,6 @@ void bind(CLI::App& command, WheelOptions& options) {
                                 "slip angle [rad] from the wheel plane to the travel, left positive")
                     ->type_name("RAD")
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
-  auto* html = addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
-                   ->type_name("FILE.html");
-  auto* others =
-      command
-          .add_option("--compare", options.others, "further soils, drawn with it over slip; may be repeated")
-          ->type_name("NAME|FILE")
-          ->needs(html);
   groupOptions(command, "One wheel");
   auto* inflation = command
                         .add_option("--inflation", options.inflation_Pa,
@@ -77,7 +67,7 @@ void bind(CLI::App& command, WheelOptions& options) {
                      ->check(finite())
                      ->needs(hard)
                      ->excludes(slip);
-  for (auto* straight : {inflation, hard}) straight->excludes(angle)->excludes(html);
+  for (auto* straight : {inflation, hard}) straight->excludes(angle);
   hard->excludes(soil);
   groupOptions(command, "Tyres and hard ground (thesis C.2)");
   auto* cases =
@@ -85,7 +75,7 @@ void bind(CLI::App& command, WheelOptions& options) {
   addOutput(command, "-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip, angle, html, others, inflation, carcass, hard, torque})
+  for (auto* single : {soil, rover, load, slip, angle, inflation, carcass, hard, torque})
     cases->excludes(single);
   groupOptions(command, "A table of wheels");
   addTableOptions(command, options.columns);
@@ -143,23 +133,22 @@ std::string report(const terramech::WheelForces& forces, double load_N, double r
       forces.side_force_N, forces.side_force_N / load_N);
 }
 
+double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
+  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+}
+
 int runOne(const WheelOptions& options, const Context& context) {
   if (options.soil.empty()) lacking("--soil");
   if (options.rover.empty()) lacking("--rover");
   if (std::isnan(options.slip)) lacking("--slip");
   const terramech::Rover rover = terramech::loadRover(options.rover);
   const terramech::Soil soil = terramech::underGravity(terramech::loadSoil(options.soil), rover.gravity_m_s2);
-  const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+  const double load_N = loadOf(options, rover);
   const auto forces = terramech::equilibrium(soil, rover.wheel,
                                              {.load_N = load_N,
                                               .slip = options.slip,
                                               .slip_angle_rad = options.slip_angle_rad,
                                               .gravity_m_s2 = rover.gravity_m_s2});
-  std::vector<terramech::Soil> others;
-  for (const std::string& name : options.others)
-    others.push_back(terramech::underGravity(terramech::loadSoil(name), rover.gravity_m_s2));
-  if (!options.html.empty())
-    writeFile(options.html, wheelReport({soil, rover, load_N, options.slip, options.slip_angle_rad, others}));
   if (context.json)
     printJson({{"soil", soil.name},
                {"rover", rover.name},
@@ -174,10 +163,6 @@ int runOne(const WheelOptions& options, const Context& context) {
   else
     print(report(forces, load_N, rover.wheel.radius_m));
   return Exit::kDone;
-}
-
-double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
-  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
 }
 
 int runTyre(const WheelOptions& options, const Context& context) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
 namespace {

@@ -153,6 +153,25 @@ void addSlope(Scene& scene, Raster<float> values) {
   scene.layers.push_back(std::move(slope));
 }
 
+/// Facts of all routes, one row per name in order of first occurrence. Several values of one name in a route,
+/// such as files, are joined.
+std::vector<ComparedFact> rowsOf(const std::vector<NamedRoute>& routes) {
+  std::vector<ComparedFact> rows;
+  for (std::size_t i = 0; i < routes.size(); ++i) {
+    std::vector<Fact> facts = summaryOf(routes[i].route);
+    facts.insert(facts.end(), routes[i].provenance.begin(), routes[i].provenance.end());
+    for (const Fact& fact : facts) {
+      auto row =
+          std::find_if(rows.begin(), rows.end(), [&](const ComparedFact& r) { return r.name == fact.first; });
+      if (row == rows.end())
+        row = rows.insert(rows.end(), {fact.first, std::vector<std::string>(routes.size())});
+      std::string& cell = row->values[i];
+      cell += (cell.empty() ? "" : "; ") + fact.second;
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::optional<Range> innerRange(const Raster<float>& values) {
@@ -216,6 +235,16 @@ void addRoute(Scene& scene, const planner::Route& route) {
   scene.route = route;
   for (Fact& fact : summaryOf(route)) scene.facts.push_back(std::move(fact));
   if (const auto warning = warningOf(route)) scene.rings.push_back({warning->place, 0.0, "warning"});
+}
+
+void compare(Scene& scene, std::vector<NamedRoute> routes) {
+  for (ComparedFact& row : rowsOf(routes))
+    if (std::ranges::count(row.values, row.values.front()) == std::ssize(row.values))
+      scene.facts.emplace_back(row.name, row.values.front());
+    else
+      scene.comparison.push_back(std::move(row));
+  scene.route = routes.front().route;
+  scene.routes = std::move(routes);
 }
 
 }  // namespace talus::cli

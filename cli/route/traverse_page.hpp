@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <talus/cli/draw/traverse_record.hpp>
+#include <talus/cli/draw/scene.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/planner/simulation/drive/simulation_site.hpp>

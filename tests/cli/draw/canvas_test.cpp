@@ -5,7 +5,6 @@
 #include <refused.hpp>
 
 #include <talus/cli/draw/canvas.hpp>
-#include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
 namespace canvas_test {

@@ -35,5 +35,21 @@ TEST(Scene, SceneGridContainsTheRoute) {
   for (const planner::RouteVertex& v : route.vertices) EXPECT_TRUE(scene.grid().cellAt({v.x_m, v.y_m}));
 }
 
+TEST(Scene, DifferingAndEqualFactsAreSeparated) {
+  Scene scene = sceneOf(exampleMap(), {.title = "two"});
+  NamedRoute first{"a", exampleRoute(), {{"soil", "sand"}, {"seed", "1"}}};
+  NamedRoute second{"b", exampleRoute(), {{"soil", "clay"}, {"seed", "1"}}};
+  second.route.summary.energy_J = 60000.0;
+  compare(scene, {first, second});
+  std::vector<std::string> differing;
+  for (const ComparedFact& fact : scene.comparison) {
+    differing.push_back(fact.name);
+    EXPECT_EQ(fact.values.size(), 2U);
+  }
+  EXPECT_THAT(differing, testing::ElementsAre("energy", "soil"));
+  EXPECT_THAT(scene.facts, testing::Contains(Fact("seed", "1")));
+  EXPECT_EQ(scene.routes.size(), 2U);
+}
+
 }  // namespace scene_test
 }  // namespace talus::cli
