@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13096},
-                           {"planner", 24049}, {"cli", 15249},       {"examples", 1703}, {"tests", 61151}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13152},
+                           {"planner", 24049}, {"cli", 14802},       {"examples", 1703}, {"tests", 60306}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -6,9 +6,7 @@ namespace bad_wheel_test {
 
 TEST(BadInput, InvalidWheelCallsAreRejectedWithOneLine) {
   const auto wheel = [](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"wheel", "--soil", "clay", "--rover", "fido"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return joined({"wheel", "--soil", "clay", "--rover", "fido"}, more);
   };
   std::vector<BadCall> calls{
       {{"wheel"}, 2, "missing --soil"},
