@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <talus/cli/app/campaign.hpp>
-#include <talus/cli/app/mpi_launch.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/parallel_for.hpp>
 
@@ -17,6 +21,31 @@
 
 namespace talus::cli {
 namespace {
+
+/// Launch of this process by an MPI launcher (mpirun, mpiexec), according to the environment variables of the
+/// process.
+struct MpiLaunch {
+  std::string variable;  ///< environment variable that contains the number of ranks
+  int ranks = 1;         ///< number of processes that the launcher started
+};
+
+/// Returns the launch by Open MPI, MVAPICH2, MPICH or Intel MPI; nullopt if the process was started without a
+/// launcher.
+std::optional<MpiLaunch> mpiLaunch() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE", "PMI_SIZE"})
+    if (const char* ranks = std::getenv(variable)) return MpiLaunch{variable, std::atoi(ranks)};
+  return std::nullopt;
+}
+
+/// Throws std::invalid_argument if the launcher started more ranks than the `joined` ranks that cooperate:
+/// each rank would run the whole job and write the same files. `reason` is the cause that the message states.
+void requireJoinedRanks(int joined, const std::string& reason) {
+  const auto launch = mpiLaunch();
+  if (!launch || launch->ranks <= joined) return;
+  throw std::invalid_argument(
+      fmt::format("started as one of {} MPI ranks ({}), each of which would do the whole job: {}",
+                  launch->ranks, launch->variable, reason));
+}
 
 JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i,
                      const ProgressMonitor& watch) {
@@ -167,5 +196,14 @@ std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std
 }
 
 #endif
+
+void requireMpiForRanks() {
+#ifndef TALUS_MPI
+  requireJoinedRanks(
+      1,
+      "this program was built without MPI; start it without mpirun, or install libboost-mpi-dev "
+      "and libopenmpi-dev and build again");
+#endif
+}
 
 }  // namespace talus::cli

@@ -61,4 +61,8 @@ class Campaign {
   std::unique_ptr<Ranks> mpi_;  // null in a plain run
 };
 
+/// Throws std::invalid_argument in a program built without MPI of which a launcher started several ranks: each
+/// would run the whole job and write the same files.
+void requireMpiForRanks();
+
 }  // namespace talus::cli

@@ -79,6 +79,10 @@ void Context::warn(std::string_view text) const {
   if (!quiet) printError(fmt::format("talus: warning: {}\n", oneLine(text)));
 }
 
+void Context::answer(const nlohmann::ordered_json& result, std::string_view text) const {
+  json ? printJson(result) : print(text);
+}
+
 std::string jsonText(const nlohmann::ordered_json& value, int indent) {
   return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

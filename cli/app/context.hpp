@@ -52,6 +52,9 @@ struct Context {
 
   /// Prints one line "talus: warning: TEXT" to stderr, unless `quiet` is set.
   void warn(std::string_view text) const;
+
+  /// Prints a result: the JSON if `json` is set, otherwise the text.
+  void answer(const nlohmann::ordered_json& result, std::string_view text) const;
 };
 
 /// Returns JSON as text, indented by `indent` blanks, or on one line if `indent` is negative. NaN and

@@ -213,11 +213,7 @@ int run(const AssessCommand& asked, Context& context) {
   options.table = tableFile(asked.table.path, asked.columns, context);
   const AssessedTable table = assessTable(options, context.watch("assessing"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!table.rejected.empty()) {
-    const auto& first = table.rejected.front();
-    context.warn(fmt::format("{}:{}: {} ({} rows rejected)", options.table.path, first.line, first.reason,
-                             table.rejected.size()));
-  }
+  warnOfRejected(table.rejected, options.table.path, context);
   for (const std::string& name : table.left_out) {
     context.warn(options.model + ": " + name +
                  " describes a sensor error; assess gives the true drawbar pull and leaves this effect out "
@@ -227,11 +223,7 @@ int run(const AssessCommand& asked, Context& context) {
       tableApplicability(options.table, options.model, options.rover, context.watch("checking the model"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) writePage(options, table.rows);
-  if (context.json) {
-    printJson(jsonOf(table.rows, options.reference_slip));
-  } else {
-    print(textOf(options, table.rows));
-  }
+  context.answer(jsonOf(table.rows, options.reference_slip), textOf(options, table.rows));
   if (applies.applies) return Exit::kDone;
   context.warn(options.table.path + ": the model does not apply: " + applies.reason);
   return Exit::kNo;

@@ -122,10 +122,7 @@ int run(const CostmapOptions& options, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.costs().countCategories();
   writeFiles(options, site.map, context);
-  if (context.json)
-    printJson(costmapJson(site, counts));
-  else
-    print(costmapText(site, counts));
+  context.answer(costmapJson(site, counts), costmapText(site, counts));
   return Exit::kDone;
 }
 

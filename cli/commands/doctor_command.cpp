@@ -12,7 +12,6 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/mpi_launch.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/planner/route/planner_names.hpp>
@@ -111,10 +110,7 @@ int run(const DoctorOptions& options, Context& context) {
   Json found = findings(*options.program, context);
   const std::vector<std::string> faults = faultsOf(found);
   found["faults"] = faults;
-  if (context.json)
-    printJson(found);
-  else
-    print(textOf(found));
+  context.answer(found, textOf(found));
   for (const std::string& fault : faults) context.warn(fault);
   return faults.empty() ? Exit::kDone : Exit::kNo;
 }

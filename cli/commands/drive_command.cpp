@@ -17,10 +17,7 @@
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/provenance.hpp>
-#include <talus/cli/route/simulated_worlds.hpp>
-#include <talus/cli/route/traverse_page.hpp>
 #include <talus/cli/route/traverse_report.hpp>
-#include <talus/cli/route/traverse_telemetry.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/maps/vector/place_reader.hpp>

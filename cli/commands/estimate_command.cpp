@@ -76,12 +76,6 @@ void bind(CLI::App& command, EstimateCommand& options) {
   groupOptions(command, "Output");
 }
 
-Json rejectedRows(const SoilEstimate& e) {
-  Json rows = Json::array();
-  for (const auto& row : e.rejected) rows.push_back({{"line", row.line}, {"reason", row.reason}});
-  return rows;
-}
-
 Json runningJson(const SoilEstimate& e) {
   Json rows = Json::array();
   for (const RunningSoil& r : e.running) {
@@ -162,7 +156,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
             {"warnings", e.warnings},
             {"ignored", e.ignored},
             {"plausible", e.implausible().empty()},
-            {"rejected", rejectedRows(e)}};
+            {"rejected", rejectedJson(e.rejected)}};
   if (std::isfinite(e.sinkage_exponent)) json["sinkage_exponent"] = e.sinkage_exponent;
   if (e.cohesive_modulus) json["cohesive_modulus"] = *e.cohesive_modulus;
   if (e.frictional_modulus) json["frictional_modulus"] = *e.frictional_modulus;
@@ -291,11 +285,7 @@ int run(const EstimateCommand& asked, Context& context) {
   options.table = tableFile(asked.table.path, asked.columns, context);
   const SoilEstimate estimate = estimateSoil(options, context.watch("estimating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!estimate.rejected.empty()) {
-    const auto& first = estimate.rejected.front();
-    context.warn(fmt::format("{}:{}: {} ({} rows rejected; --json lists them)", options.table.path,
-                             first.line, first.reason, estimate.rejected.size()));
-  }
+  warnOfRejected(estimate.rejected, options.table.path, context);
   if (!estimate.ignored.empty())
     context.warn(fmt::format("{}: --method {} does not read {}", options.table.path, options.method,
                              fmt::join(estimate.ignored, ", ")));
@@ -309,14 +299,10 @@ int run(const EstimateCommand& asked, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.html.empty()) writePage(options, estimate);
   if (!applies.applies) context.warn(options.table.path + ": the model does not apply: " + applies.reason);
-  if (context.json) {
-    Json json = jsonOf(options.method, estimate);
-    json["applies"] = applies.applies;
-    json["applies_reason"] = applies.reason;
-    printJson(json);
-  } else {
-    print(textOf(estimate));
-  }
+  Json json = jsonOf(options.method, estimate);
+  json["applies"] = applies.applies;
+  json["applies_reason"] = applies.reason;
+  context.answer(json, textOf(estimate));
   return applies.applies ? Exit::kDone : Exit::kNo;
 }
 

@@ -100,10 +100,7 @@ int run(const ExplainOptions& options, Context& context) {
   const costmap::Explanation why = costmap::explain(site.map, cell, heading);
   nlohmann::ordered_json out = explainJson(why, point, cell);
   const std::string next = options.next ? addNext(site.map, cell, out) : "";
-  if (context.json)
-    printJson(out);
-  else
-    print(explainText(why, maps::describe(point, site.map.elevation())) + next);
+  context.answer(out, explainText(why, maps::describe(point, site.map.elevation())) + next);
   return Exit::kDone;
 }
 

@@ -1,6 +1,8 @@
 // talus generate KIND: generates an example site with all its layers.
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,11 +10,12 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/site_description.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/memory_budget.hpp>
+#include <talus/common/nearest_name.hpp>
 #include <talus/maps/raster/geotiff_writer.hpp>
 #include <talus/maps/sites/site_generator.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
 namespace {
@@ -92,6 +95,35 @@ bool isDescription(const std::string& site) {
   return site.ends_with(".yaml") || site.ends_with(".yml");
 }
 
+constexpr std::array<std::pair<const char*, maps::SiteKind>, 3> kKinds{{{"craters", maps::SiteKind::Craters},
+                                                                        {"dunes", maps::SiteKind::Dunes},
+                                                                        {"rocks", maps::SiteKind::Rocks}}};
+
+maps::SiteKind siteKind(const std::string& name) {
+  for (const auto& [word, kind] : kKinds)
+    if (name == word) return kind;
+  const std::string near = nearestName(name, {"craters", "dunes", "rocks"});
+  throw InputError({"site '" + name + "'", "is not a kind of site",
+                    near.empty() ? "choose craters, dunes or rocks" : "did you mean '" + near + "'?"});
+}
+
+// Returns the options of a YAML description.
+maps::SiteOptions loadSite(const std::string& path) {
+  const terramech::YamlFields file = terramech::YamlFields::file(path);
+  file.only({"site"});
+  const terramech::YamlFields fields = file.fields("site");
+  fields.only({"kind", "width", "height", "resolution_m", "seed"});
+  maps::SiteOptions site;
+  site.kind = siteKind(fields.word("kind"));
+  site.width = fields.integer("width", site.width);
+  site.height = fields.integer("height", site.width);
+  site.resolution_m = fields.number("resolution_m", site.resolution_m);
+  const int seed = fields.integer("seed", 1);
+  if (seed < 0) fields.refuse("seed", "seed = " + std::to_string(seed) + ", must be >= 0", "");
+  site.seed = static_cast<std::uint64_t>(seed);
+  return site;
+}
+
 // Options from a site description or a kind; arguments of the call override a description.
 maps::SiteOptions siteOptions(const GenerateOptions& options, const Context& context) {
   maps::SiteOptions out;
@@ -138,17 +170,15 @@ int run(const GenerateOptions& options, Context& context) {
   const maps::Site site = maps::generateSite(wanted, context.watch("site"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   write(site, wanted.kind, paths);
-  if (context.json)
-    printJson({{"map", paths.map},
-               {"classes", paths.classes},
-               {"rocks", paths.rocks},
-               {"soils", paths.soils},
-               {"width", wanted.width},
-               {"height", wanted.height},
-               {"resolution_m", wanted.resolution_m},
-               {"seed", wanted.seed}});
-  else
-    print(fmt::format("{}\n{}\n{}\n{}\n", paths.map, paths.classes, paths.rocks, paths.soils));
+  context.answer({{"map", paths.map},
+                  {"classes", paths.classes},
+                  {"rocks", paths.rocks},
+                  {"soils", paths.soils},
+                  {"width", wanted.width},
+                  {"height", wanted.height},
+                  {"resolution_m", wanted.resolution_m},
+                  {"seed", wanted.seed}},
+                 fmt::format("{}\n{}\n{}\n{}\n", paths.map, paths.classes, paths.rocks, paths.soils));
   return Exit::kDone;
 }
 

@@ -128,10 +128,7 @@ int run(const InfoOptions& options, Context& context) {
                            context.watch("slopes"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const nlohmann::ordered_json facts = infoJson(map, metrics);
-  if (context.json)
-    printJson(facts);
-  else
-    print(infoText(map, facts));
+  context.answer(facts, infoText(map, facts));
   return Exit::kDone;
 }
 

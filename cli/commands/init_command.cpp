@@ -99,11 +99,9 @@ int run(const InitOptions& options, Context& context) {
       .goal = placeAt(cells, map.grid(), 0.75),
       .output = fs::path(options.output).stem().string() + "_route.geojson"};
   writeFile(options.output, missionText(draft));
-  if (context.json)
-    printJson({{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}});
-  else
-    print(fmt::format("mission     {}; set start and goal, then: talus plan {}\n", options.output,
-                      options.output));
+  context.answer({{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}},
+                 fmt::format("mission     {}; set start and goal, then: talus plan {}\n", options.output,
+                             options.output));
   return Exit::kDone;
 }
 

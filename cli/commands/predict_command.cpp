@@ -46,9 +46,7 @@ int run(const PredictOptions& options, Context& context) {
     throw InputError(
         {options.table, "none of its rows can be predicted",
          table.refused.empty() ? "it has no rows" : "first reason: " + table.refused.front().reason});
-  constexpr std::size_t kShown = 20;
-  for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
-    context.warn(fmt::format("{}:{}: {}", options.table, table.refused[k].line, table.refused[k].reason));
+  warnOfRejected(table.refused, options.table, context);
   if (table.replaced) context.warn(options.table + ": contains prediction columns; they are replaced");
   if (table.outside > 0)
     context.warn(fmt::format(
@@ -56,16 +54,12 @@ int run(const PredictOptions& options, Context& context) {
         "standard deviations grow with the distance",
         options.table, table.outside));
   writeFile(options.output, table.text);
-  auto refused = nlohmann::ordered_json::array();
-  for (const auto& row : table.refused) refused.push_back({{"line", row.line}, {"reason", row.reason}});
-  if (context.json)
-    printJson({{"rows_predicted", table.predicted},
-               {"rows_outside", table.outside},
-               {"rows_refused", table.refused.size()},
-               {"refused", refused}});
-  else
-    print(fmt::format("{}: {} rows predicted, {} refused\n", options.output, table.predicted,
-                      table.refused.size()));
+  context.answer({{"rows_predicted", table.predicted},
+                  {"rows_outside", table.outside},
+                  {"rows_refused", table.refused.size()},
+                  {"refused", rejectedJson(table.refused)}},
+                 fmt::format("{}: {} rows predicted, {} refused\n", options.output, table.predicted,
+                             table.refused.size()));
   return Exit::kDone;
 }
 

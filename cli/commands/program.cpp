@@ -24,10 +24,10 @@
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
+#include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/interrupt.hpp>
-#include <talus/cli/app/mpi_launch.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/commands/program.hpp>
 #include <talus/common/input_error.hpp>

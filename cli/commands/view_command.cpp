@@ -14,7 +14,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/picture.hpp>
-#include <talus/cli/draw/route_comparison.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/map_options.hpp>

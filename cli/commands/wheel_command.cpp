@@ -10,7 +10,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/wheel_case_table.hpp>
-#include <talus/cli/soil/wheel_report.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
@@ -24,8 +23,6 @@ namespace {
 struct WheelOptions {
   std::string soil, rover;
   double load_N = std::nan(""), slip = std::nan(""), slip_angle_rad = 0.0;
-  std::string html;
-  std::vector<std::string> others;
   double inflation_Pa = std::nan(""), carcass_Pa = 0.0, torque_Nm = std::nan("");
   bool hard_ground = false;
   std::string cases, output;
@@ -49,13 +46,6 @@ void bind(CLI::App& command, WheelOptions& options) {
                                 "slip angle [rad] from the wheel plane to the travel, left positive")
                     ->type_name("RAD")
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
-  auto* html = addOutput(command, "--html", options.html, "page to write, with stresses and curves over slip")
-                   ->type_name("FILE.html");
-  auto* others =
-      command
-          .add_option("--compare", options.others, "further soils, drawn with it over slip; may be repeated")
-          ->type_name("NAME|FILE")
-          ->needs(html);
   groupOptions(command, "One wheel");
   auto* inflation = command
                         .add_option("--inflation", options.inflation_Pa,
@@ -77,7 +67,7 @@ void bind(CLI::App& command, WheelOptions& options) {
                      ->check(finite())
                      ->needs(hard)
                      ->excludes(slip);
-  for (auto* straight : {inflation, hard}) straight->excludes(angle)->excludes(html);
+  for (auto* straight : {inflation, hard}) straight->excludes(angle);
   hard->excludes(soil);
   groupOptions(command, "Tyres and hard ground (thesis C.2)");
   auto* cases =
@@ -85,7 +75,7 @@ void bind(CLI::App& command, WheelOptions& options) {
   addOutput(command, "-o,--output", options.output, "results of --cases to write")
       ->type_name("OUT.csv")
       ->needs(cases);
-  for (auto* single : {soil, rover, load, slip, angle, html, others, inflation, carcass, hard, torque})
+  for (auto* single : {soil, rover, load, slip, angle, inflation, carcass, hard, torque})
     cases->excludes(single);
   groupOptions(command, "A table of wheels");
   addTableOptions(command, options.columns);
@@ -99,35 +89,18 @@ void bind(CLI::App& command, WheelOptions& options) {
                     .remedy = "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
 }
 
-nlohmann::ordered_json refusedRows(const WheelCaseTable& table) {
-  auto rows = nlohmann::ordered_json::array();
-  for (const auto& row : table.refused) rows.push_back({{"line", row.line}, {"reason", row.reason}});
-  return rows;
-}
-
-void warnOfRefused(const WheelCaseTable& table, const std::string& path, const Context& context) {
-  constexpr std::size_t kShown = 20;
-  for (std::size_t k = 0; k < table.refused.size() && k < kShown; ++k)
-    context.warn(fmt::format("{}:{}: {}", path, table.refused[k].line, table.refused[k].reason));
-  if (table.refused.size() > kShown)
-    context.warn(
-        fmt::format("{}: {} more rows refused; --json lists all", path, table.refused.size() - kShown));
-}
-
 int runTable(const WheelOptions& options, Context& context) {
   if (options.output.empty()) lacking("-o OUT.csv");
   const WheelCaseTable table =
       solveWheelTable(tableFile(options.cases, options.columns, context, wheelCaseColumns()), options.output,
                       context.workers(), context.watch("wheels"));
   if (table.replaced) context.warn(options.cases + ": contains result columns; they are replaced");
-  warnOfRefused(table, options.cases, context);
-  if (context.json)
-    printJson({{"rows_solved", table.solved},
-               {"rows_refused", table.refused.size()},
-               {"refused", refusedRows(table)}});
-  else
-    print(
-        fmt::format("{}: {} rows solved, {} refused\n", options.output, table.solved, table.refused.size()));
+  warnOfRejected(table.refused, options.cases, context);
+  context.answer(
+      {{"rows_solved", table.solved},
+       {"rows_refused", table.refused.size()},
+       {"refused", rejectedJson(table.refused)}},
+      fmt::format("{}: {} rows solved, {} refused\n", options.output, table.solved, table.refused.size()));
   return Exit::kDone;
 }
 
@@ -143,41 +116,34 @@ std::string report(const terramech::WheelForces& forces, double load_N, double r
       forces.side_force_N, forces.side_force_N / load_N);
 }
 
+double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
+  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+}
+
 int runOne(const WheelOptions& options, const Context& context) {
   if (options.soil.empty()) lacking("--soil");
   if (options.rover.empty()) lacking("--rover");
   if (std::isnan(options.slip)) lacking("--slip");
   const terramech::Rover rover = terramech::loadRover(options.rover);
   const terramech::Soil soil = terramech::underGravity(terramech::loadSoil(options.soil), rover.gravity_m_s2);
-  const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+  const double load_N = loadOf(options, rover);
   const auto forces = terramech::equilibrium(soil, rover.wheel,
                                              {.load_N = load_N,
                                               .slip = options.slip,
                                               .slip_angle_rad = options.slip_angle_rad,
                                               .gravity_m_s2 = rover.gravity_m_s2});
-  std::vector<terramech::Soil> others;
-  for (const std::string& name : options.others)
-    others.push_back(terramech::underGravity(terramech::loadSoil(name), rover.gravity_m_s2));
-  if (!options.html.empty())
-    writeFile(options.html, wheelReport({soil, rover, load_N, options.slip, options.slip_angle_rad, others}));
-  if (context.json)
-    printJson({{"soil", soil.name},
-               {"rover", rover.name},
-               {"load_N", load_N},
-               {"slip", options.slip},
-               {"slip_angle_rad", options.slip_angle_rad},
-               {"sinkage_m", forces.sinkage_m},
-               {"entry_angle_rad", forces.entry_angle_rad},
-               {"torque_Nm", forces.torque_Nm},
-               {"drawbar_pull_N", forces.drawbar_pull_N},
-               {"side_force_N", forces.side_force_N}});
-  else
-    print(report(forces, load_N, rover.wheel.radius_m));
+  context.answer({{"soil", soil.name},
+                  {"rover", rover.name},
+                  {"load_N", load_N},
+                  {"slip", options.slip},
+                  {"slip_angle_rad", options.slip_angle_rad},
+                  {"sinkage_m", forces.sinkage_m},
+                  {"entry_angle_rad", forces.entry_angle_rad},
+                  {"torque_Nm", forces.torque_Nm},
+                  {"drawbar_pull_N", forces.drawbar_pull_N},
+                  {"side_force_N", forces.side_force_N}},
+                 report(forces, load_N, rover.wheel.radius_m));
   return Exit::kDone;
-}
-
-double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
-  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
 }
 
 int runTyre(const WheelOptions& options, const Context& context) {
@@ -192,27 +158,25 @@ int runTyre(const WheelOptions& options, const Context& context) {
       options.hard_ground ? tyreOnRigidGround(tyre, operation)
                           : tyreOnSoftGround(tyre, terramech::loadSoil(options.soil), operation);
   const std::string mode = forces.mode == terramech::TyreMode::Rigid ? "rigid" : "flattened";
-  if (context.json)
-    printJson({{"rover", rover.name},
-               {"load_N", operation.load_N},
-               {"slip", options.slip},
-               {"mode", mode},
-               {"critical_pressure_Pa", forces.critical_pressure_Pa},
-               {"sinkage_m", forces.sinkage_m},
-               {"deflection_m", forces.deflection_m},
-               {"flat_length_m", forces.flat_length_m},
-               {"torque_Nm", forces.torque_Nm},
-               {"drawbar_pull_N", forces.drawbar_pull_N}});
-  else
-    print(
-        fmt::format("tyre          {}\n"
-                    "sinkage       {:10.3f} mm\n"
-                    "deflection    {:10.3f} mm\n"
-                    "flat length   {:10.3f} mm\n"
-                    "torque        {:10.3f} Nm\n"
-                    "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
-                    mode, 1e3 * forces.sinkage_m, 1e3 * forces.deflection_m, 1e3 * forces.flat_length_m,
-                    forces.torque_Nm, forces.drawbar_pull_N, forces.drawbar_pull_N / operation.load_N));
+  context.answer(
+      {{"rover", rover.name},
+       {"load_N", operation.load_N},
+       {"slip", options.slip},
+       {"mode", mode},
+       {"critical_pressure_Pa", forces.critical_pressure_Pa},
+       {"sinkage_m", forces.sinkage_m},
+       {"deflection_m", forces.deflection_m},
+       {"flat_length_m", forces.flat_length_m},
+       {"torque_Nm", forces.torque_Nm},
+       {"drawbar_pull_N", forces.drawbar_pull_N}},
+      fmt::format("tyre          {}\n"
+                  "sinkage       {:10.3f} mm\n"
+                  "deflection    {:10.3f} mm\n"
+                  "flat length   {:10.3f} mm\n"
+                  "torque        {:10.3f} Nm\n"
+                  "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
+                  mode, 1e3 * forces.sinkage_m, 1e3 * forces.deflection_m, 1e3 * forces.flat_length_m,
+                  forces.torque_Nm, forces.drawbar_pull_N, forces.drawbar_pull_N / operation.load_N));
   return Exit::kDone;
 }
 
@@ -223,15 +187,13 @@ int runHardGround(const WheelOptions& options, const Context& context) {
   const double load_N = loadOf(options, rover);
   const terramech::RigidGroundForces forces =
       terramech::rigidGroundForces(rover.wheel, {}, load_N, options.torque_Nm);
-  if (context.json)
-    printJson({{"rover", rover.name},
-               {"load_N", load_N},
-               {"torque_Nm", options.torque_Nm},
-               {"drawbar_pull_N", forces.drawbar_pull_N},
-               {"slips", forces.slips}});
-  else
-    print(fmt::format("drawbar pull  {:10.3f} N    DP/W {:.3f}{}\n", forces.drawbar_pull_N,
-                      forces.drawbar_pull_N / load_N, forces.slips ? "   the wheel slips" : ""));
+  context.answer({{"rover", rover.name},
+                  {"load_N", load_N},
+                  {"torque_Nm", options.torque_Nm},
+                  {"drawbar_pull_N", forces.drawbar_pull_N},
+                  {"slips", forces.slips}},
+                 fmt::format("drawbar pull  {:10.3f} N    DP/W {:.3f}{}\n", forces.drawbar_pull_N,
+                             forces.drawbar_pull_N / load_N, forces.slips ? "   the wheel slips" : ""));
   return Exit::kDone;
 }
 

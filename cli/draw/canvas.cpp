@@ -4,9 +4,9 @@
 
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <nettle/base64.h>
 
 #include <talus/cli/draw/canvas.hpp>
-#include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
 namespace {
@@ -193,6 +193,12 @@ std::string png(const Image& image) {
       {.width = image.width, .height = image.height, .kind = Canvas::Kind::Png, .transparent = true});
   canvas.image(image, {0.0, 0.0, static_cast<double>(image.width), static_cast<double>(image.height)});
   return canvas.bytes();
+}
+
+std::string base64(const std::string& bytes) {
+  std::string text(BASE64_ENCODE_RAW_LENGTH(bytes.size()), ' ');
+  base64_encode_raw(text.data(), bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  return text;
 }
 
 void outline(Canvas& canvas, const Box& b, const Stroke& stroke) {

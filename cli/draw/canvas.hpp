@@ -3,12 +3,26 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <talus/cli/draw/colour.hpp>
 
 namespace talus::cli {
 
-struct Image;
+/// An image of pixels, top row first.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint32_t> argb;  ///< pixels as pixel() gives them
+
+  Image() = default;
+  Image(int w, int h)
+      : width(w), height(h), argb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+  std::uint32_t& at(int x, int y) noexcept {
+    return argb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
+};
 
 /// A position on the canvas: x to the right, y down [pixels].
 struct Spot {
@@ -82,6 +96,9 @@ class Canvas {
 
 /// Returns the bytes of an image as a PNG file.
 std::string png(const Image& image);
+
+/// Returns bytes in Base64 encoding, for data URIs.
+std::string base64(const std::string& bytes);
 
 /// Draws the outline of the box.
 void outline(Canvas& canvas, const Box& box, const Stroke& stroke);

@@ -7,6 +7,14 @@ namespace talus::cli {
 
 using terramech::Category;
 
+std::uint32_t pixel(Colour c) {
+  const auto byte = [](double v) {
+    return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+  };
+  return byte(c.alpha) << 24 | byte(c.red * c.alpha) << 16 | byte(c.green * c.alpha) << 8 |
+         byte(c.blue * c.alpha);
+}
+
 Colour colourOf(Category category) {
   switch (category) {
     case Category::Safe:

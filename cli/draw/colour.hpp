@@ -22,6 +22,9 @@ constexpr Colour rgb(unsigned hex) {
   return {.red = (hex >> 16 & 255) / 255.0, .green = (hex >> 8 & 255) / 255.0, .blue = (hex & 255) / 255.0};
 }
 
+/// Returns a colour as a pixel with premultiplied alpha, in cairo's format ARGB32.
+std::uint32_t pixel(Colour colour);
+
 /// Returns the colour with another alpha.
 constexpr Colour faded(Colour c, double alpha) {
   c.alpha = alpha;

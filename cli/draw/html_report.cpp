@@ -1,11 +1,8 @@
-#include <algorithm>
-#include <cctype>
 #include <cstdlib>
 
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/draw/image.hpp>
 
 namespace talus::cli {
 namespace {
@@ -19,53 +16,12 @@ div.charts img { flex: 1 1 20rem; min-width: 0; max-width: 30rem; height: auto; 
 div.table { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-align: left; }
-td.number { text-align: right; }
-@media (max-width: 40rem) {
-  table.wide, table.wide tbody { display: block; }
-  .wide tr { display: block; border-bottom: 2px solid #bbb; padding: .2rem 0; }
-  .wide tr:first-child { display: none; }
-  .wide td { display: flex; justify-content: space-between; gap: 1rem; padding: .12rem 0; overflow-wrap: anywhere; }
-  .wide td::before { font-weight: 600; flex: none; max-width: 50%; text-align: left; }
-})";
+td.number { text-align: right; })";
 
 bool isNumber(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
   return end != text.c_str() && (*end == '\0' || *end == ' ' || *end == '%');
-}
-
-// Returns true if the columns together are wider than a phone's screen; each row is then shown as a list of
-// its columns.
-bool isWide(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
-  constexpr std::size_t kCharacters = 40;
-  std::size_t characters = 0;
-  for (std::size_t i = 0; i < header.size(); ++i) {
-    std::size_t most = header[i].size();
-    for (const auto& row : rows) most = std::max(most, i < row.size() ? row[i].size() : 0);
-    characters += most;
-  }
-  return characters > kCharacters;
-}
-
-// A CSS string without characters that could end the string or the style sheet.
-std::string cssString(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0)
-      out += c;
-    else
-      out += fmt::format("\\{:x} ", static_cast<unsigned char>(c));
-  return out + "\"";
-}
-
-// Beginning of a table that shows the column name before each cell when rows are shown as lists.
-std::string namedColumns(const std::vector<std::string>& header, int number) {
-  std::string text = "<style>@media (max-width: 40rem) {";
-  for (std::size_t i = 0; i < header.size(); ++i)
-    text += fmt::format(" #wide{} td:nth-child({})::before {{ content: {} }}", number, i + 1,
-                        cssString(header[i]));
-  return text +
-         fmt::format(" }}</style>\n<div class=\"table\"><table class=\"wide\" id=\"wide{}\">\n", number);
 }
 
 }  // namespace
@@ -106,11 +62,7 @@ void HtmlReport::paragraph(const std::string& text) {
 
 void HtmlReport::table(const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows) {
-  if (isWide(header, rows))
-    body_ += namedColumns(header, ++wide_tables_);
-  else
-    body_ += "<div class=\"table\"><table>\n";
-  body_ += "<tr>";
+  body_ += "<div class=\"table\"><table>\n<tr>";
   for (const std::string& cell : header) body_ += fmt::format("<th>{}</th>", escaped(cell));
   body_ += "</tr>\n";
   for (const auto& row : rows) {

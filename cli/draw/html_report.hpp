@@ -18,8 +18,7 @@ class HtmlReport {
 
   void heading(const std::string& text);
   void paragraph(const std::string& text);
-  /// Adds a table. Numeric cells are right-aligned. On a narrow screen, each row of a wide table is shown as
-  /// a list of its columns.
+  /// Adds a table, which scrolls where it is wider than the screen. Numeric cells are right-aligned.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
   /// Adds charts, which are shown side by side if the screen is wide enough.
   void charts(const std::vector<Plot>& plots);
@@ -30,7 +29,6 @@ class HtmlReport {
  private:
   std::string title_;
   std::string body_;
-  int wide_tables_ = 0;
 };
 
 }  // namespace talus::cli

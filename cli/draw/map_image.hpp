@@ -1,6 +1,6 @@
 #pragma once
 
-#include <talus/cli/draw/image.hpp>
+#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/scene.hpp>
 
 namespace talus::cli {

@@ -1,23 +1,293 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/heading_costs.hpp>
+#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>
-#include <talus/cli/draw/page_layers.hpp>
-#include <talus/cli/draw/page_template.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/common/constants.hpp>
+
+// Embeds the bytes of the file between two symbols in the read-only data.
+asm(R"(
+  .section .rodata
+  talus_page_template: .incbin ")" TALUS_PAGE_TEMPLATE R"("
+  talus_page_template_end: .byte 0
+  .global talus_page_template
+  .global talus_page_template_end
+  .text
+)");
+
+extern "C" {
+extern const char talus_page_template[];      // NOLINT(readability-identifier-naming)
+extern const char talus_page_template_end[];  // NOLINT(readability-identifier-naming)
+}
 
 namespace talus::cli {
 namespace {
 
+using costmap::CellCode;
+using costmap::TravelCurve;
+using maps::Cell;
 using nlohmann::ordered_json;
+
+/// Returns a number for the data of an HTML page: nine significant digits; null for NaN and infinity.
+ordered_json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.9g}", value));
+}
+
+/// Returns an image as a data URI of a PNG file.
+std::string dataUri(const Image& image) {
+  return "data:image/png;base64," + base64(png(image));
+}
+
+/// Returns a data URI of an image with 24 bits per cell, in red, green and blue; word(cell) returns the bits.
+/// The top row is the northernmost row of the grid.
+std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(maps::Cell)>& word) {
+  Image image(grid.width, grid.height);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      image.at(column, grid.height - 1 - row) = 0xFF000000U | word(maps::Cell{column, row});
+  return dataUri(image);
+}
+
+/// Returns a colour as text "#rrggbb".
+std::string hex(Colour c) {
+  return fmt::format("#{:06x}", pixel(c) & 0xFFFFFFU);
+}
+
+/// Adds the values as integers with the decimals of the layer, or fewer if 24 bits do not suffice. 0 is no
+/// value; other values are stored as 1 + steps above the lowest value.
+void addValues(ordered_json& json, const ValueLayer& layer) {
+  double low = INFINITY, high = -INFINITY;
+  for (const float v : layer.values.values())
+    if (std::isfinite(v)) {
+      low = std::min(low, static_cast<double>(v));
+      high = std::max(high, static_cast<double>(v));
+    }
+  if (!(low <= high)) low = high = 0.0;
+  int decimals = layer.decimals;
+  while ((high - low) * std::pow(10.0, decimals) > 16777213.0) --decimals;
+  const double scale = std::pow(10.0, decimals), first = std::round(low * scale);
+  json["decimals"] = decimals;
+  json["low"] = first;
+  json["values"] = wordsUri(layer.values.grid(), [&](Cell cell) {
+    const auto v = static_cast<double>(layer.values[cell]);
+    return std::isfinite(v) ? static_cast<std::uint32_t>(std::round(v * scale) - first) + 1U : 0U;
+  });
+}
+
+/// Shares of all, some, no and unknown headings, six bits each.
+std::uint32_t sharesWord(const HeadingShares& shares) {
+  int total = 0;
+  for (const int n : shares.count) total += n;
+  std::uint32_t word = 0;
+  for (const int n : shares.count)
+    word = word << 6U | static_cast<std::uint32_t>(total == 0 ? 0 : (63 * n + total / 2) / total);
+  return word;
+}
+
+ordered_json legendOf(const ValueLayer& layer) {
+  ordered_json legend = ordered_json::array();
+  for (const LayerClass& one : layer.classes)
+    legend.push_back({{"colour", hex(one.colour)}, {"label", one.name}});
+  return legend;
+}
+
+/// Unit vector from the centre of the body; the latitude is used as the angle at the centre.
+struct Direction {
+  double x = 0.0, y = 0.0, z = 0.0;
+};
+
+Direction directionOf(maps::GeoPoint place) {
+  const double c = std::cos(place.latitude_rad);
+  return {c * std::cos(place.longitude_rad), c * std::sin(place.longitude_rad), std::sin(place.latitude_rad)};
+}
+
+maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
+  return {grid.south_west.x_m + east * grid.width * grid.resolution_m,
+          grid.south_west.y_m + north * grid.height * grid.resolution_m};
+}
+
+/// Returns the largest interpolation error [m] of the page at centres of lattice squares; checked on both
+/// diagonals of the lattice.
+double latticeError_m(const maps::Georeference& places, const maps::Grid& grid, int intervals) {
+  double most = 0.0;
+  for (int i = 0; i < intervals; ++i)
+    for (const int j : {i, intervals - 1 - i}) {
+      Direction sum;
+      for (const auto& [di, dj] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+        const Direction d = directionOf(places.reverse(latticePoint(
+            grid, static_cast<double>(i + di) / intervals, static_cast<double>(j + dj) / intervals)));
+        sum = {sum.x + d.x, sum.y + d.y, sum.z + d.z};
+      }
+      const maps::Point middle = latticePoint(grid, (i + 0.5) / intervals, (j + 0.5) / intervals);
+      const maps::Point met = places.forward({.latitude_rad = std::atan2(sum.z, std::hypot(sum.x, sum.y)),
+                                              .longitude_rad = std::atan2(sum.y, sum.x)});
+      const double error_m = std::hypot(met.x_m - middle.x_m, met.y_m - middle.y_m);
+      if (std::isfinite(error_m)) most = std::max(most, error_m);
+    }
+  return most;
+}
+
+/// Returns 32 colours of a scale in hexadecimal form, from low to high.
+ordered_json coloursOf(Scale scale) {
+  ordered_json colours = ordered_json::array();
+  for (int i = 0; i < 32; ++i) colours.push_back(hex(at(scale, i / 31.0)));
+  return colours;
+}
+
+/// Returns the colour and label of each category.
+ordered_json categoryLegend() {
+  ordered_json legend = ordered_json::array();
+  for (const auto category : {terramech::Category::Safe, terramech::Category::Marginal,
+                              terramech::Category::Dangerous, terramech::Category::Unknown})
+    legend.push_back({{"colour", hex(colourOf(category))}, {"label", terramech::name(category)}});
+  return legend;
+}
+
+ordered_json headingLegend() {
+  ordered_json legend = ordered_json::array();
+  for (std::size_t i = 0; i < kAllowedNames.size(); ++i)
+    legend.push_back(
+        {{"colour", hex(colourOf(static_cast<AllowedHeadings>(i)))}, {"label", kAllowedNames[i]}});
+  return legend;
+}
+
+/// Returns the layers of a scene for an HTML page, allowed headings first. Each layer has a name, a coloured image,
+/// a legend or a colour bar with range and unit, and the values that cli/page/probe.js shows: integers in
+/// units of the layer's last decimal, or the shares of the four AllowedHeadings.
+ordered_json layersOf(const Scene& scene) {
+  ordered_json layers = ordered_json::array();
+  if (!scene.headings.empty())
+    layers.push_back({{"name", "allowed headings"},
+                      {"image", dataUri(headingImage(scene.headings))},
+                      {"relief", kCategoryRelief},
+                      {"legend", headingLegend()},
+                      {"shares", wordsUri(scene.headings.grid(),
+                                          [&](Cell cell) { return sharesWord(scene.headings[cell]); })}});
+  for (const ValueLayer& layer : scene.layers) {
+    ordered_json json{{"name", layer.name}, {"image", dataUri(valueImage(layer))}, {"relief", kValueRelief}};
+    if (layer.classes.empty())
+      json["bar"] = {{"colours", coloursOf(scaleOf(layer))},
+                     {"low", number(layer.range.low)},
+                     {"high", number(layer.range.high)},
+                     {"unit", layer.unit}};
+    else
+      json["legend"] = legendOf(layer);
+    addValues(json, layer);
+    layers.push_back(std::move(json));
+  }
+  return layers;
+}
+
+/// Returns latitudes and longitudes [deg] on a square lattice over the scene, row by row from the south-west.
+/// The lattice is refined until the interpolation error is less than a twentieth of a cell, or to 128
+/// intervals. Returns null without a georeference.
+ordered_json latticeOf(const Scene& scene) {
+  if (!scene.georeference || !scene.georeference->reachesPlaces()) return nullptr;
+  const maps::Georeference& places = *scene.georeference;
+  const maps::Grid& grid = scene.grid();
+  int intervals = 8;
+  while (intervals < 128 && latticeError_m(places, grid, intervals) > 0.05 * grid.resolution_m)
+    intervals *= 2;
+  ordered_json lattice{
+      {"intervals", intervals}, {"latitude", ordered_json::array()}, {"longitude", ordered_json::array()}};
+  for (int j = 0; j <= intervals; ++j)
+    for (int i = 0; i <= intervals; ++i) {
+      const maps::GeoPoint place = places.reverse(
+          latticePoint(grid, static_cast<double>(i) / intervals, static_cast<double>(j) / intervals));
+      lattice["latitude"].push_back(number(place.latitude_rad / kDegree));
+      lattice["longitude"].push_back(number(place.longitude_rad / kDegree));
+    }
+  return lattice;
+}
+
+constexpr std::uint32_t kNoCurve = 65535;
+constexpr int kImageWidth = 4096;         // browsers limit the height of an image
+constexpr double kMostWord = 16777214.0;  // largest 24-bit value, less one for "refused"
+
+/// Range of the cost-curve nodes within the limits of pitch and roll: index of the bin of the steepest
+/// descent, number of bins in a row, and number of rows from the level row.
+struct Nodes {
+  int first_bin, bins, rows;
+
+  explicit Nodes(const costmap::TravelCost::Limits& limits) {
+    const auto bin = [](double along) {
+      return static_cast<int>(std::floor(along * TravelCurve::kBinsPerUnit)) + TravelCurve::kBins / 2;
+    };
+    first_bin = std::max(0, bin(-limits.max_along));
+    bins = std::min(TravelCurve::kBins - 1, bin(limits.max_along) + 1) - first_bin + 1;
+    rows = static_cast<int>(limits.max_across * TravelCurve::kRowsPerUnit) + 2;
+  }
+};
+
+/// Image of the costs [J/m] of all curves, as 24-bit words on a logarithmic scale. Word 0 is a refused
+/// heading; word w > 0 is the cost low exp(span (w - 1)), with a relative error of a few millionths.
+ordered_json tableOf(const std::vector<const TravelCurve*>& curves, const Nodes& nodes) {
+  std::vector<double> costs;
+  double low = INFINITY, high = 0.0;
+  for (const TravelCurve* curve : curves)
+    for (int row = 0; row < nodes.rows; ++row)
+      for (int bin = 0; bin < nodes.bins; ++bin) {
+        const float* its = curve->rows() + std::min(row, curve->lastRow()) * TravelCurve::kBins;
+        const double cost = std::max(1e-6, static_cast<double>(its[nodes.first_bin + bin]));
+        costs.push_back(cost);
+        if (!std::isfinite(cost)) continue;
+        low = std::min(low, cost);
+        high = std::max(high, cost);
+      }
+  const double span = low < high ? std::log(high / low) : 1.0;
+  Image image(kImageWidth, static_cast<int>(costs.size()) / kImageWidth + 1);
+  std::ranges::fill(image.argb, 0xFF000000U);
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    if (std::isfinite(costs[i]))
+      image.argb[i] |=
+          1U + static_cast<std::uint32_t>(std::round(std::log(costs[i] / low) / span * kMostWord));
+  return {{"image", dataUri(image)},  {"width", image.width},
+          {"height", image.height},   {"curves", curves.size()},
+          {"first", nodes.first_bin}, {"bins", nodes.bins},
+          {"rows", nodes.rows},       {"low", std::isfinite(low) ? low : 1.0},
+          {"span", span / kMostWord}};
+}
+
+/// Returns the data from which cli/page/rose.js computes the cost by heading: the cost curves used by the
+/// cells, at nodes within the limits of pitch and roll, an image of the gradients of the cells, and an image
+/// of their curve indices and categories. Returns null if the scene has no costs.
+ordered_json headingCostsOf(const Scene& scene) {
+  if (!scene.costs) return nullptr;
+  const costmap::TravelCost& cost = *scene.costs->cost;
+  std::map<std::uint32_t, std::uint32_t> numbers;
+  std::vector<const TravelCurve*> curves;
+  const auto numberOf = [&](CellCode code) {
+    if (code.curve() >= cost.curves().size()) return kNoCurve;
+    const auto [known, added] = numbers.try_emplace(code.curve(), static_cast<std::uint32_t>(curves.size()));
+    if (added) curves.push_back(&cost.curves()[code.curve()]);
+    return known->second;
+  };
+  const auto gradient = [&](maps::Cell cell) {
+    const CellCode code = scene.costs->codes[cell];
+    return static_cast<std::uint32_t>((code.stepsX() & 4095) << 12 | (code.stepsY() & 4095));
+  };
+  const auto kind = [&](maps::Cell cell) {
+    return numberOf(scene.costs->codes[cell]) | static_cast<std::uint32_t>(scene.costs->categories[cell])
+                                                    << 16U;
+  };
+  ordered_json json{{"gradients", wordsUri(scene.grid(), gradient)}, {"kinds", wordsUri(scene.grid(), kind)}};
+  json["table"] = tableOf(curves, Nodes(cost.limits()));
+  json["most"] = {{"along", cost.limits().max_along}, {"across", cost.limits().max_across}};
+  return json;
+}
 
 /// Indices of all vertices, or of 4000 evenly selected vertices, including both ends, for a longer route.
 std::vector<std::size_t> selection(std::size_t count) {
@@ -114,13 +384,6 @@ ordered_json comparisonOf(const Scene& scene) {
   return rows;
 }
 
-ordered_json partingsOf(const Scene& scene) {
-  ordered_json out = ordered_json::array();
-  for (const auto& [place, text] : scene.partings)
-    out.push_back({{"x", number(place.x_m)}, {"y", number(place.y_m)}, {"text", text}});
-  return out;
-}
-
 ordered_json dataOf(const Scene& scene) {
   const maps::Grid& grid = scene.grid();
   ordered_json data;
@@ -147,7 +410,6 @@ ordered_json dataOf(const Scene& scene) {
   data["provenance"] = scene.provenance;
   data["routes"] = routesOf(scene);
   data["comparison"] = comparisonOf(scene);
-  data["partings"] = partingsOf(scene);
   if (scene.story) data["story"] = storyOf(*scene.story);
   return data;
 }
@@ -166,6 +428,10 @@ std::string embedded(const ordered_json& data) {
 }
 
 }  // namespace
+
+std::string_view pageTemplate() {
+  return {talus_page_template, static_cast<std::size_t>(talus_page_template_end - talus_page_template)};
+}
 
 std::string page(const Scene& scene) {
   // The title is replaced before the data are inserted, so that user text in the data is never taken for a

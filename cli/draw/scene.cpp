@@ -12,12 +12,14 @@
 #include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/planner/reach/reach.hpp>
 
 namespace talus::cli {
 namespace {
 
 using maps::Cell;
 using maps::Raster;
+using planner::Reach;
 
 Range scaleRange(const Raster<float>& values) {
   const Range range = innerRange(values).value_or(Range{0.0, 1.0});
@@ -153,6 +155,43 @@ void addSlope(Scene& scene, Raster<float> values) {
   scene.layers.push_back(std::move(slope));
 }
 
+/// Facts of all routes, one row per name in order of first occurrence. Several values of one name in a route,
+/// such as files, are joined.
+std::vector<ComparedFact> rowsOf(const std::vector<NamedRoute>& routes) {
+  std::vector<ComparedFact> rows;
+  for (std::size_t i = 0; i < routes.size(); ++i) {
+    std::vector<Fact> facts = summaryOf(routes[i].route);
+    facts.insert(facts.end(), routes[i].provenance.begin(), routes[i].provenance.end());
+    for (const Fact& fact : facts) {
+      auto row =
+          std::find_if(rows.begin(), rows.end(), [&](const ComparedFact& r) { return r.name == fact.first; });
+      if (row == rows.end())
+        row = rows.insert(rows.end(), {fact.first, std::vector<std::string>(routes.size())});
+      std::string& cell = row->values[i];
+      cell += (cell.empty() ? "" : "; ") + fact.second;
+    }
+  }
+  return rows;
+}
+
+constexpr double kSmall = 0.15;  // of the map's diagonal: sets smaller than this share are marked
+
+/// Number of reached cells, and their bounding circle.
+struct ReachedExtent {
+  std::size_t count = 0;
+  double west = INFINITY, east = -INFINITY, south = INFINITY, north = -INFINITY;
+
+  void add(maps::Point p) {
+    ++count;
+    west = std::min(west, p.x_m);
+    east = std::max(east, p.x_m);
+    south = std::min(south, p.y_m);
+    north = std::max(north, p.y_m);
+  }
+  maps::Point centre() const { return {0.5 * (west + east), 0.5 * (south + north)}; }
+  double radius_m() const { return 0.5 * std::hypot(east - west, north - south); }
+};
+
 }  // namespace
 
 std::optional<Range> innerRange(const Raster<float>& values) {
@@ -216,6 +255,56 @@ void addRoute(Scene& scene, const planner::Route& route) {
   scene.route = route;
   for (Fact& fact : summaryOf(route)) scene.facts.push_back(std::move(fact));
   if (const auto warning = warningOf(route)) scene.rings.push_back({warning->place, 0.0, "warning"});
+}
+
+void compare(Scene& scene, std::vector<NamedRoute> routes) {
+  for (ComparedFact& row : rowsOf(routes))
+    if (std::ranges::count(row.values, row.values.front()) == std::ssize(row.values))
+      scene.facts.emplace_back(row.name, row.values.front());
+    else
+      scene.comparison.push_back(std::move(row));
+  scene.route = routes.front().route;
+  scene.routes = std::move(routes);
+}
+
+Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, const Severed& severed,
+                 const SceneOptions& options) {
+  Scene scene = sceneOf(map, options);
+  planner::HeadingSets headings(cost.cost());
+  const Reach from(cost, headings, Reach::Sense::From, severed.places.from);
+  const Reach to(cost, headings, Reach::Sense::To, severed.places.to, severed.tolerance_m);
+  ValueLayer layer{.name = "two sets that nothing connects",
+                   .unit = "",
+                   .values = maps::Raster<float>(scene.grid(), std::nanf("")),
+                   .range = {0.0, 1.0},
+                   .decimals = 0};
+  ReachedExtent reached, leading;
+  for (int row = 0; row < scene.grid().height; ++row)
+    for (int column = 0; column < scene.grid().width; ++column) {
+      const maps::Point centre = scene.grid().centre({column, row});
+      const auto cell = cost.grid().cellAt(centre);
+      if (!cell) continue;
+      if (from.holds(*cell)) {
+        layer.values[{column, row}] = 0.0F;
+        reached.add(centre);
+      } else if (to.holds(*cell)) {
+        layer.values[{column, row}] = 1.0F;
+        leading.add(centre);
+      }
+    }
+  const std::string first = fmt::format("reached from the start: {} cells", reached.count);
+  const std::string second = fmt::format("leading to the goal: {} cells", leading.count);
+  layer.classes = {{first, seriesColour(0)}, {second, seriesColour(4)}};
+  const bool start_is_small = reached.count <= leading.count;
+  const ReachedExtent& small = start_is_small ? reached : leading;
+  const maps::Grid& grid = scene.grid();
+  if (small.count > 0 && small.radius_m() < kSmall * std::hypot(grid.width, grid.height) * grid.resolution_m)
+    scene.rings.push_back({small.centre(), small.radius_m(), start_is_small ? first : second});
+  scene.layers.insert(scene.layers.begin(), std::move(layer));
+  scene.title += ": " + severed.reason;
+  scene.facts.emplace_back("route", "no_route: " + severed.reason);
+  scene.marks = {{"S", severed.places.from}, {"G", severed.places.to}};
+  return scene;
 }
 
 }  // namespace talus::cli

@@ -10,10 +10,13 @@
 
 #include <talus/cli/draw/colour.hpp>
 #include <talus/cli/draw/ticks.hpp>
-#include <talus/cli/draw/traverse_record.hpp>
+#include <talus/costmap/cost/cost_grid.hpp>
 #include <talus/costmap/cost/travel_cost.hpp>
 #include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/route.hpp>
+#include <talus/planner/simulation/drive/traverse_simulation.hpp>
+#include <talus/planner/simulation/worlds/true_world.hpp>
 
 namespace talus::costmap {
 class TraversabilityMap;
@@ -78,6 +81,22 @@ struct ComparedFact {
   std::vector<std::string> values;
 };
 
+/// A cell whose displayed category changed during a drive.
+struct CellChange {
+  double time_s = 0.0;
+  maps::Cell cell;
+  std::uint8_t category = 0;  ///< terramech::Category as a number
+};
+
+/// Record of a simulated drive for an HTML page: events, changes of the map, and the true soil patches, which
+/// the rover does not know.
+struct TraverseRecord {
+  planner::TraverseSimulation drive;
+  std::vector<CellChange> changes;
+  std::vector<planner::SoilPatch> patches;
+  maps::Grid grid;  ///< grid of the cells of `changes`
+};
+
 /// Scene: contents of a picture or page at display resolution. All rasters share one grid of at most
 /// SceneOptions::max_side cells per side.
 struct Scene {
@@ -91,8 +110,6 @@ struct Scene {
   std::optional<planner::Route> route;
   std::vector<NamedRoute> routes{};        ///< routes of a comparison: the first route, then the others
   std::vector<ComparedFact> comparison{};  ///< quantities of `routes`
-  /// Positions at which routes begin or end to deviate, with labels.
-  std::vector<std::pair<maps::Point, std::string>> partings{};
   /// Labelled positions of a scene without a route.
   std::vector<std::pair<const char*, maps::Point>> marks{};
   std::vector<Ring> rings{};
@@ -122,5 +139,24 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options);
 
 /// Adds a route and its summary to a scene.
 void addRoute(Scene& scene, const planner::Route& route);
+
+/// Adds several routes and their comparison to a scene; the first route is the reference. Facts that are
+/// equal for all routes are appended to Scene::facts, those that differ to Scene::comparison.
+void compare(Scene& scene, std::vector<NamedRoute> routes);
+
+/// A start and a goal without a feasible route between them.
+struct Severed {
+  /// Start and goal.
+  planner::Segment places;
+  double tolerance_m = 0.0;  ///< accepted distance of the end of a route from the goal
+  std::string reason;        ///< reason for which there is no route, in one line
+};
+
+/// Returns the scene of a request without a feasible route. The first layer has two classes: cells that can
+/// be reached from the start, and cells from which the goal can be reached; other cells have no value. A ring
+/// marks the smaller of the two sets, and the title ends with the reason. The cost grid must be that of the
+/// map.
+Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, const Severed& severed,
+                 const SceneOptions& options);
 
 }  // namespace talus::cli

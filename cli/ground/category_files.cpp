@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/colour.hpp>
-#include <talus/cli/draw/image.hpp>
 #include <talus/cli/ground/category_files.hpp>
 #include <talus/common/output_file.hpp>
 #include <talus/maps/raster/geotiff_writer.hpp>

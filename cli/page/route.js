@@ -62,9 +62,6 @@ function drawRoutes(map, data, onHover) {
   };
   select.addEventListener("change", paint);
   paint();
-  const part = {radius: 6, color: "#000", weight: 2, fillColor: "#fff", fillOpacity: 1, className: "parting"};
-  for (const {x, y, text} of data.partings)
-    L.circleMarker([y, x], part).addTo(map).bindTooltip(document.createTextNode(text), {sticky: true});
   const dots = routes.map(({colour}) => L.circleMarker([0, 0], {radius: 8, color: "#fff", weight: 3, fillColor: colour,
                                                                 fillOpacity: 1, interactive: false, className: "here"}));
   lines.forEach((line, k) => {

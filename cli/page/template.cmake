@@ -16,5 +16,5 @@ add_custom_command(OUTPUT ${page_template}
           ${page_dir}/modules.js ${page_dir}/page.css ${page_dir}/page.js ${page_dir}/probe.js ${page_dir}/profiles.js
           ${page_dir}/relief.js ${page_dir}/rose.js ${page_dir}/ruler.js ${page_dir}/route.js ${page_dir}/story.js
   VERBATIM)
-set_source_files_properties(draw/page_template.cpp PROPERTIES OBJECT_DEPENDS ${page_template}
+set_source_files_properties(draw/page.cpp PROPERTIES OBJECT_DEPENDS ${page_template}
                             COMPILE_DEFINITIONS TALUS_PAGE_TEMPLATE="${page_template}")

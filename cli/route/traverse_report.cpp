@@ -4,7 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/context.hpp>
+#include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/route_summary.hpp>
+#include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/traverse_report.hpp>
 
 namespace talus::cli {
@@ -35,6 +40,11 @@ std::string percent(const planner::Sampled& share) {
 
 std::string line(const std::string& name, const std::string& value) {
   return fmt::format("{:<24} {}\n", name, value);
+}
+
+// An empty field is a missing value.
+std::string field(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string();
 }
 
 std::size_t safeWorlds(const std::vector<planner::WorldResult>& perfect) {
@@ -145,6 +155,108 @@ std::string asText(const BeliefResults& beliefs) {
                                                    energy.interval_95[0], energy.interval_95[1]);
   }
   return text + "95 % confidence intervals in brackets.\n";
+}
+
+SimulatedWorlds simulatedWorlds(const WorldCount& count, const World& world, const Campaign& campaign,
+                                const ProgressMonitor& watch) {
+  const auto outcomes = campaign.run(
+      count.beliefs * count.worlds,
+      [&](std::size_t job) { return jsonText(asJson(world(job / count.worlds, job % count.worlds))); }, watch,
+      count.workers);
+  SimulatedWorlds out{.results = std::vector<std::vector<planner::WorldResult>>(count.beliefs),
+                      .failures = {}};
+  for (std::size_t i = 0; i < count.worlds && !outcomes.empty(); ++i) {
+    const JobOutcome* failed = nullptr;
+    for (std::size_t b = 0; b < count.beliefs && !failed; ++b)
+      if (outcomes[b * count.worlds + i].failed) failed = &outcomes[b * count.worlds + i];
+    if (failed) {
+      out.failures.push_back({i, failed->text});
+      continue;
+    }
+    for (std::size_t b = 0; b < count.beliefs; ++b)
+      out.results[b].push_back(
+          worldResult(nlohmann::ordered_json::parse(outcomes[b * count.worlds + i].text)));
+  }
+  return out;
+}
+
+void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSimulation& drive,
+                   const terramech::Rover& rover) {
+  std::string text =
+      "run,wheel,pass_index,time_s,x_m,y_m,heading_rad,slope_rad,slip,rim_speed_mps,speed_mps,load_N,torque_"
+      "Nm,"
+      "sinkage_m,wheel_radius_m,wheel_width_m\n";
+  for (const planner::WheelRecord& r : drive.records) {
+    const costmap::TelemetryReading& w = r.reading;
+    text += fmt::format(
+        "simulation,w{},{},{}\n", r.wheel + 1, w.pass,
+        fmt::join(std::vector{field(w.time_s), field(w.place.x_m), field(w.place.y_m), field(r.heading_rad),
+                              field(std::atan(w.gradient)), field(w.slip), field(rover.max_speed_mps),
+                              field(rover.max_speed_mps * (1.0 - w.speed_slip)), field(w.load_N),
+                              field(w.torque_Nm), field(w.sinkage_m), field(rover.wheel.radius_m),
+                              field(rover.wheel.width_m)},
+                  ","));
+  }
+  writeFile(path, text);
+}
+
+namespace {
+
+Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
+                  planner::SoilKnowledge belief) {
+  Scene scene =
+      sceneOf(map, SceneOptions{.title = fmt::format("Simulated traverse: {}", label(result.drive.outcome))});
+  scene.subtitle = fmt::format("soil knowledge: {}; categories before the drive", label(belief));
+  const planner::TraverseSimulation& drive = result.drive;
+  scene.facts = {{"outcome", label(drive.outcome)},
+                 {"distance", fmt::format("{:.1f} m", drive.length_m)},
+                 {"time", fmt::format("{:.0f} s", drive.time_s)},
+                 {"energy", fmt::format("{:.2f} kJ", drive.energy_J / 1000.0)},
+                 {"maximum slip", fmt::format("{:.2f}", drive.max_slip)},
+                 {"alarms", std::to_string(drive.alarms)},
+                 {"replans", std::to_string(drive.replans)},
+                 {"cells reclassified", std::to_string(result.categories_changed)}};
+  return scene;
+}
+
+}  // namespace
+
+RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::SoilKnowledge belief,
+                                  const ProgressMonitor& watch) {
+  const planner::TrueWorld world = site.trueWorld(0);
+  costmap::TraversabilityMap map = site.estimatedMap(belief, world);
+  RecordedTraverse out{{}, {{}, {}, world.patches(), map.grid()}};
+  const std::vector<std::uint8_t> before = map.costs().categories().values();
+  std::vector<std::uint8_t> known = before;
+  planner::SimulationOptions options = site.options(belief, 0);
+  options.watch = {.progress = {}, .stop = watch.stop};
+  options.record = true;
+  planner::TraverseLog log;
+  options.on_step = [&](const planner::TraverseStep& step) { log.record(step); };
+  options.on_learned = [&](double time_s) {
+    std::vector<std::uint8_t> now = map.costs().categories().values();
+    const int width = map.grid().width;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (now[i] != known[i])
+        out.story.changes.push_back(
+            {time_s, {static_cast<int>(i) % width, static_cast<int>(i) / width}, now[i]});
+    known = std::move(now);
+  };
+  out.result.drive = planner::simulateTraverse(map, world, options);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
+  out.story.drive = out.result.drive;
+  out.prediction = log.errors();
+  return out;
+}
+
+void saveTraversePage(const std::filesystem::path& path, const planner::SimulationSite& site,
+                      planner::SoilKnowledge belief, const RecordedTraverse& drive,
+                      const planner::RouteOrigin& origin) {
+  Scene scene = sceneBefore(site.estimatedMap(belief, site.trueWorld(0)), drive.result, belief);
+  scene.story = drive.story;
+  addProvenance(scene, origin);
+  savePage(path, scene);
 }
 
 }  // namespace talus::cli

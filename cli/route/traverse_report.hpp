@@ -1,14 +1,24 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/draw/scene.hpp>
+#include <talus/common/progress_monitor.hpp>
+#include <talus/planner/route/route_json.hpp>
 #include <talus/planner/simulation/drive/simulation_rates.hpp>
+#include <talus/planner/simulation/drive/simulation_site.hpp>
+#include <talus/planner/simulation/drive/traverse_log.hpp>
+#include <talus/terramech/contact/rover.hpp>
 
 namespace talus::cli {
+
+class Campaign;
 
 /// Returns the display name of a belief (knowledge of the soils that the rover has at the start): the name of
 /// planner::SoilKnowledge, or "perfect knowledge".
@@ -38,5 +48,56 @@ nlohmann::ordered_json asJson(const BeliefResults& beliefs);
 std::string asText(const planner::WorldResult& result);
 std::string asText(const std::vector<planner::WorldResult>& results);
 std::string asText(const BeliefResults& beliefs);
+
+/// Results of traverse simulations in random worlds under one or several beliefs. A world is one draw of the
+/// true soils; a belief is the knowledge of the soils that the rover has at the start
+/// (planner::SoilKnowledge).
+struct SimulatedWorlds {
+  /// A world whose simulation failed.
+  struct Failure {
+    std::size_t world = 0;
+    std::string reason;
+  };
+
+  std::vector<std::vector<planner::WorldResult>> results;  ///< results by belief, without failed worlds
+  std::vector<Failure> failures;
+};
+
+/// Function that simulates world i under belief b.
+using World = std::function<planner::WorldResult(std::size_t b, std::size_t i)>;
+
+/// Number of beliefs and worlds, and of concurrent simulations without MPI.
+struct WorldCount {
+  std::size_t beliefs = 1;
+  std::size_t worlds = 1;
+  std::size_t workers = 1;
+};
+
+/// Simulates all worlds under all beliefs, distributed over the ranks of the campaign; results do not depend
+/// on the number of ranks. An exception fails only its world. Returns an empty result on ranks other than 0.
+SimulatedWorlds simulatedWorlds(const WorldCount& count, const World& world, const Campaign& campaign,
+                                const ProgressMonitor& watch);
+
+/// Writes the wheel telemetry of a traverse simulation as CSV, which `talus update` can read. @throws
+/// InputError if the file cannot be written
+void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSimulation& drive,
+                   const terramech::Rover& rover);
+
+/// Traverse simulation of world 0 of a site, with the same result as site.world() and, in addition, wheel
+/// records and the times of map changes.
+struct RecordedTraverse {
+  planner::WorldResult result;
+  TraverseRecord story;
+  planner::PredictionErrors prediction{};  ///< errors of the map's prediction at each step of the drive
+};
+/// Simulates world 0 of a site with the knowledge `belief` of the soils, and returns the record.
+RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::SoilKnowledge belief,
+                                  const ProgressMonitor& watch);
+
+/// Writes an HTML page with a time slider for the drive: track, current plan, cells with a changed category,
+/// events and provenance. @throws InputError if the file cannot be written
+void saveTraversePage(const std::filesystem::path& path, const planner::SimulationSite& site,
+                      planner::SoilKnowledge belief, const RecordedTraverse& drive,
+                      const planner::RouteOrigin& origin);
 
 }  // namespace talus::cli

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
@@ -101,6 +102,21 @@ terramech::TableFile tableFile(const std::string& path, const TableOptions& opti
     if (printed->insert(text).second) context.warn(path + ": " + text);
   };
   return table;
+}
+
+void warnOfRejected(const std::vector<terramech::RejectedRow>& rows, const std::string& path,
+                    const Context& context) {
+  constexpr std::size_t kShown = 20;
+  for (std::size_t k = 0; k < rows.size() && k < kShown; ++k)
+    context.warn(fmt::format("{}:{}: {}", path, rows[k].line, rows[k].reason));
+  if (rows.size() > kShown)
+    context.warn(fmt::format("{}: {} more rows rejected; --json lists all", path, rows.size() - kShown));
+}
+
+nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& rows) {
+  auto all = nlohmann::ordered_json::array();
+  for (const auto& row : rows) all.push_back({{"line", row.line}, {"reason", row.reason}});
+  return all;
 }
 
 }  // namespace talus::cli

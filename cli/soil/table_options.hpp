@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace CLI {
@@ -30,5 +32,12 @@ void addTableOptions(CLI::App& command, TableOptions& options);
 /// `also` contains the columns that the call knows in addition to those of telemetry. @throws InputError
 terramech::TableFile tableFile(const std::string& path, const TableOptions& options, const Context& context,
                                const std::vector<std::string>& also = {});
+
+/// Warns of rejected rows of a table, of the first twenty each with its reason.
+void warnOfRejected(const std::vector<terramech::RejectedRow>& rows, const std::string& path,
+                    const Context& context);
+
+/// Returns rejected rows as JSON: [{line, reason}].
+nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& rows);
 
 }  // namespace talus::cli

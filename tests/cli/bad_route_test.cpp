@@ -8,9 +8,7 @@ using Words = std::vector<std::string>;
 
 /// A call of `talus plan` on a map of the folder.
 Words plan(const std::string& map, const Words& more) {
-  Words words{"plan", map, "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  return joined({"plan", map, "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido"}, more);
 }
 
 TEST(BadInput, InvalidPlanCallsAreRejectedWithOneLine) {
@@ -27,7 +25,8 @@ TEST(BadInput, InvalidPlanCallsAreRejectedWithOneLine) {
           {plan("good.asc", {"--start", "5,5", "--goal", "64.1,9"}), 2, "outside"},
           {plan("good.asc", {"--start", "text.json", "--goal", "9,9"}), 2, "text.json"},
           {plan("good.asc", {"--start", "point_less.json", "--goal", "9,9"}), 2, "point_less.json"},
-          {plan("fortress.asc", {"--start", "27.5,31.5", "--goal", "5,5"}), 2, "start"},
+          {plan("fortress.asc", {"--start", "27.5,31.5", "--goal", "5,5"}), 2,
+           "the nearest traversable cell"},
           {plan("fortress.asc", {"--start", "5,5", "--goal", "27.5,31.5"}), 2, "goal"},
           {plan("fortress.asc", {"--start", "5,5", "--goal", "31.5,31.5"}), 1, ""},
           {plan("one.asc", {"--start", "0.5,0.5", "--goal", "0.5,0.5"}), 2, ""},
@@ -101,6 +100,8 @@ TEST(BadInput, InvalidBenchCallsAreRejectedWithOneLine) {
                     {{"bench", "grids", "--planners", "field,Field"}, 2, "planner field: is named twice"},
                     {{"bench", "grids", "--planners", "feild"}, 2, "nearest is 'field'"},
                     {{"bench", "grids", "--planners", "PRM*"}, 2, "PRMstar"},
+                    {{"bench", "grids", "--planners", "field:cold"}, 2, "only those begin cold"},
+                    {{"bench", "grids", "--planners", "RRT*:speed=3"}, 2, "speed"},
                     {{"bench", "grids", "--runs", "-1"}, 2, "-1, must be finite, > 0"},
                     {{"bench", "grids", "--pairs", "0"}, 2, "0, must be finite, > 0"},
                     {{"bench", "grids", "--pairs", "99999999999"}, 2, "--pairs"},

@@ -18,6 +18,10 @@ TEST(BadInput, InvalidTelemetryIsRejectedWithOneLine) {
       {{"trace", "words.csv", "--base", "list.yaml"}, 2, ".yaml"},
       {{"predict", "words.csv", "--model", "missing.yaml", "-o", "out.csv"}, 2, "missing.yaml"},
       {{"predict", "words.csv", "--model", "nan.yaml", "-o", "out.csv"}, 2, "nan.yaml"},
+      {{"predict", "words.csv", "--model", "sandy_loam"}, 2, "--output"},
+      {{"predict", "words.csv", "--model", "sandy_loam", "--rover", "mer", "-o", "o.csv"},
+       2,
+       "load_N is missing"},
   };
   for (const char* file : {"missing.csv", "folder", "empty.csv", "head_only.csv", "wrong_columns.csv",
                            "words.csv", "garbage.csv"}) {
@@ -64,9 +68,7 @@ TEST(BadInput, InvalidColumnMappingsAreRejected) {
   folder.write("t.csv", "Fz;slip_pct;T;z\n80;20;2;0,012\n");
   folder.write("columns", "load_N=Fz\n\n# remark\nslip=slip_pct:percent\nload_N=T\n");
   const auto line = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"assess", "t.csv"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ran ran = runTalus(words, folder.path());
+    const Ran ran = runTalus(joined({"assess", "t.csv"}, more), folder.path());
     EXPECT_EQ(ran.code, 2) << ran.out;
     return ran.err;
   };
@@ -87,8 +89,7 @@ TEST(BadInput, InvalidTraversabilityMapCallsAreRejectedWithOneLine) {
   const auto with = [&site](const char* command, const std::vector<std::string>& more) {
     std::vector<std::string> words{command};
     words.insert(words.end(), site.begin(), site.end());
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return joined(words, more);
   };
   expectRefused(BadFiles(), {
                                 {{"costmap"}, 2, "DEM"},
@@ -112,17 +113,32 @@ TEST(BadInput, InvalidTraversabilityMapCallsAreRejectedWithOneLine) {
 }
 
 TEST(BadInput, InvalidSitesAndPluginsAreRejectedWithOneLine) {
-  expectRefused(BadFiles(),
-                {
-                    {{"generate"}, 2, "KIND"},
-                    {{"generate", "craters", "-o", "no/s.tif"}, 2, "no does not exist"},
-                    {{"generate", "craters", "-o", "folder"}, 2, "is a directory"},
-                    {{"generate", "craters", "--size", "5", "-o", "s.tif"}, 2, "--size 5"},
-                    {{"generate", "craters", "--resolution", "nan", "-o", "s.tif"}, 2, "resolution"},
-                    {{"plugins", "missing.so"}, 2, "missing.so"},
-                    {{"plugins", "garbage.tif"}, 2, "garbage.tif"},
-                    {{"plugins", "folder"}, 2, "folder"},
-                });
+  const BadFiles files;
+  files.folder().write("key.yaml", "site: {kind: dunes, widht: 9}");
+  files.folder().write("seed.yaml", "site: {kind: dunes, seed: -1}");
+  files.folder().write("width.yaml", "site: {kind: dunes, width: 4}");
+  files.folder().write("s_soils.yaml", "site: {kind: dunes}");
+  expectRefused(
+      files,
+      {
+          {{"generate"}, 2, "KIND"},
+          {{"generate", "craters"}, 2, "--output is required"},
+          {{"generate", "crater", "-o", "s.tif"}, 2, "did you mean 'craters'?"},
+          {{"generate", "lake", "-o", "s.tif"}, 2, "choose craters, dunes or rocks"},
+          {{"generate", "key.yaml", "-o", "s.tif"}, 2, "widht"},
+          {{"generate", "seed.yaml", "-o", "s.tif"}, 2, "seed = -1"},
+          {{"generate", "width.yaml", "-o", "s.tif"}, 2, "width = 4"},
+          {{"generate", "s_soils.yaml", "-o", "s.tif"}, 2, "also an input"},
+          {{"generate", "craters", "--size", "axb", "-o", "s.tif"}, 2, "--size axb"},
+          {{"generate", "craters", "--size", "20000", "-o", "s.tif", "--max-memory", "512MB"}, 2, "--size: "},
+          {{"generate", "craters", "-o", "no/s.tif"}, 2, "no does not exist"},
+          {{"generate", "craters", "-o", "folder"}, 2, "is a directory"},
+          {{"generate", "craters", "--size", "5", "-o", "s.tif"}, 2, "--size 5"},
+          {{"generate", "craters", "--resolution", "nan", "-o", "s.tif"}, 2, "resolution"},
+          {{"plugins", "missing.so"}, 2, "missing.so"},
+          {{"plugins", "garbage.tif"}, 2, "garbage.tif"},
+          {{"plugins", "folder"}, 2, "folder"},
+      });
 }
 
 }  // namespace bad_telemetry_test

@@ -56,7 +56,6 @@ CALLS = [
     ([TALUS, "view", "../map.ot", "-o"], ["v.html"], 4),
     ([TALUS, "drive", *GROUND, "--truth", "../truth.yaml", "--start", "500005,4000005", "--goal", "500009,4000009", "--telemetry"],
      ["t.csv"], 4),
-    ([TALUS, "wheel", "--soil", "sandy_loam", "--rover", "sojourner", "--load", "20", "--slip", "0.2", "--html"], ["w.html"], 4),
     ([TALUS, "wheel", "--cases", "../cases.csv", "-o"], ["w.csv"], 10),
     ([TALUS, "predict", "../drive.csv", *MODEL, "-o"], ["p.csv"], 4),
     ([TALUS, "trace", "../runs.csv", "--base", "../base.yaml", "--html"], ["t.html"], 4),

@@ -9,7 +9,7 @@
 #include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 
-#include "run_program.hpp"
+#include "bad_input.hpp"
 
 namespace talus::cli {
 namespace interface_test {
@@ -17,16 +17,8 @@ namespace interface_test {
 using nlohmann::json;
 
 // A gentle slope with a bump, 40 x 30 cells of 1 m.
-std::string dem() {
-  std::string text = "ncols 40\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
-  for (int row = 0; row < 30; ++row) {
-    for (int column = 0; column < 40; ++column) {
-      const double bump = 0.4 * std::exp(-0.05 * (std::pow(column - 20, 2) + std::pow(row - 15, 2)));
-      text += std::to_string(0.02 * column + bump) + " ";
-    }
-    text += "\n";
-  }
-  return text;
+double bump(int column, int row) {
+  return 0.02 * column + 0.4 * std::exp(-0.05 * (std::pow(column - 20, 2) + std::pow(row - 15, 2)));
 }
 
 // A drive along y = 15 at six levels of slip, six rows each, by the forward model with 2 % noise.
@@ -58,7 +50,7 @@ constexpr const char* kCases =
 const Folder& site() {
   static const Folder* const folder = [] {
     auto* made = new Folder;
-    made->write("dem.asc", dem());
+    made->write("dem.asc", asciiGrid(40, 30, bump));
     made->write("t.csv", telemetry());
     made->write("cases.csv", kCases);
     made->write("base.yaml", "{soil: sandy_loam, model: wong-reece}\n");
@@ -78,11 +70,6 @@ struct Call {
   std::vector<std::string> fields;  ///< type and JSON pointer of each stable field: `number /cost`
 };
 
-std::vector<std::string> words(std::vector<std::string> first, const std::vector<std::string>& more) {
-  first.insert(first.end(), more.begin(), more.end());
-  return first;
-}
-
 const std::vector<std::string> kRouteFields{
     "string /status",   "number /cost",     "number /energy_J",      "number /time_s",
     "number /length_m", "number /max_slip", "number /max_slope_rad", "number /lower_bound",
@@ -90,7 +77,7 @@ const std::vector<std::string> kRouteFields{
 
 // Ordered so that each call finds the output files of the calls before.
 std::vector<Call> calls() {
-  const std::vector<std::string> route = words(kGround, kEnds);
+  const std::vector<std::string> route = joined(kGround, kEnds);
   return {
       {"info",
        {"dem.asc", "--resolution", "1"},
@@ -113,7 +100,7 @@ std::vector<Call> calls() {
         "array /rejected", "object /refined/rmse", "string /held_out/scheme", "any /held_out/base_rmse",
         "any /held_out/refined_rmse", "any /held_out/noise_floor"}},
       {"costmap",
-       words(kGround, {"-o", "map.ot", "--geotiff", "l.tif", "--png", "map.png"}),
+       joined(kGround, {"-o", "map.ot", "--geotiff", "l.tif", "--png", "map.png"}),
        {"number /cells", "number /categories/safe", "number /categories/marginal",
         "number /categories/dangerous", "number /categories/unknown", "number /seconds"}},
       {"update",
@@ -122,14 +109,14 @@ std::vector<Call> calls() {
       {"update",
        {"map2.ot", "--list"},
        {"string /drives/0/drive", "string /drives/0/sensors", "number /drives/0/classes/0/without"}},
-      {"plan", words(route, {"-o", "route.geojson"}),
-       words(kRouteFields, {"number /seconds/plan", "number /seconds/proof"})},
-      {"score", words(kGround, {"--path", "route.geojson"}), words(kRouteFields, {"array /violations"})},
+      {"plan", joined(route, {"-o", "route.geojson"}),
+       joined(kRouteFields, {"number /seconds/plan", "number /seconds/proof"})},
+      {"score", joined(kGround, {"--path", "route.geojson"}), joined(kRouteFields, {"array /violations"})},
       {"explain",
-       words(kGround, {"--at", "20,15", "--heading", "0.5", "--next"}),
+       joined(kGround, {"--at", "20,15", "--heading", "0.5", "--next"}),
        {"any /next", "string /category", "array /causes", "string /causes/0/name", "any /causes/0/value"}},
       {"drive",
-       words(route, {"--truth", "truth.yaml"}),
+       joined(route, {"--truth", "truth.yaml"}),
        {"string /outcome", "number /energy_J", "number /length_m", "number /replans", "number /max_slip",
         "number /categories_changed"}},
   };
@@ -142,7 +129,7 @@ bool isOfKind(const json& value, const std::string& kind) {
 TEST(Interface, EveryCommandPrintsItsDocumentedJsonFields) {
   for (const Call& call : calls()) {
     SCOPED_TRACE(call.name);
-    const Ran ran = runTalus(words({"--json", call.name}, call.words), site().path());
+    const Ran ran = runTalus(joined({"--json", call.name}, call.words), site().path());
     ASSERT_EQ(ran.code, 0) << ran.err;
     const json printed = json::parse(ran.out, nullptr, false);
     ASSERT_FALSE(printed.is_discarded());
@@ -189,7 +176,7 @@ TEST(Interface, InterruptEndsWithCode130AndWritesNoFile) {
         fmt::format("{},{},0.0166,{},0.1,0.1\n", 60 + k % 41, 2.4 + 0.02 * (k % 83), 0.2 + 0.05 * (k % 13));
   const std::string table = site().write("long.csv", drive);
   const std::vector<std::vector<std::string>> long_work{
-      words(words({"drive"}, words(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
+      joined(joined({"drive"}, joined(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
       {"estimate", table, "--method", "wong-reece", "--html", "late.html"},
       {"assess", table, "--extrapolate", "--html", "late.html"},
       {"reproduce", "--goals", "--soils", "100000"},

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "run_program.hpp"
+#include "bad_input.hpp"
 
 namespace talus::cli {
 namespace refined_model_test {
@@ -13,21 +13,14 @@ constexpr const char* kSoil =
     "cohesive_modulus: 0, "
     "frictional_modulus: 1.0e6, shear_modulus_m: 0.015, c1: 0.43, c2: 0.32, density_kg_m3: 1600}\n";
 
-/// Gentle hills of 60 m x 60 m as an ESRI ASCII grid.
-std::string hills() {
-  std::string text = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
-  for (int row = 0; row < 60; ++row) {
-    for (int column = 0; column < 60; ++column)
-      text += std::to_string(0.2 * std::sin(0.17 * column) + 0.17 * std::cos(0.14 * (59 - row))) + " ";
-    text += "\n";
-  }
-  return text;
+double hills(int column, int row) {
+  return 0.2 * std::sin(0.17 * column) + 0.17 * std::cos(0.14 * row);
 }
 
 class RefinedModelCommands : public ::testing::Test {
  protected:
   RefinedModelCommands() {
-    folder_.write("dem.asc", hills());
+    folder_.write("dem.asc", asciiGrid(60, 60, hills));
     folder_.write("soil.yaml", kSoil);
   }
 
@@ -43,10 +36,9 @@ TEST_F(RefinedModelCommands, PlanAndCostmapApplyAndStoreAModel) {
   folder_.write("model.yaml",
                 std::string(kSoil) + "model: wong-reece\neffects: [{name: bulldozing, parameters: [0.4]}]\n");
   const auto energy = [&](const std::vector<std::string>& ground) {
-    std::vector<std::string> words{"plan",   "dem.asc", "--resolution", "1",  "--start",  "5,5",
-                                   "--goal", "54,50",   "--json",       "-o", "r.geojson"};
-    words.insert(words.end(), ground.begin(), ground.end());
-    const Ran ran = talus(words);
+    const Ran ran = talus(joined({"plan", "dem.asc", "--resolution", "1", "--start", "5,5", "--goal", "54,50",
+                                  "--json", "-o", "r.geojson"},
+                                 ground));
     EXPECT_EQ(ran.code, 0) << ran.err;
     return nlohmann::json::parse(ran.out, nullptr, false)["energy_J"].get<double>();
   };
@@ -65,11 +57,9 @@ TEST_F(RefinedModelCommands, PlanAndCostmapApplyAndStoreAModel) {
 
 // A simulated drive over the hills with effects unknown to the rover; `ground` are the options of its soil.
 std::vector<std::string> simulatedTraverse(const std::vector<std::string>& ground) {
-  std::vector<std::string> words{"drive",  "dem.asc", "--resolution", "1",       "--rover",
-                                 "fido",   "--truth", "truth.yaml",   "--start", "5,5",
-                                 "--goal", "40,40",   "--belief",     "prior",   "--json"};
-  words.insert(words.end(), ground.begin(), ground.end());
-  return words;
+  return joined({"drive", "dem.asc", "--resolution", "1", "--rover", "fido", "--truth", "truth.yaml",
+                 "--start", "5,5", "--goal", "40,40", "--belief", "prior", "--json"},
+                ground);
 }
 
 TEST_F(RefinedModelCommands, TracedEffectImprovesPredictionOfTheNextTraverse) {

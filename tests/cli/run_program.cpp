@@ -23,6 +23,11 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
 Ran runTalus(const std::vector<std::string>& words, const fs::path& folder, double interrupt_s) {
   const Folder capture;
   std::ostringstream line;

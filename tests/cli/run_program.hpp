@@ -6,6 +6,9 @@
 
 namespace talus::cli {
 
+/// The words of a call after each other.
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& more);
+
 /// Exit code, standard output and standard error of a run of the program.
 struct Ran {
   int code = -1;  ///< exit code; 128 + signal number if a signal ended the process

@@ -9,13 +9,6 @@
 namespace talus::cli {
 namespace context_test {
 
-TEST(Context, OneLineHasNoLineBreaks) {
-  EXPECT_EQ(oneLine("first\nsecond"), "first; second");
-  EXPECT_EQ(oneLine("tab\there"), "tab here");
-  EXPECT_EQ(oneLine("trailing \r\n\n"), "trailing");
-  EXPECT_EQ(oneLine(""), "");
-}
-
 TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
   Context context;
   testing::internal::CaptureStderr();
@@ -61,26 +54,6 @@ TEST(Context, TerminalObeysNoPrintedText) {
   const std::string json = testing::internal::GetCapturedStdout();
   EXPECT_TRUE(std::ranges::all_of(json, [](char c) { return c == '\n' || (c >= ' ' && c < '\x7f'); }))
       << json;
-}
-
-TEST(Context, WorkerCountIsTheRequestedOneAndAtLeastOne) {
-  Context context;
-  EXPECT_GE(context.workers(), 1);
-  context.threads = 3;
-  EXPECT_EQ(context.workers(), 3);
-}
-
-// Property: the monitor reports a requested stop, and has no progress bar in quiet mode.
-TEST(Context, MonitorForwardsTheStopRequest) {
-  std::stop_source source;
-  Context context;
-  context.quiet = true;
-  context.stop = source.get_token();
-  const ProgressMonitor watch = context.watch("plan");
-  EXPECT_FALSE(watch.progress);
-  EXPECT_FALSE(watch.stopped());
-  source.request_stop();
-  EXPECT_TRUE(watch.stopped());
 }
 
 }  // namespace context_test

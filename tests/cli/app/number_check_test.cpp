@@ -16,49 +16,36 @@ TEST(NumberCheck, NanInfinityAndOutOfRangeAreRejected) {
   EXPECT_EQ(within(1e-12, 1.0 - 1e-12)(one), "1, must be 1e-12 to 0.999999999999");
 }
 
-// Implausible numbers are refused for every option, because range tests accept NaN.
-TEST(NumberCheck, ImpossibleNumbersAreRejectedForAnyOption) {
-  const auto said = [](const std::string& word) -> std::string {
-    CLI::App app;
-    std::string value;
-    app.add_option("--risk", value);
-    app.parse("--risk=" + word);
-    try {
-      checkNumbers(app);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
-  };
-  for (const char* bad :
-       {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
-    EXPECT_THAT(said(bad), testing::HasSubstr("--risk ")) << bad;
-  for (const char* other : {"0x10", "-0X1p3", "010", "5,0x10", "-007"})
-    EXPECT_THAT(said(other), testing::HasSubstr("must be decimal")) << other;
-  for (const char* good : {"0.10", "0xfile", "00.tif", "0", "0.5", "-3", "18446744073709551615", "x.tif",
-                           "nano.tif", "./nan", "3d,4d", "1e-9"})
-    EXPECT_EQ(said(good), "") << good;
+// The error of checkNumbers() for a parsed line; empty if it accepts the line.
+std::string refusal(const std::string& line) {
+  CLI::App app;
+  std::string value, map;
+  double weight = 0.0;
+  app.add_option("--risk", value);
+  app.add_option("--time-weight", weight);
+  app.add_option("--map", map)->type_name("MAP.ot");
+  app.parse(line);
+  try {
+    checkNumbers(app);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
 }
 
-// A file may be named like a number, so the remedy for a path option names the file; other options need a
-// number.
-TEST(NumberCheck, RemedyDependsOnTheOptionType) {
-  const auto said = [](const std::string& option) -> std::string {
-    CLI::App app;
-    double weight = 0.0;
-    std::string map;
-    app.add_option("--time-weight", weight);
-    app.add_option("--map", map)->type_name("MAP.ot");
-    app.parse(option);
-    try {
-      checkNumbers(app);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(said("--time-weight 1e300"), testing::EndsWith("give another number"));
-  EXPECT_THAT(said("--map 1e300"), testing::EndsWith("a file of that name is ./1e300"));
+// Implausible numbers are refused for every option, because range tests accept NaN.
+TEST(NumberCheck, ImpossibleNumbersAreRejectedForAnyOption) {
+  for (const char* bad :
+       {"nan", "-nan", "NaN", "inf", "-Infinity", "1e999", "1e-300", "1e300", "5,nan", "nand,3d"})
+    EXPECT_THAT(refusal(std::string("--risk=") + bad), testing::HasSubstr("--risk ")) << bad;
+  for (const char* other : {"0x10", "-0X1p3", "010", "5,0x10", "-007"})
+    EXPECT_THAT(refusal(std::string("--risk=") + other), testing::HasSubstr("must be decimal")) << other;
+  for (const char* good : {"0.10", "0xfile", "00.tif", "0", "0.5", "-3", "18446744073709551615", "x.tif",
+                           "nano.tif", "./nan", "3d,4d", "1e-9"})
+    EXPECT_EQ(refusal(std::string("--risk=") + good), "") << good;
+  // A file may be named like a number.
+  EXPECT_THAT(refusal("--time-weight 1e300"), testing::EndsWith("give another number"));
+  EXPECT_THAT(refusal("--map 1e300"), testing::EndsWith("a file of that name is ./1e300"));
 }
 
 // Property: without this check the parser reads `--risk-weight ""` as 0 and `--map ""` as no map.

@@ -23,6 +23,12 @@ std::string refusal(const std::string& path, const std::vector<std::string>& inp
   return "";
 }
 
+std::string missionTo(const std::string& output, const std::string& goal = "9, 9") {
+  return "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\nrover: sojourner\n"
+         "start: [5, 5]\ngoal: [" +
+         goal + "]\noutput: " + output + "\n";
+}
+
 TEST(CheckOutput, InputsJournalsDevicesAndForeignLinksAreProtected) {
   const Folder folder, other;
   folder.write("in.csv", "x");
@@ -109,14 +115,10 @@ TEST(CheckOutput, PartsOfAnInputAreProtected) {
 TEST(CheckOutput, EveryCommandProtectsItsInputs) {
   const BadFiles files;
   const std::string map = "good.asc";
-  files.folder().write("mission.yaml",
-                       "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
-                       "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: words.csv\n");
+  files.folder().write("mission.yaml", missionTo("words.csv"));
   const std::vector<std::string> ground{"good.asc", "--ignore-crs", "--resolution", "1"};
-  const auto call = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
-    words.insert(words.end(), ground.begin(), ground.end());
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  const auto call = [&](const std::vector<std::string>& words, const std::vector<std::string>& more) {
+    return joined(joined(words, ground), more);
   };
   expectRefused(
       files,
@@ -188,15 +190,10 @@ TEST(CheckOutput, MissionOutputIsProtected) {
                                                         {"folder", "is no route"},
                                                         {"none/r.json", "none"}}) {
     const std::string name = "m" + std::to_string(calls.size()) + ".yaml";
-    files.folder().write(name,
-                         "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
-                         "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: " +
-                             output + "\n");
+    files.folder().write(name, missionTo(output));
     calls.push_back({{"plan", name}, 2, says});
   }
-  files.folder().write("self.yaml",
-                       "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
-                       "rover: sojourner\nstart: [5, 5]\ngoal: [9, 9]\noutput: self.yaml\n");
+  files.folder().write("self.yaml", missionTo("self.yaml"));
   calls.push_back({{"plan", "self.yaml"}, 2, "also an input"});
   expectRefused(files, calls);
 }
@@ -206,16 +203,11 @@ TEST(CheckOutput, MissionOutputIsProtected) {
 TEST(CheckOutput, MissionReplacesItsOwnRouteOnly) {
   const BadFiles files;
   const auto mission = [&](const std::string& name, const std::string& goal, const std::string& output) {
-    files.folder().write(name,
-                         "maps: {dem: good.asc, resolution_m: 1, ignore_crs: true}\nsoil: sandy_loam\n"
-                         "rover: sojourner\nstart: [5, 5]\ngoal: [" +
-                             goal + "]\noutput: " + output + "\n");
+    files.folder().write(name, missionTo(output, goal));
     return name;
   };
   const auto plan = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"plan", "--quiet", "--no-proof"};
-    words.insert(words.end(), more.begin(), more.end());
-    return runTalus(words, files.folder().path()).code;
+    return runTalus(joined({"plan", "--quiet", "--no-proof"}, more), files.folder().path()).code;
   };
   const std::string route = "r.geojson";
   EXPECT_EQ(plan({mission("m.yaml", "9, 9", route)}), 0);

@@ -155,20 +155,5 @@ TEST(BenchCommand, CancelledMpiCampaignKeepsCompletedRuns) {
   expectTheFastRunsKept(folder);
 }
 
-TEST(BenchCommand, ErrorsAreOneLineWithCodeTwo) {
-  const Folder folder;
-  for (const auto& words : std::vector<std::vector<std::string>>{{"bench", folder / "none.scen"},
-                                                                 {"bench", folder / "none.tif"},
-                                                                 {"bench", "--planners", "PRM*"},
-                                                                 {"bench", "--planners", "field:cold"},
-                                                                 {"bench", "--planners", "RRT*:speed=3"},
-                                                                 {"bench", "--runs", "0"}}) {
-    const Ran ran = runTalus(words, folder.path());
-    EXPECT_EQ(ran.code, 2) << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-    EXPECT_TRUE(folder.names().empty());  // no folder is created for an invalid call
-  }
-}
-
 }  // namespace bench_command_test
 }  // namespace talus::cli

@@ -26,11 +26,7 @@ TEST(CostmapCommand, CategoriesCountEveryCellAndRoundTrip) {
   folder.write("dem.asc", asciiGrid(50, 40, block));
   const std::vector<std::string> ground{"dem.asc",    "--resolution", "1",  "--soil",
                                         "sandy_loam", "--rover",      "mer"};
-  const auto with = [&ground](const std::vector<std::string>& more) {
-    auto words = ground;
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
+  const auto with = [&ground](const std::vector<std::string>& more) { return joined(ground, more); };
   const json built = run(folder, with({"-o", "map.ot", "--octovis", "colour.ot", "--geotiff", "layers.tif"}));
   const auto count = [](const json& of, const char* category) {
     return of["categories"][category].get<int>();
@@ -49,18 +45,6 @@ TEST(CostmapCommand, CategoriesCountEveryCellAndRoundTrip) {
   EXPECT_THAT(fileContent(folder / "colour.ot"), testing::HasSubstr("id ColorOcTree"));
   EXPECT_THAT(fileContent(folder / "map.ot"), testing::HasSubstr("id TraversabilityTree"));
   EXPECT_THAT(fileContent(folder / "layers.tif"), testing::StartsWith("II"));
-}
-
-TEST(CostmapCommand, ErrorsAreOneLineAndLeaveNoFile) {
-  const std::vector<std::string> ground{"costmap", "good.asc",   "--resolution", "1",
-                                        "--soil",  "sandy_loam", "--rover",      "mer"};
-  std::vector<BadCall> calls;
-  for (const char* option : {"-o", "--geotiff", "--png", "--octovis"}) {
-    auto words = ground;
-    words.insert(words.end(), {option, "no/file"});
-    calls.push_back({words, 2, "no"});
-  }
-  expectRefused(BadFiles(), calls);
 }
 
 }  // namespace costmap_command_test

@@ -15,10 +15,9 @@ double ramp(int column, int) {
 }
 
 std::vector<std::string> explain(const std::vector<std::string>& more) {
-  std::vector<std::string> words{"explain",    "dem.asc", "--resolution", "1",      "--soil",
-                                 "sandy_loam", "--rover", "fido",         "--quiet"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  return joined(
+      {"explain", "dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido", "--quiet"},
+      more);
 }
 
 // Closed form: a plane rising eastwards by 0.1: slope atan 0.1 uphill to the east, the same downhill to the
@@ -52,20 +51,6 @@ TEST(ExplainCommand, TextListsTheCausesOfTheJson) {
   EXPECT_GT(why["causes"].size(), 3U);
   for (const json& cause : why["causes"]) EXPECT_THAT(text, HasSubstr(cause["name"].get<std::string>()));
   EXPECT_THAT(text, HasSubstr(why["verdict"].get<std::string>()));
-}
-
-TEST(ExplainCommand, ErrorsAreOneLineWithTheirExitCode) {
-  const std::vector<std::string> ground{"explain", "good.asc",   "--resolution", "1",
-                                        "--soil",  "sandy_loam", "--rover",      "fido"};
-  const auto with = [&ground](const std::vector<std::string>& more) {
-    auto words = ground;
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  expectRefused(BadFiles(), {{with({}), 2, "--at"},
-                             {with({"--at", "999,5"}), 2, "outside"},
-                             {with({"--at", "five"}), 2, "five"},
-                             {with({"--at", "5,5", "--heading", "nan"}), 2, "--heading"}});
 }
 
 }  // namespace explain_command_test

@@ -57,33 +57,5 @@ TEST(GenerateCommand, ShippedDescriptionsAreComplete) {
   }
 }
 
-TEST(GenerateCommand, ErrorsAreOneLineWithCodeTwo) {
-  const Folder folder;
-  const std::string out = folder / "site.tif";
-  struct Case {
-    std::vector<std::string> words;
-    const char* says;
-  };
-  const std::vector<Case> cases{
-      {{"generate", "craters"}, "--output is required"},
-      {{"generate", "crater", "-o", out}, "did you mean 'craters'?"},
-      {{"generate", "craters", "--size", "4", "-o", out}, "--size 4: is not a size in cells"},
-      {{"generate", "craters", "--size", "axb", "-o", out}, "--size axb"},
-      {{"generate", "craters", "--resolution", "0", "-o", out}, "--resolution"},
-      {{"generate", "craters", "-o", folder / "no/where.tif"}, "where.tif"},
-      {{"generate", folder.write("s.yaml", "site: {kind: dunes, widht: 9}"), "-o", out}, "widht"},
-      {{"generate", folder.write("t.yaml", "site: {kind: dunes, width: 4}"), "-o", out}, "width = 4"},
-      {{"generate", folder / "none.yaml", "-o", out}, "none.yaml"},
-      {{"generate", "craters", "--size", "20000", "-o", out, "--max-memory", "512MB"}, "--size: "},
-      {{"generate", folder.write("site_soils.yaml", "site: {kind: dunes}"), "-o", out}, "also an input"},
-  };
-  for (const Case& c : cases) {
-    const Ran ran = runTalus(c.words);
-    EXPECT_EQ(ran.code, 2) << ran.err;
-    EXPECT_THAT(ran.err, HasSubstr(c.says));
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-  }
-}
-
 }  // namespace generate_command_test
 }  // namespace talus::cli

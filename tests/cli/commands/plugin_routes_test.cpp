@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bad_input.hpp"
 #include "beyond_memory.hpp"
-#include "run_program.hpp"
 
 namespace talus::cli {
 namespace plugin_routes_test {
@@ -17,27 +17,22 @@ using Words = std::vector<std::string>;
 class PluginRoutes : public testing::Test {
  protected:
   PluginRoutes() {
-    std::string text = "ncols 40\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
-    for (int row = 19; row >= 0; --row) {
-      for (int column = 0; column < 40; ++column)
-        text += row >= 8 && column >= 19 && column < 22 ? "-9999 " : "0 ";
-      text += '\n';
-    }
-    folder_.write("wall.asc", text);
+    folder_.write("wall.asc", asciiGrid(40, 20, [](int column, int row) {
+                    return row >= 8 && column >= 19 && column < 22 ? -9999.0 : 0.0;
+                  }));
     folder_.write("truth.yaml", "{}\n");
   }
 
   Ran run(const std::string& call, const Words& more) const {
-    Words words{call, "wall.asc", "--quiet",    "--ignore-crs", "--resolution",
-                "1",  "--soil",   "sandy_loam", "--rover",      "fido"};
-    words.insert(words.end(), more.begin(), more.end());
-    return runTalus(words, folder_.path());
+    return runTalus(joined({call, "wall.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil",
+                            "sandy_loam", "--rover", "fido"},
+                           more),
+                    folder_.path());
   }
   Ran plan(const std::string& planner, const Words& more = {}) const {
-    Words words{"--plugin", TALUS_STRAIGHT_PLUGIN, "--planner", planner, "--start", "5,4", "--goal", "35,4",
-                "-o",       "r.geojson",           "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run("plan", words);
+    return run("plan", joined({"--plugin", TALUS_STRAIGHT_PLUGIN, "--planner", planner, "--start", "5,4",
+                               "--goal", "35,4", "-o", "r.geojson", "--json"},
+                              more));
   }
 
   Folder folder_;
@@ -61,9 +56,7 @@ TEST_F(PluginRoutes, PluginRoutesAreCheckedAndPriced) {
 
 TEST_F(PluginRoutes, InvalidPluginRoutesAreRejectedAndScoredWithViolations) {
   const Words places{"--start", "5,14", "--goal", "35,14"};
-  Words words{"--plugin", TALUS_STRAIGHT_PLUGIN, "-o", "r.geojson"};
-  words.insert(words.end(), places.begin(), places.end());
-  const Ran planned = run("plan", words);
+  const Ran planned = run("plan", joined({"--plugin", TALUS_STRAIGHT_PLUGIN, "-o", "r.geojson"}, places));
   EXPECT_EQ(planned.code, 1);
   EXPECT_THAT(planned.err, HasSubstr("the check refuses that of line of straight: at 1"));
   EXPECT_EQ(std::count(planned.err.begin(), planned.err.end(), '\n'), 1) << planned.err;
@@ -104,9 +97,7 @@ TEST_F(PluginRoutes, PluginErrorsAreOneLine) {
 // The plugin declares that it respects headings and turning radius, but its route does not.
 TEST_F(PluginRoutes, HeadingsAreCheckedAgainstTheRoute) {
   const auto lied = [this](const Words& motion) {
-    Words words{"--turning-radius", "2"};
-    words.insert(words.end(), motion.begin(), motion.end());
-    const Ran ran = plan("liar", words);
+    const Ran ran = plan("liar", joined({"--turning-radius", "2"}, motion));
     EXPECT_EQ(ran.code, 1) << ran.err;
     return ran.err;
   };
@@ -117,9 +108,7 @@ TEST_F(PluginRoutes, HeadingsAreCheckedAgainstTheRoute) {
 
 TEST_F(PluginRoutes, UnusablePluginsAreRejectedWithOneLine) {
   const auto with = [&](const std::string& file, const Words& more = {}) {
-    Words words{"--plugin", file, "--start", "5,4", "--goal", "35,4"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ran ran = run("plan", words);
+    const Ran ran = run("plan", joined({"--plugin", file, "--start", "5,4", "--goal", "35,4"}, more));
     EXPECT_EQ(ran.code, 2) << ran.err;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     return ran.err;

@@ -61,18 +61,5 @@ TEST(PredictCommand, UnpredictableRowsAreListedByLine) {
   EXPECT_THAT(ran.err, testing::HasSubstr("t.csv:3: "));
 }
 
-TEST(PredictCommand, ErrorsAreOneLineAndLeaveNoFile) {
-  expectRefused(BadFiles(),
-                {{{"predict", "words.csv", "--model", "sandy_loam"}, 2, "--output"},
-                 {{"predict", "words.csv", "--model", "no_such", "-o", "o.csv"}, 2, "no_such"},
-                 {{"predict", "head_only.csv", "--model", "sandy_loam", "--rover", "mer", "-o", "o.csv"},
-                  2,
-                  "head_only.csv"},
-                 {{"predict", "words.csv", "--model", "sandy_loam", "--rover", "mer", "-o", "o.csv"},
-                  2,
-                  "load_N is missing"},
-                 {{"predict", "missing.csv", "--model", "sandy_loam", "-o", "o.csv"}, 2, "missing.csv"}});
-}
-
 }  // namespace predict_command_test
 }  // namespace talus::cli

@@ -1,8 +1,16 @@
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <random>
+#include <thread>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/terramech/contact/rover.hpp>
@@ -10,7 +18,6 @@
 #include <talus/terramech/io/soil_library.hpp>
 
 #include "bad_input.hpp"
-#include "run_program.hpp"
 
 namespace talus::cli {
 namespace update_command_test {
@@ -25,10 +32,7 @@ class Site {
  public:
   Site() {
     folder.write("flat.asc", asciiGrid(60, 40, [](int, int) { return 0.0; }));
-    std::vector<std::string> words{"costmap"};
-    words.insert(words.end(), kGround.begin(), kGround.end());
-    words.insert(words.end(), {"-o", "map.ot"});
-    EXPECT_EQ(runTalus(words, folder.path()).code, 0);
+    EXPECT_EQ(runTalus(joined(joined({"costmap"}, kGround), {"-o", "map.ot"}), folder.path()).code, 0);
   }
 
   json run(const std::vector<std::string>& words) const {
@@ -47,8 +51,39 @@ class Site {
     return std::nan("");
   }
 
+  // Starts an update in the background; the caller waits for it.
+  pid_t start(const std::string& journal, const std::string& output) const {
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, 1);
+    ::dup2(nowhere, 2);
+    if (::chdir(folder.path().c_str()) != 0) ::_exit(99);
+    ::execl(TALUS_PROGRAM, "talus", "update", "map.ot", "t.csv", "-o", output.c_str(), "--journal",
+            journal.c_str(), static_cast<char*>(nullptr));
+    ::_exit(98);
+  }
+
+  int code(const std::vector<std::string>& words) const { return runTalus(words, folder.path()).code; }
+
+  json replay(const std::string& journal, const std::string& output) const {
+    return run({"update", "map.ot", "--replay", "--journal", journal, "-o", output, "--json"});
+  }
+
+  std::string content(const std::string& name) const { return fileContent(folder / name); }
+
   Folder folder;
   mutable std::string warnings;
+};
+
+// A site with a drive of 60 rows.
+struct DrivenSite : Site {
+  DrivenSite() {
+    std::string text = "time_s,x_m,y_m,slope_rad,load_N,slip\n";
+    for (int row = 0; row < 60; ++row)
+      text += fmt::format("{},{},20.5,0.02,10,{}\n", row, 5.0 + 0.8 * row, 0.3 + 0.001 * (row % 7));
+    folder.write("t.csv", text);
+  }
 };
 
 // Telemetry of the rover's four wheels on a drive east along y = 20 over the given soil; `off_Nm` is a torque
@@ -101,17 +136,6 @@ TEST(UpdateCommand, WeakGroundIsEstimatedAndExplained) {
       << before << ' ' << after << ' ' << truth;
 }
 
-TEST(UpdateCommand, RepeatedUpdateYieldsTheSameMap) {
-  const Site site;
-  site.folder.write("t.csv", driveOver(weak()));
-  site.run({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db", "--json"});
-  site.run({"update", "map.ot", "t.csv", "-o", "b.ot", "--json"});
-  site.run({"update", "map.ot", "--replay", "--journal", "e.db", "-o", "c.ot", "--json"});
-  EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "b.ot"));
-  EXPECT_EQ(fileContent(site.folder / "a.ot"), fileContent(site.folder / "c.ot"));
-  EXPECT_NE(fileContent(site.folder / "a.ot"), fileContent(site.folder / "map.ot"));
-}
-
 // The journal cannot rebuild a map that contains drives missing from the journal; the update must warn.
 TEST(UpdateCommand, MissingJournalDrivesAreReported) {
   const Site site;
@@ -134,10 +158,9 @@ TEST(UpdateCommand, JournalOfAnotherAreaIsRejected) {
   site.run({"update", "map.ot", "d.csv", "-o", "b.ot", "--journal", "e.db", "--json"});
   std::string far = asciiGrid(20, 20, [](int, int) { return 0.0; });
   site.folder.write("far.asc", far.replace(far.find("xllcorner 0"), 11, "xllcorner 5000"));
-  std::vector<std::string> words{"costmap", "far.asc"};
-  words.insert(words.end(), kGround.begin() + 1, kGround.end());
-  words.insert(words.end(), {"-o", "far.ot"});
-  ASSERT_EQ(runTalus(words, site.folder.path()).code, 0);
+  std::vector<std::string> ground = kGround;
+  ground[0] = "far.asc";
+  ASSERT_EQ(site.code(joined(joined({"costmap"}, ground), {"-o", "far.ot"})), 0);
   const Ran ran =
       runTalus({"update", "far.ot", "--replay", "--journal", "e.db", "-o", "c.ot"}, site.folder.path());
   EXPECT_EQ(ran.code, 2);
@@ -217,16 +240,98 @@ TEST(UpdateCommand, TorqueOffsetIsReportedAndExcluded) {
 TEST(UpdateCommand, SimulatedTelemetryUpdatesTheMap) {
   const Site site;
   site.folder.write("truth.yaml", "classes: {0: lunar_nominal}\n");
-  std::vector<std::string> words{"drive"};
-  words.insert(words.end(), kGround.begin(), kGround.end());
-  words.insert(words.end(), {"--truth", "truth.yaml", "--start", "5,20", "--goal", "50,20", "--telemetry",
-                             "t.csv", "--json"});
-  const Ran ran = runTalus(words, site.folder.path());
+  const Ran ran =
+      runTalus(joined(joined({"drive"}, kGround), {"--truth", "truth.yaml", "--start", "5,20", "--goal",
+                                                   "50,20", "--telemetry", "t.csv", "--json"}),
+               site.folder.path());
   ASSERT_TRUE(ran.code == 0 || ran.code == 1) << ran.err;
   const json out = site.run({"update", "map.ot", "t.csv", "-o", "map2.ot", "--json"});
   EXPECT_GT(out["rows_used"].get<int>(), 4);
   EXPECT_EQ(out["rows_rejected"], 0) << site.warnings;
   EXPECT_GT(out["cells_changed"].get<int>(), 0);
+}
+
+// A drive is counted once in map and journal if an update is killed at a random time and repeated. The
+// environment variable TALUS_KILLS sets the number of kills (default 40).
+TEST(UpdateCommand, DriveIsCountedOnceAfterRetryWhenKilledAtAnyMoment) {
+  const DrivenSite site;
+  ASSERT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "whole.ot"}), 0);
+  const std::string whole = site.content("whole.ot");
+  const auto began = std::chrono::steady_clock::now();
+  int status = 0;
+  ::waitpid(site.start("timing.db", "timing.ot"), &status, 0);
+  ASSERT_EQ(status, 0);
+  const auto takes = std::chrono::steady_clock::now() - began;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> moment(0.0, 1.2);
+  const char* more = std::getenv("TALUS_KILLS");
+  const int kills = more != nullptr ? std::atoi(more) : 40;
+  for (int kill = 0; kill < kills; ++kill) {
+    const pid_t child = site.start("evidence.db", "out.ot");
+    std::this_thread::sleep_for(moment(random) * takes);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    const std::string out = site.content("out.ot");
+    ASSERT_TRUE(out.empty() || out == whole) << "a partial map after kill " << kill;
+    if (kill % 4 != 3) continue;
+    ASSERT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "retry.ot", "--journal", "evidence.db"}), 0);
+    ASSERT_EQ(site.content("retry.ot"), whole) << kill;
+    EXPECT_EQ(site.replay("evidence.db", "again.ot")["rows_used"], 60);
+    ASSERT_EQ(site.content("again.ot"), whole) << kill;
+    for (const char* name :
+         {"evidence.db", "evidence.db-wal", "evidence.db-shm", "out.ot", "retry.ot", "again.ot"})
+      std::filesystem::remove(site.folder / name);
+  }
+}
+
+TEST(UpdateCommand, FailedUpdateLeavesTheJournalUnchanged) {
+  const DrivenSite site;
+  EXPECT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "no/out.ot", "--journal", "e.db"}), 2);
+  site.folder.write("off.csv", "time_s,x_m,y_m,slope_rad,load_N,slip\n1,900,900,0,10,0.3\n");
+  EXPECT_EQ(site.code({"update", "map.ot", "off.csv", "-o", "out.ot", "--journal", "e.db"}), 2);
+  EXPECT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "out.ot", "--journal", "e.db"}), 0);
+  EXPECT_EQ(site.replay("e.db", "again.ot")["rows_used"], 60);
+  EXPECT_EQ(site.content("again.ot"), site.content("out.ot"));
+}
+
+// A drive is identified by its content, not by its file name.
+TEST(UpdateCommand, RepeatedDriveIsCountedOnceWithAWarning) {
+  const DrivenSite site;
+  site.folder.write("copy.csv", site.content("t.csv"));
+  ASSERT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "a.ot", "--journal", "e.db"}), 0);
+  const Ran again =
+      runTalus({"update", "a.ot", "copy.csv", "-o", "b.ot", "--journal", "e.db"}, site.folder.path());
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err,
+              testing::HasSubstr("all rows of this drive are in the map already; no row is added"));
+  EXPECT_EQ(site.content("a.ot"), site.content("b.ot"));
+  EXPECT_EQ(site.replay("e.db", "c.ot")["rows_used"], 60);
+}
+
+// Two updates in sequence, each starting from the map of the update before, equal one replay of both drives.
+TEST(UpdateCommand, SequentialUpdatesEqualOneReplay) {
+  const DrivenSite site;
+  std::string text = "time_s,x_m,y_m,slope_rad,load_N,slip\n";
+  for (int row = 0; row < 60; ++row)
+    text += fmt::format("{},{},22.5,0.02,10,{}\n", 100 + row, 50.0 - 0.7 * row, 0.5 + 0.001 * (row % 7));
+  site.folder.write("back.csv", text);
+  ASSERT_EQ(site.code({"update", "map.ot", "t.csv", "-o", "first.ot", "--journal", "e.db"}), 0);
+  ASSERT_EQ(site.code({"update", "first.ot", "back.csv", "-o", "both.ot", "--journal", "e.db"}), 0);
+  EXPECT_EQ(site.replay("e.db", "again.ot")["rows_used"], 120);
+  EXPECT_TRUE(site.content("both.ot") == site.content("again.ot"));
+}
+
+TEST(UpdateCommand, ConcurrentUpdatesShareAJournal) {
+  const DrivenSite site;
+  const pid_t a = site.start("evidence.db", "a.ot"), b = site.start("evidence.db", "b.ot");
+  int first = -1, second = -1;
+  ::waitpid(a, &first, 0);
+  ::waitpid(b, &second, 0);
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(second, 0);
+  EXPECT_EQ(site.content("a.ot"), site.content("b.ot"));
+  EXPECT_EQ(site.replay("evidence.db", "c.ot")["rows_used"], 60);
+  EXPECT_EQ(site.content("a.ot"), site.content("c.ot"));
 }
 
 TEST(BadInput, InvalidUpdateCallsAreRejectedWithOneLine) {

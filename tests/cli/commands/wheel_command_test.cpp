@@ -6,20 +6,6 @@ namespace talus::cli {
 namespace wheel_command_test {
 
 using testing::HasSubstr;
-using testing::StartsWith;
-
-TEST(WheelCommand, ForcesArePrintedAsTextAndJson) {
-  const std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover", "mer",
-                                      "--load", "100",    "--slip", "0.3"};
-  const Ran plain = runTalus(call);
-  EXPECT_EQ(plain.code, 0) << plain.err;
-  EXPECT_THAT(plain.out, HasSubstr("drawbar pull"));
-  auto with_json = call;
-  with_json.insert(with_json.begin(), "--json");
-  const auto json = nlohmann::json::parse(runTalus(with_json).out);
-  for (const char* field : {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N"})
-    EXPECT_TRUE(json.at(field).is_number()) << field;
-}
 
 TEST(WheelCommand, SideForceIsOddInSlipAngle) {
   std::vector<std::string> call{"wheel",  "--soil", "sand",   "--rover",     "mer",
@@ -70,47 +56,6 @@ TEST(WheelCommand, TyresAndRigidGroundAreSupported) {
   EXPECT_TRUE(slips["slips"]);
   EXPECT_NEAR(slips["drawbar_pull_N"].get<double>(), 60.0, 1e-9);
   EXPECT_EQ(with({"wheel", "--hard-ground", "--rover", "mer"}, {}).code, 2);
-}
-
-TEST(WheelCommand, PageIsSelfContained) {
-  const Folder folder;
-  const Ran ran = runTalus(
-      {"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.3", "--html", folder / "wheel.html"});
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  const std::string page = fileContent(folder / "wheel.html");
-  EXPECT_THAT(page, HasSubstr("Stress along the rim"));
-  EXPECT_THAT(page, testing::Not(HasSubstr("http://cdn")));
-}
-
-TEST(WheelCommand, ErrorsAreOneLineWithTheirExitCode) {
-  struct Case {
-    std::vector<std::string> words;
-    int code;
-    const char* says;
-  };
-  const Folder folder;
-  const std::string soil = folder.write("soil.yaml", "cohesion_pa: 1\n");
-  for (const Case& c : std::vector<Case>{
-           {{"wheel", "--soil", "snad", "--rover", "mer", "--slip", "0.2"}, 2, "did you mean sand?"},
-           {{"wheel", "--soil", soil, "--rover", "mer", "--slip", "0.2"}, 2, ":1: unknown key 'cohesion_pa'"},
-           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "1.2"},
-            2,
-            "--slip: 1.2, must be -1 to 1"},
-           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "-4"},
-            2,
-            "load_N = -4, must be > 0"},
-           {{"wheel", "--soil", "sand", "--rover", "mer", "--slip", "0.2", "--load", "1e9"},
-            1,
-            "sinks to its axle"},
-           {{"wheel", "--soil", "sand", "--slip", "0.2"}, 2, "missing --rover"},
-           {{"wheel", "--cases", "/nowhere.csv", "-o", folder / "o.csv"}, 2, "/nowhere.csv"},
-           {{"wheel", "--cases", "in.csv"}, 2, "missing -o OUT.csv"}}) {
-    const Ran ran = runTalus(c.words);
-    EXPECT_EQ(ran.code, c.code) << ran.err;
-    EXPECT_THAT(ran.err, StartsWith("talus: "));
-    EXPECT_THAT(ran.err, HasSubstr(c.says));
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-  }
 }
 
 }  // namespace wheel_command_test

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/draw/heading_costs.hpp>
+#include <talus/cli/draw/page.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/costmap/map/explanation.hpp>

@@ -52,15 +52,6 @@ TEST(MapImage, TopRowIsNorth) {
   EXPECT_EQ(image.at(0, 1), pixel(colourOf(terramech::Category::Dangerous)));
 }
 
-TEST(MapImage, ColoursOfABlockAreMixed) {
-  maps::Raster<HeadingShares> headings({1, 1, 1.0, {0.0, 0.0}});
-  headings[{0, 0}].count = {1, 0, 1, 0};
-  const Colour a = colourOf(terramech::Category::Safe);
-  const Colour b = colourOf(terramech::Category::Dangerous);
-  EXPECT_EQ(headingImage(headings).at(0, 0),
-            pixel({(a.red + b.red) / 2, (a.green + b.green) / 2, (a.blue + b.blue) / 2, 1.0}));
-}
-
 TEST(MapImage, ClassesHaveTheirColours) {
   ValueLayer layer{.name = "sets", .unit = "", .values = plane(0.0, 0.0), .range = {0.0, 1.0}};
   layer.classes = {{"one", rgb(0x0072B2)}, {"two", rgb(0xE69F00)}};

@@ -78,13 +78,5 @@ TEST(Plot, ColumnsOfDifferentLengthAreRejected) {
                  "x, y, y_std have 2, 1, 0 values, must be as many");
 }
 
-TEST(Plot, FormatFollowsTheExtension) {
-  const Folder folder;
-  save(folder / "a.svg", {example()});
-  save(folder / "a.png", {example()});
-  EXPECT_THAT(fileContent(folder / "a.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(fileContent(folder / "a.png"), StartsWith("\x89PNG"));
-}
-
 }  // namespace plot_test
 }  // namespace talus::cli

@@ -46,22 +46,18 @@ class CostLayers : public testing::Test {
   }
 
   Ran run(const std::string& call, const Words& more) const {
-    Words words{call,     "dem.asc",    "--quiet", "--ignore-crs", "--resolution", "1",
-                "--soil", "sandy_loam", "--rover", "fido",         "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    return runTalus(words, folder.path());
+    return runTalus(joined({call, "dem.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil",
+                            "sandy_loam", "--rover", "fido", "--json"},
+                           more),
+                    folder.path());
   }
   json score(const Words& more, int code = 0) const {
-    Words words{"--path", "straight.csv"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ran ran = run("score", words);
+    const Ran ran = run("score", joined({"--path", "straight.csv"}, more));
     EXPECT_EQ(ran.code, code) << ran.err;
     return json::parse(ran.out);
   }
   json plan(const Words& more) const {
-    Words words{"--start", "5.5,5.5", "--goal", "35.5,5.5"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ran ran = run("plan", words);
+    const Ran ran = run("plan", joined({"--start", "5.5,5.5", "--goal", "35.5,5.5"}, more));
     EXPECT_EQ(ran.code, 0) << ran.err;
     return ran.code == 0 ? json::parse(ran.out) : json();
   }
@@ -176,9 +172,7 @@ TEST_F(CostLayers, ErrorsAreOneLine) {
       {{"--layer", "a=shadow.asc", "--layer", "a=dear.asc"}, "a layer of that name"},
   };
   for (const auto& [more, reason] : cases) {
-    Words words{"--path", "straight.csv"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ran ran = run("score", words);
+    const Ran ran = run("score", joined({"--path", "straight.csv"}, more));
     EXPECT_EQ(ran.code, 2) << more.back();
     EXPECT_THAT(ran.err, HasSubstr(reason));
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;

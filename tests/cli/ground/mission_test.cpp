@@ -24,11 +24,6 @@ PlanOptions readIn(const Folder& folder, PlanOptions options = {}) {
   return options;
 }
 
-TEST(Mission, MissionIsDetectedByItsExtension) {
-  EXPECT_TRUE(isMission("a/b.yaml") && isMission("m.yml"));
-  EXPECT_FALSE(isMission("yaml") || isMission("m.tif") || isMission("m.yaml.tif"));
-}
-
 // Closed form: degrees are converted to radians; paths are relative to the mission, names of the library
 // unchanged.
 TEST(Mission, EveryMissionFieldIsRead) {

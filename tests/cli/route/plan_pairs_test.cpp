@@ -88,14 +88,9 @@ TEST(PlanPairs, ErrorsAreOneLine) {
   const BadFiles files;
   int tables = 0;
   const auto plan = [&](const std::string& table, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{
-        "plan",         "good.asc",
-        "--resolution", "1",
-        "--soil",       "sandy_loam",
-        "--rover",      "fido",
-        "--pairs",      files.folder().write("p" + std::to_string(++tables) + ".csv", table)};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return joined({"plan", "good.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido",
+                   "--pairs", files.folder().write("p" + std::to_string(++tables) + ".csv", table)},
+                  more);
   };
   const std::string header = "start_x_m,start_y_m,goal_x_m,goal_y_m\n";
   for (const auto& [words, says] : std::vector<std::pair<std::vector<std::string>, std::string>>{

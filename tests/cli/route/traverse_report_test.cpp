@@ -1,6 +1,13 @@
 #include <cmath>
+#include <stdexcept>
 
+#include <nlohmann/json.hpp>
+
+#include <talus/cli/app/campaign.hpp>
 #include <talus/cli/route/traverse_report.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+
+#include "run_program.hpp"
 
 namespace talus::cli {
 namespace traverse_report_test {
@@ -20,28 +27,6 @@ planner::WorldResult world(Outcome outcome, double energy_J) {
   result.drive.max_slip = 0.1 + 0.2;
   result.categories_changed = 17;
   return result;
-}
-
-// Property: a result sent between processes as JSON is bitwise equal, for every outcome.
-TEST(DriveReport, ResultRoundTripsThroughJson) {
-  for (const Outcome outcome : {Outcome::Reached, Outcome::Immobilised, Outcome::Tipped, Outcome::GaveUp}) {
-    const planner::WorldResult sent = world(outcome, 0.1 * 0.7);
-    const auto got = worldResult(nlohmann::ordered_json::parse(asJson(sent).dump()));
-    EXPECT_EQ(got.drive.outcome, outcome);
-    EXPECT_EQ(got.drive.energy_J, sent.drive.energy_J);
-    EXPECT_EQ(got.drive.length_m, sent.drive.length_m);
-    EXPECT_EQ(got.drive.max_slip, sent.drive.max_slip);
-    EXPECT_EQ(got.drive.replans, 4);
-    EXPECT_EQ(got.drive.alarms, 2);
-    EXPECT_EQ(got.categories_changed, 17U);
-  }
-}
-
-TEST(DriveReport, LabelsAndJsonNamesMatchTheirDocumentation) {
-  EXPECT_EQ(label(Outcome::GaveUp), "no feasible route");
-  EXPECT_EQ(label(Outcome::Reached), "reached");
-  EXPECT_EQ(label(SoilKnowledge::PerfectKnowledge), "perfect knowledge");
-  EXPECT_EQ(asJson(world(Outcome::GaveUp, 1.0))["outcome"], "gave_up");  // stable name in files
 }
 
 // Closed form: three of four worlds reached the goal: 75 %; the mean energy is that of these three worlds.
@@ -71,6 +56,88 @@ TEST(DriveReport, BeliefsAreComparedInWorldsSolvedWithPerfectKnowledge) {
   EXPECT_EQ(json["prior"]["reached"]["rate"], 1.0);
   EXPECT_NEAR(json["prior"]["energy_over_clairvoyant"]["mean"].get<double>(), 1.5, 1e-9);
   EXPECT_THAT(asText(beliefs), HasSubstr("2 worlds; perfect knowledge reaches the goal in 1 of them"));
+}
+
+planner::WorldResult numbered(std::size_t b, std::size_t i) {
+  planner::WorldResult result;
+  result.drive.outcome = static_cast<planner::Outcome>(i % 5);
+  result.drive.energy_J = (static_cast<double>(i) + 1.0) / 3.0;
+  result.drive.length_m = 1.0 / 3.0;
+  result.drive.max_slip = 0.1 + 0.2;
+  result.drive.replans = static_cast<int>(b);
+  result.categories_changed = i;
+  return result;
+}
+
+// Property: results are bitwise equal and in order after the conversion to text, for any number of workers.
+TEST(DriveWorlds, ResultsAreInOrderForAnyWorkerCount) {
+  const Campaign campaign;
+  for (const std::size_t workers : {1U, 3U}) {
+    const SimulatedWorlds driven =
+        simulatedWorlds({.beliefs = 2, .worlds = 7, .workers = workers}, numbered, campaign, {});
+    ASSERT_EQ(driven.results.size(), 2U);
+    EXPECT_TRUE(driven.failures.empty());
+    for (std::size_t b = 0; b < 2; ++b) {
+      ASSERT_EQ(driven.results[b].size(), 7U);
+      for (std::size_t i = 0; i < 7; ++i) {
+        const planner::WorldResult expected = numbered(b, i), &got = driven.results[b][i];
+        EXPECT_EQ(got.drive.outcome, expected.drive.outcome);
+        EXPECT_EQ(got.drive.energy_J, expected.drive.energy_J);
+        EXPECT_EQ(got.drive.length_m, expected.drive.length_m);
+        EXPECT_EQ(got.drive.max_slip, expected.drive.max_slip);
+        EXPECT_EQ(got.drive.replans, expected.drive.replans);
+        EXPECT_EQ(got.categories_changed, expected.categories_changed);
+      }
+    }
+  }
+}
+
+TEST(DriveWorlds, FailedWorldIsReportedAndExcludedUnderEveryBelief) {
+  const Campaign campaign;
+  const auto world = [](std::size_t b, std::size_t i) {
+    if (b == 1 && i == 2) throw std::domain_error("no such ground");
+    return numbered(b, i);
+  };
+  const SimulatedWorlds driven =
+      simulatedWorlds({.beliefs = 2, .worlds = 4, .workers = 2}, world, campaign, {});
+  ASSERT_EQ(driven.failures.size(), 1U);
+  EXPECT_EQ(driven.failures[0].world, 2U);
+  EXPECT_EQ(driven.failures[0].reason, "no such ground");
+  for (const auto& results : driven.results) {
+    ASSERT_EQ(results.size(), 3U);
+    EXPECT_EQ(results[2].categories_changed, 3U) << "the same worlds in the same order";
+  }
+}
+
+// Property: the telemetry reader returns the recorded wheel values to nine digits; slope_rad is the atan of
+// the gradient; unknown values are missing.
+TEST(DriveTelemetry, TelemetryRoundTrips) {
+  const Folder folder;
+  planner::TraverseSimulation drive;
+  for (int k = 0; k < 3; ++k)
+    drive.records.push_back({.wheel = static_cast<std::size_t>(k),
+                             .heading_rad = 0.5 * k,
+                             .reading = {.time_s = 10.0 + k,
+                                         .place = {100.25 + k, -3.5},
+                                         .load_N = 56.0,
+                                         .slip = k == 1 ? std::nan("") : 0.123456789,
+                                         .torque_Nm = 2.5,
+                                         .sinkage_m = 0.0125,
+                                         .gradient = 0.2,
+                                         .pass = k + 1}});
+  terramech::Rover rover;
+  rover.wheel = {.radius_m = 0.12, .width_m = 0.08};
+  saveTelemetry(folder / "t.csv", drive, rover);
+  const terramech::Telemetry table = terramech::readTelemetry(folder / "t.csv");
+  ASSERT_EQ(table.size(), 3U);
+  EXPECT_NEAR(table.at("slip")[0], 0.123456789, 1e-9);
+  EXPECT_TRUE(std::isnan(table.at("slip")[1]));
+  EXPECT_EQ(table.at("x_m")[2], 102.25);
+  EXPECT_EQ(table.at("pass_index")[2], 3.0);
+  EXPECT_NEAR(table.at("slope_rad")[0], std::atan(0.2), 1e-8);  // Closed form
+  EXPECT_EQ(table.at("wheel_width_m")[0], 0.08);
+  ASSERT_TRUE(table.findWords("wheel"));
+  EXPECT_EQ((*table.findWords("wheel"))[1], "w2");
 }
 
 }  // namespace traverse_report_test

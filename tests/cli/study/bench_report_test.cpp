@@ -65,12 +65,5 @@ TEST(BenchReport, InvalidRouteIsNotPlotted) {
   EXPECT_EQ(plots[1].series.size(), 2u);
 }
 
-TEST(BenchReport, CancelledCampaignIsReported) {
-  auto some = runs();
-  some.pop_back();
-  EXPECT_THAT(asPage(plan(), some), HasSubstr("Cancelled after 3 of 4 runs."));
-  EXPECT_THAT(asPage(plan(), runs()), Not(HasSubstr("Cancelled")));
-}
-
 }  // namespace bench_report_test
 }  // namespace talus::cli

@@ -66,13 +66,5 @@ TEST(BenchSuite, SlipWorldsArePlannedWithMeanAndTail) {
   }
 }
 
-TEST(BenchSuite, GroundOptionsWithoutAMapAreRejected) {
-  SuiteOptions options;
-  options.names = {"slip"};
-  options.ground.soil = "sandy_loam";
-  EXPECT_THAT([&] { suiteCases(options, quiet()); },
-              ThrowsMessage<InputError>(HasSubstr("without an elevation map")));
-}
-
 }  // namespace bench_suite_test
 }  // namespace talus::cli
