@@ -33,7 +33,7 @@ costmap::WheelObservation seen(const maps::Point& place, double pull) {
           .place = place,
           .pull = {pull, 0.05},
           .sinkage = {0.17, 0.05},
-          .trust = Trust::Once,
+          .trust = costmap::Trust::Once,
           .sinkage_verified = true};
 }
 
