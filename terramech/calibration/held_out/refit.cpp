@@ -25,9 +25,6 @@ RefinedModel refitted(const RefinedModel& model, const SharedError& shared, cons
   SolvedContacts start;
   FitPlan plan = fitPlan(model, options.fit_soil);
   plan.iterations = 8;
-  const std::size_t given = result.base.effects.size();  // index of the first effect that was found
-  if (result.first_prior && model.effects.size() > given)
-    plan.effect_prior[static_cast<int>(given)] = *result.first_prior;
   plan.misfit = misfitOf(white.apply(seen.measured - predictRows(model, seen, start)), seen);
   return fitModel(model, seen, white, plan, start).model;
 }

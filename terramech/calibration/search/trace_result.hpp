@@ -146,7 +146,6 @@ struct TraceResult {
   /// Sensors whose fitted noise under the refined model exceeds the stated noise.
   std::vector<StrainedSensor> strained;
   ChannelErrors declared_floor{};       ///< noise_floor with the stated errors of the sensors in `strained`
-  std::optional<Estimate> first_prior;  ///< external prior of the first parameter of the effect found first
   /// Error common to the rows of a run, for the base model and for the refined model.
   SharedError base_shared, shared;
   std::vector<EndLevel> ends;  ///< errors at the ends of columns, for extrapolation

@@ -31,11 +31,6 @@ TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const Tra
       fit_(base, trial, options.fit_soil, go_on_),
       given_effects_(base.effects.size()) {}
 
-void TraceSearch::trust(const std::optional<Estimate>& prior) {
-  first_prior_ = prior;
-  fit_.trust(prior);
-}
-
 GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candidates, int draws) const {
   const CalibratedRows& rows = fit_.rows();
   const Eigen::VectorXd sinkage_m = rows.sinkages_m();
@@ -209,7 +204,6 @@ void TraceSearch::finish(TraceResult& result) {
   const Eigen::MatrixXd covariance = fit_.finish(!result.effects.empty());
   describe(result.effects, covariance);
   result.refined = model();
-  result.first_prior = first_prior_;
   result.trial = fit_.rows().trial();
   const Trial measured = asMeasured(result.trial);
   result.base_rmse = rmseOf(result.base, measured);

@@ -53,9 +53,6 @@ class TraceSearch {
   /// found together become one accepted candidate each.
   void accept(const Candidate& candidate);
 
-  /// Sets a prior for the first parameter of the effect accepted first.
-  void trust(const std::optional<Estimate>& prior);
-
   /// Removes accepted candidate number k and refits the others with unchanged noise.
   void leaveOut(std::size_t k);
 
@@ -91,7 +88,6 @@ class TraceSearch {
   TraceOptions options_;
   std::function<bool(double)> go_on_;
   TrialFit fit_;
-  std::optional<Estimate> first_prior_;  ///< prior of the first parameter of the first accepted effect
   /// Number of leading effects, those of the base model. These effects are fitted, never removed.
   std::size_t given_effects_;
   struct Unit {

@@ -10,7 +10,6 @@ TrialFit::TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
                    const std::function<bool(double)>& go_on)
     : fit_soil_(fit_soil),
       model_(base),
-      given_effects_(static_cast<int>(base.effects.size())),
       prior_modulus_(base.soil.cohesive_modulus + base.soil.frictional_modulus),
       rows_(trial) {
   setRows(trial);
@@ -36,7 +35,6 @@ void TrialFit::refresh() {
 FitPlan TrialFit::planFor(const RefinedModel& model) const {
   FitPlan plan = fitPlan(model, fit_soil_);
   plan.prior_modulus = prior_modulus_;
-  if (first_prior_) plan.effect_prior[given_effects_] = *first_prior_;
   plan.misfit = misfit_;
   return plan;
 }

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <optional>
 
 #include <Eigen/Core>
 
@@ -26,9 +25,6 @@ class TrialFit {
   const RefinedModel& model() const { return model_; }
   const CalibratedRows& rows() const { return rows_; }
   const SolvedContacts& solved() const { return solved_; }
-
-  /// Sets a prior for the first parameter of the first effect that follows those of the base model.
-  void trust(const std::optional<Estimate>& prior) { first_prior_ = prior; }
 
   /// Fits another model to the rows with unchanged noise.
   Fit fit(const RefinedModel& model, int iterations, SolvedContacts& solved) const;
@@ -75,13 +71,11 @@ class TrialFit {
 
   bool fit_soil_;
   RefinedModel model_;
-  int given_effects_;     ///< number of leading effects, those of the base model
   double prior_modulus_;  ///< k_c + k_phi of the base model, at which log_stiffness is 0
   CalibratedRows rows_;
   Folds folds_;
   SolvedContacts solved_;
   double misfit_ = 1.0;  ///< value of FitPlan::misfit
-  std::optional<Estimate> first_prior_;
 };
 
 }  // namespace talus::terramech

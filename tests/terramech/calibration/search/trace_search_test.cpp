@@ -77,13 +77,6 @@ TEST(TraceSearch, LeavingAnEffectOutKeepsTheNoise) {
   EXPECT_EQ(search.model().noise.absolute, noise.absolute);
 }
 
-TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
-  TraceSearch search(sand(), offsetTrial(), {});
-  search.trust(Estimate{.value = 0.3, .std = 1e-4});
-  search.accept(torqueOffset());
-  EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
-}
-
 TEST(TraceSearch, EffectAtItsBoundGainsNothing) {
   // Property: the rows contain no rebound, so that the fit of a rebound ends at the bound 0 and predicts as
   // without it.

@@ -52,23 +52,5 @@ TEST(TrialFit, StrongestChannelIsThatOfTheFaultySensor) {
   EXPECT_EQ(fit.strongest(0), Channel::Torque);
 }
 
-// Property: trust() sets the prior of the first effect found, not of the effects of the base. Tolerance: a
-// quarter of the offset of 4 N, because errors of pull and torque are correlated.
-TEST(TrialFit, TrustIsInTheFirstEffectBehindTheBases) {
-  const Effect offset{
-      .name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.0}};
-  const Effect zero{
-      .name = "drawbar_zero", .covariate = "load_N", .channel = Channel::DrawbarPull, .parameters = {0.0}};
-  RefinedModel base = sand();
-  base.effects = {offset};
-  TrialFit fit(base, noisyTrial(sand(), 0.02), false, always);
-  fit.trust(Estimate{4.0, 1e-3});
-  RefinedModel found = base;
-  found.effects.push_back(zero);
-  const RefinedModel fitted = fit.fitted(found, 10);
-  EXPECT_NEAR(fitted.effects[0].parameters[0], 0.0, 1.0);
-  EXPECT_NEAR(fitted.effects[1].parameters[0], 4.0, 1.0);
-}
-
 }  // namespace trial_fit_test
 }  // namespace talus::terramech
