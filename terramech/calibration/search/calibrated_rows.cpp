@@ -6,6 +6,7 @@
 #include <talus/terramech/calibration/noise/run_units.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/search/calibrated_rows.hpp>
+#include <talus/terramech/numerics/median.hpp>
 
 namespace talus::terramech {
 
@@ -23,13 +24,11 @@ void CalibratedRows::backToMeasured() {
   }
 }
 
-/// The stated errors, and the load cell's error from the set loads if not stated.
+/// The stated errors. An error of the load that is not stated has the scatter about set loads as its prior.
 StatedSensors CalibratedRows::knownSensors(const RefinedModel& model) const {
   StatedSensors sensors = model.stated;
-  if (!set_load_ || sensors.load_N) return sensors;
-  std::vector<double> load = trial_.load_N;
-  std::nth_element(load.begin(), load.begin() + static_cast<long>(load.size() / 2), load.end());
-  sensors.load_N = set_load_->errorStd() * load[load.size() / 2];
+  const auto set = setLoads(trial_);
+  if (set && !sensors.load_N) sensors.load_N = set->scatter * medianOf(trial_.load_N);
   return sensors;
 }
 
@@ -37,7 +36,7 @@ void CalibratedRows::settle(const Eigen::MatrixXd& noise_alone, const Eigen::Mat
                             const InputSlopes& measured_slopes, RefinedModel& model, SolvedContacts& solved) {
   backToMeasured();
   model.noise = fitNoise(trial_, noise_alone, level, measured_slopes, knownSensors(model));
-  calibrateInputs(trial_, model.noise, set_load_);
+  calibrateInputs(trial_, model.noise);
   level_ = predictRows(model, trial_, solved);
   residual_ = trial_.measured - level_;  // (T1)
   const InputSlopes slopes = inputSlopes(model, trial_, solved);
@@ -65,18 +64,6 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   whitening_.common.run = roughRunError(whitening_);
 }
 
-/// Estimates the set load of each row. A smooth of the measured loads would absorb their errors about the set
-/// loads and underestimate the noise; the noise is therefore estimated from the set loads.
-void CalibratedRows::findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes) {
-  std::vector<std::string> others = noiseColumns(trial_);
-  std::erase(others, "load_N");
-  set_load_ = nominalLoad(trial_, withoutSmooth(trial_, measured, others), slopes);
-  for (int row = 0; set_load_ && row < trial_.rows(); ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    trial_.states[r].load_N = set_load_->load_N(row, trial_.load_N[r]);
-  }
-}
-
 void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   backToMeasured();
   const Eigen::MatrixXd level = predictRows(model, trial_, solved);
@@ -84,7 +71,10 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   const Eigen::MatrixXd measured = trial_.measured - level;
   // If the slip varies more than any possible error, no estimate of the error is needed.
   const SensorNoise unlimited{.slip_relative = 1.0};
-  findSetLoads(measured, slopes);
+  // A smooth of the measured loads would absorb their errors about the set loads.
+  if (const auto set = setLoads(trial_))
+    for (std::size_t r = 0; r < trial_.states.size(); ++r)
+      trial_.states[r].load_N = set->load_N[static_cast<Eigen::Index>(r)];
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));
   if (!inputsAreSeen(trial_, unlimited)) {
     const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/noise/nominal_load.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
@@ -43,7 +42,6 @@ class CalibratedRows {
 
  private:
   void backToMeasured();
-  void findSetLoads(const Eigen::MatrixXd& measured, const InputSlopes& slopes);
   StatedSensors knownSensors(const RefinedModel& model) const;
   /// Fits the noise to residuals at the measured inputs that contain only noise, and updates all dependent
   /// quantities.
@@ -56,7 +54,6 @@ class CalibratedRows {
   Trial trial_;
   Eigen::MatrixXd level_, residual_;
   std::optional<Eigen::MatrixXd> by_slip_;
-  std::optional<NominalLoad> set_load_;
   Whitening whitening_;
   Eigen::VectorXd white_;
 };
