@@ -225,7 +225,7 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
           ? shrunk({slip, Eigen::ArrayXd::Constant(slip.size(), slip.unaryExpr(slip_std).square().mean() + 1e-12),
                     std::vector<int>(n, 0)})
           : deconvolve(trial.slip, slip_std);
-  const bool at_set = set && log_load.deviations() <= 4.0 * log_load.freedom();  // (T14)
+  const bool at_set = set && log_load.deviations() <= 16.0 * log_load.freedom();  // (T14)
   const auto loads = at_set ? std::vector<Posterior>{}
                             : deconvolve({log_load.value.begin(), log_load.value.end()},
                                          [&](double) { return noise.load_relative; });

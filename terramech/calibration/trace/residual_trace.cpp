@@ -7,7 +7,6 @@
 #include <string>
 
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
-#include <talus/terramech/calibration/held_out/end_levels.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
@@ -221,7 +220,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.noise_floor);
+  keepConfirmed(result.ends, result.scope);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   return result;
 }
