@@ -5,7 +5,6 @@
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
 
 namespace talus::terramech {
@@ -110,6 +109,11 @@ class Tally {
   std::map<Key, int> rows_;
 };
 
+void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& scope) {
+  for (std::size_t c = 0; c < kChannels; ++c)
+    if (!scope.kept[c]) refined[c] = base[c];
+}
+
 std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
   std::set<std::string> columns;
   for (const Effect& e : model.effects)
@@ -118,6 +122,11 @@ std::vector<std::string> columnsOfOneGroup(const RefinedModel& model) {
 }
 
 }  // namespace
+
+void keepConfirmed(HeldOut& held, const ModelScope& scope) {
+  keep(held.refined_rmse, held.base_rmse, scope);
+  for (GroupErrors& g : held.groups) keep(g.refined_rmse, g.base_rmse, scope);
+}
 
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds) {
   const Trial& trial = result.trial;

@@ -39,6 +39,9 @@ ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial);
 /// Returns the residuals (measured - predicted) with slip and load as measured, rows x kChannels.
 Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial);
 
+/// Replaces errors of the refined model by those of the base model in channels that the scope excludes.
+void keepConfirmed(HeldOut& held, const ModelScope& scope);
+
 /// Returns the errors on held-out rows for one partition of the rows. The errors of the refined model are
 /// those within result.scope (channels and ranges in which its effects are applied).
 HeldOut holdOut(const TraceResult& result, const TraceOptions& options, const Folds& folds);

@@ -193,11 +193,6 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
 
 namespace {
 
-void keep(ChannelErrors& refined, const ChannelErrors& base, const ModelScope& scope) {
-  for (std::size_t c = 0; c < kChannels; ++c)
-    if (!scope.kept[c]) refined[c] = base[c];
-}
-
 /// Sum of squared errors of a channel over the rows of an end, with a share of the corrections.
 double squaredError(const EndLevel& end, std::size_t c, double share) {
   const double base = std::pow(end.base_rmse[c], 2), moved = std::pow(end.moved[c], 2);
@@ -244,11 +239,6 @@ ModelScope scopeOf(const TraceResult& result) {
       for (const bool high : {false, true}) setReach(range, high, result.ends, c);
   }
   return scope;
-}
-
-void keepConfirmed(HeldOut& held, const ModelScope& scope) {
-  keep(held.refined_rmse, held.base_rmse, scope);
-  for (GroupErrors& g : held.groups) keep(g.refined_rmse, g.base_rmse, scope);
 }
 
 void keepConfirmed(std::vector<EndLevel>& ends, const ModelScope& scope) {

@@ -41,9 +41,7 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
 /// distances beyond each range over which the corrections fade, by least squares to the ends result.ends.
 ModelScope scopeOf(const TraceResult& result);
 
-/// Replace errors of the refined model by those within the scope: of the base model in channels that the scope
-/// excludes, and of the faded corrections at ends.
-void keepConfirmed(HeldOut& held, const ModelScope& scope);
+/// Replaces errors of the refined model at ends by those of the faded corrections.
 void keepConfirmed(std::vector<EndLevel>& ends, const ModelScope& scope);
 
 /// Returns the predictions of the refined model within its scope, rows x kChannels. Outside the scope the

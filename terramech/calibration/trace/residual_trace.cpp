@@ -6,12 +6,13 @@
 #include <set>
 #include <string>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
-#include <talus/terramech/calibration/search/rival_causes.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/mobility/rut.hpp>
@@ -240,6 +241,21 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   }
   watch.report(1.0);
   return result;
+}
+
+TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options) {
+  constexpr int kFewest = 5;
+  TraceInput input{.rows = modelRows(table, base.model), .options = options};
+  input.options.fit_soil = !base.soil_given;
+  const Trial& trial = input.rows.trial;
+  if (trial.rows() < kFewest)
+    throw InputError({table.source,
+                      std::to_string(trial.rows()) +
+                          " usable rows with sinkage below the wheel radius; tracing needs at least 5",
+                      ""});
+  // The rows of a drive do not determine both soil and effects.
+  if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
+  return input;
 }
 
 }  // namespace talus::terramech

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 
 #include "made_rows.hpp"
@@ -56,7 +57,8 @@ TEST(ModelScope, CorrectionsFadeByLeastSquaresToTheEnds) {
   const double pull = 0.1 / (2.0 - 0.71875), sinkage = 0.25 / (2.0 - 0.71875);
   for (const double slip : {0.3, 0.42, 0.5, 0.55, 0.9}) {
     EXPECT_NEAR(scope.share(stateAt(slip), 0), std::clamp(2.0 - (slip - 0.3) / pull, 0.0, 1.0), 1e-9) << slip;
-    EXPECT_NEAR(scope.share(stateAt(slip), 1), std::clamp(2.0 - (slip - 0.3) / sinkage, 0.0, 1.0), 1e-9) << slip;
+    EXPECT_NEAR(scope.share(stateAt(slip), 1), std::clamp(2.0 - (slip - 0.3) / sinkage, 0.0, 1.0), 1e-9)
+        << slip;
     EXPECT_EQ(scope.share(stateAt(slip), 2), 0.0);  // the base predicts better inside the range
   }
 }
