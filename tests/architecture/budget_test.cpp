@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13096},
-                           {"planner", 24049}, {"cli", 15249},       {"examples", 1703}, {"tests", 61151}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22474}, {"maps", 7249},     {"costmap", 13096},
+                           {"planner", 24049}, {"cli", 15308},       {"examples", 1703}, {"tests", 61050}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
