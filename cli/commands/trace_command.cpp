@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
@@ -11,16 +12,18 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/common/progress_monitor.hpp>
+#include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/run_proposal.hpp>
-#include <talus/terramech/calibration/trace/trace_input.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
 
 namespace talus::cli {
 namespace {
 
 struct TraceCommandOptions {
-  std::string telemetry, base, rover, model_out, html, hold_out, runs_out, score;
+  std::string telemetry, base, rover, formula, model_out, html, hold_out, runs_out, score;
   int propose = 0;
   double significance = terramech::TraceOptions{}.significance;
   TableOptions columns;
@@ -32,6 +35,12 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
       ->type_name("T.csv");
   command.add_option("--base", options.base, "base soil or model (default: a soil fitted to the data)")
       ->type_name("B.yaml");
+  command
+      .add_option(
+          "--formula", options.formula,
+          "trace this formula, linear in its parameters, in place of a wheel model; a table of runs over "
+          "time has distance_m, height_m, turning_rad, cross_slope_m, time_s, charge_As and energy_J")
+      ->type_name("'Y = a*X + b*Z'");
   command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
       ->type_name("NAME|FILE");
   command
@@ -116,7 +125,57 @@ std::vector<terramech::CauseScore> scored(const TraceCommandOptions& options,
   return terramech::scoreCauses(trace.result, terramech::makeTrial(measured, trace.result.refined));
 }
 
+nlohmann::ordered_json formulaJson(const terramech::FormulaTrace& t) {
+  const auto of = [&](double value) { return nlohmann::ordered_json{{t.answer, value}}; };
+  nlohmann::ordered_json refined;
+  for (const auto& [key, p] : t.parameters) refined[key] = {{"value", p.value}, {"std", p.std}};
+  const auto causes = [&](const auto& all) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const terramech::FormulaEffect& e : all) {
+      nlohmann::ordered_json equal = nlohmann::ordered_json::array();
+      for (const std::string& column : e.equal) equal.push_back({{"name", "linear"}, {"covariate", column}});
+      out.push_back({{"name", "linear"},
+                     {"covariate", e.column},
+                     {"channel", t.answer},
+                     {"parameters", {{"slope", e.slope.value}, {"std", e.slope.std}}},
+                     {"p_value", e.p_value},
+                     {"evidence", e.gain},
+                     {"equal_to", equal}});
+    }
+    return out;
+  };
+  return {{"verdict", name(t.verdict)},
+          {"base", {{"rmse", of(t.base_rmse)}}},
+          {"effects", causes(t.effects)},
+          {"rejected", causes(t.rejected)},
+          {"refined", {{"rmse", of(t.refined_rmse)}, {"parameters", refined}}},
+          {"held_out",
+           {{"scheme", t.scheme},
+            {"base_rmse", of(t.base_held)},
+            {"refined_rmse", of(t.refined_held)},
+            {"noise_floor", of(t.noise_floor)}}}};
+}
+
+std::string formulaText(const terramech::FormulaTrace& t) {
+  std::string out = fmt::format("{}: {} on held-out {} from {:.4g} to {:.4g} rms, mean {:.4g}\n",
+                                name(t.verdict), t.answer, t.scheme, t.base_held, t.refined_held, t.mean);
+  for (const terramech::FormulaEffect& e : t.effects)
+    out += fmt::format("  {}: {:.4g} +- {:.2g} {} a unit, log-evidence {:.1f}, p {}{}{}\n", e.column,
+                       e.slope.value, e.slope.std, t.answer, e.gain, pText(e.p_value),
+                       e.equal.empty() ? "" : "; equal: ", fmt::join(e.equal, ", "));
+  for (const auto& [key, p] : t.parameters)
+    out += fmt::format("  {} = {:.4g} +- {:.2g}\n", key, p.value, p.std);
+  return out;
+}
+
 int run(const TraceCommandOptions& options, Context& context) {
+  if (!options.formula.empty()) {
+    const auto trace = terramech::traceFormula(
+        terramech::readTelemetry(tableFile(options.telemetry, options.columns, context)), options.formula,
+        {.significance = options.significance, .seed = context.seed});
+    context.json ? printJson(formulaJson(trace)) : print(formulaText(trace));
+    return Exit::kDone;
+  }
   const terramech::TableTraceOptions how{
       .base = terramech::baseModel(options.base, options.rover),
       .search = {.significance = options.significance, .seed = context.seed}};
@@ -156,7 +215,7 @@ void addTrace(CLI::App& app, Context& context) {
        .group = Group::kSoil,
        .description = "find effects missing from a wheel model; write the refined model",
        .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
-                   "  talus trace drive.csv --json\n"
+                   "  talus trace drives.csv --formula 'charge_As = a*distance_m + b*height_m'\n"
                    "  talus trace runs.csv --hold-out slip=0.5..1\n"
                    "  talus trace runs.csv --propose 3 -o next.csv\n"
                    "  talus trace runs.csv --score next.csv\n"},

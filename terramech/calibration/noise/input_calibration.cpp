@@ -24,39 +24,63 @@ bool isTied(const WheelState& s) {
   return std::abs(s.speed_mps - ground) <= 1e-3 * std::abs(s.rim_speed_mps);
 }
 
-/// Speeds over ground with the errors due to their slips, and the mean of each group.
-struct Speeds {
+/// Readings with the variances of their errors, and the mean of each group of rows.
+struct Grouped {
   Eigen::ArrayXd value, variance, mean, mean_variance;
   double groups = 0.0;
 
-  /// Mean square of the deviations from the group means, in units of their errors.
-  double scatter() const {
-    const auto n = static_cast<double>(value.size());
-    return ((value - mean).square() / variance).sum() / std::max(1.0, n - groups);
+  Grouped(Eigen::ArrayXd values, Eigen::ArrayXd variances, const std::vector<int>& group)
+      : value(std::move(values)), variance(std::move(variances)), mean(value.size()), mean_variance(mean) {
+    std::map<int, std::pair<double, double>> sums;  // of weights, and of weighted values
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      auto& [weight, sum] = sums[group[static_cast<std::size_t>(i)]];
+      weight += 1.0 / variance[i];
+      sum += value[i] / variance[i];
+    }
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      const auto& [weight, sum] = sums[group[static_cast<std::size_t>(i)]];
+      mean[i] = sum / weight;
+      mean_variance[i] = 1.0 / weight;
+    }
+    groups = static_cast<double>(sums.size());
   }
+
+  double freedom() const { return std::max(1.0, static_cast<double>(value.size()) - groups); }
+  /// Sum of squared deviations from the group means, in units of their errors.
+  double deviations() const { return ((value - mean).square() / variance).sum(); }
 };
 
-Speeds speedsOf(const Trial& trial, const std::vector<int>& group,
-                const std::function<double(double)>& slip_std) {
+/// Speeds over ground that follow from slip and rim speed.
+Grouped speedsOf(const Trial& trial, const std::vector<int>& group,
+                 const std::function<double(double)>& slip_std) {
   const auto n = static_cast<Eigen::Index>(trial.states.size());
-  Speeds v{Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
-  std::map<int, std::pair<double, double>> sums;  // of weights, and of weighted speeds
+  Eigen::ArrayXd value(n), variance(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const double rim = trial.states[row].rim_speed_mps;
-    v.value[i] = rim * (1.0 - trial.slip[row]);
-    v.variance[i] = squared(rim * slip_std(trial.slip[row])) + squared(1e-6 * rim);
-    auto& [weight, sum] = sums[group[row]];
-    weight += 1.0 / v.variance[i];
-    sum += v.value[i] / v.variance[i];
+    value[i] = rim * (1.0 - trial.slip[row]);
+    variance[i] = squared(rim * slip_std(trial.slip[row])) + squared(1e-6 * rim);
   }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& [weight, sum] = sums[group[static_cast<std::size_t>(i)]];
-    v.mean[i] = sum / weight;
-    v.mean_variance[i] = 1.0 / weight;
-  }
-  v.groups = static_cast<double>(sums.size());
-  return v;
+  return {value, variance, group};
+}
+
+Grouped logLoads(const Trial& trial, const std::vector<int>& group, double error) {
+  const Eigen::Map<const Eigen::ArrayXd> load_N(trial.load_N.data(), trial.rows());
+  return {load_N.log(), Eigen::ArrayXd::Constant(trial.rows(), squared(error)), group};
+}
+
+constexpr double kLoadError = 0.1;  // load cells have errors below 10 %
+
+/// Levels of load, each more than kLoadError from the next.
+std::vector<int> loadLevels(const Trial& trial) {
+  std::map<double, int> level;
+  for (double load_N : trial.load_N) level[load_N] = 0;
+  int number = 0;
+  for (auto at = level.begin(), last = at; at != level.end(); last = at++)
+    at->second = number += at->first > last->first * std::exp(kLoadError);
+  std::vector<int> group;
+  for (double load_N : trial.load_N) group.push_back(level[load_N]);
+  return group;
 }
 
 }  // namespace
@@ -67,9 +91,21 @@ std::vector<int> setSpeeds(const Trial& trial, const SensorNoise& noise) {
   const std::vector<int> one(trial.states.size(), 0);
   for (const std::vector<int>& group : {one, trial.run}) {
     if (2 * std::set<int>(group.begin(), group.end()).size() > group.size()) continue;
-    const Speeds v = speedsOf(
+    const Grouped v = speedsOf(
         trial, group, [&](double slip) { return std::min(noise.slipStd(slip), 0.1 * std::abs(slip)); });
-    if (v.scatter() <= 4.0) return group;  // (T12)
+    if (v.deviations() <= 4.0 * v.freedom()) return group;  // (T12)
+  }
+  return {};
+}
+
+std::optional<SetLoads> setLoads(const Trial& trial) {
+  if (!trial.moment.empty()) return {};
+  for (const std::vector<int>& group : {trial.run, loadLevels(trial)}) {
+    const Grouped loads = logLoads(trial, group, 1.0);
+    const Grouped squares{(loads.value - loads.mean).square(), loads.variance, group};
+    const double greatest = squares.mean.maxCoeff();
+    if (4.0 * loads.groups <= trial.rows() && greatest > 0.0 && greatest < squared(kLoadError))
+      return SetLoads{group, loads.mean.exp(), std::sqrt(loads.deviations() / loads.freedom())};
   }
   return {};
 }
@@ -94,7 +130,7 @@ Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise) {
   }
   const std::vector<int> group = setSpeeds(trial, noise);
   if (!isOne(group)) return {};
-  const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
+  const Grouped v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
   Eigen::VectorXd shared(trial.rows());
   for (int row = 0; row < trial.rows(); ++row)
     shared[row] = std::sqrt(v.mean_variance[row]) / trial.states[static_cast<std::size_t>(row)].rim_speed_mps;
@@ -147,71 +183,65 @@ std::vector<Posterior> deconvolve(const std::vector<double>& measured,
   return out;
 }
 
-/// Posterior for normal true values with normal errors: deviations from the mean are multiplied by the share
-/// of the scatter that is not error.
-std::vector<Posterior> shrink(const std::vector<double>& measured, const std::vector<double>& std) {
-  const auto n = static_cast<Eigen::Index>(measured.size());
-  const Eigen::Map<const Eigen::ArrayXd> x(measured.data(), n), error(std.data(), n);
-  const double mean = x.mean(), scatter = (x - mean).square().mean();
-  const double kept = std::clamp(1.0 - error.square().mean() / (scatter + 1e-300), 0.0, 1.0);
+/// Posterior of true values that are normal about the means of their groups: deviations are multiplied by the
+/// share of their scatter that is not error. The error of a group's mean is added to each row; that of a single
+/// mean is common to all rows, as in sharedSlipStd().
+std::vector<Posterior> shrunk(const Grouped& v) {
+  const Eigen::ArrayXd weight = v.variance.inverse();
+  const double scatter = std::max(
+      0.0, (v.deviations() - v.freedom()) / (weight.sum() - weight.square().sum() / weight.sum()));  // (T11)
   std::vector<Posterior> out;
-  // (T11)
-  for (Eigen::Index i = 0; i < n; ++i) out.push_back({mean + kept * (x[i] - mean), kept * squared(error[i])});
+  for (Eigen::Index i = 0; i < v.value.size(); ++i) {
+    const double kept = scatter / (scatter + v.variance[i]);  // (T13)
+    out.push_back({v.mean[i] + kept * (v.value[i] - v.mean[i]),
+                   kept * v.variance[i] + (v.groups > 1.0 ? squared(1.0 - kept) * v.mean_variance[i] : 0.0)});
+  }
   return out;
 }
 
-/// Posterior slips at set speeds over ground: deviations of the speeds are multiplied by the share of their
-/// scatter that is not error. The error of a run's mean is added to each row; sharedSlipStd() has the error
-/// of a single mean.
-std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const std::vector<int>& group,
-                                        const SensorNoise& noise) {
-  const Speeds v = speedsOf(trial, group, [&](double slip) { return noise.slipStd(slip); });
-  const Eigen::ArrayXd weight = v.variance.inverse();
-  const double freedom = static_cast<double>(trial.rows()) - v.groups;
-  const double excess = (weight * (v.value - v.mean).square()).sum() - freedom;
-  const double scatter = std::max(0.0, excess / (weight.sum() - weight.square().sum() / weight.sum()));
-  const bool one = isOne(group);
-  std::vector<Posterior> out;
-  for (Eigen::Index i = 0; i < v.value.size(); ++i) {
-    const double rim = trial.states[static_cast<std::size_t>(i)].rim_speed_mps;
-    const double kept = scatter / (scatter + v.variance[i]);  // (T13)
-    const double own = kept * v.variance[i] + (one ? 0.0 : squared(1.0 - kept) * v.mean_variance[i]);
-    out.push_back({1.0 - (v.mean[i] + kept * (v.value[i] - v.mean[i])) / rim, own / (rim * rim)});
+std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const Grouped& speeds) {
+  std::vector<Posterior> slips = shrunk(speeds);
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const double rim = trial.states[i].rim_speed_mps;
+    slips[i] = {1.0 - slips[i].mean / rim, slips[i].variance / (rim * rim)};
   }
-  return out;
+  return slips;
 }
 
 }  // namespace
 
-void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set) {
+void calibrateInputs(Trial& trial, const SensorNoise& noise) {
   const auto n = trial.states.size();
-  std::vector<double> slip_std(n), log_load(n), load_std(n, noise.load_relative);
-  for (std::size_t i = 0; i < n; ++i) {
-    slip_std[i] = noise.slipStd(trial.slip[i]);
-    log_load[i] = std::log(trial.load_N[i]);
-  }
+  const auto set = setLoads(trial);
+  const auto slip_std = [&](double slip) { return noise.slipStd(slip); };
+  const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
+  const Grouped log_load = logLoads(trial, set ? set->group : trial.run, noise.load_relative);
   const std::vector<int> speed = setSpeeds(trial, noise);
-  // The mixture converges slowly for a single level; if the scatter is mostly error, shrink() is equally
-  // accurate.
-  const auto slips = !speed.empty() ? slipsAtSetSpeeds(trial, speed, noise)
-                     : !slipIsSeen(trial, noise)
-                         ? shrink(trial.slip, slip_std)
-                         : deconvolve(trial.slip, [&](double slip) { return noise.slipStd(slip); });
-  const auto loads =
-      set ? std::vector<Posterior>{} : deconvolve(log_load, [&](double) { return noise.load_relative; });
+  // The mixture converges slowly for a single level; if the scatter is mostly error, a normal distribution is
+  // equally accurate.
+  const auto slips =
+      !speed.empty() ? slipsAtSetSpeeds(trial, speedsOf(trial, speed, slip_std))
+      : !slipIsSeen(trial, noise)
+          ? shrunk({slip, Eigen::ArrayXd::Constant(slip.size(), slip.unaryExpr(slip_std).square().mean() + 1e-12),
+                    std::vector<int>(n, 0)})
+          : deconvolve(trial.slip, slip_std);
+  const bool at_set = set && log_load.deviations() <= 16.0 * log_load.freedom();  // (T14)
+  const auto loads = at_set ? std::vector<Posterior>{}
+                            : deconvolve({log_load.value.begin(), log_load.value.end()},
+                                         [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
     // The grid does not resolve errors below its step; the variance of precise inputs is therefore limited.
     const auto row = static_cast<Eigen::Index>(i);
-    const double trust = squared(slip_std[i]), trust_load = squared(load_std[i]);
+    const double trust = squared(slip_std(trial.slip[i])), trust_load = squared(noise.load_relative);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
     trial.slip_variance[row] = std::clamp(slips[i].variance, (speed.empty() ? 0.3 : 0.02) * trust, trust);
-    if (set) {
-      trial.states[i].load_N = set->load_N(static_cast<int>(i), trial.load_N[i]);
-      trial.load_variance[row] = (1.0 - set->error_share + 1.0 / set->rows[row]) * trust_load;  // (T15)
+    if (at_set) {
+      trial.states[i].load_N = set->load_N[row];
+      trial.load_variance[row] = log_load.mean_variance[row];  // (T15)
       continue;
     }
-    trial.states[i].load_N =
-        std::abs(loads[i].mean - log_load[i]) > 2.5 * load_std[i] ? trial.load_N[i] : std::exp(loads[i].mean);
+    const bool far = std::abs(loads[i].mean - log_load.value[row]) > 2.5 * noise.load_relative;
+    trial.states[i].load_N = far ? trial.load_N[i] : std::exp(loads[i].mean);
     trial.load_variance[row] = std::clamp(loads[i].variance, 0.3 * trust_load, trust_load);
   }
 }

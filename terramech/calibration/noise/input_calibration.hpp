@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/noise/nominal_load.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
 namespace talus::terramech {
@@ -36,11 +35,23 @@ Eigen::VectorXd sharedSlipStd(const Trial& trial, const SensorNoise& noise);
 /// consistent, the speed over ground is therefore updated as well.
 void setSlip(WheelState& state, double slip);
 
+/// Loads that the operator set, one for each run or a few levels.
+struct SetLoads {
+  std::vector<int> group;  ///< number of the run or level of each row
+  Eigen::ArrayXd load_N;   ///< geometric mean of the readings of the row's group
+  double scatter;          ///< standard deviation of ln(reading / load_N) [-]
+};
+
+/// Returns the set loads of a trial: a group has four rows on average, and its readings scatter by less than
+/// 10 %. Returns nullopt without such groups, and for a rover's own drive.
+std::optional<SetLoads> setLoads(const Trial& trial);
+
 /// Replaces slip and load of each state by the posterior means of the true values given the measurements, and
 /// sets their posterior variances. The distribution of true values is estimated from all rows (nonparametric
 /// maximum likelihood, kiefer_wolfowitz_1956), which removes the attenuation of dependences by noisy inputs.
-/// The states must contain the measured slip and load. If nominal loads `set` are given, the nominal loads
-/// replace the estimated distribution of loads.
-void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<NominalLoad>& set = {});
+/// The states must contain the measured slip and load. Slips at set speeds are normal about the mean of
+/// their group instead. A set load is the mean of its group, if the readings scatter about it by at most
+/// four times the error of the load.
+void calibrateInputs(Trial& trial, const SensorNoise& noise);
 
 }  // namespace talus::terramech

@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <nlopt.hpp>
 
-#include <talus/terramech/calibration/noise/nelder_mead.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
 #include <talus/terramech/calibration/table/answer_columns.hpp>
@@ -13,6 +13,33 @@
 #include <talus/terramech/numerics/squared.hpp>
 
 namespace talus::terramech {
+namespace {
+
+using Cost = std::function<double(const std::vector<double>&)>;
+
+double costAt(const std::vector<double>& x, std::vector<double>&, void* cost) {
+  return (*static_cast<const Cost*>(cost))(x);
+}
+
+}  // namespace
+
+std::vector<double> nelderMead(const Cost& cost, const std::vector<double>& start,
+                               const NelderMeadOptions& options) {
+  if (start.empty()) return start;
+  nlopt::opt search(nlopt::LN_NELDERMEAD, static_cast<unsigned>(start.size()));
+  search.set_min_objective(costAt, const_cast<Cost*>(&cost));
+  search.set_initial_step(options.step);
+  search.set_maxeval(options.evaluations);
+  search.set_ftol_abs(options.tolerance);
+  std::vector<double> x = start;
+  double value = 0.0;
+  try {
+    search.optimize(x, value);
+  } catch (const nlopt::roundoff_limited&) {  // no step improves x within rounding
+  }
+  return x;
+}
+
 namespace {
 
 /// Standard deviation of the logarithm of a stated error.
@@ -206,6 +233,27 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
   set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
                  {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
   return noise;
+}
+
+std::array<double, kChannels> noiseFloor(const Trial& trial, const Eigen::MatrixXd& level,
+                                         const InputSlopes& slopes, const SensorNoise& noise) {
+  std::array<double, kChannels> floor{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    double sum = 0.0;
+    int count = 0;
+    for (int row = 0; row < trial.rows(); ++row) {
+      const auto k = static_cast<int>(c);
+      if (!std::isfinite(trial.measured(row, k))) continue;
+      const double slip = noise.slipStd(trial.slip[static_cast<std::size_t>(row)]);
+      // (T53)
+      sum += std::pow(noise.absolute[c] / trial.denominator(row, static_cast<Channel>(k)), 2) +
+             std::pow(noise.relative[c] * level(row, k), 2) + std::pow(slip * slopes.by_slip(row, k), 2) +
+             std::pow(noise.load_relative * slopes.by_load(row, k), 2);
+      ++count;
+    }
+    floor[c] = count ? std::sqrt(sum / count) : std::nan("");
+  }
+  return floor;
 }
 
 }  // namespace talus::terramech

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,18 @@
 #include <talus/terramech/calibration/table/trial.hpp>
 
 namespace talus::terramech {
+
+/// Initial step and stopping criteria of the simplex method.
+struct NelderMeadOptions {
+  double step = 0.5;        ///< initial edge length of the simplex in every coordinate
+  int evaluations = 1000;   ///< greatest number of function evaluations
+  double tolerance = 1e-6;  ///< the search stops if the function values over the simplex differ by less
+};
+
+/// Returns the minimum of `cost` that the simplex method finds from `start` (nelder_mead_1965). The method
+/// suits few coordinates of similar scale.
+std::vector<double> nelderMead(const std::function<double(const std::vector<double>&)>& cost,
+                               const std::vector<double>& start, const NelderMeadOptions& options);
 
 /// Returns the maximum a posteriori standard deviations of the sensors, including those of slip and load. The
 /// smooth dependence of the residuals on covariates is removed first, so that a missing effect does not
@@ -40,5 +53,11 @@ std::vector<std::string> noiseColumns(const Trial& trial);
 
 /// Returns the columns of noiseColumns() that do not determine the slip.
 std::vector<std::string> allButSlip(const Trial& trial);
+
+/// Returns the noise floor: the root mean square of each scaled channel that sensor errors cause. The floor
+/// includes the errors of slip and load, which act through `slopes`; NaN for channels without measurements.
+/// `level` contains a model's predictions, rows x kChannels.
+std::array<double, kChannels> noiseFloor(const Trial& trial, const Eigen::MatrixXd& level,
+                                         const InputSlopes& slopes, const SensorNoise& noise);
 
 }  // namespace talus::terramech

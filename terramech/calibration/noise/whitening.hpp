@@ -4,10 +4,27 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/table/moment_slip.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 
 namespace talus::terramech {
+
+/// Effect of the shared slip error on rows that are otherwise independent with unit variance. Within each
+/// moment the covariance of the rows is I + u u^T. Empty if rows share no slip error.
+struct MomentSlip {
+  std::vector<int> moment;  ///< moment number of each row, from 0
+  /// u, rows x channels: change of the whitened readings for one standard deviation of the slip error.
+  Eigen::MatrixXd moved;
+
+  /// Decorrelates the rows (channels of a row adjacent) by multiplication with (I + u u^T)^(-1/2) of each
+  /// moment.
+  void takeOut(Eigen::Ref<Eigen::VectorXd> rows) const;
+
+  /// Returns the log-likelihood of the rows minus that of independent rows (Sherman-Morrison).
+  double logLikelihood(const Eigen::VectorXd& rows) const;
+};
+
+/// Returns the MomentSlip of the rows marked by `keep`.
+MomentSlip subset(const MomentSlip& slip, const std::vector<char>& keep);
 
 /// Derivatives of the predicted scaled channels with respect to the measured inputs slip and load, rows x
 /// kChannels.

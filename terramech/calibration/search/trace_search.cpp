@@ -2,9 +2,13 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <string>
+#include <string_view>
 
-#include <talus/terramech/calibration/fit/candidate_columns.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 
 namespace talus::terramech {
@@ -30,11 +34,6 @@ TraceSearch::TraceSearch(const RefinedModel& base, const Trial& trial, const Tra
       go_on_(std::move(go_on)),
       fit_(base, trial, options.fit_soil, go_on_),
       given_effects_(base.effects.size()) {}
-
-void TraceSearch::trust(const std::optional<Estimate>& prior) {
-  first_prior_ = prior;
-  fit_.trust(prior);
-}
 
 GainDistribution TraceSearch::distributionOf(const std::vector<Candidate>& candidates, int draws) const {
   const CalibratedRows& rows = fit_.rows();
@@ -209,7 +208,6 @@ void TraceSearch::finish(TraceResult& result) {
   const Eigen::MatrixXd covariance = fit_.finish(!result.effects.empty());
   describe(result.effects, covariance);
   result.refined = model();
-  result.first_prior = first_prior_;
   result.trial = fit_.rows().trial();
   const Trial measured = asMeasured(result.trial);
   result.base_rmse = rmseOf(result.base, measured);
@@ -219,6 +217,111 @@ void TraceSearch::finish(TraceResult& result) {
   result.strained = strainedSensors(result.trial, fit_.rows().level(), model().stated, declared);
   result.declared_floor = fit_.noiseFloor(declared);
   result.shared = sharedError();
+}
+
+namespace {
+
+constexpr std::size_t kRivals = 3;
+
+/// Key of a cause: name, column and group of the candidate.
+std::string causeOf(const Candidate& c) {
+  return c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value;
+}
+
+/// Returns true if two effects are the same cause: the same column, and curves or forms of one family. Drifts
+/// of one column are the same cause if they differ in their time course only.
+bool isOneCause(const Effect& other, const Effect& own) {
+  const Candidate a{{other}, "", 0}, b{{own}, "", 0};
+  if (a.covariate() != b.covariate()) return false;
+  const EffectForm *of_other = findEffect(other.name), *of_own = findEffect(own.name);
+  if (!of_other || !of_own) return true;
+  return std::string_view(of_other->family) == of_own->family &&
+         (std::string_view(of_own->family) != "drift" || other.name.starts_with(own.name) ||
+          own.name.starts_with(other.name));
+}
+
+/// Returns true if the candidate includes the constant sensor offset `own`: a curve or a drift of the same
+/// sensor.
+bool holdsOffset(const Candidate& other, const Effect& own) {
+  const EffectForm* form = findEffect(own.name);
+  return form && form->of_sensor && own.parameters.size() == 1 &&
+         other.parts.front().channel == own.channel && (other.empirical() || other.family == "drift");
+}
+
+/// Returns true if the candidate is another cause than the effects `own`. A product represents both of its
+/// columns; product candidates are therefore rivals of products only.
+bool isOther(const Candidate& other, const std::vector<Effect>& own) {
+  if (isProduct(other.covariate()) && !isProduct(own.front().covariate)) return false;
+  return std::none_of(own.begin(), own.end(), [&](const Effect& part) {
+    return isOneCause(other.parts.front(), part) || holdsOffset(other, part);
+  });
+}
+
+std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation> ranked,
+                             const std::string& in_place_of) {
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
+  std::vector<RivalCause> rivals;
+  std::set<std::string> seen;
+  for (Explanation& e : ranked) {
+    if (rivals.size() == kRivals || e.gain <= 0.0) break;
+    if (!seen.insert(causeOf(e.candidate)).second) continue;
+    RefinedModel model = search.modelWith(e.candidate);
+    // Skips curves that are constant over their column.
+    if (search.dependsOn(model, e.candidate.covariate()))
+      rivals.push_back({in_place_of, e, std::move(model)});
+  }
+  return rivals;
+}
+
+}  // namespace
+
+Replacements replacementsOf(const TraceSearch& search, std::size_t k) {
+  Replacements in{search, {}, {}};
+  in.without.leaveOut(k);
+  in.promises = in.without.screen(0).promises;
+  in.ranked = in.without.fitBest(in.promises);
+  return in;
+}
+
+std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own) {
+  constexpr std::size_t kFits = 6;
+  // At most one curve per column, and each named form once.
+  const auto kindOf = [](const Candidate& c) { return c.empirical() ? c.covariate() : causeOf(c); };
+  std::set<std::string> tried;
+  std::vector<Explanation> ranked;
+  for (const Explanation& e : in.ranked)
+    if ((e.candidate.parts.size() == 1 || e.candidate.empirical()) && isOther(e.candidate, own) &&
+        tried.insert(kindOf(e.candidate)).second)
+      ranked.push_back(e);
+  for (const Promise& p : in.promises) {
+    if (tried.size() >= kFits || p.gain <= 0.0) break;
+    if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
+    if (tried.insert(kindOf(p.candidate)).second) ranked.push_back(in.without.fitted(p.candidate));
+  }
+  return best(in.without, std::move(ranked), own.front().name);
+}
+
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked) {
+  return best(search, ranked, "");
+}
+
+ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
+  SolvedContacts solved;
+  return rmseOf(predictRows(model, trial, solved), trial);
+}
+
+ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial) {
+  const Eigen::MatrixXd residual = trial.measured - predicted;
+  ChannelErrors errors{};
+  for (int c = 0; c < kChannels; ++c) {
+    double sum = 0.0;
+    int count = 0;
+    for (double r : residual.col(c))
+      if (std::isfinite(r)) sum += r * r, ++count;
+    errors[static_cast<std::size_t>(c)] = count ? std::sqrt(sum / count) : std::nan("");
+  }
+  return errors;
 }
 
 }  // namespace talus::terramech

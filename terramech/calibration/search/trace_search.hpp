@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -53,9 +54,6 @@ class TraceSearch {
   /// found together become one accepted candidate each.
   void accept(const Candidate& candidate);
 
-  /// Sets a prior for the first parameter of the effect accepted first.
-  void trust(const std::optional<Estimate>& prior);
-
   /// Removes accepted candidate number k and refits the others with unchanged noise.
   void leaveOut(std::size_t k);
 
@@ -91,7 +89,6 @@ class TraceSearch {
   TraceOptions options_;
   std::function<bool(double)> go_on_;
   TrialFit fit_;
-  std::optional<Estimate> first_prior_;  ///< prior of the first parameter of the first accepted effect
   /// Number of leading effects, those of the base model. These effects are fitted, never removed.
   std::size_t given_effects_;
   struct Unit {
@@ -100,5 +97,25 @@ class TraceSearch {
   };
   std::vector<Unit> units_;  ///< accepted candidates
 };
+
+/// Explanations in the place of an accepted candidate.
+struct Replacements {
+  TraceSearch without;              ///< search without the accepted candidate
+  std::vector<Promise> promises;    ///< all candidates, best first
+  std::vector<Explanation> ranked;  ///< the most promising candidates, fitted, best gain first
+};
+
+/// Screens and fits the candidates in the place of accepted candidate `k`. Their gains are comparable to
+/// TraceSearch::gainOf(k).
+Replacements replacementsOf(const TraceSearch& search, std::size_t k);
+
+/// Returns alternative causes for an accepted candidate with the effects `own`: the best form and the best
+/// curve of each other column, and other forms of the candidate's own column. Returns at most three causes of
+/// different columns or forms, best first.
+std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own);
+
+/// Returns alternative causes from `ranked` for a model without accepted candidates: at most three, of
+/// different columns or forms.
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked);
 
 }  // namespace talus::terramech

@@ -4,8 +4,6 @@
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/line_estimate.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
-#include <talus/terramech/calibration/tables/plate_estimate.hpp>
-#include <talus/terramech/calibration/tables/posterior_estimate.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -5,6 +5,9 @@
 
 namespace talus::terramech {
 
+/// Estimates the soil from plate tests by method bevameter. Throws the exceptions of estimateSoil().
+SoilEstimate plateEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
+
 /// Estimates the soil by one of the linear methods sojourner, iagnemma and linear-offset. Throws the
 /// exceptions of estimateSoil().
 SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor& watch);

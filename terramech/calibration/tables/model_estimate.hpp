@@ -5,6 +5,11 @@
 
 namespace talus::terramech {
 
+/// Estimates the soil by method wong-reece without a model file: the posterior given the equilibrium of the
+/// wheel. Throws the exceptions of estimateSoil(), and std::domain_error if no soil explains the rows
+/// (noSoilExplains()).
+SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch);
+
 /// Returns true if a soil estimate from the table requires the complete wheel model. This is the case if a
 /// side force is measured in rows with a slip angle above kStraightUpTo_rad, or if the side force in rows of
 /// straight wheels exceeds kCoarse of the load (root mean square). Throws the exceptions of readTelemetry().

@@ -15,9 +15,9 @@
 namespace talus::terramech {
 
 /// Options of a soil estimate from a telemetry table. The methods are
-///   bevameter       plate tests (plate_estimate.hpp)
+///   bevameter       plate tests (line_estimate.hpp)
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau) (line_estimate.hpp)
-///   wong-reece      posterior from the wheel's equilibrium (posterior_estimate.hpp, model_estimate.hpp)
+///   wong-reece      posterior from the wheel's equilibrium (model_estimate.hpp)
 struct EstimateOptions {
   TableFile table;     ///< CSV file
   std::string method;  ///< estimation method, one of estimateMethods()

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/table/closure_offset.hpp>
 #include <talus/terramech/calibration/trace/model_validity.hpp>
 
 namespace talus::terramech {
@@ -59,6 +58,18 @@ std::string number(double value) {
 }
 
 }  // namespace
+
+std::vector<double> closureErrors(const Trial& trial) {
+  std::vector<double> errors;
+  for (int row = 0; row < trial.rows(); ++row) {
+    const double pull = trial.measured(row, 0), z = trial.measured(row, 1), torque = trial.measured(row, 2);
+    const double entry = std::acos(std::clamp(1.0 - z, 0.0, 1.0 - 1e-9));
+    const double arc = std::sin(0.25 * entry) / (0.25 * entry);
+    // (T47)
+    errors.push_back(pull + std::tan(0.5 * entry) - arc * arc / std::cos(0.5 * entry) * torque);
+  }
+  return errors;
+}
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
   for (const auto& [channel, most] :

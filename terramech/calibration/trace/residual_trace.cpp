@@ -6,15 +6,14 @@
 #include <set>
 #include <string>
 
+#include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
-#include <talus/terramech/calibration/held_out/end_levels.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/search/column_screening.hpp>
-#include <talus/terramech/calibration/search/rival_causes.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
-#include <talus/terramech/calibration/table/closure_offset.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/mobility/rut.hpp>
 
@@ -30,33 +29,6 @@ TracedEffect traced(const Explanation& chosen) {
   return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}};
 }
 
-/// Adds the offset of a force sensor in one group of rows (findClosureOffset()), unless the offset increases
-/// held-out errors. The effect is kept if it changes predictions, even with a small gain: a soil fitted to
-/// all rows absorbs most of the offset.
-bool correctOffset(TraceSearch& search, const Trial& trial, std::uint64_t seed,
-                   std::vector<TracedEffect>& effects) {
-  const auto found = findClosureOffset(trial, seed);
-  if (!found) return false;
-  Effect tilt;
-  tilt.name = "load_cell_tilt";
-  tilt.covariate = found->column;
-  tilt.channel = Channel::DrawbarPull;
-  tilt.parameters = {std::asin(std::clamp(found->offset, -0.3, 0.3))};
-  search.trust(Estimate{tilt.parameters[0], found->std});
-  tilt.only_column = found->column;
-  tilt.only_value = found->value;
-  TracedEffect effect;
-  effect.chosen.candidate = {{tilt}, "load_cell_tilt", 1};
-  effect.p_value = found->p_value;
-  if (!accepted({search.fitted(effect.chosen.candidate)}, 0.0)) {
-    search.trust(std::nullopt);
-    return false;
-  }
-  search.accept(effect.chosen.candidate);
-  effects.push_back(effect);
-  return true;
-}
-
 /// State of the search: accepted effects, in the order of acceptance. Its objective is the score of the model
 /// plus the logarithms of the candidates' priors, less the threshold for each accepted candidate.
 struct Path {
@@ -67,7 +39,6 @@ struct Path {
   std::vector<Promise> first{}, last{};
   double threshold = 0.0;
   GainDistribution noise{};
-  std::size_t pinned = 0;  ///< number of leading effects that are not exchanged
   std::set<std::multiset<std::string>> seen{};
 
   /// Returns the accepted effects as a set, independent of their order.
@@ -98,10 +69,10 @@ void drop(Path& path, std::size_t k) {
 
 /// Removes the effect with the least gain beside the others, as long as this gain is at most that of noise.
 void prune(Path& path) {
-  while (path.effects.size() > path.pinned) {
+  while (!path.effects.empty()) {
     std::size_t least = 0;
     double gain = std::numeric_limits<double>::infinity();
-    for (std::size_t k = path.pinned; k < path.effects.size(); ++k)
+    for (std::size_t k = 0; k < path.effects.size(); ++k)
       if (const double own = path.search.gainOf(k); own < gain) least = k, gain = own;
     if (gain > path.threshold) return;  // (T43)
     drop(path, least);
@@ -139,8 +110,8 @@ bool exchange(Path& path, InPlace& in_place, const std::function<bool(double)>& 
   constexpr double kOfFit = 0.1;  // error of a fitted gain
   in_place.clear();
   bool changed = false;
-  for (std::size_t k = path.pinned; in_place.size() < path.effects.size() - path.pinned && go_on(0.0);) {
-    if (k >= path.effects.size()) k = path.pinned;
+  for (std::size_t k = 0; in_place.size() < path.effects.size() && go_on(0.0);) {
+    if (k >= path.effects.size()) k = 0;
     Replacements in = replacementsOf(path.search, k);
     const bool several = !in.ranked.empty() && !in.ranked.front().candidate.empirical() &&
                          in.ranked.front().candidate.parts.size() > 1;
@@ -162,7 +133,7 @@ bool exchange(Path& path, InPlace& in_place, const std::function<bool(double)>& 
 /// Sets the gain and the p-value of each effect beside the others, and lists alternative causes.
 void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
                 const std::function<bool(double)>& go_on) {
-  for (std::size_t k = path.pinned; k < result.effects.size() && go_on(0.0); ++k) {
+  for (std::size_t k = 0; k < result.effects.size() && go_on(0.0); ++k) {
     TracedEffect& effect = result.effects[k];
     if (!in_place.contains(k)) in_place.emplace(k, replacementsOf(path.search, k));
     const Replacements& in = in_place.at(k);
@@ -235,8 +206,6 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.given = base.soil;
   result.base = path.search.model();
   result.base_shared = path.search.sharedError();
-  if (options.fit_soil && trial.moment.empty())
-    path.pinned = correctOffset(path.search, screened, options.seed, path.effects) ? 1 : 0;
   InPlace in_place;
   do grow(path, trial, options, go_on);
   while (exchange(path, in_place, go_on));
@@ -252,7 +221,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.noise_floor);
+  keepConfirmed(result.ends, result.scope);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   return result;
 }
@@ -272,6 +241,21 @@ TraceResult traceResiduals(const RefinedModel& base, const Trial& trial, const T
   }
   watch.report(1.0);
   return result;
+}
+
+TraceInput traceInput(const Telemetry& table, const ModelFile& base, const TraceOptions& options) {
+  constexpr int kFewest = 5;
+  TraceInput input{.rows = modelRows(table, base.model), .options = options};
+  input.options.fit_soil = !base.soil_given;
+  const Trial& trial = input.rows.trial;
+  if (trial.rows() < kFewest)
+    throw InputError({table.source,
+                      std::to_string(trial.rows()) +
+                          " usable rows with sinkage below the wheel radius; tracing needs at least 5",
+                      ""});
+  // The rows of a drive do not determine both soil and effects.
+  if (base.soil_given && trial.moment.empty()) giveDefaultDeviations(input.rows.model);
+  return input;
 }
 
 }  // namespace talus::terramech

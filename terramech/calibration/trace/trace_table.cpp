@@ -1,7 +1,6 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/search/scale_hypotheses.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/calibration/trace/trace_input.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>

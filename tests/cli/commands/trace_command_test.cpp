@@ -49,6 +49,25 @@ TEST(TraceCommand, EffectOfOneGroupIsAttributedToItsColumn) {
   EXPECT_EQ(effects[0]["channel"], "drawbar_pull_over_load");
 }
 
+TEST(TraceCommand, FormulaLacksTheColumnThatWasPlanted) {
+  const Folder folder;
+  std::string rows = "joules,metres,wet\n";
+  for (int row = 0; row < 20; ++row)
+    rows += fmt::format("{},{},{}\n", 2.0 * row + 3.0 * (row % 5) + 0.3 * std::sin(12.9 * row * row), row,
+                        row % 5);
+  folder.write("t.csv", rows);
+  const std::vector<std::string> call{"trace", "t.csv", "--formula", "joules = a*metres"};
+  EXPECT_THAT(runTalus(call, folder.path()).out, testing::HasSubstr("explained: joules on held-out rows"));
+  const Ran ran = runTalus({"trace", "t.csv", "--formula", "joules = a*metres", "--json"}, folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto answer = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(answer["effects"][0]["covariate"], "wet");
+  EXPECT_NEAR(answer["effects"][0]["parameters"]["slope"].get<double>(), 3.0, 0.3);  // three standard errors
+  EXPECT_LT(answer["held_out"]["refined_rmse"]["joules"], 0.4);
+  EXPECT_TRUE(answer["held_out"]["noise_floor"]["joules"].is_null());
+  EXPECT_EQ(runTalus({"trace", "t.csv", "--formula", "joules = a*b*metres"}, folder.path()).code, 2);
+}
+
 // The page shows verdict, errors before and after, measured and predicted values, and a plot of each effect.
 TEST(TraceCommand, PageShowsVerdictErrorsAndEachEffectWithItsData) {
   const Folder folder;

@@ -22,6 +22,7 @@ inline Trial trialOf(const std::vector<double>& slips) {
     trial.states.push_back(s);
     trial.load_N.push_back(s.load_N);
     trial.slip.push_back(slip);
+    trial.run.push_back(static_cast<int>(trial.run.size()));
   }
   trial.slip_variance = trial.load_variance = Eigen::VectorXd::Zero(trial.rows());
   trial.measured = Eigen::MatrixXd::Zero(trial.rows(), kChannels);

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include <talus/terramech/calibration/noise/gain_distribution.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 
 namespace talus::terramech {
 

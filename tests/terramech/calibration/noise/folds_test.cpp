@@ -1,5 +1,9 @@
+#include <cmath>
 #include <map>
+#include <random>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include <talus/terramech/calibration/noise/folds.hpp>
 

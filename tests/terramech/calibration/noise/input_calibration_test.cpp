@@ -58,7 +58,6 @@ Trial atOneSpeed(double relative, double speed_scatter) {
     WheelState& s = trial.states[k];
     s.rim_speed_mps = 0.02 * std::exp(other[119 - k]) / (0.9 - 0.005 * static_cast<double>(k));
     s.speed_mps = s.rim_speed_mps * (1.0 - s.slip);
-    trial.run.push_back(static_cast<int>(k));
   }
   return trial;
 }
@@ -105,6 +104,44 @@ TEST(InputCalibration, VaryingSpeedsDoNotDetermineSlips) {
   own.states[3].speed_mps *= 1.1;
   EXPECT_TRUE(setSpeeds(own, slipNoise(0.04)).empty());
   EXPECT_EQ(sharedSlipStd(own, slipNoise(0.04)).size(), 0);
+}
+
+/// Twenty runs of ten rows, each at a load of its own. The true loads scatter about it by `true_scatter`, and the
+/// readings have an error of 2 %.
+Trial setCampaign(double true_scatter) {
+  Trial trial = trialOf(scattered(0.3, 0.1, 200));
+  const std::vector<double> error = scattered(0.0, 0.02, 200), own = scattered(0.0, true_scatter, 400);
+  for (std::size_t k = 0; k < 200; ++k) {
+    trial.run[k] = static_cast<int>(k / 10);
+    trial.load_N[k] = (40.0 + 3.0 * trial.run[k]) * std::exp(error[k] + own[399 - k]);
+    trial.states[k].load_N = trial.load_N[k];
+  }
+  return trial;
+}
+
+TEST(InputCalibration, SetLoadIsTheMeanOfItsRunUnlessTrueLoadsScatter) {
+  Trial trial = setCampaign(0.0), scattering = setCampaign(0.06);
+  const auto set = setLoads(trial);
+  ASSERT_TRUE(set);
+  ASSERT_TRUE(setLoads(scattering));
+  calibrateInputs(trial, slipNoise(0.04));
+  SensorNoise precise = slipNoise(0.04);
+  precise.load_relative = 0.01;
+  calibrateInputs(scattering, precise);
+  for (int k = 0; k < 200; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    EXPECT_EQ(trial.states[row].load_N, set->load_N[k]);
+    EXPECT_NEAR(trial.load_variance[k], 4e-4 / 10.0, 1e-12);  // Closed form: sigma^2/n of ten readings
+    EXPECT_LT(std::abs(std::log(scattering.states[row].load_N / scattering.load_N[row])), 2.5 * 0.01);
+  }
+}
+
+TEST(InputCalibration, ContinuousLoadsAndDrivesHaveNoSetLoad) {
+  Trial drive = setCampaign(0.0);
+  drive.moment.assign(200, 0);
+  EXPECT_FALSE(setLoads(drive));
+  Trial wide = setCampaign(0.3);
+  EXPECT_FALSE(setLoads(wide));
 }
 
 }  // namespace input_calibration_test

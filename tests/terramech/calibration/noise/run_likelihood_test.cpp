@@ -1,11 +1,16 @@
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
+
+#include "calibration/synthetic_table.hpp"
+#include "made_rows.hpp"
 
 namespace talus::terramech {
 namespace run_likelihood_test {
@@ -193,4 +198,207 @@ TEST(RunLikelihood, RowsWithoutRunsShareNothing) {
 }
 
 }  // namespace run_likelihood_test
+namespace gain_distribution_test {
+
+TEST(GainDistribution, FalseAlarmRateIsFivePercentWithRunErrors) {
+  // Property: of 120 tables with errors by run, about 6 exceed the threshold of 5 %; 13 or more have
+  // probability 0.006.
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    SyntheticTable table(12, 8, 1.5, seed);
+    std::vector<std::vector<double>> columns;
+    for (int k = 0; k < 8; ++k) columns.push_back(k % 2 ? table.byRow() : table.byRun());
+    const GainDistribution d = table.contest(columns, seed);
+    alarms += *std::max_element(d.gain.begin(), d.gain.end()) > d.threshold(0.05);
+  }
+  EXPECT_LE(alarms, 12);
+}
+
+TEST(GainDistribution, EffectConstantWithinRunsIsFoundDespiteRunErrors) {
+  // Property: the covariance of the runs' error is estimated again together with the effect, so that the
+  // effect is found.
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SyntheticTable table(16, 10, 0.3, seed);
+    const auto cause = table.byRun(), other = table.byRun(), noise = table.byRow();
+    table.hide(cause, 1.0);
+    const GainDistribution d = table.contest({other, cause, noise}, seed);
+    found += d.gain[1] > d.threshold(0.05) && d.gain[1] > d.gain[0] && d.gain[1] > d.gain[2];
+  }
+  EXPECT_GE(found, 19);
+}
+
+TEST(GainDistribution, RunErrorsRaiseNoAlarmForCovariatesThatVaryByRun) {
+  // Property: with an error of runs of five times the noise of rows, one run in twelve with a large error is
+  // not found as a cause.
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SyntheticTable table(12, 20, 5.0, seed);
+    const GainDistribution d = table.contest({table.byRun(), table.byRun(), table.byRun()}, seed);
+    alarms += *std::max_element(d.gain.begin(), d.gain.end()) > d.threshold(0.05);
+  }
+  EXPECT_LE(alarms, 6);  // 2 expected; 7 or more have probability 0.004
+}
+
+TEST(GainDistribution, GainIncludesReturnOfTheSoilToItsPrior) {
+  // Closed form: a known parameter fits a constant of 3 at eight standard deviations from its prior. A
+  // contender of the same shape allows the parameter to return to its prior, a gain of 8^2 / 2 = 32.
+  SyntheticTable table(10, 10, 0.0, 7);
+  table.null.unit.clear();
+  const std::vector<double> constant(100, 1.0);
+  table.null.known.prior = {Eigen::VectorXd::Constant(1, -3.0), Eigen::VectorXd::Constant(1, 64.0 / 9.0)};
+  const GainDistribution d = table.contest({constant});
+  EXPECT_NEAR(d.gain[0], 32.0, 4.0);
+}
+
+TEST(GainDistribution, NullTablesDrawTheirSoilFromThePrior) {
+  // Property: the departure of the fitted soil from its prior affects the gain of the table, but not the
+  // gains of tables drawn from the null model.
+  SyntheticTable table(10, 10, 0.0, 7);
+  table.null.unit.clear();
+  table.null.soil = 1;
+  const std::vector<double> constant(100, 1.0);
+  const auto threshold = [&](double prior) {
+    table.null.known.prior = {Eigen::VectorXd::Constant(1, prior), Eigen::VectorXd::Constant(1, 64.0 / 9.0)};
+    return table.contest({constant, table.byRow()}).threshold(0.05);
+  };
+  const double here = threshold(0.0);
+  EXPECT_NEAR(threshold(-30.0), here, 0.5 + 0.2 * here);
+  EXPECT_LT(here, 10.0);  // soils drawn about the fitted soil would give 32 and more
+}
+
+TEST(GainDistribution, NonNegativeContenderHasZeroGainForNegativeStep) {
+  SyntheticTable table(10, 10, 0.0, 9);
+  const auto cause = table.byRow();
+  table.hide(cause, -1.0);
+  const auto contest = [&](bool positive) {
+    return gainDistribution(table.null,
+                            {1,
+                             [&](std::size_t) {
+                               Contender c = SyntheticTable::added(cause);
+                               c.positive = positive;
+                               return c;
+                             }},
+                            0, 1, [](double) { return true; })
+        .gain[0];
+  };
+  EXPECT_GT(contest(false), 20.0);
+  EXPECT_EQ(contest(true), 0.0);
+}
+
+TEST(GainDistribution, PValueCountsTheObservedTable) {
+  GainDistribution d;
+  d.greatest = {0.0, 1.0, 2.0, 3.0};
+  EXPECT_EQ(d.pValue(9.0), 0.2);  // Closed form: (0 + 1) / (4 + 1)
+  EXPECT_EQ(d.pValue(2.0), 0.6);
+  EXPECT_EQ(d.pValue(-1.0), 1.0);
+  EXPECT_EQ(d.threshold(0.2), 3.0);
+}
+
+TEST(GainDistribution, StopsWhenTheWatchReturnsFalse) {
+  SyntheticTable table(10, 10, 0.0, 9);
+  int asked = 0;
+  const auto column = table.byRow();
+  const GainDistribution d =
+      gainDistribution(table.null, {50, [&](std::size_t) { return SyntheticTable::added(column); }}, 99, 1,
+                       [&](double) { return ++asked < 4; });
+  EXPECT_EQ(asked, 4);
+  EXPECT_TRUE(d.greatest.empty());
+}
+
+}  // namespace gain_distribution_test
+namespace run_units_test {
+
+struct Rows {
+  Trial trial;
+  Whitening white;
+  Eigen::MatrixXd residual;
+
+  Rows(int rows, int runs, std::uint64_t seed) : random(seed) {
+    residual = Eigen::MatrixXd::Constant(rows, kChannels, std::nan(""));
+    for (int row = 0; row < rows; ++row) {
+      trial.states.push_back({.load_N = 50.0, .slip = 0.3, .time_s = 10.0 * row});
+      trial.run.push_back(runs > 0 ? row * runs / rows : row);
+      residual(row, 0) = normal(random);
+    }
+    white.std = Eigen::MatrixXd::Ones(rows, kChannels);
+    white.factor.assign(static_cast<std::size_t>(rows),
+                        Eigen::Matrix4d(Eigen::Vector4d(1, 0, 0, 0).asDiagonal()));
+  }
+
+  std::vector<int> units() const { return runUnits(trial, white, residual); }
+
+  void last(double correlation) {
+    for (Eigen::Index row = 1; row < residual.rows(); ++row)
+      residual(row, 0) =
+          correlation * residual(row - 1, 0) + std::sqrt(1.0 - correlation * correlation) * residual(row, 0);
+  }
+
+  std::mt19937_64 random;
+  std::normal_distribution<double> normal;
+};
+
+int countOf(const std::vector<int>& unit) {
+  return unit.empty() ? 0 : *std::max_element(unit.begin(), unit.end()) + 1;
+}
+
+TEST(RunUnits, EqualTheGivenRuns) {
+  EXPECT_EQ(countOf(Rows(200, 10, 1).units()), 10);
+}
+
+TEST(RunUnits, RowsWithIndependentNoiseAndNoRunsFormNoUnits) {
+  EXPECT_TRUE(Rows(200, 0, 2).units().empty());
+}
+
+TEST(RunUnits, AutocorrelatedNoiseIsSplitIntoTimeSegments) {
+  Rows alone(300, 0, 5), in_runs(300, 6, 6);
+  alone.last(0.8);
+  in_runs.last(0.8);
+  EXPECT_GT(countOf(alone.units()), 10);
+  EXPECT_LT(countOf(alone.units()), 100);
+  EXPECT_GT(countOf(in_runs.units()), 6);
+}
+
+TEST(RunUnits, AutocorrelationAlongSlipIsNotTreatedAsNoise) {
+  Rows rows(300, 6, 6);
+  rows.trial.covariates = {"slip"};
+  rows.last(0.8);
+  for (int row = 0; row < 300; ++row) rows.trial.states[static_cast<std::size_t>(row)].slip = row % 50 / 60.0;
+  EXPECT_EQ(countOf(rows.units()), 6);
+  for (WheelState& s : rows.trial.states) s.time_s = std::nan("");
+  EXPECT_EQ(countOf(rows.units()), 6);
+}
+
+TEST(RunUnits, RowsOfOneMomentShareAUnit) {
+  Rows rows(400, 0, 7);
+  rows.last(0.95);
+  for (int row = 0; row < 400; ++row) {
+    rows.trial.moment.push_back(row / 4);
+    rows.trial.states[static_cast<std::size_t>(row)].time_s = row / 4;
+  }
+  rows.trial.run = rows.trial.moment;
+  const std::vector<int> unit = rows.units();
+  ASSERT_EQ(unit.size(), 400U);
+  for (std::size_t row = 1; row < 400; ++row)
+    if (row % 4 != 0) {
+      EXPECT_EQ(unit[row], unit[row - 1]);
+    }
+}
+
+TEST(RunUnits, UnitMeansAreInverseVarianceWeightedAndZeroIfEmpty) {
+  // Closed form: (1/1 * 2 + 1/4 * 7) / (1 + 1/4) = 3.
+  Eigen::MatrixXd residual(3, 2), std(3, 2);
+  residual << 2.0, std::nan(""), 7.0, 5.0, 9.0, std::nan("");
+  std << 1.0, 1.0, 2.0, 1.0, 1.0, 1.0;
+  const Eigen::MatrixXd mean = unitMeans(residual, std, {0, 0, 1});
+  EXPECT_NEAR(mean(0, 0), 3.0, 1e-14);
+  EXPECT_NEAR(mean(1, 0), 3.0, 1e-14);
+  EXPECT_EQ(mean(2, 0), 9.0);
+  EXPECT_EQ(mean(0, 1), 0.0);
+  EXPECT_EQ(mean(1, 1), 5.0);
+  EXPECT_EQ(mean(2, 1), 0.0);
+}
+
+}  // namespace run_units_test
+
 }  // namespace talus::terramech

@@ -1,7 +1,13 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
 
 #include <talus/terramech/calibration/search/trace_search.hpp>
 
+#include "calibration/traced_world.hpp"
 #include "made_rows.hpp"
 
 namespace talus::terramech {
@@ -77,13 +83,6 @@ TEST(TraceSearch, LeavingAnEffectOutKeepsTheNoise) {
   EXPECT_EQ(search.model().noise.absolute, noise.absolute);
 }
 
-TEST(TraceSearch, TightPriorFixesTheFirstParameter) {
-  TraceSearch search(sand(), offsetTrial(), {});
-  search.trust(Estimate{.value = 0.3, .std = 1e-4});
-  search.accept(torqueOffset());
-  EXPECT_NEAR(search.parts(0)[0].parameters[0], 0.3, 0.01);
-}
-
 TEST(TraceSearch, EffectAtItsBoundGainsNothing) {
   // Property: the rows contain no rebound, so that the fit of a rebound ends at the bound 0 and predicts as
   // without it.
@@ -120,4 +119,55 @@ TEST(TraceSearch, GainIncludesThePriorOfTheCandidate) {
 }
 
 }  // namespace trace_search_test
+namespace rival_causes_test {
+
+std::vector<std::string> columns(const TracedEffect& effect) {
+  std::vector<std::string> all{effect.chosen.candidate.covariate()};
+  for (const Explanation& e : effect.equal) all.push_back(e.candidate.covariate());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// A world in which dust reduces the pull, with a second column correlated with dust.
+blind::World tied() {
+  const blind::World world =
+      blind::makeWorld({.seed = 8, .effects = 1, .library = false, .unresolvable = "tied"});
+  EXPECT_EQ(world.hidden[0].kind, "form:pull_dust_saturating");
+  return world;
+}
+
+TEST(RivalCauses, CollinearColumnsAreReportedAsEqualCauses) {
+  // Property: two columns, one a multiple of the other, are reported as equal causes.
+  const TraceResult result = traced(tied());
+  ASSERT_EQ(result.effects.size(), 1U);
+  EXPECT_EQ(columns(result.effects[0]), (std::vector<std::string>{"dust_index", "tied_0"}));
+  ASSERT_FALSE(result.rivals.empty());
+  EXPECT_EQ(result.rivals[0].in_place_of, result.effects[0].chosen.candidate.parts[0].name);
+  EXPECT_EQ(result.rivals[0].model.effects.size(), result.refined.effects.size());
+  EXPECT_FALSE(result.rivals[0].model.covariance.empty());
+}
+
+TEST(RivalCauses, IdentifiableCauseHasNoEqual) {
+  // Property: without the correlated column the same world has one cause.
+  blind::World world = tied();
+  world.columns.pop_back();
+  for (auto& row : world.rows) row.pop_back();
+  const TraceResult result = traced(world);
+  ASSERT_EQ(result.effects.size(), 1U);
+  EXPECT_EQ(columns(result.effects[0]), std::vector<std::string>{"dust_index"});
+}
+
+TEST(RivalCauses, ConstantOffsetHasNoDriftAsEqualCause) {
+  // Property: with a constant zero error of the sinkage, a drift or a nearly constant curve is the same
+  // offset and not a rival.
+  const blind::World world =
+      blind::makeWorld({.seed = 1303, .effects = 1, .library = true, .campaign = true});
+  ASSERT_EQ(world.hidden[0].kind, "sinkage_datum");
+  const TraceResult result = traced(world);
+  ASSERT_EQ(result.effects.size(), 1U);
+  EXPECT_TRUE(result.effects[0].equal.empty());
+}
+
+}  // namespace rival_causes_test
+
 }  // namespace talus::terramech

@@ -52,23 +52,44 @@ TEST(TrialFit, StrongestChannelIsThatOfTheFaultySensor) {
   EXPECT_EQ(fit.strongest(0), Channel::Torque);
 }
 
-// Property: trust() sets the prior of the first effect found, not of the effects of the base. Tolerance: a
-// quarter of the offset of 4 N, because errors of pull and torque are correlated.
-TEST(TrialFit, TrustIsInTheFirstEffectBehindTheBases) {
-  const Effect offset{
-      .name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.0}};
-  const Effect zero{
-      .name = "drawbar_zero", .covariate = "load_N", .channel = Channel::DrawbarPull, .parameters = {0.0}};
-  RefinedModel base = sand();
-  base.effects = {offset};
-  TrialFit fit(base, noisyTrial(sand(), 0.02), false, always);
-  fit.trust(Estimate{4.0, 1e-3});
-  RefinedModel found = base;
-  found.effects.push_back(zero);
-  const RefinedModel fitted = fit.fitted(found, 10);
-  EXPECT_NEAR(fitted.effects[0].parameters[0], 0.0, 1.0);
-  EXPECT_NEAR(fitted.effects[1].parameters[0], 4.0, 1.0);
+}  // namespace trial_fit_test
+namespace calibrated_rows_test {
+
+// Property: whitened residuals have unit variance. Tolerance: 6.5 % is the standard error of a variance from
+// 480 values.
+TEST(CalibratedRows, WhitenedResidualsHaveUnitVariance) {
+  for (const double noise : {0.01, 0.05}) {
+    RefinedModel model = sand();
+    SolvedContacts solved;
+    CalibratedRows rows{noisyTrial(model, noise)};
+    rows.calibrate(model, solved);
+    EXPECT_NEAR(rows.white().squaredNorm() / 480.0, 1.0, 0.2) << noise;
+  }
 }
 
-}  // namespace trial_fit_test
+TEST(CalibratedRows, RecoversSensorNoise) {
+  RefinedModel model = sand();
+  SolvedContacts solved;
+  CalibratedRows{noisyTrial(model, 0.05)}.calibrate(model, solved);
+  // Closed form: 5 % of a torque of about T = 0.3 r W = 2.4 Nm, absolute and relative parts combined.
+  EXPECT_NEAR(std::hypot(model.noise.absolute[2], 2.4 * model.noise.relative[2]), 0.12, 0.04);
+}
+
+TEST(CalibratedRows, LevelOfAnotherModelKeepsTheNoise) {
+  RefinedModel model = sand();
+  SolvedContacts solved;
+  CalibratedRows rows{noisyTrial(model, 0.02)};
+  rows.calibrate(model, solved);
+  const Eigen::MatrixXd std = rows.whitening().std, level = rows.level();
+  RefinedModel softer = model;
+  softer.soil.frictional_modulus *= 0.5;
+  rows.compare(softer, solved);
+  EXPECT_EQ(rows.whitening().std, std);
+  EXPECT_GT((rows.level() - level).cwiseAbs().maxCoeff(), 0.0);
+  // Property: the measured value is the sum of level and residual; NaN for missing measurements.
+  EXPECT_NEAR((rows.trial().measured - rows.level() - rows.residual()).leftCols(3).norm(), 0.0, 1e-12);
+}
+
+}  // namespace calibrated_rows_test
+
 }  // namespace talus::terramech

@@ -69,5 +69,24 @@ TEST(ModelValidity, ForcesOverALoadInKilogramsAreImpossible) {
   EXPECT_NE(a.reason.find("more than a wheel reaches on soil"), std::string::npos) << a.reason;
 }
 
+TEST(ModelValidity, ClosureRelationIsValidForAnySoil) {
+  // Property: the relation has the stated accuracy relative to the integrated forces, over a grid of soils
+  // and slips.
+  std::mt19937_64 random{6};
+  MadeRows rows(wheelColumns());
+  for (const double friction : {0.35, 0.5, 0.65})
+    for (const double cohesion : {0.0, 1000.0, 3000.0})
+      for (const double slip : {0.1, 0.3, 0.6})
+        rows.add(wheelRow({.name = "sand",
+                           .cohesion_Pa = cohesion,
+                           .friction_angle_rad = friction,
+                           .sinkage_exponent = 1.0,
+                           .frictional_modulus = 1.2e6,
+                           .shear_modulus_m = 0.015},
+                          50.0, slip, 0.0, random));
+  for (const double error : closureErrors(makeTrial(rows.telemetry(), RefinedModel{})))
+    EXPECT_LT(std::abs(error), 0.03);
+}
+
 }  // namespace model_validity_test
 }  // namespace talus::terramech
