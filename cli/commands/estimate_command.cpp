@@ -9,7 +9,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/agreement_plot.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>

@@ -16,15 +16,10 @@ void bind(CLI::App& command, ReproduceOptions& options) {
   command.add_option("-o,--output", options.output, "folder for validation.md and validation/*.png")
       ->type_name("DIR")
       ->capture_default_str();
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--published",
-          [&options](const std::vector<std::string>& names) {
-            options.published = true;
-            options.published_name = names.empty() ? "" : names.front();
-          },
-          "only rebuild the published results, or the one of this name: theirs, ours, error, source")
-      ->expected(0, 1)
+  auto* published = command.add_flag("--published", options.published,
+                                     "only rebuild published results: theirs, ours, error, source");
+  command.add_option("name", options.published_name, "one published result (default: all)")
+      ->needs(published)
       ->type_name("NAME");
   command.add_flag("--goals", options.goals_only, "only measure the estimators and print the table");
   command.add_option("--soils", options.soils, "number of soils sampled from thesis Table 2.1")

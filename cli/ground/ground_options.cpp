@@ -16,9 +16,8 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
-#include <talus/cli/ground/cost_curve_file.hpp>
-#include <talus/cli/ground/cost_raster.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/stated_costs.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/cost/travel_states.hpp>

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/channel_errors.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/left_out_report.hpp>
 
 namespace talus::cli {

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/channel_errors.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/searched_report.hpp>
 
 namespace talus::cli {

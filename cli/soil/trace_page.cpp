@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/agreement_plot.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>

@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/channel_errors.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/cli/soil/agreement_plot.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 
 namespace talus::cli {
 namespace agreement_plot_test {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/channel_errors.hpp>
+#include <talus/cli/soil/channel_report.hpp>
 
 namespace talus::cli {
 namespace channel_errors_test {

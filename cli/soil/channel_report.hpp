@@ -5,11 +5,20 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
 
 #include <talus/cli/draw/plot.hpp>
-#include <talus/terramech/effects/channel_reading.hpp>
+#include <talus/terramech/calibration/search/trace_result.hpp>
 
+/// Errors and predictions by channel (measured quantity); channels without a value are omitted.
 namespace talus::cli {
+
+/// Returns the errors as {NAME: ERROR}.
+nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
+
+/// Returns the errors of the base model and of the refined model as text: " NAME BASE -> REFINED" for each
+/// channel.
+std::string changeText(const terramech::ChannelErrors& base, const terramech::ChannelErrors& refined);
 
 /// Name and values of predictions: one matrix row per table row, one matrix column per channel (measured
 /// quantity).

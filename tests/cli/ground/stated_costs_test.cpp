@@ -7,7 +7,7 @@
 #include "bad_input.hpp"
 
 namespace talus::cli {
-namespace cost_curve_file_test {
+namespace stated_costs_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -138,5 +138,5 @@ TEST(CostRaster, CostsAMetreAndNav2MapsAreGroundOfTheirOwn) {
               HasSubstr("above 0"));
 }
 
-}  // namespace cost_curve_file_test
+}  // namespace stated_costs_test
 }  // namespace talus::cli
