@@ -23,9 +23,9 @@ struct GroundOptions {
   std::string soils;     ///< YAML file that assigns a soil to each terrain-class number
   /// Library name or YAML file of the soil for ground without a class; empty: default of the body.
   std::string soil;
-  std::string model;  ///< refined model from `talus trace` for ground without a class, instead of `soil`
-  std::string rover;  ///< library name or YAML file of the rover; empty: default of the body
-  bool is_cost = false;      ///< dem.path is a raster of costs a metre, in place of heights, rover and soils
+  std::string model;     ///< refined model from `talus trace` for ground without a class, instead of `soil`
+  std::string rover;     ///< library name or YAML file of the rover; empty: default of the body
+  bool is_cost = false;  ///< dem.path is a raster of costs a metre, in place of heights, rover and soils
   std::string cost_curve{};  ///< CSV file of a cost over gradients in place of rover and soils; empty: none
   std::string mission{};     ///< mission file that stated options of the call; empty: none
   double footprint_m = 0.0;  ///< radius of the disc for slope fits; 0: derived from the rover

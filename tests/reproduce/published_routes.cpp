@@ -197,11 +197,10 @@ PublishedCase camis(const ProgressMonitor& watch) {
   PublishedCase made_case{.name = "camis",
                           .source = "camis_2021",
                           .remark =
-                              "theirs: paths of their program at commit ffc2f96, run by us; both lines are "
-                              "integrated over the exact "
-                              "surface. Their paths end 0.8 m from A and B and were continued straight. Our "
-                              "field raises costs that "
-                              "fall across the slope, by up to a hundredth"};
+                              "theirs: paths of their program at commit ffc2f96, run by us and continued "
+                              "straight to A and B; both are "
+                              "integrated over the exact surface. Our field raises costs that fall across "
+                              "the slope, by up to 1 %"};
   const maps::ElevationMap map = made(50, 50, [](double x, double y) { return peaks(x - 0.5, y - 0.5); });
   struct Model {
     double friction, ratio_a, ratio_b, angle_a, angle_b, to_goal, back;

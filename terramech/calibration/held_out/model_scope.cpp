@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <talus/terramech/calibration/held_out/held_out.hpp>
@@ -97,8 +98,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
   }
   end.distance = std::sqrt(end.distance / end.rows);
   const Trial unseen = subset(result.trial, held);
-  const Eigen::MatrixXd by_base = leftAsMeasured(refittedBase(result, options, seen), unseen);
-  end.base_rmse = end.refined_rmse = SquaredErrors(by_base).rmse();
+  end.base_rmse = end.refined_rmse = rmseAsMeasured(refittedBase(result, options, seen), unseen);
   if (!hasCorrections(result)) return end;
   const RefinedModel by_law = refittedModel(result, options, seen);
   const auto likelihood = [&](const RefinedModel& model) {
@@ -119,9 +119,7 @@ EndLevel endOf(const TraceResult& result, const TraceOptions& options, const std
     end.law = end.law || law;
     if (!law) earned.effects[k].knots = at_edge.effects[k].knots;
   }
-  const Eigen::MatrixXd by_refined = leftAsMeasured(earned, unseen);
-  end.refined_rmse = SquaredErrors(by_refined).rmse();
-  end.moved = SquaredErrors(by_base - by_refined).rmse();
+  end.refined_rmse = rmseAsMeasured(earned, unseen);
   return end;
 }
 
@@ -193,38 +191,31 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
 
 namespace {
 
-/// Sum of squared errors of a channel over the rows of an end, with a share of the corrections.
-double squaredError(const EndLevel& end, std::size_t c, double share) {
-  const double base = std::pow(end.base_rmse[c], 2), moved = std::pow(end.moved[c], 2);
-  const double along = 0.5 * (base + moved - std::pow(end.refined_rmse[c], 2));
-  return end.rows * std::max(0.0, base + share * (share * moved - 2.0 * along));
+/// True if an end contradicts the refined model: the mean square error exceeds those of the base and of the
+/// sensors by more than the 95 % quantile of the same number of normal errors. False for a channel without
+/// measurements (NaN).
+bool isWorse(const EndLevel& end, const ChannelErrors& floor, std::size_t channel) {
+  const double chance = normalQuantile(1.0 - TraceOptions{}.significance) * std::sqrt(2.0 / end.rows);
+  const double least = std::max(end.base_rmse[channel], floor[channel]);
+  return std::pow(end.refined_rmse[channel], 2) > (1.0 + chance) * least * least;  // (T50)
 }
 
-double shareAt(const TrainedRange& range, const EndLevel& end, std::size_t c) {
-  return range.share(end.high ? range.high + end.distance : range.low - end.distance, c);
-}
-
-/// Sets the reach of the corrections of a channel at one side of a column: of the reaches that give one end its
-/// least-squares share, the one with the least error over all ends of this side.
-void setReach(TrainedRange& range, bool high, const std::vector<EndLevel>& ends, std::size_t c) {
-  double& reach = (high ? range.reach_above : range.reach_below)[c];
-  std::vector<double> reaches{kUnlimited};
-  for (const EndLevel& end : ends) {
-    if (end.column != range.column || end.high != high || !(end.moved[c] > 0.0)) continue;
-    const double gained = squaredError(end, c, 0.0) - squaredError(end, c, 1.0);
-    const double share = 0.5 + 0.5 * gained / (end.rows * std::pow(end.moved[c], 2));  // (T50)
-    if (share < 1.0) reaches.push_back(end.distance / (2.0 - std::max(0.0, share)));   // (T51)
+/// Sets the reach of the corrections at one side of a column. `ends`: the ends of this side, the nearest
+/// first. Corrections end halfway between the last end that confirms and the first end that contradicts the
+/// corrections.
+void setReach(std::array<double, kChannels>& reach, const std::vector<EndLevel>& ends,
+              const ChannelErrors& floor) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    double confirmed = 0.0;
+    for (const EndLevel& end : ends) {
+      if (isWorse(end, floor, c)) {
+        reach[c] =
+            0.5 * 0.5 * (confirmed + end.distance);  // (T51) TrainedRange::share() ends at twice the reach
+        break;
+      }
+      confirmed = end.distance;
+    }
   }
-  double least = std::numeric_limits<double>::infinity(), best = kUnlimited;
-  for (const double candidate : reaches) {
-    reach = candidate;
-    double sum = 0.0;
-    for (const EndLevel& end : ends)
-      if (end.column == range.column && end.high == high && end.moved[c] > 0.0)
-        sum += squaredError(end, c, shareAt(range, end, c));
-    if (sum < least) least = sum, best = candidate;
-  }
-  reach = best;
 }
 
 }  // namespace
@@ -233,20 +224,21 @@ ModelScope scopeOf(const TraceResult& result) {
   ModelScope scope{.trained = trainedRanges(result.trial, result.ends, result.noise_floor)};
   if (!hasCorrections(result)) return scope;
   scope.base = result.base;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  for (std::size_t c = 0; c < kChannels; ++c)
     scope.kept[c] = !(result.held_out.refined_rmse[c] > result.held_out.base_rmse[c]);  // (T48)
-    for (TrainedRange& range : scope.trained)
-      for (const bool high : {false, true}) setReach(range, high, result.ends, c);
-  }
+  std::map<std::pair<std::string, bool>, std::vector<EndLevel>> sides;
+  for (const EndLevel& end : result.ends) sides[{end.column, end.high}].push_back(end);
+  for (TrainedRange& range : scope.trained)
+    for (const bool high : {false, true})
+      if (const auto side = sides.find({range.column, high}); side != sides.end())
+        setReach(high ? range.reach_above : range.reach_below, side->second, result.noise_floor);
   return scope;
 }
 
-void keepConfirmed(std::vector<EndLevel>& ends, const ModelScope& scope) {
+void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor) {
   for (EndLevel& end : ends)
-    for (const TrainedRange& range : scope.trained)
-      for (std::size_t c = 0; scope.base && range.column == end.column && c < kChannels; ++c)
-        end.refined_rmse[c] =
-            std::sqrt(squaredError(end, c, scope.kept[c] ? shareAt(range, end, c) : 0.0) / end.rows);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      if (isWorse(end, floor, c)) end.refined_rmse[c] = end.base_rmse[c];
 }
 
 Eigen::MatrixXd predictInScope(const TraceResult& result, const Trial& rows) {

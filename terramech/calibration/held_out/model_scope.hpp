@@ -8,7 +8,7 @@
 #include <talus/terramech/io/model_file.hpp>
 
 /// Scope of a refined model: the channels and column ranges in which its effects (corrections of the base
-/// model) are applied, by least squares to held-out rows. For extrapolation, the rows with the outermost values
+/// model) are applied, because held-out rows do not contradict the effects there. For extrapolation, the rows with the outermost values
 /// of a column (an end of the column) are held out and predicted by a model that is fitted to the other rows. A
 /// level of a column is the set of rows with the same value.
 namespace talus::terramech {
@@ -38,11 +38,12 @@ std::vector<TrainedRange> trainedRanges(const Trial& trial, const std::vector<En
 
 /// Returns the scope of a trace result. The scope contains the channels in which the refined model has no
 /// larger errors on result.held_out than the base model, the ranges of the columns in the rows, and the
-/// distances beyond each range over which the corrections fade, by least squares to the ends result.ends.
+/// distances beyond each range up to which the errors result.ends do not contradict the effects significantly
+/// (unlimited without a contradiction).
 ModelScope scopeOf(const TraceResult& result);
 
-/// Replaces errors of the refined model at ends by those of the faded corrections.
-void keepConfirmed(std::vector<EndLevel>& ends, const ModelScope& scope);
+/// Replaces errors of the refined model by those of the base model at ends whose errors contradict the effects.
+void keepConfirmed(std::vector<EndLevel>& ends, const ChannelErrors& floor);
 
 /// Returns the predictions of the refined model within its scope, rows x kChannels. Outside the scope the
 /// predictions return to those of the base model.

@@ -71,13 +71,14 @@ Grouped logLoads(const Trial& trial, const std::vector<int>& group, double error
 
 constexpr double kLoadError = 0.1;  // load cells have errors below 10 %
 
-/// Levels of load, each more than kLoadError from the next.
+/// Levels of load, each more than two errors from the next. Values that repeat are levels without errors.
 std::vector<int> loadLevels(const Trial& trial) {
   std::map<double, int> level;
   for (double load_N : trial.load_N) level[load_N] = 0;
+  const double apart = 4 * level.size() <= trial.load_N.size() ? 0.0 : 2.0 * kLoadError;
   int number = 0;
   for (auto at = level.begin(), last = at; at != level.end(); last = at++)
-    at->second = number += at->first > last->first * std::exp(kLoadError);
+    at->second = number += at->first > last->first * std::exp(apart);
   std::vector<int> group;
   for (double load_N : trial.load_N) group.push_back(level[load_N]);
   return group;
@@ -222,7 +223,8 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
   const auto slips =
       !speed.empty() ? slipsAtSetSpeeds(trial, speedsOf(trial, speed, slip_std))
       : !slipIsSeen(trial, noise)
-          ? shrunk({slip, Eigen::ArrayXd::Constant(slip.size(), slip.unaryExpr(slip_std).square().mean() + 1e-12),
+          ? shrunk({slip,
+                    Eigen::ArrayXd::Constant(slip.size(), slip.unaryExpr(slip_std).square().mean() + 1e-12),
                     std::vector<int>(n, 0)})
           : deconvolve(trial.slip, slip_std);
   const bool at_set = set && log_load.deviations() <= 16.0 * log_load.freedom();  // (T14)

@@ -93,8 +93,8 @@ struct EndLevel {
   double edge = 0.0;      ///< outermost value of the column in the other rows
   double distance = 0.0;  ///< root mean square distance of the held-out rows from `edge`
   int rows = 0;           ///< number of held-out rows
-  /// Errors of the base and of the refined model on these rows, and their root mean square difference.
-  ChannelErrors base_rmse{}, refined_rmse{}, moved{};
+  /// Errors of the base and of the refined model on these rows.
+  ChannelErrors base_rmse{}, refined_rmse{};
   /// True if the formula of an effect of this column predicted the rows better than the effect at its value
   /// at `edge`.
   bool law = false;
@@ -145,7 +145,7 @@ struct TraceResult {
   ChannelErrors base_rmse{}, refined_rmse{}, noise_floor{};
   /// Sensors whose fitted noise under the refined model exceeds the stated noise.
   std::vector<StrainedSensor> strained;
-  ChannelErrors declared_floor{};       ///< noise_floor with the stated errors of the sensors in `strained`
+  ChannelErrors declared_floor{};  ///< noise_floor with the stated errors of the sensors in `strained`
   /// Error common to the rows of a run, for the base model and for the refined model.
   SharedError base_shared, shared;
   std::vector<EndLevel> ends;  ///< errors at the ends of columns, for extrapolation

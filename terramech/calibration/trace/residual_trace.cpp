@@ -221,7 +221,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   boundEffects(result.refined, result.trial, result.ends);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.scope);
+  keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   return result;
 }

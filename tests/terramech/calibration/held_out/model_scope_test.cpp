@@ -21,8 +21,7 @@ EndLevel greatestSlip(double distance, const ChannelErrors& base, const ChannelE
           .distance = distance,
           .rows = 100,
           .base_rmse = base,
-          .refined_rmse = refined,
-          .moved = {0.04, 0.04, 0.04, kNan}};
+          .refined_rmse = refined};
 }
 
 /// Rows at slips from 0 to 0.3, with a refined model that has slip sinkage and a base that has not.
@@ -49,17 +48,17 @@ WheelState stateAt(double slip) {
   return {.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 60.0, .slip = slip};
 }
 
-TEST(ModelScope, CorrectionsFadeByLeastSquaresToTheEnds) {
+TEST(ModelScope, CorrectionShareFallsToZeroBetweenConfirmedAndRefutedSlip) {
   const ModelScope scope = scopeOf(resultOf());
-  // Closed form: for pull the least-squares share is (0.04^2 + 0.04^2 - 0.03^2)/(2 0.04^2) = 0.719 at distance 0.1,
-  // thus reach 0.0781, and (2 0.04^2 - 0.05^2)/(2 0.04^2) = 0.219 at 0.25, thus reach 0.1403; the former has the
-  // lesser sum of squares. For sinkage both ends have 0.719, and the farther one gives 0.1951.
-  const double pull = 0.1 / (2.0 - 0.71875), sinkage = 0.25 / (2.0 - 0.71875);
-  for (const double slip : {0.3, 0.42, 0.5, 0.55, 0.9}) {
-    EXPECT_NEAR(scope.share(stateAt(slip), 0), std::clamp(2.0 - (slip - 0.3) / pull, 0.0, 1.0), 1e-9) << slip;
-    EXPECT_NEAR(scope.share(stateAt(slip), 1), std::clamp(2.0 - (slip - 0.3) / sinkage, 0.0, 1.0), 1e-9)
-        << slip;
-    EXPECT_EQ(scope.share(stateAt(slip), 2), 0.0);  // the base predicts better inside the range
+  // Closed form: pull is confirmed at distance 0.1 and contradicted at 0.25; share 1 up to 0.0875, 0 from
+  // 0.175 on.
+  const struct {
+    double slip, pull, sinkage;
+  } cases[] = {{0.3, 1.0, 1.0}, {0.3875, 1.0, 1.0}, {0.43125, 0.5, 1.0}, {0.475, 0.0, 1.0}, {0.9, 0.0, 1.0}};
+  for (const auto& c : cases) {
+    EXPECT_NEAR(scope.share(stateAt(c.slip), 0), c.pull, 1e-9) << c.slip;
+    EXPECT_NEAR(scope.share(stateAt(c.slip), 1), c.sinkage, 1e-9) << c.slip;
+    EXPECT_EQ(scope.share(stateAt(c.slip), 2), 0.0);  // contradicted inside the range
   }
 }
 
@@ -67,11 +66,22 @@ TEST(ModelScope, HeldOutErrorPerChannelNeverExceedsThatOfTheBase) {
   TraceResult result = resultOf();
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.scope);
+  keepConfirmed(result.ends, result.noise_floor);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_LE(result.held_out.refined_rmse[c], result.held_out.base_rmse[c]);
     for (const EndLevel& end : result.ends) EXPECT_LE(end.refined_rmse[c], end.base_rmse[c]) << end.distance;
   }
+}
+
+TEST(ModelScope, HeldOutErrorWithinSensorNoiseRefutesNothing) {
+  TraceResult result = resultOf();
+  // Closed form: for one row, noise explains a squared error up to 1 + 1.645 sqrt(2) = 3.3 squared floors,
+  // hence an error of 1.5 floors but not of 2.
+  result.ends = {greatestSlip(0.1, {0.001, 0.001, 0.001, kNan}, {0.015, 0.02, 0.001, kNan})};
+  result.ends[0].rows = 1;
+  const ModelScope scope = scopeOf(result);
+  EXPECT_EQ(scope.share(stateAt(0.9), 0), 1.0);
+  EXPECT_EQ(scope.share(stateAt(0.9), 1), 0.0);
 }
 
 TEST(ModelScope, ModelWithoutEffectsHasFullShareAndNoBase) {
@@ -95,9 +105,10 @@ TEST(ModelScope, PredictionsOutsideScopeEqualTheBaseAndScopeRoundTrips) {
   const Eigen::MatrixXd base = predictRows(result.base, far, solved),
                         refined = predictRows(result.refined, far, other);
   const Eigen::MatrixXd mixed = predictInScope(result, far);
-  // Property: at slip 0.9 the prediction is that of the base; the torque is always that of the base.
+  // Property: at slip 0.9 the pull is that of the base and the sinkage that of the refined model; the torque
+  // is always that of the base.
   EXPECT_NEAR(mixed(0, 0), base(0, 0), 1e-12);
-  EXPECT_NEAR(mixed(0, 1), base(0, 1), 1e-12);
+  EXPECT_NEAR(mixed(0, 1), refined(0, 1), 1e-12);
   EXPECT_GT(std::abs(base(0, 1) - refined(0, 1)), 0.01);
   for (WheelState& s : far.states) s.slip = 0.35;
   SolvedContacts near, beside;
