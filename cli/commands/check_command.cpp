@@ -96,6 +96,10 @@ Outcome outcomeOf(const YamlFields& one, const std::filesystem::path& folder) {
   one.only({"name", "operation", "arguments", "input", "expect", "tolerance", "relative", "source",
             "known_failure"});
   Outcome out{one.word("name"), one.word("source", ""), one.flag("known_failure", false)};
+  if (one.word("operation") == "check")
+    one.refuse("operation", "a case cannot run check", "list its cases here");
+  if (one.fields("expect").names().empty())
+    one.refuse("expect", "expect is empty", "name what must be answered");
   const Answer answer = answerTo(callOf(one), folder);
   const YamlFields expect = one.fields("expect");
   for (const std::string& key : expect.names()) {

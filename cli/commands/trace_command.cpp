@@ -11,6 +11,7 @@
 #include <talus/cli/soil/proposal_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
+#include <talus/common/input_error.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
@@ -170,6 +171,14 @@ std::string formulaText(const terramech::FormulaTrace& t) {
 
 int run(const TraceCommandOptions& options, Context& context) {
   if (!options.formula.empty()) {
+    for (const std::string& given :
+         {options.base, options.rover, options.hold_out, options.score, options.model_out, options.html,
+          std::string(static_cast<std::size_t>(options.propose), '+')})
+      if (!given.empty())
+        throw InputError(
+            {"--formula",
+             "cannot be combined with --base, --rover, --hold-out, --propose, --score, --model-out or --html",
+             "remove them"});
     const auto trace = terramech::traceFormula(
         terramech::readTelemetry(tableFile(options.telemetry, options.columns, context)), options.formula,
         {.significance = options.significance, .seed = context.seed});

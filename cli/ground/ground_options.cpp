@@ -330,12 +330,13 @@ void refuseRover(const GroundOptions& options) {
   policy.allow_unknown = false;
   const std::string stated = options.is_cost ? "--cost" : "--cost-curve";
   if (!options.rover.empty() || !options.soil.empty() || !options.soils.empty() || !options.model.empty() ||
-      !options.layers.rocks.empty() || (options.is_cost && !options.layers.terrain.empty()) ||
+      !options.layers.rocks.empty() ||
+      (options.is_cost && (!options.layers.terrain.empty() || options.footprint_m > 0.0)) ||
       fieldsOf(policy) != fieldsOf(costmap::TravelPolicy{}))
-    throw InputError(
-        {stated,
-         "stands in place of --rover, --soil, --soils, --model, --rocks and the options of thresholds",
-         "remove them, or remove " + stated});
+    throw InputError({stated,
+                      "stands in place of --rover, --soil, --soils, --model, --rocks and the options of "
+                      "thresholds and shape",
+                      "remove them, or remove " + stated});
 }
 
 // Ground of stated costs, for which the class of greater cost on level ground is the weaker.

@@ -116,6 +116,10 @@ void requirePlaces(const PlanOptions& options) {
   if (options.corridor_percent > 0.0 && !(one_leg && options.output.ends_with(".gpkg")))
     throw InputError({"--corridor", "needs one start, one goal and -o AREA.gpkg",
                       "remove --via, --pairs and further goals, and name a file .gpkg"});
+  if ((options.ground.is_cost || !options.ground.cost_curve.empty()) &&
+      (options.max_risk > 0.0 || !options.drive.chassis.empty()))
+    throw InputError({"talus plan", "a stated cost has neither a risk nor a chassis",
+                      "remove --risk and --chassis, or plan with a rover"});
   if (!options.pairs.empty()) {
     if (!options.start.empty() || !options.goals.empty() || !options.via.empty() || !options.html.empty() ||
         !options.png.empty() || options.max_risk > 0.0 || !options.drive.chassis.empty() ||

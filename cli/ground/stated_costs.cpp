@@ -125,7 +125,16 @@ std::shared_ptr<const costmap::TravelStates> statesOf(const Rows& rows, const co
 maps::ElevationMap costsOf(const MapOptions& options, const Context& context) {
   MapOptions raster = options;
   raster.read.keep_holes = true;
-  if (!options.path.ends_with(".yaml")) return readMap(raster, context);
+  if (options.read.vertical_scale)
+    throw InputError({"--vertical-scale", "does not apply to costs", "remove it"});
+  if (!options.path.ends_with(".yaml")) {
+    maps::ElevationMap map = readMap(raster, context);
+    // a cell has the greatest cost of all pixels that it overlaps, and no data if one of them has none
+    map.elevation_m = maps::readAddedJoules({options.path, options.read.band}, map).J_per_m;
+    return map;
+  }
+  if (options.read.resolution_m)
+    throw InputError({"--resolution", "does not apply to a Nav2 map, which states its own", "remove it"});
   const auto file = terramech::YamlFields::file(options.path);
   file.only({"image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"});
   const auto origin = file.numbers("origin");
@@ -136,10 +145,17 @@ maps::ElevationMap costsOf(const MapOptions& options, const Context& context) {
   raster.path = (std::filesystem::path(options.path).parent_path() / file.word("image")).string();
   raster.read.resolution_m = file.number("resolution");
   maps::ElevationMap map = readMap(raster, context);
-  const bool negate = file.integer("negate", 0) != 0;
+  const int negate = file.integer("negate", 0);
   const double occupied = file.number("occupied_thresh", 0.65), free = file.number("free_thresh", 0.25);
+  if (!(free >= 0.0 && free <= occupied && occupied <= 1.0) || (negate != 0 && negate != 1))
+    file.refuse("occupied_thresh",
+                "thresholds must be 0 <= free_thresh <= occupied_thresh <= 1, negate 0 or 1",
+                "correct the file");
   for (float& value : map.elevation_m.values()) {
-    const double share = (negate ? static_cast<double>(value) : 255.0 - static_cast<double>(value)) / 255.0;
+    if (value < 0.0F || value > 255.0F)
+      throw InputError({raster.path, "has pixels beyond 8 bits", "write an image of 0 to 255"});
+    const double share =
+        (negate == 1 ? static_cast<double>(value) : 255.0 - static_cast<double>(value)) / 255.0;
     value = static_cast<float>(share > occupied ? kInfinity : share < free ? 1.0 : std::nan(""));
   }
   maps::Grid grid = map.grid();

@@ -76,7 +76,7 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.stated && parts_.stated->states.size() != parts_.classes.size())
     throw std::invalid_argument("ground model: stated must hold the states of each class");
   if (parts_.stated) {  // a point
-    parts_.policy.pose_error_m = 0.0;
+    parts_.policy.pose_error_m = parts_.policy.time_weight_W = parts_.policy.risk_weight_J = 0.0;
     parts_.rover = {.wheel = {.radius_m = 0.0, .width_m = 0.0}};
   }
   for (const GroundClass& c : parts_.classes) {

@@ -188,7 +188,7 @@ std::vector<PublishedCase> publishedWheels(const std::string& name, const Progre
   });
   add("cmu-angles", [&] { return slipAngles(watch); });
   add("digitised", [&] {
-    return heldOut("digitised", "single_wheel_digitised/points.csv", "source", "ding_2011, wang_han_2016",
+    return heldOut("digitised", "single_wheel_digitised/points.csv", "source", "single_wheel_digitised",
                    watch);
   });
   add("cuadriga", [&] { return cuadriga(); });

@@ -175,6 +175,7 @@ class FormulaReader {
 
   Linear atom() {
     if (take('(')) {
+      if (++depth_ > 1000) fail("has more than 1000 parentheses");
       const Linear inside = sum();
       if (!take(')')) fail("lacks a closing parenthesis");
       return inside;
@@ -199,6 +200,7 @@ class FormulaReader {
   const std::string& text_;
   const Rows& rows_;
   std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 /// Ratios of the variance of an error that a run shares to that of single rows.
@@ -380,12 +382,20 @@ class FormulaSearch {
   std::size_t ratios_ = 1;
 };
 
+void requireWhole(const Column& c) {
+  for (Index row = 0; row < c.values.size(); ++row)
+    if (!std::isfinite(c.values[row]))
+      throw InputError({"--formula", "column " + c.name + " has no value in row " + std::to_string(row + 1),
+                        "leave the row or the column out"});
+}
+
 /// Candidates: columns that vary, are complete, and are not multiples of the answer.
 std::vector<Column> candidatesOf(const Rows& rows, const std::set<std::string>& used,
                                  const VectorXd& answer) {
   std::vector<Column> all;
   for (const Column& c : rows.columns) {
-    if (!c.cause || used.contains(c.name) || !c.values.allFinite()) continue;
+    if (!c.cause || used.contains(c.name) || !c.values.array().isFinite().any()) continue;
+    requireWhole(c);
     const VectorXd x = c.values.array() - c.values.mean(), y = answer.array() - answer.mean();
     const bool copy = std::pow(x.dot(y), 2) > (1.0 - 1e-6) * x.squaredNorm() * y.squaredNorm();
     if (x.norm() > 1e-9 * c.values.norm() && !copy) all.push_back(c);
@@ -440,7 +450,9 @@ FormulaTrace traceFormula(const Telemetry& table, const std::string& formula, co
   FormulaReader reader(text, rows);
   if (!rows.find(trace.answer)) reader.fail("has no column " + trace.answer + " to explain");
   const Linear model = reader.read();
+  if (reader.columns.contains(trace.answer)) reader.fail("has its answer on the right-hand side");
   reader.columns.insert(trace.answer);
+  for (const std::string& name : reader.columns) requireWhole({name, *rows.find(name)});
   VectorXd y = *rows.find(trace.answer);
   if (const auto constant = model.find(""); constant != model.end()) y -= constant->second;
   MatrixXd base(y.size(), 0);
