@@ -29,4 +29,11 @@ using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
                    const std::vector<NamedPredictions>& predictions);
 
+/// Returns the rows and columns of a large table that were not searched, one line each; empty if all were
+/// searched.
+std::string searchedText(const terramech::TraceResult& result);
+
+/// Returns JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
+nlohmann::ordered_json searchedJson(const terramech::TraceResult& result);
+
 }  // namespace talus::cli

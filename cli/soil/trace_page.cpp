@@ -7,7 +7,6 @@
 
 #include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/soil/channel_report.hpp>
-#include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 

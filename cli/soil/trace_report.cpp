@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/channel_report.hpp>
-#include <talus/cli/soil/searched_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 

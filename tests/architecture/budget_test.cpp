@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22469}, {"maps", 7249},     {"costmap", 13041},
-                           {"planner", 23234}, {"cli", 15234},       {"examples", 1703}, {"tests", 59252}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13041},
+                           {"planner", 23234}, {"cli", 15239},       {"examples", 1703}, {"tests", 59251}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -199,8 +199,7 @@ class FormulaReader {
 
   const std::string& text_;
   const Rows& rows_;
-  std::size_t at_ = 0;
-  int depth_ = 0;
+  std::size_t at_ = 0, depth_ = 0;
 };
 
 /// Ratios of the variance of an error that a run shares to that of single rows.
@@ -464,7 +463,6 @@ FormulaTrace traceFormula(const Telemetry& table, const std::string& formula, co
   if (base.cols() == 0 || y.size() < base.cols() + 3 || !base.allFinite() || !y.allFinite() ||
       base.colPivHouseholderQr().rank() < base.cols())
     reader.fail("has no parameter, or parameters that " + std::to_string(y.size()) + " rows cannot separate");
-  trace.rows = static_cast<int>(y.size());
   trace.mean = rows.find(trace.answer)->mean();
   trace.scheme = table.findWords("run") ? "runs" : "rows";
   const std::vector<Column> candidates = candidatesOf(rows, reader.columns, y);

@@ -31,7 +31,6 @@ struct FormulaTrace {
   double base_rmse = 0.0, refined_rmse = 0.0;  ///< errors on the fitted rows
   double base_held = 0.0, refined_held = 0.0;  ///< errors on held-out rows; the effects were chosen on all
   double noise_floor = 0.0;  ///< scatter of single rows within runs; NaN if each run is one row
-  int rows = 0;
   Verdict verdict = Verdict::NothingMissing;
 };
 

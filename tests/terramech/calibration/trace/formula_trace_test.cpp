@@ -78,7 +78,6 @@ TEST(FormulaTrace, TurningIsFoundInTheChargeOfDrivesOverAHill) {
   ASSERT_EQ(trace.effects.size(), 1U);
   EXPECT_EQ(trace.effects[0].column, "turning_rad");
   EXPECT_LE(trace.effects[0].p_value, 0.01);
-  EXPECT_EQ(trace.rows, 10);
   EXPECT_NEAR(trace.base_held / trace.mean, 0.084, 0.01);
   EXPECT_LT(trace.refined_held / trace.mean, 0.039);
   EXPECT_EQ(trace.verdict, Verdict::Explained);
