@@ -38,11 +38,4 @@ LinearOffsetStresses linearOffsetStresses(const Wheel& wheel, const WheelSample&
   return s;
 }
 
-double linearOffsetDrawbarPull_N(const Wheel& wheel, const WheelSample& sample, const ShearSoil& soil) {
-  const LinearOffsetStresses s = linearOffsetStresses(wheel, sample, soil);
-  const LinearStressMoments m(entryAngle_rad(wheel, sample.sinkage_m));
-  return wheel.radius_m * wheel.width_m *
-         (s.tau_m_Pa * m.peak_cos + s.tau_offset_Pa * m.offset_cos - s.sigma_m_Pa * m.peak_sin);
-}
-
 }  // namespace talus::terramech

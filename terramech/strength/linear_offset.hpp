@@ -46,8 +46,4 @@ struct ShearSoil {
 LinearOffsetStresses linearOffsetStresses(const Wheel& wheel, const WheelSample& sample,
                                           const ShearSoil& soil);
 
-/// Returns the drawbar pull [N] of the linear-offset stresses, in closed form (thesis Eq. 3.1 with the
-/// stresses of Eq. 2.1).
-double linearOffsetDrawbarPull_N(const Wheel& wheel, const WheelSample& sample, const ShearSoil& soil);
-
 }  // namespace talus::terramech

@@ -31,6 +31,12 @@ RefinedModel refitted(const RefinedModel& model, const SharedError& shared, cons
   return fitModel(model, seen, white, plan, start).model;
 }
 
+/// Residuals (measured - predicted) with slip and load as measured, rows x kChannels.
+Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial) {
+  SolvedContacts solved;
+  return trial.measured - predictRows(model, asMeasured(trial), solved);
+}
+
 }  // namespace
 
 void SquaredErrors::add(const Eigen::MatrixXd& residual) {
@@ -48,15 +54,8 @@ ChannelErrors SquaredErrors::rmse() const {
   return e;
 }
 
-Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial) {
-  SolvedContacts solved;
-  return trial.measured - predictRows(model, asMeasured(trial), solved);
-}
-
 ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial) {
-  SquaredErrors sums;
-  sums.add(leftAsMeasured(model, trial));
-  return sums.rmse();
+  return SquaredErrors(leftAsMeasured(model, trial)).rmse();
 }
 
 RefinedModel refittedBase(const TraceResult& result, const TraceOptions& options, std::vector<char> train) {

@@ -36,9 +36,6 @@ RefinedModel refittedModel(const TraceResult& result, const TraceOptions& option
 /// Returns the root mean square residual by channel, with slip and load as measured.
 ChannelErrors rmseAsMeasured(const RefinedModel& model, const Trial& trial);
 
-/// Returns the residuals (measured - predicted) with slip and load as measured, rows x kChannels.
-Eigen::MatrixXd leftAsMeasured(const RefinedModel& model, const Trial& trial);
-
 /// Replaces errors of the refined model by those of the base model in channels that the scope excludes.
 void keepConfirmed(HeldOut& held, const ModelScope& scope);
 

@@ -71,14 +71,13 @@ Grouped logLoads(const Trial& trial, const std::vector<int>& group, double error
 
 constexpr double kLoadError = 0.1;  // load cells have errors below 10 %
 
-/// Levels of load, each more than two errors from the next. Values that repeat are levels without errors.
+/// Levels of load, each more than kLoadError from the next.
 std::vector<int> loadLevels(const Trial& trial) {
   std::map<double, int> level;
   for (double load_N : trial.load_N) level[load_N] = 0;
-  const double apart = 4 * level.size() <= trial.load_N.size() ? 0.0 : 2.0 * kLoadError;
   int number = 0;
   for (auto at = level.begin(), last = at; at != level.end(); last = at++)
-    at->second = number += at->first > last->first * std::exp(apart);
+    at->second = number += at->first > last->first * std::exp(kLoadError);
   std::vector<int> group;
   for (double load_N : trial.load_N) group.push_back(level[load_N]);
   return group;
@@ -211,9 +210,8 @@ std::vector<Posterior> slipsAtSetSpeeds(const Trial& trial, const Grouped& speed
 
 }  // namespace
 
-void calibrateInputs(Trial& trial, const SensorNoise& noise) {
+void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<SetLoads>& set) {
   const auto n = trial.states.size();
-  const auto set = setLoads(trial);
   const auto slip_std = [&](double slip) { return noise.slipStd(slip); };
   const Eigen::Map<const Eigen::ArrayXd> slip(trial.slip.data(), trial.rows());
   const Grouped log_load = logLoads(trial, set ? set->group : trial.run, noise.load_relative);
@@ -227,17 +225,16 @@ void calibrateInputs(Trial& trial, const SensorNoise& noise) {
                     Eigen::ArrayXd::Constant(slip.size(), slip.unaryExpr(slip_std).square().mean() + 1e-12),
                     std::vector<int>(n, 0)})
           : deconvolve(trial.slip, slip_std);
-  const bool at_set = set && log_load.deviations() <= 16.0 * log_load.freedom();  // (T14)
-  const auto loads = at_set ? std::vector<Posterior>{}
-                            : deconvolve({log_load.value.begin(), log_load.value.end()},
-                                         [&](double) { return noise.load_relative; });
+  const auto loads = set ? std::vector<Posterior>{}
+                         : deconvolve({log_load.value.begin(), log_load.value.end()},
+                                      [&](double) { return noise.load_relative; });
   for (std::size_t i = 0; i < n; ++i) {
     // The grid does not resolve errors below its step; the variance of precise inputs is therefore limited.
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = squared(slip_std(trial.slip[i])), trust_load = squared(noise.load_relative);
     setSlip(trial.states[i], std::clamp(slips[i].mean, -1.0, 1.0));
     trial.slip_variance[row] = std::clamp(slips[i].variance, (speed.empty() ? 0.3 : 0.02) * trust, trust);
-    if (at_set) {
+    if (set) {
       trial.states[i].load_N = set->load_N[row];
       trial.load_variance[row] = log_load.mean_variance[row];  // (T15)
       continue;

@@ -50,8 +50,7 @@ std::optional<SetLoads> setLoads(const Trial& trial);
 /// sets their posterior variances. The distribution of true values is estimated from all rows (nonparametric
 /// maximum likelihood, kiefer_wolfowitz_1956), which removes the attenuation of dependences by noisy inputs.
 /// The states must contain the measured slip and load. Slips at set speeds are normal about the mean of
-/// their group instead. A set load is the mean of its group, if the readings scatter about it by at most
-/// four times the error of the load.
-void calibrateInputs(Trial& trial, const SensorNoise& noise);
+/// their group instead, and loads are those of `set`, if it is not empty.
+void calibrateInputs(Trial& trial, const SensorNoise& noise, const std::optional<SetLoads>& set = {});
 
 }  // namespace talus::terramech

@@ -220,7 +220,7 @@ HeldOutFit RunLikelihood::heldOut(const RunSums& sums, const RunError& run, Eige
 }
 
 RunError RunLikelihood::profile(const RunSums& sums, RunError run, Eigen::Index table, int steps) const {
-  if (!hasUnits()) return run;
+  if (information_.empty()) return run;
   const auto units = information_.size();
   Eigen::MatrixXd of_rows = sums.gram.front();
   Eigen::VectorXd of_table = sums.cross.front().col(table);

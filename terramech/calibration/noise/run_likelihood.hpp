@@ -82,7 +82,6 @@ class RunLikelihood {
   /// maximisation of the restricted likelihood (laird_ware_1982), `steps` steps from `start`.
   RunError profile(const RunSums& sums, RunError start, Eigen::Index table, int steps) const;
 
-  bool hasUnits() const { return !information_.empty(); }
   int folds() const { return folds_; }
 
   /// Returns the log-likelihood of a table for a model without parameters. The choice of units uses this

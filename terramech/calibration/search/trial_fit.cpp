@@ -4,7 +4,6 @@
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
-#include <talus/terramech/calibration/noise/input_calibration.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/numerics/median.hpp>
@@ -28,8 +27,7 @@ void CalibratedRows::backToMeasured() {
 /// The stated errors. An error of the load that is not stated has the scatter about set loads as its prior.
 StatedSensors CalibratedRows::knownSensors(const RefinedModel& model) const {
   StatedSensors sensors = model.stated;
-  const auto set = setLoads(trial_);
-  if (set && !sensors.load_N) sensors.load_N = set->scatter * medianOf(trial_.load_N);
+  if (set_ && !sensors.load_N) sensors.load_N = set_->scatter * medianOf(trial_.load_N);
   return sensors;
 }
 
@@ -37,7 +35,7 @@ void CalibratedRows::settle(const Eigen::MatrixXd& noise_alone, const Eigen::Mat
                             const InputSlopes& measured_slopes, RefinedModel& model, SolvedContacts& solved) {
   backToMeasured();
   model.noise = fitNoise(trial_, noise_alone, level, measured_slopes, knownSensors(model));
-  calibrateInputs(trial_, model.noise);
+  calibrateInputs(trial_, model.noise, set_);
   level_ = predictRows(model, trial_, solved);
   residual_ = trial_.measured - level_;  // (T1)
   const InputSlopes slopes = inputSlopes(model, trial_, solved);
@@ -65,6 +63,28 @@ void CalibratedRows::shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& 
   whitening_.common.run = roughRunError(whitening_);
 }
 
+void CalibratedRows::findSetLoads(const RefinedModel& model, const Eigen::MatrixXd& measured,
+                                  SolvedContacts& solved) {
+  set_ = setLoads(trial_);
+  if (!set_) return;
+  // A smooth of the measured loads would absorb their errors about the set loads.
+  for (std::size_t r = 0; r < trial_.states.size(); ++r)
+    trial_.states[r].load_N = set_->load_N[static_cast<Eigen::Index>(r)];
+  const auto likelihood = [&](const Eigen::MatrixXd& residual) {
+    const Eigen::MatrixXd e = withoutSmooth(trial_, residual, noiseColumns(trial_));
+    double sum = 0.0;
+    for (Eigen::Index c = 0; c < kChannels; ++c)
+      if (const auto there = e.col(c).array().isFinite(); there.any())
+        sum -= 0.5 * static_cast<double>(there.count()) *
+               std::log(there.select(e.col(c).array().square(), 0.0).sum());
+    return sum;
+  };
+  if (likelihood(trial_.measured - predictRows(model, trial_, solved)) > likelihood(measured))
+    return;  // (T14)
+  set_.reset();
+  backToMeasured();
+}
+
 void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   backToMeasured();
   const Eigen::MatrixXd level = predictRows(model, trial_, solved);
@@ -72,10 +92,7 @@ void CalibratedRows::calibrate(RefinedModel& model, SolvedContacts& solved) {
   const Eigen::MatrixXd measured = trial_.measured - level;
   // If the slip varies more than any possible error, no estimate of the error is needed.
   const SensorNoise unlimited{.slip_relative = 1.0};
-  // A smooth of the measured loads would absorb their errors about the set loads.
-  if (const auto set = setLoads(trial_))
-    for (std::size_t r = 0; r < trial_.states.size(); ++r)
-      trial_.states[r].load_N = set->load_N[static_cast<Eigen::Index>(r)];
+  findSetLoads(model, measured, solved);
   Eigen::MatrixXd smooth = withoutSmooth(trial_, measured, noiseColumns(trial_));
   if (!inputsAreSeen(trial_, unlimited)) {
     const Eigen::MatrixXd left = withoutSmooth(trial_, measured, allButSlip(trial_));

@@ -9,6 +9,7 @@
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/noise/input_calibration.hpp>
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
@@ -57,7 +58,11 @@ class CalibratedRows {
   void shareWithin(Eigen::MatrixXd smooth, const Eigen::MatrixXd& level, const InputSlopes& measured_slopes,
                    RefinedModel& model, SolvedContacts& solved);
 
+  /// Determines whether the scatter of the loads about set loads is an error.
+  void findSetLoads(const RefinedModel& model, const Eigen::MatrixXd& measured, SolvedContacts& solved);
+
   Trial trial_;
+  std::optional<SetLoads> set_;  // empty: the loads are as measured
   Eigen::MatrixXd level_, residual_;
   std::optional<Eigen::MatrixXd> by_slip_;
   Whitening whitening_;

@@ -358,11 +358,9 @@ class FormulaSearch {
     return chosen;
   }
 
-  static std::vector<Index> without(const std::vector<Index>& chosen, std::size_t k) {
-    std::vector<Index> others;
-    for (std::size_t other = 0; other < chosen.size(); ++other)
-      if (other != k) others.push_back(chosen[other]);
-    return others;
+  static std::vector<Index> without(std::vector<Index> chosen, std::size_t k) {
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(k));
+    return chosen;
   }
 
   const std::string& nameOf(Index j) const { return candidates_[static_cast<std::size_t>(j)].name; }

@@ -193,7 +193,6 @@ TEST(RunLikelihood, RowsWithoutRunsShareNothing) {
   const Made made(4);
   RunLikelihood likelihood(made.factor, {}, made.folds);
   likelihood.setTables(made.table);
-  EXPECT_FALSE(likelihood.hasUnits());
   EXPECT_NEAR(likelihood.logLikelihood(made.run, 0), -0.5 * made.table.squaredNorm(), 1e-9);
 }
 

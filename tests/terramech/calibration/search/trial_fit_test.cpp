@@ -3,6 +3,7 @@
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 
 #include "calibration/noisy_rows.hpp"
+#include "made_rows.hpp"
 
 namespace talus::terramech {
 namespace trial_fit_test {
@@ -88,6 +89,33 @@ TEST(CalibratedRows, LevelOfAnotherModelKeepsTheNoise) {
   EXPECT_GT((rows.level() - level).cwiseAbs().maxCoeff(), 0.0);
   // Property: the measured value is the sum of level and residual; NaN for missing measurements.
   EXPECT_NEAR((rows.trial().measured - rows.level() - rows.residual()).leftCols(3).norm(), 0.0, 1e-12);
+}
+
+// Loads of three levels that the load cell reads with an error of 4 %, and loads that scatter as much about the levels:
+// the other readings follow the levels, or the cell.
+TEST(CalibratedRows, LoadsAreSetIfTheOtherReadingsFollowTheirMeans) {
+  for (const bool set : {true, false}) {
+    MadeRows rows(wheelColumns());
+    std::mt19937_64 random(6);
+    std::normal_distribution<double> scatter(0.0, 0.04);
+    for (int k = 0; k < 120; ++k) {
+      const double level_N = 40.0 * std::pow(1.5, k % 3), other_N = level_N * std::exp(scatter(random));
+      std::vector<double> row =
+          wheelRow(sand().soil, set ? level_N : other_N, 0.1 + 0.05 * (k % 11), 0.01, random);
+      row[0] = other_N;
+      rows.add(row);
+    }
+    RefinedModel model = sand();
+    SolvedContacts solved;
+    CalibratedRows calibrated{makeTrial(rows.telemetry(), model)};
+    calibrated.calibrate(model, solved);
+    double square = 0.0;  // of the deviations from the levels
+    for (int k = 0; k < 120; ++k) {
+      const double load_N = calibrated.trial().states[static_cast<std::size_t>(k)].load_N;
+      square += std::pow(std::log(load_N / (40.0 * std::pow(1.5, k % 3))), 2) / 120.0;
+    }
+    EXPECT_NEAR(std::sqrt(square), set ? 0.0 : 0.04, 0.01) << set;
+  }
 }
 
 }  // namespace calibrated_rows_test
