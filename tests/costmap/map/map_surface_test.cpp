@@ -1,10 +1,10 @@
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <utility>
 
+#include <cost_bits.hpp>
 #include <site_map.hpp>
 
 #include <talus/costmap/map/traversability_map.hpp>
@@ -115,17 +115,6 @@ WheelObservation drive(std::mt19937& random, const maps::Grid& grid) {
   return seen;
 }
 
-// The bits of a planner's costs in a cell for sixteen headings.
-std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
-  std::array<std::uint32_t, 16> bits{};
-  for (std::size_t k = 0; k < bits.size(); ++k) {
-    const double heading = 0.3926990817 * static_cast<double>(k);
-    bits[k] = std::bit_cast<std::uint32_t>(
-        grid.cost().costPerMetre(grid.at(cell), {std::cos(heading), std::sin(heading)}));
-  }
-  return bits;
-}
-
 void expectSame(const TraversabilityMap& patched, const TraversabilityMap& at_once) {
   const auto a = patched.published(), b = at_once.published();
   forEachCell(allOf(patched.grid()), [&](Cell c) {
@@ -137,7 +126,7 @@ void expectSame(const TraversabilityMap& patched, const TraversabilityMap& at_on
     ASSERT_EQ(a->at(c).curve() >= CellCode::kUnknown ? a->at(c).curve() : 0,
               b->at(c).curve() >= CellCode::kUnknown ? b->at(c).curve() : 0)
         << where;
-    ASSERT_EQ(costs(*a, c), costs(*b, c)) << where;
+    ASSERT_EQ(costBits(*a, c), costBits(*b, c)) << where;
   });
 }
 

@@ -1,12 +1,12 @@
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <thread>
 #include <utility>
 
+#include <cost_bits.hpp>
 #include <gmock/gmock.h>
 #include <refused.hpp>
 #include <site_map.hpp>
@@ -56,16 +56,6 @@ MapLayers layersOf(const maps::Grid& grid, const maps::Grid& seen) {
   return layers;
 }
 
-std::array<std::uint32_t, 16> costs(const CostGrid& grid, Cell cell) {
-  std::array<std::uint32_t, 16> bits{};
-  for (std::size_t k = 0; k < bits.size(); ++k) {
-    const double heading = 0.3926990817 * static_cast<double>(k);
-    bits[k] = std::bit_cast<std::uint32_t>(
-        grid.cost().costPerMetre(grid.at(cell), {std::cos(heading), std::sin(heading)}));
-  }
-  return bits;
-}
-
 // Property: after moves, drives, a refusal and new data the map is bit-identical to a map built from the same
 // layers and the remaining evidence.
 TEST(MapMove, MovedMapEqualsARebuiltMap) {
@@ -93,7 +83,8 @@ TEST(MapMove, MovedMapEqualsARebuiltMap) {
     forEachCell(allOf(after), [&](Cell c) {
       ASSERT_EQ(moved.surface().hazards(c), at_once.surface().hazards(c)) << c.column << ' ' << c.row;
       ASSERT_EQ(moved.belief(c), at_once.belief(c)) << c.column << ' ' << c.row;
-      ASSERT_EQ(costs(*moved.published(), c), costs(*at_once.published(), c)) << c.column << ' ' << c.row;
+      ASSERT_EQ(costBits(*moved.published(), c), costBits(*at_once.published(), c))
+          << c.column << ' ' << c.row;
     });
     // Evidence of a place in both windows is retained.
     std::size_t blocks = 0;
