@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 724},    {"terramech", 22478}, {"maps", 7249},     {"costmap", 13041},
-                           {"planner", 23234}, {"cli", 15239},       {"examples", 1703}, {"tests", 59251}};
+                           {"planner", 23234}, {"cli", 15239},       {"examples", 1703}, {"tests", 59289}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

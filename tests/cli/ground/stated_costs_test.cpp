@@ -130,6 +130,20 @@ TEST(CostRaster, CostsAMetreAndNav2MapsAreGroundOfTheirOwn) {
   EXPECT_NEAR(json::parse(nav.out)["cost"], 0.5 * (way + 1.0), 0.02);
   EXPECT_NEAR(json::parse(raster.out)["cost"], 2.0 * (way + 1.0), 0.05);
   EXPECT_EQ(plan({"nav.yaml", "--start=-9.75,7.75", "--goal=5.25,7.75"}).code, 2);  // unknown ground
+  // A wall is no unknown ground, and a cell of 2 m is as dear as the dearest of its four.
+  const Ran allowed = plan({"nav.yaml", "--start=-4.75,7.75", "--goal=5.25,7.75", "--allow-unknown"});
+  EXPECT_NEAR(json::parse(allowed.out)["cost"], 0.5 * (way + 1.0), 0.02);
+  folder.write("utm.asc",
+               "ncols 40\nnrows 20\nxllcorner 500000\nyllcorner 0\n" + costs.substr(costs.find("cells")));
+  folder.write("utm.prj",
+               "PROJCS[\"WGS 84 / UTM zone 31N\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
+               "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
+               "PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_"
+               "meridian\",3],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],"
+               "PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]");
+  const Ran coarse = plan({"utm.asc", "--resolution", "2", "--start", "500011,5", "--goal", "500031,5"});
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  EXPECT_NEAR(json::parse(coarse.out)["cost"], 2.0 * (2.0 * std::hypot(9.0, 11.0) + 2.0), 0.05);
   EXPECT_THAT(
       plan({"costs.asc", "--resolution", "1", "--start", "1,1", "--goal", "9,9", "--rover", "mer"}).err,
       HasSubstr("in place of --rover"));
