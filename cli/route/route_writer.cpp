@@ -85,10 +85,11 @@ maps::VectorLayer segmentLayer(const std::vector<Json>& vertices) {
 // as points.
 std::string categoryQml(bool points) {
   using terramech::Category;
-  const auto layer = [points](const std::string& colour, const char* width) {
+  const auto layer = [points](int pass, const std::string& colour, const char* width) {
     return fmt::format(
-        "<layer class=\"{}\" enabled=\"1\"><prop k=\"{}\" v=\"{}\"/><prop k=\"{}\" v=\"{}\"/></layer>",
-        points ? "SimpleMarker" : "SimpleLine", points ? "color" : "line_color", colour,
+        "<layer class=\"{}\" enabled=\"1\" pass=\"{}\"><prop k=\"{}\" v=\"{}\"/><prop k=\"{}\" "
+        "v=\"{}\"/></layer>",
+        points ? "SimpleMarker" : "SimpleLine", pass, points ? "color" : "line_color", colour,
         points ? "size" : "line_width", width);
   };
   std::string categories, symbols;
@@ -96,14 +97,14 @@ std::string categoryQml(bool points) {
     const Colour c = colourOf(one);
     categories += fmt::format("<category value=\"{0}\" label=\"{0}\" symbol=\"{1}\" render=\"true\"/>\n",
                               terramech::name(one), static_cast<int>(one));
-    symbols +=
-        fmt::format("<symbol name=\"{}\" type=\"{}\" alpha=\"1\">{}{}</symbol>\n", static_cast<int>(one),
-                    points ? "marker" : "line", points ? "" : layer("34,34,34,255", "1.5"),
-                    layer(fmt::format("{:.0f},{:.0f},{:.0f},255", 255 * c.red, 255 * c.green, 255 * c.blue),
-                          points ? "1.2" : "0.9"));
+    symbols += fmt::format(
+        "<symbol name=\"{}\" type=\"{}\" alpha=\"1\">{}{}</symbol>\n", static_cast<int>(one),
+        points ? "marker" : "line", points ? "" : layer(0, "34,34,34,255", "1.5"),
+        layer(1, fmt::format("{:.0f},{:.0f},{:.0f},255", 255 * c.red, 255 * c.green, 255 * c.blue),
+              points ? "1.2" : "0.9"));
   }
   return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n<renderer-v2 "
-         "type=\"categorizedSymbol\" attr=\"category\">\n<categories>\n" +
+         "type=\"categorizedSymbol\" attr=\"category\" symbollevels=\"1\">\n<categories>\n" +
          categories + "</categories>\n<symbols>\n" + symbols + "</symbols>\n</renderer-v2>\n</qgis>\n";
 }
 

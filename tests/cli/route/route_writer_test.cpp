@@ -61,7 +61,7 @@ TEST(RouteWriter, GeoPackageRoundTripsAsARoute) {
     if (drawn != nullptr) ++types[OGRToOGCGeomType(drawn->getGeometryType())];
   });
   const int vertices = static_cast<int>(route.vertices.size());
-  EXPECT_THAT(fileContent(path), HasSubstr("attr=\"category\""));  // the style for QGIS
+  EXPECT_THAT(fileContent(path), HasSubstr("attr=\"category\" symbollevels"));  // the style for QGIS
   EXPECT_EQ(types, (std::map<std::string, int>{{"LINESTRING", vertices}, {"POINT", vertices}}));
 }
 
