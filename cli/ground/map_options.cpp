@@ -102,6 +102,7 @@ maps::ElevationMap readMap(const MapOptions& options, const Context& context) {
         {options.path, "--below selects a level of an OctoMap, and this is a raster", "remove --below"});
   maps::ReadOptions read = options.read;
   if (!options.window.empty()) read.window = maps::parseWindow(options.window);
+  const ProgressMonitor reading = context.watch("read map");
   maps::ElevationMap map = maps::readElevation(options.path, read);
   // memory of beliefs, hazards, curves, tiles and their working copies
   constexpr double kBytesPerCell = 40.0;
