@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
@@ -24,7 +20,6 @@ using namespace terramech;
 using Json = nlohmann::ordered_json;
 
 struct AssessCommand : AssessOptions {
-  std::string html;  // HTML page to write; empty: no page
   TableOptions columns;
 };
 
@@ -65,9 +60,6 @@ void bind(CLI::App& command, AssessCommand& options) {
       ->capture_default_str();
   groupOptions(command, "Drawbar pull");
   addTableOptions(command, options.columns);
-  addOutput(command, "--html", options.html, "page to write, with the traversability diagram")
-      ->type_name("R.html");
-  groupOptions(command, "Output");
 }
 
 Json jsonOf(const Estimate& pull) {
@@ -133,81 +125,6 @@ std::string textOf(const AssessOptions& options, const std::vector<Assessment>& 
   return text;
 }
 
-// Rows in the plane of thesis Figs. 3.10 to 3.12.
-Plot mapOf(const std::vector<Assessment>& rows) {
-  Plot plot{.title = "Traversability diagram",
-            .x = {.label = "T/(rW) [-]"},
-            .y = {.label = "z/r [-]"},
-            .series = {}};
-  for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
-    Series cloud{.name = name(c),
-                 .x = {},
-                 .y = {},
-                 .mark = Series::Mark::Points,
-                 .colour = c == Category::Safe ? rgb(0x1b6fbf) : colourOf(c)};
-    for (const Assessment& a : rows) {
-      if (a.category != c) continue;
-      cloud.x.push_back(a.torque_over_load_radius);
-      cloud.y.push_back(a.sinkage_over_radius.value);
-    }
-    if (!cloud.x.empty()) plot.series.push_back(cloud);
-  }
-  return plot;
-}
-
-// Drawbar pull of each row with its standard deviation, and the pull required by the slope.
-Plot pullsOf(const AssessCommand& options, const std::vector<Assessment>& rows) {
-  Series pulls{.name = "available, one standard deviation", .x = {}, .y = {}, .mark = Series::Mark::Points};
-  for (const Assessment& a : rows) {
-    pulls.x.push_back(static_cast<double>(a.line));
-    pulls.y.push_back(a.pull.value);
-    pulls.y_std.push_back(a.pull.std);
-  }
-  const double asked = std::tan(options.slope_rad);
-  const std::vector<double> ends =
-      rows.empty() ? std::vector<double>{} : std::vector{pulls.x.front(), pulls.x.back()};
-  return {
-      .title = "Drawbar pull over load, row by row",
-      .x = {.label = "line of the table"},
-      .y = {.label = "DP/W [-]"},
-      .series = {pulls, {.name = "required by the slope", .x = ends, .y = std::vector(ends.size(), asked)}}};
-}
-
-// Returns the number and share of rows in each category.
-std::vector<std::vector<std::string>> countsOf(const std::vector<Assessment>& rows) {
-  std::vector<std::vector<std::string>> out;
-  for (const Category c : {Category::Safe, Category::Marginal, Category::Dangerous}) {
-    const auto count = std::ranges::count(rows, c, &Assessment::category);
-    out.push_back({name(c), std::to_string(count),
-                   fmt::format("{:.1f} %", 100.0 * static_cast<double>(count) /
-                                               static_cast<double>(std::max<std::size_t>(1, rows.size())))});
-  }
-  return out;
-}
-
-void writePage(const AssessCommand& options, const std::vector<Assessment>& rows) {
-  HtmlReport page("Traversability of " + std::filesystem::path(options.table.path).filename().string());
-  page.paragraph(fmt::format(
-      "Slope to climb: {:.1f} +- {:.1f} deg. Above z/r = {:.2f} the category drops one level; above {:.2f} "
-      "it is dangerous.",
-      options.slope_rad / kDegree, options.margin_rad / kDegree, options.z_threshold, options.z_critical));
-  page.charts({mapOf(rows), pullsOf(options, rows)});
-  page.table({"category", "rows", "share"}, countsOf(rows));
-  constexpr std::size_t kMostRows = 500;
-  const std::size_t shown = std::min(rows.size(), kMostRows);
-  if (shown < rows.size())
-    page.paragraph(
-        fmt::format("The first {} of {} rows; `talus assess` prints all of them, with --json as JSON.", shown,
-                    rows.size()));
-  std::vector<std::vector<std::string>> cells;
-  for (const Assessment& a : std::span(rows).first(shown))
-    cells.push_back({fmt::format("{}", a.line), fmt::format("{:.3f}", a.pull.value),
-                     fmt::format("{:.3f}", a.pull.std), fmt::format("{:.3f}", a.sinkage_over_radius.value),
-                     name(a.category)});
-  page.table({"line", "DP/W", "std", "z/r", "category"}, cells);
-  writeFile(options.html, page.html());
-}
-
 int run(const AssessCommand& asked, Context& context) {
   AssessCommand options = asked;
   options.table = tableFile(asked.table.path, asked.columns, context);
@@ -222,7 +139,6 @@ int run(const AssessCommand& asked, Context& context) {
   const Applicability applies =
       tableApplicability(options.table, options.model, options.rover, context.watch("checking the model"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!options.html.empty()) writePage(options, table.rows);
   context.answer(jsonOf(table.rows, options.reference_slip), textOf(options, table.rows));
   if (applies.applies) return Exit::kDone;
   context.warn(options.table.path + ": the model does not apply: " + applies.reason);

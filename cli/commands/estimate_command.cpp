@@ -257,8 +257,7 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
   SolvedContacts solved;
   const Eigen::MatrixXd predicted = predictRows(rows.model, rows.trial, solved);
   for (const Channel c : kAllChannels)
-    if (rows.trial.has(c))
-      plots.push_back(agreementPlot(c, rows.trial.measured, {{"estimated soil", predicted}}));
+    if (rows.trial.has(c)) plots.push_back(overSlip(c, rows.trial, {{"estimated soil", predicted}}));
   return plots;
 }
 

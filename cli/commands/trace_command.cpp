@@ -73,7 +73,9 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
   addOutput(command, "--model-out", options.model_out, "refined model to write")
       ->excludes(hold_out)
       ->type_name("M.yaml");
-  addOutput(command, "--html", options.html, "page to write, with charts")->type_name("R.html");
+  addOutput(command, "--html", options.html, "page to write, with charts")
+      ->type_name("R.html")
+      ->excludes(hold_out);
   addOutput(command, "-o,--output", options.runs_out, "proposed runs to write, with what each cause predicts")
       ->needs(propose)
       ->type_name("RUNS.csv");
@@ -100,7 +102,6 @@ int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& 
     all.push_back(terramech::traceWithout(rows.model, rows.trial, left, search, watch));
     if (watch.stopped()) return Exit::kCancelled;
   }
-  if (!options.html.empty()) writeFile(options.html, leftOutPage(all, options.hold_out, options.telemetry));
   if (context.json)
     printJson({{"hold_out", leftOutJson(all)}});
   else

@@ -17,6 +17,7 @@
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/map_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
@@ -80,24 +81,45 @@ std::vector<fs::path> placesOf(const InputFile& map, const fs::path& route) {
   }
 }
 
-/// Path of a file whose SHA-256 equals that of the first input of the route, the DEM or traversability map;
-/// nothing, with a warning, if no such file is found.
-std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
-                                   const Context& context) {
-  if (file.inputs.empty()) return std::nullopt;
-  const InputFile& input = file.inputs.front();
-  std::string other;
+/// Path of a file whose SHA-256 equals that of an input of the route; otherwise nothing, and in `other` a file of
+/// the same name, if any.
+std::optional<std::string> findInput(const InputFile& input, const std::string& route_path,
+                                     std::string& other) {
   for (const fs::path& path : placesOf(input, route_path)) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) continue;
     if (sha256OfFile(path.string()) == input.sha256) return path.string();
     if (other.empty()) other = path.string();
   }
+  return std::nullopt;
+}
+
+/// Path of the DEM or traversability map of the route; nothing, with a warning, if no such file is found.
+std::optional<std::string> findMap(const RouteFile& file, const std::string& route_path,
+                                   const Context& context) {
+  if (file.inputs.empty()) return std::nullopt;
+  std::string other;
+  if (auto found = findInput(file.inputs.front(), route_path, other)) return found;
   if (!other.empty())
     context.warn(other + " is not the file that the route was planned on: its checksum differs");
-  context.warn("the map " + fs::path(input.path).filename().string() +
+  context.warn("the map " + fs::path(file.inputs.front().path).filename().string() +
                " of the route was not found; the page shows no map; pass --map");
   return std::nullopt;
+}
+
+/// Traversability map of the mission of the route; nothing if the route has none, or if one of its files is not found.
+std::optional<costmap::TraversabilityMap> missionMap(const RouteFile& file, const std::string& route_path,
+                                                     const Context& context) {
+  PlanOptions plan;
+  for (const InputFile& input : file.inputs) {
+    std::string other;
+    const auto found = findInput(input, route_path, other);
+    if (!found) return std::nullopt;
+    if (input.role == "mission") plan.ground.dem.path = *found;
+  }
+  if (plan.ground.dem.path.empty()) return std::nullopt;
+  readMission(plan);
+  return readGround(plan.ground, context).map;
 }
 
 void requireInside(const Scene& scene, const planner::Route& route, const std::string& map,
@@ -134,7 +156,10 @@ Scene routeScene(const ViewOptions& options, const Context& context) {
   }
   const std::optional<std::string> map =
       options.map.empty() ? findMap(file, options.file.path, context) : std::optional(options.map);
-  Scene scene = map ? mapScene(titled, *map, context) : sceneOf(file.route, {.title = titled.title});
+  const auto built = options.map.empty() && map ? missionMap(file, options.file.path, context) : std::nullopt;
+  Scene scene = built ? sceneOf(*built, {.title = titled.title})
+                : map ? mapScene(titled, *map, context)
+                      : sceneOf(file.route, {.title = titled.title});
   if (map) requireInside(scene, file.route, *map, options.file.path);
   if (!options.others.empty()) {
     if (!map) scene.facts.clear();

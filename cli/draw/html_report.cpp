@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,27 +29,12 @@ bool isNumber(const std::string& text) {
 }  // namespace
 
 std::string escaped(const std::string& text) {
+  constexpr std::pair<char, const char*> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'\'', "&#39;"}, {'"', "&quot;"}};
   std::string html;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '\'':
-        html += "&#39;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
+    const auto* const entity = std::ranges::find(kEntities, c, &std::pair<char, const char*>::first);
+    entity == std::end(kEntities) ? html += c : html += entity->second;
   }
   return html;
 }

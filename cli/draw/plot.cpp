@@ -18,9 +18,9 @@ constexpr Colour kPlotInk = rgb(0x333333);
 constexpr Colour kFaint = rgb(0xE4E4E4);
 
 void check(const Series& s) {
-  if (s.x.size() == s.y.size() && (s.y_std.empty() || s.y_std.size() == s.y.size())) return;
-  throw std::invalid_argument(fmt::format("series '{}': x, y, y_std have {}, {}, {} values, must be as many",
-                                          s.name, s.x.size(), s.y.size(), s.y_std.size()));
+  if (s.x.size() == s.y.size()) return;
+  throw std::invalid_argument(fmt::format("series '{}': x and y have {} and {} values, must be as many",
+                                          s.name, s.x.size(), s.y.size()));
 }
 
 /// Range of the finite values with a margin; fixed ends have precedence.
@@ -53,10 +53,8 @@ class Panel {
     Extent y;
     for (const Series& s : plot.series) {
       for (std::size_t i = 0; i < s.x.size(); ++i) {
-        const double spread = s.y_std.empty() || !std::isfinite(s.y_std[i]) ? 0.0 : s.y_std[i];
         x.add(s.x[i]);
-        y.add(s.y[i] - spread);
-        y.add(s.y[i] + spread);
+        y.add(s.y[i]);
       }
     }
     x_ = x.range(plot.x);
@@ -101,12 +99,7 @@ class Panel {
   }
 
   void series(const Series& s, Colour c) {
-    if (s.mark == Series::Mark::Line) {
-      band(s, c);
-      runs(s, c);
-      return;
-    }
-    bars(s, c);
+    if (s.mark == Series::Mark::Line) return runs(s, c);
     std::vector<Spot> spots;
     for (std::size_t i = 0; i < s.x.size(); ++i)
       if (std::isfinite(s.x[i]) && std::isfinite(s.y[i])) spots.push_back(spot(s.x[i], s.y[i]));
@@ -126,26 +119,6 @@ class Panel {
                 spots.end());
   }
 
-  /// Draws one standard deviation about each reading; overlapping bars in one pixel column are merged.
-  void bars(const Series& s, Colour c) {
-    struct Bar {
-      double column = 0.0, low = 0.0, high = 0.0;  // pixels from the left, values
-    };
-    std::vector<Bar> bars;
-    for (std::size_t i = 0; i < s.y_std.size(); ++i)
-      if (std::isfinite(s.x[i]) && std::isfinite(s.y[i]) && std::isfinite(s.y_std[i]))
-        bars.push_back({std::floor(spot(s.x[i], 0.0).x), s.y[i] - s.y_std[i], s.y[i] + s.y_std[i]});
-    std::ranges::sort(bars, {}, [](const Bar& bar) { return std::pair{bar.column, bar.low}; });
-    for (std::size_t i = 0; i < bars.size();) {
-      Bar bar = bars[i];
-      for (++i; i < bars.size() && bars[i].column == bar.column && bars[i].low <= bar.high; ++i)
-        bar.high = std::max(bar.high, bars[i].high);
-      const double x = bar.column + 0.5;
-      canvas_.line(std::array{Spot{x, spot(0.0, bar.low).y}, Spot{x, spot(0.0, bar.high).y}},
-                   {.colour = faded(c, 0.5)});
-    }
-  }
-
   /// Draws a line between consecutive interruptions.
   void runs(const Series& s, Colour c) {
     std::vector<Spot> run;
@@ -159,16 +132,6 @@ class Panel {
     }
   }
 
-  void band(const Series& s, Colour c) {
-    if (s.y_std.empty()) return;
-    std::vector<Spot> rim;
-    for (std::size_t i = 0; i < s.x.size(); ++i)
-      if (std::isfinite(s.y[i] + s.y_std[i])) rim.push_back(spot(s.x[i], s.y[i] + s.y_std[i]));
-    for (std::size_t i = s.x.size(); i-- > 0;)
-      if (std::isfinite(s.y[i] + s.y_std[i])) rim.push_back(spot(s.x[i], s.y[i] - s.y_std[i]));
-    canvas_.polygon(rim, faded(c, 0.18));
-  }
-
   void legend() {
     double width = 0.0;
     int rows = 0;
@@ -178,7 +141,7 @@ class Panel {
       ++rows;
     }
     if (rows == 0) return;
-    const Box box = emptiestCorner({0, 0, width + 42, rows * 17.0 + 8});
+    const Box box{frame_.x + frame_.width - width - 50, frame_.y + 8, width + 42, rows * 17.0 + 8};
     canvas_.fill(box, faded(rgb(0xFFFFFF), 0.85));
     outline(canvas_, box, {.colour = kFaint});
     double y = box.y + 16;
@@ -193,34 +156,6 @@ class Panel {
       canvas_.text(s.name, {box.x + 34, y}, {.size = 11});
       y += 17;
     }
-  }
-
-  /// The corner position of the box that covers the fewest points.
-  Box emptiestCorner(Box box) const {
-    Box best = box;
-    std::size_t fewest = std::numeric_limits<std::size_t>::max();
-    for (const double right : {1.0, 0.0}) {
-      for (const double low : {0.0, 1.0}) {
-        box.x = frame_.x + 8 + right * (frame_.width - box.width - 16);
-        box.y = frame_.y + 8 + low * (frame_.height - box.height - 16);
-        const std::size_t n = covered(box);
-        if (n >= fewest) continue;
-        fewest = n;
-        best = box;
-      }
-    }
-    return best;
-  }
-
-  std::size_t covered(const Box& b) const {
-    std::size_t n = 0;
-    for (const Series& s : plot_.series) {
-      for (std::size_t i = 0; i < s.x.size(); ++i) {
-        const Spot p = spot(s.x[i], s.y[i]);
-        if (p.x >= b.x && p.x <= b.x + b.width && p.y >= b.y && p.y <= b.y + b.height) ++n;
-      }
-    }
-    return n;
   }
 
   Canvas& canvas_;

@@ -18,8 +18,6 @@ struct Series {
   std::string name = {};  ///< name in the legend; empty: no legend entry
   std::vector<double> x;  ///< x values, in the unit of the axis
   std::vector<double> y;  ///< y values, as many as x values; a NaN interrupts the line
-  /// Standard deviations of y, drawn as a band (Line) or as bars (Points); empty: none.
-  std::vector<double> y_std = {};
   Mark mark = Mark::Line;
   bool dashed = false;
   std::optional<Colour> colour = {};  ///< colour; empty: the next distinguishable colour
@@ -48,7 +46,7 @@ struct PlotLayout {
 };
 
 /// Returns the charts, drawn row by row, as the bytes of a PNG or SVG file. @throws std::invalid_argument if
-/// x, y or y_std of a series differ in length
+/// x and y of a series differ in length
 std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLayout& layout = {});
 
 /// Writes the charts to a file, as SVG for the extension .svg and as PNG otherwise. The file appears complete

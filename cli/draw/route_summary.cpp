@@ -14,10 +14,6 @@ using planner::Route;
 using planner::RouteVertex;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-std::string lengthText(double metres) {
-  return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
-}
-
 /// Extremes and length-weighted mean of a field over the motions; unknown if no motion has a value.
 struct Profile {
   double highest = -INFINITY;
@@ -165,6 +161,10 @@ std::vector<double> distances_m(const Route& route) {
     s.push_back((i == 0 ? 0.0 : s.back()) + std::hypot(b.x_m - a.x_m, b.y_m - a.y_m));
   }
   return s;
+}
+
+std::string lengthText(double metres) {
+  return metres >= 2000.0 ? fmt::format("{:.2f} km", metres / 1000.0) : fmt::format("{:.4g} m", metres);
 }
 
 std::string energyText(double joules) {

@@ -34,6 +34,9 @@ std::string summaryLine(std::string_view what, std::string_view value);
 /// Returns the summary of a route as lines of text.
 std::string summaryText(const planner::Route& route);
 
+/// Returns a length as text in m or km.
+std::string lengthText(double metres);
+
 /// Returns an energy as text in J, kJ or MJ with four digits.
 std::string energyText(double joules);
 

@@ -155,23 +155,111 @@ void addSlope(Scene& scene, Raster<float> values) {
   scene.layers.push_back(std::move(slope));
 }
 
-/// Facts of all routes, one row per name in order of first occurrence. Several values of one name in a route,
-/// such as files, are joined.
+/// A quantity of a route that is compared with that of another route.
+struct Quantity {
+  const char* name;
+  double (*of)(const planner::Route& route);
+  std::string (*text)(double value);
+};
+
+/// Share of the vertices whose motion has the category.
+template <terramech::Category category>
+double share(const planner::Route& route) {
+  const auto count = std::ranges::count(route.vertices, category, &planner::RouteVertex::category);
+  return static_cast<double>(count) / static_cast<double>(route.vertices.size());
+}
+
+std::string percentText(double part) {
+  return fmt::format("{:.1f} %", 100.0 * part);
+}
+
+using planner::Route;
+using planner::RouteVertex;
+using terramech::Category;
+constexpr Quantity kQuantities[] = {
+    {"length", [](const Route& r) { return r.summary.length_m; }, lengthText},
+    {"driving time", [](const Route& r) { return r.summary.time_s; }, durationText},
+    {"energy", [](const Route& r) { return r.summary.energy_J; }, energyText},
+    {"cost with time, risk", [](const Route& r) { return r.summary.cost; }, energyText},
+    {"max slip", [](const Route& r) { return r.summary.max_slip; },
+     [](double slip) { return fmt::format("{:.2f}", slip); }},
+    {"max slope",
+     [](const Route& r) { return std::max(r.summary.max_slope_rad, r.summary.max_slope_across_rad); },
+     [](double slope_rad) { return fmt::format("{:.1f} deg", slope_rad / kDegree); }},
+    {"immobilisation", [](const Route& r) { return r.vertices.back().immobilisation_risk; },
+     [](double probability) { return fmt::format("{:.2g}", probability); }},
+    {"safe", share<Category::Safe>, percentText},
+    {"marginal", share<Category::Marginal>, percentText},
+    {"dangerous", share<Category::Dangerous>, percentText},
+};
+
+/// The value of a route, followed by its difference to that of the first route.
+std::string besideText(const Quantity& quantity, double value, double first) {
+  const std::string text = quantity.text(value);
+  if (!std::isfinite(value) || !std::isfinite(first) || text == quantity.text(first)) return text;
+  return fmt::format("{} ({}{})", text, value < first ? "-" : "+", quantity.text(std::abs(value - first)));
+}
+
+/// Rows of the quantities and of the provenance of the routes. Several values of one name in a route, such as files,
+/// are joined.
 std::vector<ComparedFact> rowsOf(const std::vector<NamedRoute>& routes) {
   std::vector<ComparedFact> rows;
-  for (std::size_t i = 0; i < routes.size(); ++i) {
-    std::vector<Fact> facts = summaryOf(routes[i].route);
-    facts.insert(facts.end(), routes[i].provenance.begin(), routes[i].provenance.end());
-    for (const Fact& fact : facts) {
-      auto row =
-          std::find_if(rows.begin(), rows.end(), [&](const ComparedFact& r) { return r.name == fact.first; });
-      if (row == rows.end())
-        row = rows.insert(rows.end(), {fact.first, std::vector<std::string>(routes.size())});
-      std::string& cell = row->values[i];
-      cell += (cell.empty() ? "" : "; ") + fact.second;
-    }
+  for (const Quantity& quantity : kQuantities) {
+    rows.push_back({quantity.name, {}});
+    for (const NamedRoute& one : routes)
+      rows.back().values.push_back(
+          besideText(quantity, quantity.of(one.route), quantity.of(routes.front().route)));
   }
+  for (std::size_t i = 0; i < routes.size(); ++i)
+    for (const auto& [name, value] : routes[i].provenance) {
+      auto row = std::ranges::find(rows, name, &ComparedFact::name);
+      if (row == rows.end()) row = rows.insert(rows.end(), {name, std::vector<std::string>(routes.size())});
+      row->values[i] += (row->values[i].empty() ? "" : "; ") + value;
+    }
   return rows;
+}
+
+/// Index of the vertex nearest to a place, and its distance.
+std::pair<std::size_t, double> nearestVertex(const Route& route, const RouteVertex& place) {
+  std::pair<std::size_t, double> best{0, INFINITY};
+  for (std::size_t i = 0; i < route.vertices.size(); ++i) {
+    const RouteVertex& v = route.vertices[i];
+    if (const double d = std::hypot(v.x_m - place.x_m, v.y_m - place.y_m); d < best.second) best = {i, d};
+  }
+  return best;
+}
+
+/// Length, time and energy of a route between two vertices.
+std::string stretchText(const Route& route, std::size_t from, std::size_t to) {
+  const std::vector<double> s = distances_m(route);
+  const RouteVertex &a = route.vertices[std::min(from, to)], &b = route.vertices[std::max(from, to)];
+  return fmt::format("{}, {}, {}", lengthText(std::abs(s[to] - s[from])), durationText(b.time_s - a.time_s),
+                     energyText(b.energy_J - a.energy_J));
+}
+
+/// Adds a row and a numbered mark for each stretch on which the second route is more than `apart_m` from the
+/// vertices of the first.
+void addStretches(Scene& scene, const std::vector<NamedRoute>& routes, double apart_m) {
+  constexpr const char* kMarks[] = {"1", "2", "3", "4", "5", "6", "7", "8", "9"};
+  const Route &first = routes[0].route, &second = routes[1].route;
+  const std::vector<double> s = distances_m(first);
+  const auto isApart = [&](std::size_t i) {
+    return nearestVertex(second, first.vertices[i]).second > apart_m;
+  };
+  for (std::size_t i = 0; i < s.size() && scene.marks.size() < std::size(kMarks); ++i) {
+    if (!isApart(i)) continue;
+    const std::size_t begin = i == 0 ? 0 : i - 1;
+    while (i + 1 < s.size() && isApart(i)) ++i;
+    const RouteVertex& middle = first.vertices[(begin + i) / 2];
+    const char* mark = kMarks[scene.marks.size()];
+    scene.marks.emplace_back(mark, maps::Point{middle.x_m, middle.y_m});
+    std::vector<std::string> values(routes.size());
+    values[0] = stretchText(first, begin, i);
+    values[1] = stretchText(second, nearestVertex(second, first.vertices[begin]).first,
+                            nearestVertex(second, first.vertices[i]).first);
+    scene.comparison.push_back(
+        {fmt::format("{}: {:.0f} to {:.0f} m", mark, s[begin], s[i]), std::move(values)});
+  }
 }
 
 constexpr double kSmall = 0.15;  // of the map's diagonal: sets smaller than this share are marked
@@ -263,6 +351,7 @@ void compare(Scene& scene, std::vector<NamedRoute> routes) {
       scene.facts.emplace_back(row.name, row.values.front());
     else
       scene.comparison.push_back(std::move(row));
+  addStretches(scene, routes, 3.0 * scene.grid().resolution_m);
   scene.route = routes.front().route;
   scene.routes = std::move(routes);
 }

@@ -110,7 +110,7 @@ struct Scene {
   std::optional<planner::Route> route;
   std::vector<NamedRoute> routes{};        ///< routes of a comparison: the first route, then the others
   std::vector<ComparedFact> comparison{};  ///< quantities of `routes`
-  /// Labelled positions of a scene without a route.
+  /// Labelled positions of a scene, beside the ends of its routes.
   std::vector<std::pair<const char*, maps::Point>> marks{};
   std::vector<Ring> rings{};
   std::optional<maps::Georeference> georeference{};  ///< georeference of the map, if known
@@ -140,8 +140,9 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options);
 /// Adds a route and its summary to a scene.
 void addRoute(Scene& scene, const planner::Route& route);
 
-/// Adds several routes and their comparison to a scene; the first route is the reference. Facts that are
-/// equal for all routes are appended to Scene::facts, those that differ to Scene::comparison.
+/// Adds two or more routes and their comparison to a scene; the first route is the reference. Facts that are equal
+/// for all routes are appended to Scene::facts, those that differ to Scene::comparison, as are the stretches on
+/// which the first two routes lie apart.
 void compare(Scene& scene, std::vector<NamedRoute> routes);
 
 /// A start and a goal without a feasible route between them.

@@ -53,6 +53,20 @@ std::size_t safeWorlds(const std::vector<planner::WorldResult>& perfect) {
                     [](const planner::WorldResult& r) { return r.drive.outcome == Outcome::Reached; }));
 }
 
+std::vector<Fact> factsOf(const planner::WorldResult& result) {
+  const planner::TraverseSimulation& drive = result.drive;
+  std::vector<Fact> facts{{"outcome", label(drive.outcome)},
+                          {"cause", drive.cause},
+                          {"energy", energyText(drive.energy_J)},
+                          {"distance", fmt::format("{:.1f} m", drive.length_m)},
+                          {"time", durationText(drive.time_s)},
+                          {"maximum slip", fmt::format("{:.2f}", drive.max_slip)},
+                          {"alarms, replans", fmt::format("{}, {}", drive.alarms, drive.replans)},
+                          {"cells reclassified", std::to_string(result.categories_changed)}};
+  std::erase_if(facts, [](const Fact& fact) { return fact.second.empty(); });
+  return facts;
+}
+
 }  // namespace
 
 std::string label(SoilKnowledge belief) {
@@ -117,14 +131,9 @@ ordered_json asJson(const BeliefResults& beliefs) {
 }
 
 std::string asText(const planner::WorldResult& result) {
-  const planner::TraverseSimulation& drive = result.drive;
-  return line("outcome", label(drive.outcome)) + (drive.cause.empty() ? "" : line("cause", drive.cause)) +
-         line("energy", energyText(drive.energy_J)) +
-         line("distance", fmt::format("{:.1f} m", drive.length_m)) +
-         line("time", durationText(drive.time_s)) +
-         line("maximum slip", fmt::format("{:.2f}", drive.max_slip)) +
-         line("alarms, replans", fmt::format("{}, {}", drive.alarms, drive.replans)) +
-         line("cells reclassified", std::to_string(result.categories_changed));
+  std::string text;
+  for (const auto& [name, value] : factsOf(result)) text += line(name, value);
+  return text;
 }
 
 std::string asText(const std::vector<planner::WorldResult>& results) {
@@ -207,15 +216,7 @@ Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldRes
   Scene scene =
       sceneOf(map, SceneOptions{.title = fmt::format("Simulated traverse: {}", label(result.drive.outcome))});
   scene.subtitle = fmt::format("soil knowledge: {}; categories before the drive", label(belief));
-  const planner::TraverseSimulation& drive = result.drive;
-  scene.facts = {{"outcome", label(drive.outcome)},
-                 {"distance", fmt::format("{:.1f} m", drive.length_m)},
-                 {"time", fmt::format("{:.0f} s", drive.time_s)},
-                 {"energy", fmt::format("{:.2f} kJ", drive.energy_J / 1000.0)},
-                 {"maximum slip", fmt::format("{:.2f}", drive.max_slip)},
-                 {"alarms", std::to_string(drive.alarms)},
-                 {"replans", std::to_string(drive.replans)},
-                 {"cells reclassified", std::to_string(result.categories_changed)}};
+  scene.facts = factsOf(result);
   return scene;
 }
 

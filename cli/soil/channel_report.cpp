@@ -24,26 +24,25 @@ std::string changeText(const terramech::ChannelErrors& base, const terramech::Ch
   return text;
 }
 
-Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
-                   const std::vector<NamedPredictions>& predictions) {
-  Plot plot{
-      .title = name(channel), .x = {.label = "measured [-]"}, .y = {.label = "predicted [-]"}, .series = {}};
+Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
+              const std::vector<NamedPredictions>& predictions) {
+  Plot plot{.title = std::string(name(channel)) + " over slip",
+            .x = {.label = "slip [-]"},
+            .y = {.label = std::string(name(channel)) + " [-]"},
+            .series = {}};
   const auto c = static_cast<Eigen::Index>(channel);
-  double low = INFINITY, high = -INFINITY;
-  for (const auto& [who, predicted] : predictions) {
+  const auto add = [&](const std::string& who, const Eigen::MatrixXd& values) {
     Series series{.name = who, .x = {}, .y = {}, .mark = Series::Mark::Points};
-    for (Eigen::Index row = 0; row < measured.rows(); ++row) {
-      if (!std::isfinite(measured(row, c)) || !std::isfinite(predicted(row, c))) continue;
-      series.x.push_back(measured(row, c));
-      series.y.push_back(predicted(row, c));
-      low = std::min(low, measured(row, c));
-      high = std::max(high, measured(row, c));
+    for (Eigen::Index row = 0; row < values.rows(); ++row) {
+      const double slip = trial.slip[static_cast<std::size_t>(row)];
+      if (!std::isfinite(slip + trial.measured(row, c) + values(row, c))) continue;
+      series.x.push_back(slip);
+      series.y.push_back(values(row, c));
     }
     plot.series.push_back(std::move(series));
-  }
-  if (low <= high)
-    plot.series.push_back(
-        {.name = "", .x = {low, high}, .y = {low, high}, .dashed = true, .colour = rgb(0x666666)});
+  };
+  add("measured", trial.measured);
+  for (const auto& [who, predicted] : predictions) add(who, predicted);
   return plot;
 }
 

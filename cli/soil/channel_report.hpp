@@ -24,10 +24,10 @@ std::string changeText(const terramech::ChannelErrors& base, const terramech::Ch
 /// quantity).
 using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 
-/// Returns a plot of predicted over measured values of one channel; on the dashed line both are equal. Rows
-/// without a measurement are omitted.
-Plot agreementPlot(terramech::Channel channel, const Eigen::MatrixXd& measured,
-                   const std::vector<NamedPredictions>& predictions);
+/// Returns a plot of one channel over the slip, measured and predicted. Rows without slip, measurement or
+/// prediction are omitted.
+Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
+              const std::vector<NamedPredictions>& predictions);
 
 /// Returns the rows and columns of a large table that were not searched, one line each; empty if all were
 /// searched.

@@ -14,9 +14,4 @@ namespace talus::cli {
 std::string leftOutText(const std::vector<terramech::LeftOutErrors>& all);
 nlohmann::ordered_json leftOutJson(const std::vector<terramech::LeftOutErrors>& all);
 
-/// Returns the errors as an HTML page, with measured and predicted values over the held-out column. `request`
-/// is the option value COLUMN[=VALUES], and `source` is the path of the table.
-std::string leftOutPage(const std::vector<terramech::LeftOutErrors>& all, const std::string& request,
-                        const std::string& source);
-
 }  // namespace talus::cli

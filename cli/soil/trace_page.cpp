@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -14,44 +13,6 @@ namespace talus::cli {
 namespace {
 
 using namespace terramech;
-
-/// Covariates to plot: those of effects, then those with the strongest test results.
-std::vector<std::string> shown(const TraceResult& r) {
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    const bool known = name == "sinkage_m" || std::find(r.trial.covariates.begin(), r.trial.covariates.end(),
-                                                        name) != r.trial.covariates.end();
-    if (known && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  for (const TracedEffect& e : r.effects) add(e.chosen.candidate.covariate());
-  add("slip");
-  add("load_N");
-  for (const Promise& p : r.first_promises)
-    if (names.size() < 6) add(p.candidate.covariate());
-  for (const std::string& name : r.trial.covariates)
-    if (names.size() < 6) add(name);
-  return names;
-}
-
-Plot residualPlot(const TraceResult& r, const std::string& covariate, Channel channel,
-                  const Eigen::MatrixXd& before, const Eigen::MatrixXd& after,
-                  const Eigen::VectorXd& sinkage) {
-  const Eigen::VectorXd x = covariateValues(r.trial, covariate, sinkage);
-  Series base{.name = "base", .x = {}, .y = {}, .mark = Series::Mark::Points};
-  Series refined{.name = "refined", .x = {}, .y = {}, .mark = Series::Mark::Points};
-  const auto c = static_cast<Eigen::Index>(channel);
-  for (Eigen::Index row = 0; row < x.size(); ++row) {
-    if (!std::isfinite(x[row]) || !std::isfinite(before(row, c))) continue;
-    base.x.push_back(x[row]);
-    base.y.push_back(before(row, c));
-    refined.x.push_back(x[row]);
-    refined.y.push_back(after(row, c));
-  }
-  return {.title = std::string(name(channel)) + " over " + covariate,
-          .x = {.label = covariate},
-          .y = {.label = "residual (measured - model) [-]"},
-          .series = {base, refined}};
-}
 
 /// Residuals without one effect, and the contribution of that effect, row by row over its column (over the
 /// row index if the effect acts on a constant or text).
@@ -159,16 +120,6 @@ void heldOut(HtmlReport& page, const TableTrace& trace) {
   page.table(kErrorColumns, rows);
 }
 
-// Measured values over base and refined predictions, by channel.
-void agreement(HtmlReport& page, const Trial& trial, const Eigen::MatrixXd& base,
-               const Eigen::MatrixXd& refined) {
-  std::vector<Plot> plots;
-  for (Channel c : kAllChannels)
-    if (trial.has(c))
-      plots.push_back(agreementPlot(c, trial.measured, {{"base", base}, {"refined", refined}}));
-  page.charts(plots);
-}
-
 void tests(HtmlReport& page, const TraceResult& r) {
   page.heading("Gain of each candidate over the base model");
   page.paragraph(fmt::format(
@@ -196,22 +147,19 @@ std::string tracePage(const TableTrace& trace) {
   if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
   if (trace.beyond_axle > 0) page.paragraph(beyondAxleText(trace) + ".");
   terramech::SolvedContacts solved;
-  const Eigen::MatrixXd base = predictRows(r.base, r.trial, solved), before = r.trial.measured - base;
-  const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved), after = r.trial.measured - level;
+  const Eigen::MatrixXd base = predictRows(r.base, r.trial, solved);
+  const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved);
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
   errors(page, r);
-  agreement(page, r.trial, base, level);
+  std::vector<Plot> plots;
+  for (Channel c : kAllChannels)
+    if (r.trial.has(c)) plots.push_back(overSlip(c, r.trial, {{"base", base}, {"refined", level}}));
+  page.charts(plots);
   curves(page, r, level, sinkage);
   effects(page, trace);
   heldOut(page, trace);
-  page.heading("Residuals over each covariate, base and refined model");
-  std::vector<Plot> plots;
-  for (const std::string& covariate : shown(r))
-    for (Channel c : kAllChannels)
-      if (r.trial.has(c)) plots.push_back(residualPlot(r, covariate, c, before, after, sinkage));
-  page.charts(plots);
   tests(page, r);
   return page.html();
 }

@@ -62,12 +62,9 @@ std::string hundredths(double value) {
   return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
 }
 
-const std::vector<std::string>& header() {
-  static const std::vector<std::string> words{"planner", "runs",      "solved",    "invalid",
-                                              "crashed", "gap p50 %", "gap max %", "time p50 s",
-                                              "MB max",  "cusps",     "curv. 1/m", "clearance"};
-  return words;
-}
+const std::vector<std::string> kColumns{"planner", "runs",      "solved",    "invalid",
+                                        "crashed", "gap p50 %", "gap max %", "time p50 s",
+                                        "MB max",  "cusps",     "curv. 1/m", "clearance"};
 
 std::vector<std::string> words(const BenchmarkLine& line) {
   return {line.planner,
@@ -176,8 +173,8 @@ std::string asText(const std::vector<WorldLine>& lines) {
 }
 
 std::string asText(const std::vector<BenchmarkLine>& lines) {
-  std::string text = fmt::format("{:<16}", header()[0]);
-  for (std::size_t i = 1; i < header().size(); ++i) text += fmt::format("{:>12}", header()[i]);
+  std::string text = fmt::format("{:<16}", kColumns[0]);
+  for (std::size_t i = 1; i < kColumns.size(); ++i) text += fmt::format("{:>12}", kColumns[i]);
   text += "\n";
   for (const BenchmarkLine& line : lines) {
     const auto cells = words(line);
@@ -227,7 +224,7 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
   std::vector<std::vector<std::string>> rows;
   for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
-  page.table(header(), rows);
+  page.table(kColumns, rows);
   if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
     page.heading("Simulated drives over the true slip");
     page.table(drives.front(), {drives.begin() + 1, drives.end()});

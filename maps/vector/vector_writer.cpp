@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -74,13 +75,11 @@ class Placer {
 
 void writeLayer(GDALDataset& file, const VectorLayer& layer, const Placer& placed, bool own_fields) {
   const std::size_t positions = layer.features.front().positions.size();
+  constexpr OGRwkbGeometryType kTypes[] = {wkbNone, wkbPoint25D, wkbLineString25D};
   const char* options[] = {"FORCE_GPX_TRACK=YES", nullptr};
-  OGRLayer* out = file.CreateLayer(layer.name.c_str(),
-                                   const_cast<OGRSpatialReference*>(positions > 0 ? placed.crs() : nullptr),
-                                   positions == 0   ? wkbNone
-                                   : positions == 1 ? wkbPoint25D
-                                                    : wkbLineString25D,
-                                   own_fields ? nullptr : const_cast<char**>(options));
+  OGRLayer* out = file.CreateLayer(
+      layer.name.c_str(), const_cast<OGRSpatialReference*>(positions > 0 ? placed.crs() : nullptr),
+      kTypes[std::min<std::size_t>(positions, 2)], own_fields ? nullptr : const_cast<char**>(options));
   if (out == nullptr) return;
   for (const auto& [name, value] : layer.features.front().fields.items()) {
     OGRFieldDefn field(name.c_str(), fieldTypeOf(value));
@@ -91,15 +90,12 @@ void writeLayer(GDALDataset& file, const VectorLayer& layer, const Placer& place
     OGRFeature row(out->GetLayerDefn());
     for (const auto& [name, value] : feature.fields.items()) setField(row, name, value);
     OGRLineString line;
+    OGRPoint point;
     for (const VectorPosition& position : feature.positions) {
-      const OGRPoint point = placed(position);
+      point = placed(position);
       line.addPoint(&point);
     }
-    if (positions > 1) row.SetGeometry(&line);
-    if (OGRPoint point; positions == 1) {
-      line.getPoint(0, &point);
-      row.SetGeometry(&point);
-    }
+    if (positions > 0) row.SetGeometry(positions == 1 ? static_cast<OGRGeometry*>(&point) : &line);
     if (out->CreateFeature(&row) != OGRERR_NONE) return;
   }
 }

@@ -42,7 +42,7 @@ TEST(BadInput, KnownColumnInAnotherUnitIsRejectedByEveryCommand) {
   for (const std::vector<std::string>& call : {std::vector<std::string>{"trace", "FILE", "--html", "out"},
                                                {"estimate", "FILE", "--method", "wong-reece"},
                                                {"estimate", "FILE", "--method", "bevameter"},
-                                               {"assess", "FILE", "--html", "out"},
+                                               {"assess", "FILE"},
                                                {"assess", "FILE", "--model", "sandy_loam"},
                                                {"predict", "FILE", "--model", "sandy_loam", "-o", "out"}}) {
     const auto of = [&](const std::string& file) {

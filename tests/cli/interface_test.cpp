@@ -178,7 +178,7 @@ TEST(Interface, InterruptEndsWithCode130AndWritesNoFile) {
   const std::vector<std::vector<std::string>> long_work{
       joined(joined({"drive"}, joined(kGround, kEnds)), {"--truth", "truth.yaml", "--worlds", "100000"}),
       {"estimate", table, "--method", "wong-reece", "--html", "late.html"},
-      {"assess", table, "--extrapolate", "--html", "late.html"},
+      {"assess", table, "--extrapolate"},
       {"reproduce", "--goals", "--soils", "100000"},
       {"generate", "craters", "--size", "8000", "-o", "late.tif"}};
   for (const auto& work : long_work) {

@@ -36,24 +36,6 @@ TEST(AssessCommand, ProbabilitiesOfTheCategoriesAddUp) {
   EXPECT_EQ(rows[2]["category"], "safe");
 }
 
-// Property: the page of a long table states the count of all rows but lists only 500 rows, to limit its size.
-TEST(AssessCommand, ThePageOfALongTableIsSmall) {
-  const Folder folder;
-  std::string drive = std::string(kDrive).substr(0, std::string(kDrive).find('\n') + 1);
-  for (int row = 0; row < 3000; ++row)
-    drive += "80," + std::to_string(0.8 + 0.001 * row) + ",0.02,0.5,0.1,0.1\n";
-  const std::string table = folder.write("drive.csv", drive), page = folder / "r.html";
-  const json rows = json::parse(runTalus({"--json", "assess", table, "--html", page}).out);
-  const std::string html = fileContent(page);
-  EXPECT_LT(html.size(), 300'000U);
-  for (const char* category : {"safe", "marginal", "dangerous"}) {
-    const auto count = std::ranges::count(rows, category, [](const json& row) { return row["category"]; });
-    EXPECT_THAT(html, HasSubstr("<td>" + std::string(category) + "</td><td class=\"number\">" +
-                                std::to_string(count) + "</td>"));
-  }
-  EXPECT_THAT(html, HasSubstr("The first 500 of 3000 rows"));
-}
-
 TEST(AssessCommand, PlaneFormulaIsEquation321AndBothPrintedPairsAreDangerous) {
   // Printed in: thesis 3.5, pairs (0.1, 0.2) and (0.3, 0.4) at 10 deg. The thesis calls the second pair safe,
   // but Eq. 3.21 gives -0.2 for both pairs.

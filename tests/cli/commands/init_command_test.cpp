@@ -55,10 +55,10 @@ TEST(InitCommand, LayersBesideTheMapAreTaken) {
   ASSERT_EQ(runTalus({"generate", "dunes", "--size", "40", "-o", "site.tif"}, folder.path()).code, 0);
   const Ran made = runTalus({"init", "site.tif"}, folder.path());
   EXPECT_THAT(made.out, HasSubstr("layers      site_classes.tif, site_soils.yaml, site_rocks.tif\n"));
-  const std::string mission = fileContent(folder / "mission.yaml");
-  for (const char* key :
-       {"  terrain: \"site_classes.tif\"", "  rocks: \"site_rocks.tif\"", "\nsoils: \"site_soils.yaml\""})
-    EXPECT_THAT(mission, HasSubstr(key));
+  EXPECT_THAT(
+      fileContent(folder / "mission.yaml"),
+      testing::AllOf(HasSubstr("terrain: \"site_classes.tif\""), HasSubstr("rocks: \"site_rocks.tif\""),
+                     HasSubstr("\nsoils: \"site_soils.yaml\"")));
   std::filesystem::remove(folder / "site_soils.yaml");
   EXPECT_THAT(runTalus({"init", "site.tif", "-o", "m.yaml"}, folder.path()).err,
               HasSubstr("site_classes.tif is not taken: site_soils.yaml is missing"));

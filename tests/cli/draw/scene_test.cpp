@@ -42,13 +42,15 @@ TEST(Scene, DifferingAndEqualFactsAreSeparated) {
   NamedRoute first{"a", exampleRoute(), {{"soil", "sand"}, {"seed", "1"}}};
   NamedRoute second{"b", exampleRoute(), {{"soil", "clay"}, {"seed", "1"}}};
   second.route.summary.energy_J = 60000.0;
+  for (std::size_t i = 4; i < 7; ++i) second.route.vertices[i].y_m += 1e4;
   compare(scene, {first, second});
   std::vector<std::string> differing;
   for (const ComparedFact& fact : scene.comparison) {
     differing.push_back(fact.name);
     EXPECT_EQ(fact.values.size(), 2U);
   }
-  EXPECT_THAT(differing, testing::ElementsAre("energy", "soil"));
+  EXPECT_THAT(differing, testing::ElementsAre("energy", "soil", testing::StartsWith("1: ")));
+  EXPECT_THAT(scene.comparison[0].values[1], testing::HasSubstr("60 kJ (+"));
   EXPECT_THAT(scene.facts, testing::Contains(Fact("seed", "1")));
   EXPECT_EQ(scene.routes.size(), 2U);
 }
