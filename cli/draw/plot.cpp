@@ -59,6 +59,8 @@ class Panel {
     }
     x_ = x.range(plot.x);
     y_ = y.range(plot.y);
+    rows_ = std::ranges::count_if(plot.series, [](const Series& s) { return !s.name.empty(); });
+    if (rows_ > 0 && !plot.y.high) y_.high += (y_.high - y_.low) / (frame_.height / legendHeight() - 1.0);
   }
 
   void draw() {
@@ -132,16 +134,13 @@ class Panel {
     }
   }
 
+  double legendHeight() const { return 17.0 * static_cast<double>(rows_) + 10.0; }
+
   void legend() {
+    if (rows_ == 0) return;
     double width = 0.0;
-    int rows = 0;
-    for (const Series& s : plot_.series) {
-      if (s.name.empty()) continue;
-      width = std::max(width, canvas_.textWidth(s.name, {.size = 11}));
-      ++rows;
-    }
-    if (rows == 0) return;
-    const Box box{frame_.x + frame_.width - width - 50, frame_.y + 8, width + 42, rows * 17.0 + 8};
+    for (const Series& s : plot_.series) width = std::max(width, canvas_.textWidth(s.name, {.size = 11}));
+    const Box box{frame_.x + frame_.width - width - 50, frame_.y + 4, width + 42, legendHeight()};
     canvas_.fill(box, faded(rgb(0xFFFFFF), 0.85));
     outline(canvas_, box, {.colour = kFaint});
     double y = box.y + 16;
@@ -161,6 +160,7 @@ class Panel {
   Canvas& canvas_;
   const Plot& plot_;
   Box frame_;
+  std::ptrdiff_t rows_ = 0;  // of the legend, which stands above the data
   Range x_;
   Range y_;
 };
