@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct InitOptions {
-  MapOptions map;
+  ElevationFile map;
   std::string output = "mission.yaml";
 };
 
@@ -77,9 +77,9 @@ int run(const InitOptions& options, Context& context) {
   std::error_code error;
   if (!context.force && fs::exists(options.output, error))
     throw InputError({options.output, "exists", "name another file with -o, or pass --force"});
-  const maps::ElevationMap map = readMap(options.map, context);
+  const maps::ElevationMap map = readMap(options.map, readingOf(context));
   const auto [soil, rover] = assumedGround(map);
-  const Ground ground = readGround({.dem = options.map, .soil = soil, .rover = rover}, context);
+  const Ground ground = readGround({{.elevation = options.map, .soil = soil, .rover = rover}}, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::vector<maps::Cell> cells = largestPart(ground.map);
   if (cells.empty()) {

@@ -41,7 +41,7 @@ TEST(Scene, DifferingAndEqualFactsAreSeparated) {
   Scene scene = sceneOf(exampleMap(), {.title = "two"});
   NamedRoute first{"a", exampleRoute(), {{"soil", "sand"}, {"seed", "1"}}};
   NamedRoute second{"b", exampleRoute(), {{"soil", "clay"}, {"seed", "1"}}};
-  second.route.summary.energy_J = 60000.0;
+  second.route.energy_J = 60000.0;
   compare(scene, {first, second});
   std::vector<std::string> differing;
   for (const ComparedFact& fact : scene.comparison) {
