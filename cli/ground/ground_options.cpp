@@ -103,14 +103,9 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
 // only.
 void checkSameRover(const GroundOptions& options, const terramech::Rover& own, const std::string& path) {
   if (options.rover.empty()) return;
-  const auto fields = [](const terramech::Rover& r) {
-    return std::tie(r.mass_kg, r.gravity_m_s2, r.wheel_count, r.wheel.radius_m, r.wheel.width_m,
-                    r.wheel.grouser_height_m, r.wheel.grouser_count, r.wheel.lug_thrust, r.wheelbase_m,
-                    r.track_m, r.clearance_m, r.centre_of_mass_height_m, r.centre_of_mass_ahead_m,
-                    r.centre_of_mass_left_m, r.max_pitch_rad, r.max_roll_rad, r.max_torque_Nm,
-                    r.max_speed_mps, r.turning_radius_m, r.hotel_power_W, r.steering);
-  };
-  if (fields(terramech::loadRover(options.rover)) != fields(own))
+  terramech::Rover given = terramech::loadRover(options.rover);
+  given.name = own.name;
+  if (!(given == own))
     throw InputError({path, "was built for rover '" + own.name + "', not for --rover " + options.rover,
                       "build a map for that one with talus costmap"});
 }

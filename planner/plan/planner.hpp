@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include <talus/costmap/map.hpp>
 #include <talus/planner/grid/windowed_map.hpp>
+#include <talus/planner/plan/map.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/planner/site/site.hpp>
+#include <talus/planner/site/elevation_file.hpp>
 
 /// Costs that are stated in place of a rover and soils.
 namespace talus {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <talus/common/input_error.hpp>
 #include <talus/costmap/map/explanation.hpp>
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/costmap/telemetry/drive_evidence.hpp>
