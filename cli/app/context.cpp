@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <thread>
@@ -10,31 +9,10 @@
 #include <unistd.h>
 
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/status_line.hpp>
 
 namespace talus::cli {
 namespace {
-
-/// Progress bar of 30 marks. Redrawn only if its percentage changes; erased at 100 %.
-class Bar {
- public:
-  explicit Bar(std::string_view what) : what_(what) {}
-
-  void operator()(double fraction) {
-    const int percent = static_cast<int>(100.0 * std::fmin(std::fmax(fraction, 0.0), 1.0));
-    if (percent == shown_) return;
-    shown_ = percent;
-    if (percent == 100) return erase();
-    draw(fmt::format("\r{} [{:<30}] {:3d} %", what_,
-                     std::string(static_cast<std::size_t>(percent * 30 / 100), '#'), percent));
-  }
-
- private:
-  static void draw(const std::string& text) { std::fputs(text.c_str(), stderr); }
-  static void erase() { draw("\r\033[K"); }
-
-  std::string what_;
-  int shown_ = -1;
-};
 
 // Returns true for what a terminal does not show but obeys: control characters except line break and tabulator,
 // and the marks that turn the direction of writing.
@@ -67,7 +45,7 @@ void send(std::string_view text, std::FILE* stream) {
 
 ProgressMonitor Context::watch(std::string_view what) const {
   ProgressMonitor watch{.progress = {}, .stop = stop};
-  if (!quiet && isatty(STDERR_FILENO) != 0) watch.progress = Bar(what);
+  if (!quiet && status != nullptr && isatty(STDERR_FILENO) != 0) watch.progress = status->begin(what);
   return watch;
 }
 
@@ -76,6 +54,7 @@ int Context::workers() const noexcept {
 }
 
 void Context::warn(std::string_view text) const {
+  if (status != nullptr) status->erase();
   if (!quiet) printError(fmt::format("talus: warning: {}\n", oneLine(text)));
 }
 

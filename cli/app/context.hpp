@@ -14,6 +14,8 @@
 /// Namespace of the command-line program, which has one file per subcommand.
 namespace talus::cli {
 
+class StatusLine;
+
 /// Exit codes of the program, stable for scripts.
 struct Exit {
   static constexpr int kDone = 0;         ///< the call succeeded
@@ -35,9 +37,10 @@ struct Context {
   const char* const* argv = nullptr;  ///< arguments of the call, terminated by a null pointer
   std::stop_token stop;               ///< token of the stop request by SIGINT or SIGTERM
   std::atomic<bool>* answers_stop = nullptr;  ///< flag that answerStop() sets; null: no flag
+  StatusLine* status = nullptr;  ///< line that shows the progress on a terminal; null: no progress
   int exit_code = Exit::kDone;
 
-  /// Returns a progress monitor for one stage of work with the name `what`: a bar on stderr if stderr is a
+  /// Returns a progress monitor for one phase of work with the name `what`: a status line if stderr is a
   /// terminal, otherwise no output. The monitor requests a stop after Ctrl-C.
   ProgressMonitor watch(std::string_view what) const;
 

@@ -28,16 +28,16 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
   closing_ = true;
-  // Wakes the listener thread, which has SIGTERM blocked and waits in sigwait().
+  // Wakes the listener thread, which has SIGTERM blocked and waits in sigtimedwait().
   // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(listener_.native_handle(), SIGTERM);
   listener_.join();
 }
 
 void Interrupt::listen() {
+  const timespec pause{.tv_sec = 0, .tv_nsec = 250'000'000L};
   int signal = 0;
-  while (sigwait(&signals_, &signal) != 0) {
-  }
+  while ((signal = sigtimedwait(&signals_, nullptr, &pause)) <= 0) status_.tick();
   if (closing_) return;
   code_ = 128 + signal;
   source_.request_stop();
@@ -60,6 +60,7 @@ void Interrupt::watch() {
     last_s = now_s;
   }
   removeUnfinishedFiles();
+  status_.erase();
   printError("talus: cancelled\n");
   _exit(code_);
 }

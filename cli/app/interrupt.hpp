@@ -5,6 +5,8 @@
 #include <stop_token>
 #include <thread>
 
+#include <talus/cli/app/status_line.hpp>
+
 namespace talus::cli {
 
 /// Converts the first SIGINT or SIGTERM to a stop request. Terminates the process if the work does not end
@@ -27,6 +29,8 @@ class Interrupt {
   /// Returns the flag that work sets if it ends by itself after the stop request, such as planners, which
   /// return their best route.
   std::atomic<bool>& answered() noexcept { return answered_; }
+  /// Returns the line that the listener thread draws until the first signal.
+  StatusLine& status() noexcept { return status_; }
 
  private:
   void listen();
@@ -37,6 +41,7 @@ class Interrupt {
   std::atomic<int> code_ = 130;
   std::atomic<bool> answered_ = false;
   std::atomic<bool> closing_ = false;
+  StatusLine status_;
   std::thread listener_;
 };
 

@@ -171,6 +171,7 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
   context.answerStop();
   const RecordedTraverse drive = recordedTraverse(site, belief, context.watch("simulating"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
+  const ProgressMonitor drawing = context.watch("draw");
   if (!options.html.empty()) saveTraversePage(options.html, site, belief, drive, originOf(ground, context));
   if (!options.telemetry.empty())
     saveTelemetry(options.telemetry, drive.result.drive, ground.map.model().rover());

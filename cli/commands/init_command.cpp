@@ -73,13 +73,33 @@ std::string placeAt(const std::vector<maps::Cell>& cells, const maps::Grid& grid
   return fmt::format("{:.10g},{:.10g}", at.x_m, at.y_m);
 }
 
+// Takes the layers that `talus generate` and others write to the folder of an elevation map, by their names.
+// Classes and their soils are taken only together.
+void takeLayersBeside(const fs::path& dem, GroundOptions& ground, const Context& context) {
+  const auto found = [&](const char* suffix, const char* extension) {
+    const fs::path path = dem.parent_path() / (dem.stem().string() + suffix + extension);
+    std::error_code error;
+    return fs::is_regular_file(path, error) ? path.string() : std::string();
+  };
+  ground.rocks = found("_rocks", ".tif");
+  const std::string classes = found("_classes", ".tif"), soils = found("_soils", ".yaml");
+  if (classes.empty() != soils.empty())
+    return context.warn(fmt::format("{} is not taken: {} is missing beside it", classes + soils,
+                                    dem.stem().string() + (soils.empty() ? "_soils.yaml" : "_classes.tif")));
+  ground.classes = classes;
+  ground.soils = soils;
+  if (!soils.empty()) ground.soil.clear();
+}
+
 int run(const InitOptions& options, Context& context) {
   std::error_code error;
   if (!context.force && fs::exists(options.output, error))
     throw InputError({options.output, "exists", "name another file with -o, or pass --force"});
   const maps::ElevationMap map = readMap(options.map, readingOf(context));
   const auto [soil, rover] = assumedGround(map);
-  const Ground ground = readGround({{.elevation = options.map, .soil = soil, .rover = rover}}, context);
+  GroundOptions choices{{.elevation = options.map, .soil = soil, .rover = rover}};
+  takeLayersBeside(options.map.path, choices, context);
+  const Ground ground = readGround(choices, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::vector<maps::Cell> cells = largestPart(ground.map);
   if (cells.empty()) {
@@ -89,19 +109,28 @@ int run(const InitOptions& options, Context& context) {
              {3 * map.grid().width / 4, 3 * map.grid().height / 4}};
   }
   const fs::path folder = fs::weakly_canonical(fs::absolute(options.output), error).parent_path();
-  const MissionDraft draft{
-      .dem = fs::weakly_canonical(options.map.path, error).lexically_relative(folder).string(),
-      .resolution_m = options.map.read.resolution_m.value_or(0.0),
-      .ignore_crs = options.map.read.ignore_crs,
-      .rover = rover,
-      .soil = soil,
-      .start = placeAt(cells, map.grid(), 0.25),
-      .goal = placeAt(cells, map.grid(), 0.75),
-      .output = fs::path(options.output).stem().string() + "_route.geojson"};
+  const auto relative = [&](const std::string& path) {
+    return path.empty() ? path : fs::weakly_canonical(path, error).lexically_relative(folder).string();
+  };
+  const MissionDraft draft{.dem = relative(options.map.path),
+                           .terrain = relative(choices.classes),
+                           .rocks = relative(choices.rocks),
+                           .resolution_m = options.map.read.resolution_m.value_or(0.0),
+                           .ignore_crs = options.map.read.ignore_crs,
+                           .rover = rover,
+                           .soil = choices.soil,
+                           .soils = relative(choices.soils),
+                           .start = placeAt(cells, map.grid(), 0.25),
+                           .goal = placeAt(cells, map.grid(), 0.75),
+                           .output = fs::path(options.output).stem().string() + "_route.geojson"};
   writeFile(options.output, missionText(draft));
-  context.answer({{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}},
-                 fmt::format("mission     {}; set start and goal, then: talus plan {}\n", options.output,
-                             options.output));
+  std::vector<std::string> layers{draft.terrain, draft.soils, draft.rocks};
+  std::erase(layers, "");
+  context.answer(
+      {{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}, {"layers", layers}},
+      fmt::format("{}mission     {}; set start and goal, then: talus plan {}\n",
+                  layers.empty() ? "" : fmt::format("layers      {}\n", fmt::join(layers, ", ")),
+                  options.output, options.output));
   return Exit::kDone;
 }
 

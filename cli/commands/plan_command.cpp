@@ -111,6 +111,7 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   if (!options.output.empty() && !(options.corridor_percent > 0.0))
     writeRoute(options.output, document, ground.map.elevation(), context);
   if (options.html.empty() && options.png.empty()) return;
+  const ProgressMonitor drawing = context.watch("draw");
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
   const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
   Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
@@ -171,6 +172,7 @@ Planned timedPlan(Ground ground, PlanRequest request, const std::function<Route(
   request.hazards = [&map = ground.map](maps::Cell cell) { return map.surface().hazards(cell); };
   Route route = plan(request);
   request.hazards = {};  // refers to the map, which is moved
+  request.watch.progress = {};
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   return {std::move(ground), std::move(request), std::move(route), seconds.count()};
 }
@@ -359,6 +361,7 @@ void drawSevered(const PlanOptions& options, const Planned& planned, const Conte
   const bool pictured = !options.png.empty() || !options.html.empty();
   const bool one_leg = request.via.empty() && request.other_goals.empty();
   if (!pictured || !one_leg || !planned.route.obstruction) return;
+  const ProgressMonitor drawing = context.watch("draw");
   Scene scene =
       reachScene(map, *planned.ground.map.published(),
                  {{request.start, request.goal}, request.tolerance_m, planned.route.reason},

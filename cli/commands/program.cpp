@@ -237,6 +237,7 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
   context.argv = argv;
   context.stop = interrupt.token();
   context.answers_stop = &interrupt.answered();
+  context.status = &interrupt.status();
   int code = Exit::kDone;
   try {
     requireMpiForRanks();

@@ -162,6 +162,7 @@ int run(const ViewOptions& options, Context& context) {
   if (!of_route && !options.others.empty())
     throw InputError({options.file.path, "is not a route file; only routes can be compared",
                       "pass routes, and the map as --map"});
+  const ProgressMonitor drawing = context.watch("draw");
   const Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.png.empty()) savePicture(options.png, scene);

@@ -23,7 +23,8 @@ std::span<const FileKey> classKeys() {
 std::span<const FileKey> vectorFileKeys() {
   static constexpr FileKey kKeys[] = {
       {"GPKG",
-       "GeoPackage, .gpkg: read, and written in the map's CRS with layers route, vertices and segments"},
+       "GeoPackage, .gpkg: read, and written in the map's CRS with layers route, vertices and segments, "
+       "which QGIS colours by category"},
       {"ESRI Shapefile", ".shp with what lies beside it: read"},
       {"FlatGeobuf", ".fgb: read"},
       {"GPX", ".gpx: read, and written of maps of Earth"},

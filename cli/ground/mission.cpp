@@ -210,15 +210,22 @@ std::string keysText(std::span<const terramech::FileKey> keys,
 }  // namespace
 
 std::string missionText(const MissionDraft& draft) {
-  const auto quoted = [](const std::string& word) { return nlohmann::json(word).dump(); };
-  std::map<std::string, std::string> maps{{"dem", quoted(draft.dem)}};
+  std::map<std::string, std::string> maps, values;
+  const auto set = [](std::map<std::string, std::string>& keys, const char* key, const std::string& word) {
+    if (!word.empty()) keys[key] = nlohmann::json(word).dump();
+  };
+  set(maps, "dem", draft.dem);
+  set(maps, "terrain", draft.terrain);
+  set(maps, "rocks", draft.rocks);
   if (draft.resolution_m > 0.0) maps["resolution_m"] = fmt::format("{:.10g}", draft.resolution_m);
   if (draft.ignore_crs) maps["ignore_crs"] = "true";
-  const std::map<std::string, std::string> values{{"rover", quoted(draft.rover)},
-                                                  {"soil", quoted(draft.soil)},
-                                                  {"start", quoted(draft.start)},
-                                                  {"goal", quoted(draft.goal)},
-                                                  {"output", quoted(draft.output)}};
+  for (const auto& [key, word] : {std::pair{"rover", draft.rover},
+                                  {"soil", draft.soil},
+                                  {"soils", draft.soils},
+                                  {"start", draft.start},
+                                  {"goal", draft.goal},
+                                  {"output", draft.output}})
+    set(values, key, word);
   std::string text =
       "# talus plan FILE.yaml; paths are relative to this file. Take the # off what you need.\nmaps:\n";
   text += keysText(missionMapKeys(), maps, "  ");

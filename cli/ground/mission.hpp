@@ -58,16 +58,17 @@ std::span<const terramech::FileKey> thresholdKeys();
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
-/// Reads the mission file options.ground.dem.path into `options`. Values from the command line have
+/// Reads the mission file options.ground.elevation.path into `options`. Values from the command line have
 /// precedence. Paths in the file are relative to the file. @throws InputError with file and line
 void readMission(PlanOptions& options);
 
 /// Values of a new mission file (input of `talus plan`); all other keys are written as comments.
 struct MissionDraft {
   std::string dem{"dem.tif"};
-  double resolution_m = 0.0;  ///< cell size for a map without a coordinate system; 0: not stated
+  std::string terrain{}, rocks{};  ///< layers of `dem`; empty: none
+  double resolution_m = 0.0;       ///< cell size for a map without a coordinate system; 0: not stated
   bool ignore_crs = false;
-  std::string rover{"mer"}, soil{"mars_blocky"};
+  std::string rover{"mer"}, soil{"mars_blocky"}, soils{};
   std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]
   std::string output{"route.geojson"};            ///< relative to the mission
 };

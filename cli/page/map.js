@@ -5,7 +5,7 @@ function drawMap(element, data) {
   const map = L.map(element, {crs: L.CRS.Simple, minZoom: -20, maxZoom: 8, zoomSnap: 0, attributionControl: false});
   L.control.scale({imperial: false, maxWidth: 140}).addTo(map);
   showNorth(map);
-  showCursor(map, data);
+  if (canHover) showCursor(map, data);
   L.imageOverlay(data.shade, box, {alt: "hillshade", zIndex: 1}).addTo(map);
   firstView(map, data);
   chooseLayer(map, data, box);
@@ -25,16 +25,18 @@ function wayOf(data) {
   return [...data.story.track.map(([, x, y]) => ({x, y})), ...planned.map(([x, y]) => ({x, y}))];
 }
 
-// Sets the largest zoom that shows all points, shifted so that little area outside the map is visible.
+// Sets the largest zoom that shows all points beside the controls of the map, shifted so that little area outside
+// the map is visible.
 function firstView(map, data) {
   const b = data.bounds, box = L.latLngBounds([[b.south, b.west], [b.north, b.east]]);
-  const points = wayOf(data).map(p => [p.y, p.x]), way = points.length ? L.latLngBounds(points).pad(0.05) : box;
-  const zoom = map.getBoundsZoom(way), scale = map.getZoomScale(zoom, 0), size = map.getSize();
-  const within = (centre, low, high, half) =>
-    high - low <= 2 * half ? (low + high) / 2 : Math.min(Math.max(centre, low + half), high - half);
-  const centre = way.getCenter();
-  map.setView([within(centre.lat, box.getSouth(), box.getNorth(), size.y / scale / 2),
-               within(centre.lng, box.getWest(), box.getEast(), size.x / scale / 2)], zoom, {animate: false});
+  const points = wayOf(data).map(p => [p.y, p.x]), way = points.length ? L.latLngBounds(points) : box;
+  const [top, bottom, side] = points.length ? [70, 44, 16] : [0, 0, 0];  // [pixels]
+  const zoom = map.getBoundsZoom(way, false, L.point(2 * side, top + bottom)), scale = map.getZoomScale(zoom, 0);
+  const size = map.getSize(), centre = way.getCenter();
+  const within = (at, low, high, half) =>
+    high - low <= 2 * half ? (low + high) / 2 : Math.min(Math.max(at, low + half), high - half);
+  map.setView([within(centre.lat + (top - bottom) / scale / 2, b.south - bottom / scale, b.north + top / scale, size.y / scale / 2),
+               within(centre.lng, b.west - side / scale, b.east + side / scale, size.x / scale / 2)], zoom, {animate: false});
 }
 
 function showEnd(map, place, letter) {

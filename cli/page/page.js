@@ -1,4 +1,6 @@
 // Builds the page from map, profiles and summary.
+const canHover = !matchMedia("(hover: none)").matches;
+
 function pointAt(points, s) {
   let low = 0, high = points.length - 1;
   while (high - low > 1) {
@@ -36,7 +38,7 @@ function showFacts(data) {
 // the route or be cut off at the edge of the map. Returns a function that moves both back.
 function besideMap() {
   const key = document.getElementById("key"), legend = document.querySelector(".legend"), open = legend.firstChild.open;
-  const moved = [legend, ...document.querySelectorAll("#map .probe .leaflet-popup-content > div")].map(part => [part, part.parentNode]);
+  const moved = [legend, ...document.querySelectorAll("#map .leaflet-popup-content > div, #sheet > div")].map(part => [part, part.parentNode]);
   for (const [part] of moved) key.appendChild(part);
   legend.firstChild.open = true;
   return () => {
@@ -82,7 +84,8 @@ function start() {
   }
   const text = document.getElementById("reading");
   text.style.setProperty("--routes", Math.min(routes.length, 3));
-  text.textContent = "Hover over the profile or a route; click a cell of the map.";
+  text.textContent = canHover ? "Hover over the profile or a route; click a cell of the map."
+    : "Tap the profile, a route or a cell of the map.";
   const here = points => {
     const named = (p, k) => p ? (routes[k].name ? `${routes[k].name}: ` : "") + reading(p) : "";
     text.textContent = points.map(named).filter(line => line).join("\n");

@@ -63,13 +63,21 @@ function probeCells(map, data, ruler) {
   const style = {color: "#000", weight: 2, fill: false, interactive: false, className: "chosen"};
   const frame = L.rectangle([[0, 0], [0, 0]], style);
   const popup = L.popup({maxWidth: 330, className: "probe"}), read = cellReader(data);
+  const sheet = document.getElementById("sheet"), shut = document.createElement("button");
   let chosen = null;
-  map.on("popupclose", () => { chosen = null; frame.remove(); });
+  const close = () => { chosen = null; frame.remove(); sheet.hidden = true; };
+  map.on("popupclose", close);
+  shut.textContent = "×";
+  shut.setAttribute("aria-label", "close");
+  shut.addEventListener("click", close);
 
+  // On a narrow screen the values stand below the map, because a popup would cover it.
   async function explain(column, row) {
     if (column < 0 || row < 0 || column >= width || row >= height) return;
-    const west = b.west + column * cell, south = b.south + row * cell;
-    popup.setLatLng([south + cell / 2, west + cell / 2]).setContent(await read(column, row)).openOn(map);
+    const west = b.west + column * cell, south = b.south + row * cell, values = await read(column, row);
+    sheet.hidden = !matchMedia("(max-width: 50rem)").matches;
+    if (sheet.hidden) popup.setLatLng([south + cell / 2, west + cell / 2]).setContent(values).openOn(map);
+    else sheet.replaceChildren(shut, values);
     chosen = {column, row};
     frame.setBounds([[south, west], [south + cell, west + cell]]).addTo(map);
   }

@@ -8,6 +8,7 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/draw/colour.hpp>
 #include <talus/cli/route/route_writer.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
@@ -80,6 +81,53 @@ maps::VectorLayer segmentLayer(const std::vector<Json>& vertices) {
   return layer;
 }
 
+// QGIS style that colours the features of a layer by their category: segments as lines with a dark rim, vertices
+// as points.
+std::string categoryQml(bool points) {
+  using terramech::Category;
+  const auto layer = [points](int pass, const std::string& colour, const char* width) {
+    return fmt::format(
+        "<layer class=\"{}\" enabled=\"1\" pass=\"{}\"><prop k=\"{}\" v=\"{}\"/><prop k=\"{}\" "
+        "v=\"{}\"/></layer>",
+        points ? "SimpleMarker" : "SimpleLine", pass, points ? "color" : "line_color", colour,
+        points ? "size" : "line_width", width);
+  };
+  std::string categories, symbols;
+  for (const Category one : {Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown}) {
+    const Colour c = colourOf(one);
+    categories += fmt::format("<category value=\"{0}\" label=\"{0}\" symbol=\"{1}\" render=\"true\"/>\n",
+                              terramech::name(one), static_cast<int>(one));
+    symbols += fmt::format(
+        "<symbol name=\"{}\" type=\"{}\" alpha=\"1\">{}{}</symbol>\n", static_cast<int>(one),
+        points ? "marker" : "line", points ? "" : layer(0, "34,34,34,255", "1.5"),
+        layer(1, fmt::format("{:.0f},{:.0f},{:.0f},255", 255 * c.red, 255 * c.green, 255 * c.blue),
+              points ? "1.2" : "0.9"));
+  }
+  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n<renderer-v2 "
+         "type=\"categorizedSymbol\" attr=\"category\" symbollevels=\"1\">\n<categories>\n" +
+         categories + "</categories>\n<symbols>\n" + symbols + "</symbols>\n</renderer-v2>\n</qgis>\n";
+}
+
+// The table from which QGIS reads the default styles of the layers of a GeoPackage.
+maps::VectorLayer styleLayer() {
+  maps::VectorLayer layer{"layer_styles", {}};
+  for (const char* of : {"vertices", "segments"})
+    layer.features.push_back({{},
+                              {{"f_table_catalog", ""},
+                               {"f_table_schema", ""},
+                               {"f_table_name", of},
+                               {"f_geometry_column", "geom"},
+                               {"styleName", "category"},
+                               {"styleQML", categoryQml(of[0] == 'v')},
+                               {"styleSLD", ""},
+                               {"useAsDefault", true},
+                               {"description", "traversability category"},
+                               {"owner", ""},
+                               {"ui", ""},
+                               {"update_time", "1970-01-01T00:00:00.000Z"}}});
+  return layer;
+}
+
 std::string csvOf(const std::vector<Json>& vertices, const maps::ElevationMap& map) {
   std::string text;
   for (const auto& [name, value] : vertices.front().items()) text += name + ",";
@@ -109,13 +157,20 @@ std::string driverOf(const std::string& path) {
   return "";
 }
 
-void warnOfBody(const std::string& path, const maps::ElevationMap& map, const Context& context) {
+// Warns if GeoJSON, which other programs take for WGS 84 of Earth, cannot state the frame of the map.
+void warnOfFrame(const std::string& path, const maps::ElevationMap& map, const Context& context) {
   const std::string body = map.places() != nullptr ? map.georeference->body() : "";
-  if (body.empty() || body == maps::bodyName(maps::kEarth)) return;
-  context.warn(fmt::format(
-      "{}: GeoJSON does not say that its longitudes and latitudes are of {}; other programs take them "
-      "for WGS 84 of Earth, but not those of a GeoPackage ({})",
-      path, body, std::filesystem::path(path).replace_extension(".gpkg").string()));
+  const std::string package = std::filesystem::path(path).replace_extension(".gpkg").string();
+  if (map.places() == nullptr)
+    context.warn(fmt::format(
+        "{}: the map has no CRS, and other programs take its metres for degrees of WGS 84; write {}, or give "
+        "the map a CRS",
+        path, package));
+  else if (!body.empty() && body != maps::bodyName(maps::kEarth))
+    context.warn(fmt::format(
+        "{}: GeoJSON does not say that its longitudes and latitudes are of {}; other programs take them "
+        "for WGS 84 of Earth, but not those of a GeoPackage ({})",
+        path, body, package));
 }
 
 }  // namespace
@@ -131,12 +186,15 @@ void writeRoute(const std::string& path, const Json& route, const maps::Elevatio
   if (isNamed(path, ".csv")) return writeFile(path, csvOf(vertices, map));
   const std::string driver = driverOf(path);
   if (driver.empty()) {
-    warnOfBody(path, map, context);
+    warnOfFrame(path, map, context);
     return writeFile(path, jsonText(route) + "\n");
   }
   std::vector<maps::VectorLayer> layers{wholeLayer(properties, vertices)};
   if (driver != "GPX") layers.push_back(vertexLayer(vertices));
-  if (driver == "GPKG") layers.push_back(segmentLayer(vertices));
+  if (driver == "GPKG") {
+    layers.push_back(segmentLayer(vertices));
+    layers.push_back(styleLayer());
+  }
   writeFile(path, maps::vectorFile(driver, map, layers, path, driver == "GPKG" ? route.dump() : ""));
 }
 

@@ -19,7 +19,7 @@ void requireRouteFormat(const std::string& path, const maps::ElevationMap& map);
 
 /// Writes a route of routeGeoJson() in the format that the ending of the file name selects: GeoPackage (in
 /// the CRS of the map, with the layers route, vertices and segments), GPX and KML (Earth only), CSV of the
-/// vertices, and GeoJSON for all other endings. Warns if GeoJSON cannot state the body of the map. @throws
+/// vertices, and GeoJSON for all other endings. Warns if GeoJSON cannot state the frame of the map. The GeoPackage contains styles for QGIS. @throws
 /// InputError
 void writeRoute(const std::string& path, const nlohmann::ordered_json& route, const maps::ElevationMap& map,
                 const Context& context);

@@ -73,12 +73,14 @@ class Placer {
 };
 
 void writeLayer(GDALDataset& file, const VectorLayer& layer, const Placer& placed, bool own_fields) {
-  const bool points = layer.features.front().positions.size() == 1;
+  const std::size_t positions = layer.features.front().positions.size();
   const char* options[] = {"FORCE_GPX_TRACK=YES", nullptr};
-  const bool gpx = !own_fields;
-  OGRLayer* out =
-      file.CreateLayer(layer.name.c_str(), const_cast<OGRSpatialReference*>(placed.crs()),
-                       points ? wkbPoint25D : wkbLineString25D, gpx ? const_cast<char**>(options) : nullptr);
+  OGRLayer* out = file.CreateLayer(layer.name.c_str(),
+                                   const_cast<OGRSpatialReference*>(positions > 0 ? placed.crs() : nullptr),
+                                   positions == 0   ? wkbNone
+                                   : positions == 1 ? wkbPoint25D
+                                                    : wkbLineString25D,
+                                   own_fields ? nullptr : const_cast<char**>(options));
   if (out == nullptr) return;
   for (const auto& [name, value] : layer.features.front().fields.items()) {
     OGRFieldDefn field(name.c_str(), fieldTypeOf(value));
@@ -93,9 +95,11 @@ void writeLayer(GDALDataset& file, const VectorLayer& layer, const Placer& place
       const OGRPoint point = placed(position);
       line.addPoint(&point);
     }
-    OGRPoint point;
-    line.getPoint(0, &point);
-    row.SetGeometry(points ? static_cast<OGRGeometry*>(&point) : &line);
+    if (positions > 1) row.SetGeometry(&line);
+    if (OGRPoint point; positions == 1) {
+      line.getPoint(0, &point);
+      row.SetGeometry(&point);
+    }
     if (out->CreateFeature(&row) != OGRERR_NONE) return;
   }
 }

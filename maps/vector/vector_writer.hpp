@@ -16,8 +16,8 @@ struct VectorPosition {
   double elevation_m = 0.0;
 };
 
-/// A feature of a vector file: a point, or a line of at least two positions, with named fields of type text,
-/// number (NaN and null: no value) or Boolean.
+/// A feature of a vector file: a row without geometry, a point, or a line of at least two positions, with named
+/// fields of type text, number (NaN and null: no value) or Boolean.
 struct VectorFeature {  // NOLINT(bugprone-exception-escape): moving ordered_json does not throw
   std::vector<VectorPosition> positions;
   nlohmann::ordered_json fields;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/app/status_line.hpp>
 
 namespace talus::cli {
 namespace context_test {
@@ -18,6 +19,12 @@ TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
   testing::internal::CaptureStderr();
   context.warn("no rover");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Closed form: a quarter of the work in 2 s leaves 6 s; without a fraction only the elapsed time is known.
+TEST(Context, ProgressStatesTheTimeLeft) {
+  EXPECT_EQ(progressText("plan", 0.0, 12.3), "plan, 12 s so far");
+  EXPECT_EQ(progressText("site", 0.25, 2.0), "site [#######                       ]  25 %, 6 s left");
 }
 
 // Property: printed JSON parses again; NaN and infinity become null, and invalid UTF-8 bytes are replaced.

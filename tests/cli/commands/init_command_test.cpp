@@ -49,6 +49,21 @@ TEST(InitCommand, ItsPlacesAreJoined) {
   }
 }
 
+// Property: a mission of a generated site names its classes, soils and rocks, so that `talus plan` reads them.
+TEST(InitCommand, LayersBesideTheMapAreTaken) {
+  const Folder folder;
+  ASSERT_EQ(runTalus({"generate", "dunes", "--size", "40", "-o", "site.tif"}, folder.path()).code, 0);
+  const Ran made = runTalus({"init", "site.tif"}, folder.path());
+  EXPECT_THAT(made.out, HasSubstr("layers      site_classes.tif, site_soils.yaml, site_rocks.tif\n"));
+  const std::string mission = fileContent(folder / "mission.yaml");
+  for (const char* key :
+       {"  terrain: \"site_classes.tif\"", "  rocks: \"site_rocks.tif\"", "\nsoils: \"site_soils.yaml\""})
+    EXPECT_THAT(mission, HasSubstr(key));
+  std::filesystem::remove(folder / "site_soils.yaml");
+  EXPECT_THAT(runTalus({"init", "site.tif", "-o", "m.yaml"}, folder.path()).err,
+              HasSubstr("site_classes.tif is not taken: site_soils.yaml is missing"));
+}
+
 // Property: a created mission file contains every key that the reader accepts.
 TEST(InitCommand, CreatedMissionHasEveryKey) {
   const std::string text = missionText({});

@@ -197,7 +197,8 @@ TEST(Page, RulerMeasuresDistanceAndBearing) {
 }
 
 // Property: on a screen of 1400 x 900 pixels and on a phone, map and profile are visible without scrolling,
-// and the map covers more than a third of the screen.
+// the map covers more than a third of the screen, no mark lies under the north arrow, and on a phone the values
+// of a chosen cell stand below the map.
 TEST(Page, MapAndProfileFitOneScreen) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   for (const auto& [width, height] : {std::pair{1400, 900}, {390, 844}}) {
@@ -211,11 +212,18 @@ TEST(Page, MapAndProfileFitOneScreen) {
       parent.document.body.dataset.fits = map.top >= 0 && charts.top >= 0 && map.bottom <= innerHeight &&
         charts.bottom <= innerHeight + 1 && map.right <= innerWidth && charts.right <= innerWidth &&
         document.documentElement.scrollWidth <= innerWidth;
-      parent.document.body.dataset.share = map.width * map.height > innerWidth * innerHeight / 3;)")) +
+      parent.document.body.dataset.share = map.width * map.height > innerWidth * innerHeight / 3;
+      const north = document.querySelector(".north").getBoundingClientRect();
+      const ends = [...document.querySelectorAll(".end")].map(end => end.getBoundingClientRect());
+      parent.document.body.dataset.free = ends.every(end => end.right < north.left || end.top > north.bottom);
+      document.getElementById("map").dispatchEvent(new MouseEvent("click", {bubbles: true, clientX: 200, clientY: 300}));
+      setTimeout(() => parent.document.body.dataset.below = of("sheet").top >= of("map").bottom && of("sheet").height > 200, 300);)")) +
         "\"></iframe></body></html>";
     const Shown shown = show(frame);
     EXPECT_THAT(shown.dom, HasSubstr("data-fits=\"true\"")) << width << shown.console;
     EXPECT_THAT(shown.dom, HasSubstr("data-share=\"true\"")) << width;
+    EXPECT_THAT(shown.dom, HasSubstr("data-free=\"true\"")) << width;
+    EXPECT_THAT(shown.dom, HasSubstr(width < 800 ? "data-below=\"true\"" : "data-below=\"false\"")) << width;
   }
 }
 

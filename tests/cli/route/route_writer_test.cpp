@@ -58,9 +58,10 @@ TEST(RouteWriter, GeoPackageRoundTripsAsARoute) {
   EXPECT_EQ(back.route.energy_J, route.energy_J);
   std::map<std::string, int> types;
   maps::visitVector(path, mapOf(maps::kMoon), [&](const std::string&, const OGRGeometry* drawn) {
-    ++types[OGRToOGCGeomType(drawn->getGeometryType())];
+    if (drawn != nullptr) ++types[OGRToOGCGeomType(drawn->getGeometryType())];
   });
   const int vertices = static_cast<int>(route.vertices.size());
+  EXPECT_THAT(fileContent(path), HasSubstr("attr=\"category\" symbollevels"));  // the style for QGIS
   EXPECT_EQ(types, (std::map<std::string, int>{{"LINESTRING", vertices}, {"POINT", vertices}}));
 }
 
@@ -73,8 +74,10 @@ TEST(RouteWriter, FormatsWithoutBodyWarnOrReject) {
   testing::internal::CaptureStderr();
   write(folder, "r.gpkg", mapOf(maps::kMars));
   write(folder, "e.geojson", mapOf(maps::kEarth));
-  write(folder, "l.geojson", exampleMap());
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  testing::internal::CaptureStderr();
+  write(folder, "l.geojson", exampleMap());
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("l.gpkg, or give the map a CRS"));
   EXPECT_REFUSED(write(folder, "r.gpx", mapOf(maps::kMars)), InputError,
                  "has places of Earth in WGS 84 alone");
   EXPECT_EQ(fileContent(folder / "r.gpx"), "");
