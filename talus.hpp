@@ -1,7 +1,11 @@
 #pragma once
 
-/// Umbrella header of the parts that all modules share: InputError, ProgressMonitor and angle constants. A
-/// program that embeds Talus includes this header and the umbrella header of each module that it uses.
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/progress_monitor.hpp>
+/// Umbrella header of Talus: sites from files, maps that learn, planners. Needs talus::site; a program without files
+/// (GDAL, YAML) includes the umbrella header of each module that it uses instead.
+#include <talus/planner/planner.hpp>
+#include <talus/planner/site/site.hpp>
+#include <talus/terramech/terramech_io.hpp>
+
+namespace talus {
+using terramech::readTelemetry;
+}  // namespace talus

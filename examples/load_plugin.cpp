@@ -61,8 +61,8 @@ int run(const char* plugin) {
     std::printf("no route: %s\n", route.reason.c_str());
     return 1;
   }
-  std::printf("%.1f m, %.0f J, %.0f s, %zu vertices\n", route.summary.length_m, route.summary.energy_J,
-              route.summary.time_s, route.vertices.size());
+  std::printf("%.1f m, %.0f J, %.0f s, %zu vertices\n", route.length_m, route.energy_J, route.time_s,
+              route.vertices.size());
   return 0;
 }
 

@@ -47,18 +47,19 @@ talus::terramech::Rover rover() {
 }
 
 // Returns a map without observations: unknown ground is planned as level ground of its single soil class.
-talus::costmap::TraversabilityMap unseen() {
+talus::Map unseen() {
   talus::terramech::Soil soil;
   soil.name = "regolith";
   soil.cohesion_Pa = 170.0;
   soil.friction_angle_rad = 0.61;
   soil.cohesive_modulus = 1400.0;
   soil.frictional_modulus = 820000.0;
-  const auto model = std::make_shared<const talus::costmap::GroundModel>(talus::costmap::GroundModel::Parts{
-      .rover = rover(), .classes = {{.soil = soil}}, .policy = {.allow_unknown = true}});
-  talus::costmap::MapLayers layers;
-  layers.elevation.elevation_m = talus::maps::Raster<float>(kGrid, std::numeric_limits<float>::quiet_NaN());
-  return {std::move(layers), model, {}};
+  talus::Site site{.layers = {},
+                   .ground = talus::costmap::GroundModel(
+                       {.rover = rover(), .classes = {{.soil = soil}}, .policy = {.allow_unknown = true}})};
+  site.layers.elevation.elevation_m =
+      talus::maps::Raster<float>(kGrid, std::numeric_limits<float>::quiet_NaN());
+  return talus::Map(std::move(site));
 }
 
 // Simulated perception within 12 m of the rover, as a window of the map's cells; NaN: not observed.
@@ -117,7 +118,7 @@ struct Reached {
   Point place;
   double heading_rad;
 };
-Reached along(const std::vector<talus::planner::RouteVertex>& route, double metres) {
+Reached along(const std::vector<talus::RouteVertex>& route, double metres) {
   double heading_rad = 0.0;
   for (std::size_t i = 1; i < route.size(); ++i) {
     const double dx = route[i].x_m - route[i - 1].x_m, dy = route[i].y_m - route[i - 1].y_m;
@@ -133,30 +134,25 @@ Reached along(const std::vector<talus::planner::RouteVertex>& route, double metr
 }  // namespace
 
 int main() {
-  talus::costmap::TraversabilityMap map = unseen();
-  talus::costmap::DriveIntake intake(map);
-  const auto planner = talus::planner::makePlanner("field");
-  planner->configure({.planner = "field", .time_limit_s = 5.0});
-  planner->set_map(map.published());
+  talus::Map map = unseen();
+  talus::Planner planner({.planner = "field", .time_limit_s = 5.0});
   std::stop_source stop;  // another thread may request a stop at any time
   talus::PlanRequest request;
   request.start = {5.0, 10.0};
   request.goal = {55.0, 10.0};
   request.watch.stop = stop.get_token();
   for (int step = 0; step < 100 && !(request.start == request.goal); ++step) {
-    map.patch(look(request.start));  // also publishes the effects of the telemetry since the last patch
-    planner->update(map.published());
-    const talus::planner::Route route = planner->plan(request);
-    if (route.status != talus::planner::RouteStatus::Found) {
+    map.patch(look(request.start));
+    const talus::Route route = planner.plan(map, request);
+    if (!route.found()) {
       std::printf("stopped: %s\n", route.reason.c_str());
       return 1;
     }
-    const auto ground = map.ground(*kGrid.cellAt(request.start));
+    const auto ground = map.ground().ground(*kGrid.cellAt(request.start));
     std::printf("step %2d at (%4.1f, %4.1f) m, cost to go %6.0f J, DP/W here %.2f +- %.2f\n", step,
-                request.start.x_m, request.start.y_m, route.summary.cost, ground->pull.value,
-                ground->pull.std);
+                request.start.x_m, request.start.y_m, route.cost, ground->pull.value, ground->pull.std);
     const Reached next = along(route.vertices, 3.0);
-    intake.add(wheels(next.place, next.heading_rad, 30.0 * (step + 1)));
+    map.learnPart(wheels(next.place, next.heading_rad, 30.0 * (step + 1)));
     request.start = next.place;
   }
   return request.start == request.goal ? 0 : 1;

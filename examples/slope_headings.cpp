@@ -2,7 +2,7 @@
 // Needs   talus::terramech, talus::terramech_io.
 // Prints  one row per heading, with the reason where there is no equilibrium.
 // Call    slope_headings SOIL ROVER TILT_DEG.
-// Next    plan_offline.cpp: a route over such ground.
+// Next    plan_site.cpp: a route over such ground.
 
 #include <cmath>
 #include <cstdio>

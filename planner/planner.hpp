@@ -7,6 +7,6 @@
 #include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/chassis.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/plan/plan_route.hpp>
+#include <talus/planner/plan/planner.hpp>
 #include <talus/planner/plugin/plugin_loader.hpp>
 #include <talus/planner/route/kinematics.hpp>

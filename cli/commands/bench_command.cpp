@@ -77,7 +77,7 @@ void bind(CLI::App& command, BenchOptions& options) {
           "there writes the comparison")
       ->type_name("K/N");
   groupOptions(command, "Cases and runs");
-  addReadOptions(command, options.suite.ground.dem);
+  addReadOptions(command, options.suite.ground.elevation);
   addGroundChoices(command, options.suite.ground);
   command.add_option("-o,--output", options.folder, "folder for the OMPL logs, the table and the page")
       ->type_name("FOLDER")

@@ -115,9 +115,9 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
 
 int run(const CostmapOptions& options, Context& context) {
   if (!options.nav2.empty() && !context.force)
-    checkOutput(nav2Picture(options.nav2), {options.ground.dem.path});
+    checkOutput(nav2Picture(options.nav2), {options.ground.elevation.path});
   if (!options.categories.empty() && !context.force)
-    checkOutput(categoryStyle(options.categories), {options.ground.dem.path});
+    checkOutput(categoryStyle(options.categories), {options.ground.elevation.path});
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.costs().countCategories();

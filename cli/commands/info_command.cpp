@@ -17,7 +17,7 @@ namespace talus::cli {
 namespace {
 
 struct InfoOptions {
-  MapOptions map;
+  ElevationFile map;
   double footprint_m = 0.0;
 };
 
@@ -122,7 +122,7 @@ void bind(CLI::App& command, InfoOptions& options) {
 }
 
 int run(const InfoOptions& options, Context& context) {
-  const maps::ElevationMap map = readMap(options.map, context);
+  const maps::ElevationMap map = readMap(options.map, readingOf(context));
   const maps::TerrainMetrics metrics =
       maps::terrainMetrics(map.elevation_m, {.radius_m = options.footprint_m, .threads = context.workers()},
                            context.watch("slopes"));

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct InitOptions {
-  MapOptions map;
+  ElevationFile map;
   std::string output = "mission.yaml";
 };
 
@@ -81,12 +81,12 @@ void takeLayersBeside(const fs::path& dem, GroundOptions& ground, const Context&
     std::error_code error;
     return fs::is_regular_file(path, error) ? path.string() : std::string();
   };
-  ground.layers.rocks = found("_rocks", ".tif");
+  ground.rocks = found("_rocks", ".tif");
   const std::string classes = found("_classes", ".tif"), soils = found("_soils", ".yaml");
   if (classes.empty() != soils.empty())
     return context.warn(fmt::format("{} is not taken: {} is missing beside it", classes + soils,
                                     dem.stem().string() + (soils.empty() ? "_soils.yaml" : "_classes.tif")));
-  ground.layers.terrain = classes;
+  ground.classes = classes;
   ground.soils = soils;
   if (!soils.empty()) ground.soil.clear();
 }
@@ -95,9 +95,9 @@ int run(const InitOptions& options, Context& context) {
   std::error_code error;
   if (!context.force && fs::exists(options.output, error))
     throw InputError({options.output, "exists", "name another file with -o, or pass --force"});
-  const maps::ElevationMap map = readMap(options.map, context);
+  const maps::ElevationMap map = readMap(options.map, readingOf(context));
   const auto [soil, rover] = assumedGround(map);
-  GroundOptions choices{.dem = options.map, .soil = soil, .rover = rover};
+  GroundOptions choices{{.elevation = options.map, .soil = soil, .rover = rover}};
   takeLayersBeside(options.map.path, choices, context);
   const Ground ground = readGround(choices, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
@@ -113,8 +113,8 @@ int run(const InitOptions& options, Context& context) {
     return path.empty() ? path : fs::weakly_canonical(path, error).lexically_relative(folder).string();
   };
   const MissionDraft draft{.dem = relative(options.map.path),
-                           .terrain = relative(choices.layers.terrain),
-                           .rocks = relative(choices.layers.rocks),
+                           .terrain = relative(choices.classes),
+                           .rocks = relative(choices.rocks),
                            .resolution_m = options.map.read.resolution_m.value_or(0.0),
                            .ignore_crs = options.map.read.ignore_crs,
                            .rover = rover,

@@ -33,9 +33,8 @@
 #include <talus/maps/vector/vector_writer.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/plan/plan_route.hpp>
+#include <talus/planner/plan/planner.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
-#include <talus/planner/plan/route_planner.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
@@ -43,7 +42,6 @@ namespace talus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using planner::Route;
 using planner::RouteStatus;
 
 // plan_s includes proof_s.
@@ -51,10 +49,15 @@ struct Timing {
   double load_s, costmap_s, plan_s, proof_s;
 };
 
-planner::RoutePlanner plannerOf(const PlanOptions& options) {
-  if (!options.plugin.empty()) return planner::RoutePlanner(pluginOf(options.plugin, options.planner));
-  planner::RoutePlanner own(options.planner);
-  if (options.drive.any() && !own.capabilities().headings)
+Planner plannerOf(const PlanOptions& options, const Context& context) {
+  const bool plugin = !options.plugin.empty();
+  PlannerSettings settings{.planner = plugin && options.planner == "field" ? std::string() : options.planner,
+                           .seed = context.seed,
+                           .threads = context.workers(),
+                           .whole_field = options.whole_field};
+  if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
+  Planner own(settings, options.plugin);
+  if (!plugin && options.drive.any() && !own.capabilities().headings)
     throw InputError({"planner '" + own.name() + "'", "supports neither headings nor a turning radius",
                       "pass --planner hybrid, or remove --start-heading, --goal-heading, --turning-radius "
                       "and --no-reverse"});
@@ -85,15 +88,6 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
   request.watch = context.watch("plan");
   if (options.plugin.empty()) context.answerStop();  // a plugin returns no partial route
   return request;
-}
-
-PlannerSettings settingsOf(const PlanOptions& options, const Context& context) {
-  PlannerSettings settings{.planner = options.plugin.empty() ? options.planner : std::string(),
-                           .seed = context.seed,
-                           .threads = context.workers(),
-                           .whole_field = options.whole_field};
-  if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
-  return settings;
 }
 
 // Summary line with the chosen goal; empty for a single goal.
@@ -167,7 +161,7 @@ void writeCorridor(const PlanOptions& options, const Planned& planned, const Con
   const PlanRequest& asked = planned.request;
   const std::vector<bool> inside = planner::LowerBound().corridor(
       map, {asked.start, asked.goal}, asked.tolerance_m,
-      (1.0 + 0.01 * options.corridor_percent) * planned.route.summary.cost, context.watch("corridor"));
+      (1.0 + 0.01 * options.corridor_percent) * planned.route.cost, context.watch("corridor"));
   maps::Raster<std::uint8_t> area(map->grid(), 1);
   for (std::size_t i = 0; i < inside.size(); ++i) area.values()[i] = inside[i] ? 1 : 0;
   writeFile(options.output, maps::areaFile(planned.ground.map.elevation(), area, "corridor", options.output));
@@ -215,7 +209,6 @@ struct PlacePair {
 struct PairedRequest {
   std::shared_ptr<const costmap::CostGrid> map;
   PlanRequest request;  ///< request without start and goal; a heading of a pair replaces that of the request
-  PlannerSettings settings{};
 };
 
 constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
@@ -237,7 +230,7 @@ std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::str
   return found;
 }
 
-Json planned(const PlacePair& pair, const PairedRequest& common, planner::RoutePlanner& planner) {
+Json planned(const PlacePair& pair, const PairedRequest& common, Planner& planner) {
   PlanRequest request = common.request;
   request.watch.progress = {};
   request.start = pair.start;
@@ -245,7 +238,7 @@ Json planned(const PlacePair& pair, const PairedRequest& common, planner::RouteP
   const bool headings = planner.capabilities().headings;
   if (headings && pair.start_heading_rad) request.start_heading_rad = pair.start_heading_rad;
   if (headings && pair.goal_heading_rad) request.goal_heading_rad = pair.goal_heading_rad;
-  const planner::Route route = planner.plan(common.map, request, common.settings);
+  const Route route = planner.plan(common.map, request);
   Json line = summaryJson(route);
   if (route.status != planner::RouteStatus::Found) line["reason"] = route.reason;
   return line;
@@ -293,7 +286,7 @@ std::vector<PlacePair> readPairs(const std::string& path) {
 /// no route. An error in one pair becomes the reason of that pair and stops no other pair. Returns an empty
 /// vector on ranks other than 0.
 std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const PairedRequest& common,
-                            planner::RoutePlanner& planner, const Campaign& campaign, const Part& part) {
+                            Planner& planner, const Campaign& campaign, const Part& part) {
   const std::vector<std::size_t> own = part.of(pairs.size());
   const auto outcomes = campaign.run(
       own.size(), [&](std::size_t i) { return jsonText(planned(pairs[own[i]], common, planner)); },
@@ -329,17 +322,16 @@ std::string pairsCsv(const std::vector<Json>& lines) {
 }
 
 // Plans many routes on one map, distributed over the ranks of an MPI run.
-int runPairs(const PlanOptions& options, planner::RoutePlanner& planner, Context& context) {
+int runPairs(const PlanOptions& options, Planner& planner, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   const auto pairs = readPairs(options.pairs);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const auto lines = planPairs(pairs,
-                               {.map = ground.map.published(),
-                                .request = requestOf(options, planner.capabilities(), ground, context),
-                                .settings = settingsOf(options, context)},
-                               planner, campaign, Part(options.part));
+  const auto lines = planPairs(
+      pairs,
+      {.map = ground.map.published(), .request = requestOf(options, planner.capabilities(), ground, context)},
+      planner, campaign, Part(options.part));
   if (!campaign.leads()) return Exit::kDone;
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
@@ -389,7 +381,7 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   const Timing seconds{.load_s = planned.ground.load_s,
                        .costmap_s = planned.ground.build_s,
                        .plan_s = planned.plan_s,
-                       .proof_s = route.summary.proof_s};
+                       .proof_s = route.proof_s};
   if (context.json) {
     nlohmann::ordered_json risk;
     if (planned.request.risk_limit) {
@@ -416,21 +408,20 @@ void refuseInWindows(const PlanOptions& options) {
   const bool other = options.planner != "field" || !options.plugin.empty() || options.max_risk > 0.0 ||
                      !options.pairs.empty() || !options.drive.chassis.empty() || options.goals.size() > 1;
   if (!other) return;
-  throw InputError({options.ground.dem.path,
+  throw InputError({options.ground.elevation.path,
                     "is too large to be combined with --planner, --plugin, --pairs, --risk, "
                     "--chassis or several goals",
                     "read a part with --window, or the whole with --whole-field"});
 }
 
-int runInWindows(const PlanOptions& options, const PlannerCapabilities& offers, const Context& context) {
+int runInWindows(const PlanOptions& options, Planner& planner, const Context& context) {
   refuseInWindows(options);
   Ground overview = readOverview(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   planner::WindowedMap map = windowsOn(options.ground, overview, context);
-  PlanRequest request = requestOf(options, offers, overview, context);
-  Planned route = timedPlan(std::move(overview), std::move(request), [&](const PlanRequest& asked) {
-    return planner::planRoute(map, asked, settingsOf(options, context));
-  });
+  PlanRequest request = requestOf(options, planner.capabilities(), overview, context);
+  Planned route = timedPlan(std::move(overview), std::move(request),
+                            [&](const PlanRequest& asked) { return planner.plan(map, asked); });
   if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
   return finish(options, route, context);
 }
@@ -441,13 +432,12 @@ void letEnd(const Context& context) {
   if (context.answers_stop) *context.answers_stop = false;
 }
 
-int runWhole(const PlanOptions& options, planner::RoutePlanner& planner, const Context& context) {
+int runWhole(const PlanOptions& options, Planner& planner, const Context& context) {
   Ground ground = readGround(options.ground, context);
   PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
   const auto map = ground.map.published();
-  Planned route = timedPlan(std::move(ground), std::move(request), [&](const PlanRequest& asked) {
-    return planner.plan(map, asked, settingsOf(options, context));
-  });
+  Planned route = timedPlan(std::move(ground), std::move(request),
+                            [&](const PlanRequest& asked) { return planner.plan(map, asked); });
   if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
   const int code = finish(options, route, context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
@@ -471,7 +461,7 @@ bool isRouteOf(const std::string& mission, const std::string& path) {
 // Mission files may come from other sources: without --force, their outputs overwrite only their own routes.
 void checkMissionOutput(const PlanOptions& options) {
   std::vector<std::string> inputs;
-  for (const InputFile& input : filesOf(options.ground)) inputs.push_back(input.path);
+  for (const InputFile& input : filesOf(options.ground.files())) inputs.push_back(input.path);
   checkOutput(options.output, inputs);
   if (std::filesystem::exists(options.output) && !isRouteOf(options.ground.mission, options.output))
     throw InputError({options.output, "exists, is named by the mission alone and is no route of this mission",
@@ -480,16 +470,16 @@ void checkMissionOutput(const PlanOptions& options) {
 
 int run(const PlanOptions& asked, Context& context) {
   PlanOptions options = asked;
-  if (!options.ground.is_cost && isMission(options.ground.dem.path)) {
+  if (!options.ground.is_cost && isMission(options.ground.elevation.path)) {
     readMission(options);
     if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
   }
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
   requirePlaces(options);
-  planner::RoutePlanner planner = plannerOf(options);
+  Planner planner = plannerOf(options, context);
   if (!options.whole_field && !(options.corridor_percent > 0.0) && !options.ground.is_cost &&
       needsWindows(options.ground, options.in_memory))
-    return runInWindows(options, planner.capabilities(), context);
+    return runInWindows(options, planner, context);
   return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);
 }
 

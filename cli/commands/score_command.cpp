@@ -58,7 +58,7 @@ std::string betterText(const planner::Plan& best, double cost_J) {
 }
 
 std::string scoreText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
-  const planner::RouteSummary& s = route.summary;
+  const planner::RouteSummary& s = route;
   std::string text =
       fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
       (std::isnan(s.time_s)

@@ -248,7 +248,7 @@ int run(const UpdateOptions& options, Context& context) {
   const FileLock lock({options.map, options.output.empty() ? options.map : options.output}, context.stop);
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output);
-  costmap::TraversabilityMap map = readBuiltMap(options.map, context);
+  costmap::TraversabilityMap map = readBuiltMap(options.map, readingOf(context));
   std::optional<terramech::Telemetry> telemetry;
   if (!options.telemetry.empty()) telemetry = readDrive(options, map, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;

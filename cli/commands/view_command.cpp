@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ViewOptions {
-  MapOptions file;
+  ElevationFile file;
   std::vector<std::string> others;  ///< routes compared with the first
   std::string map;
   std::string title;
@@ -62,10 +62,11 @@ void bind(CLI::App& command, ViewOptions& options) {
 Scene mapScene(const ViewOptions& options, const std::string& path, const Context& context) {
   const SceneOptions scene{.title =
                                options.title.empty() ? fs::path(path).filename().string() : options.title};
-  if (costmap::octomapType(path) == "TraversabilityTree") return sceneOf(readBuiltMap(path, context), scene);
-  MapOptions dem = options.file;
+  if (costmap::octomapType(path) == "TraversabilityTree")
+    return sceneOf(readBuiltMap(path, readingOf(context)), scene);
+  ElevationFile dem = options.file;
   dem.path = path;
-  return sceneOf(readMap(dem, context), scene);
+  return sceneOf(readMap(dem, readingOf(context)), scene);
 }
 
 // Candidate paths of the map. By file name: the folder of the route and the current folder. By the path given

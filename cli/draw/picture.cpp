@@ -209,7 +209,7 @@ class Picture {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
       canvas_.text("route, start S to goal G", {at.x + 36, at.y + 4}, {});
       at.y += 24;
-      if (scene_.route->summary.drive) {
+      if (scene_.route->drive) {
         canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kReverse, .width = 3});
         canvas_.text("reverse; dots: turns in place", {at.x + 36, at.y + 4}, {});
         at.y += 24;

@@ -46,7 +46,7 @@ std::string straightText(const Route& route) {
   const RouteVertex& b = route.vertices.back();
   const double straight = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
   if (!(straight > 0.0)) return "";
-  return fmt::format(", detour factor {:.2f}", route.summary.length_m / straight);
+  return fmt::format(", detour factor {:.2f}", route.length_m / straight);
 }
 
 std::string climbText(const Route& route) {
@@ -116,7 +116,7 @@ std::string slipText(const Route& route) {
 
 /// The planner and the optimality gap.
 std::string statusText(const Route& route) {
-  const planner::RouteSummary& s = route.summary;
+  const planner::RouteSummary& s = route;
   if (!std::isfinite(s.gap)) return fmt::format("found by {}; no lower bound", s.planner);
   return fmt::format("found by {}; proven optimality gap <= {:.1f} %", s.planner, 100.0 * s.gap);
 }
@@ -127,8 +127,8 @@ std::string riskText(double probability) {
 }
 
 std::string driveText(const Route& route) {
-  if (!route.summary.drive) return "";
-  const planner::RouteShape& d = *route.summary.drive;
+  if (!route.drive) return "";
+  const planner::RouteShape& d = *route.drive;
   const std::string radius = d.max_curvature_1_m > 0.0
                                  ? fmt::format("min turning radius {:.3g} m", 1.0 / d.max_curvature_1_m)
                                  : "no arcs";
@@ -202,7 +202,7 @@ std::string effortText(const planner::RouteSummary& s) {
 Facts summaryOf(const Route& route) {
   if (route.status != planner::RouteStatus::Found || route.vertices.empty())
     return {{"route", fmt::format("{}: {}", planner::name(route.status), route.reason)}};
-  const planner::RouteSummary& s = route.summary;
+  const planner::RouteSummary& s = route;
   if (!(s.length_m > 0.0) && s.drive && s.drive->turns_in_place > 0)
     return {{"route", fmt::format("turn in place by {:.0f} deg, {}", s.drive->turned_rad / kDegree,
                                   energyText(s.energy_J))}};

@@ -2,10 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <numbers>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -17,14 +14,9 @@
 #include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/number_check.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/stated_costs.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/costmap/cost/travel_states.hpp>
-#include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/surface/octomap_surface.hpp>
-#include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
@@ -37,26 +29,7 @@ double since_s(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Default soil and rover for the body of the map.
-struct Assumed {
-  const char* body;
-  const char* soil;
-  const char* rover;
-};
-// Upper limit of the slope and step footprint, in diagonals of the rover.
-constexpr double kFootprints = 2.0;
 constexpr float kSameHeight_m = 0.01F;
-
-constexpr Assumed kAssumed[] = {{"Moon", "lunar_nominal", "lunar_micro"},
-                                {"Mars", "mars_blocky", "mer"},
-                                {"", "testbed_topsoil", "fido"}};
-
-const Assumed& assumedOn(const maps::ElevationMap& map) {
-  const std::string body = map.georeference ? map.georeference->body() : "";
-  for (const Assumed& one : kAssumed)
-    if (body == one.body) return one;
-  return kAssumed[2];
-}
 
 bool isBeliefMap(const std::string& path) {
   return costmap::octomapType(path) == "TraversabilityTree";
@@ -96,92 +69,24 @@ void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
   groupOptions(command, "Cost and thresholds");
 }
 
-// Maps evaluate soils at slips from -1 (braked downhill) to 1. At each slip the stress peak theta_m = (c1 +
-// c2 slip) theta_1 must lie in the contact.
-void requirePeakInContact(const terramech::Soil& soil, const std::string& file) {
-  for (const double slip : {-1.0, 1.0})
-    if (const double peak = soil.c1 + soil.c2 * slip; !(peak >= 0.0 && peak <= 1.0))
-      throw InputError(
-          {file,
-           fmt::format("soil '{}': c1 = {:.6g} and c2 = {:.6g} put the stress peak at {:.6g} of the "
-                       "contact at slip {:g}, must be 0 to 1",
-                       soil.name, soil.c1, soil.c2, peak, slip),
-           "lower the magnitude of c2, or leave both out"});
-}
-
-costmap::GroundClass modelledGround(const std::string& path, const terramech::Rover& rover) {
-  const terramech::ModelFile file = terramech::loadModel(path);
-  if (!file.soil_given) throw InputError({path, "defines no soil", "fit one first: talus trace --model-out"});
-  requirePeakInContact(file.model.soil, path);
-  try {
-    return costmap::groundClass(0, file.model, rover);
-  } catch (const std::invalid_argument& e) {
-    throw InputError({path, e.what(), ""});
-  }
-}
-
-// Class of ground without a class number, then the classes of the classes file.
-std::vector<costmap::GroundClass> groundClasses(const GroundOptions& options, const Assumed& assumed,
-                                                const terramech::Rover& rover) {
-  std::vector<costmap::GroundClass> classes;
-  const bool classes_only = !options.soils.empty() && options.soil.empty() && options.model.empty();
-  if (!options.model.empty())
-    classes.push_back(modelledGround(options.model, rover));
-  else if (!classes_only) {
-    const std::string soil = options.soil.empty() ? assumed.soil : options.soil;
-    const terramech::SoilPrior prior = terramech::loadSoilPrior(soil);
-    requirePeakInContact(prior.mean, soil);
-    classes.push_back(costmap::groundClass(0, prior, rover));
-  }
-  if (options.soils.empty()) return classes;
-  for (const auto& [number, prior] : terramech::loadTerrainClasses(options.soils)) {
-    requirePeakInContact(prior.mean, fmt::format("{}, class {}", options.soils, number));
-    if (number == 0 && !classes.empty()) classes.erase(classes.begin());
-    classes.push_back(costmap::groundClass(number, prior, rover));
-  }
-  return classes;
-}
-
-// Runs make(). Rover or soil parameters that are valid but unsuitable for slopes are reported with the file
-// that contains them.
-template <typename Make>
-auto blamingFiles(const GroundOptions& options, Make make) {
-  try {
-    return make();
-  } catch (const std::invalid_argument& error) {
-    const std::string_view text = error.what();
-    const bool one_soil = text.starts_with("soil ") && options.soils.empty();
-    const std::string file = text.starts_with("rover ") ? options.rover : one_soil ? options.soil : "";
-    if (!std::ifstream(file).good()) throw;
-    throw InputError({file, error.what(), "correct the value"});
-  }
-}
-
 // Returns true if no elevation map is given in addition to the built map.
 bool isBuiltAlone(const GroundOptions& options, const std::string& path) {
-  return options.dem.path.empty() || options.dem.path == path || isBeliefMap(options.dem.path);
-}
-
-auto fieldsOf(const costmap::TravelPolicy& p) {
-  return std::tie(p.allow_marginal, p.allow_dangerous, p.allow_unknown, p.slope_margin_rad,
-                  p.sinkage_threshold, p.sinkage_critical, p.max_immobilisation, p.pose_error_m,
-                  p.time_weight_W, p.entrapment, p.unmonitored_entrapment, p.unmonitored, p.risk_weight_J,
-                  p.correlation_length_m);
+  return options.elevation.path.empty() || options.elevation.path == path ||
+         isBeliefMap(options.elevation.path);
 }
 
 // A built map has its own grid, layers, soils, rover and policy; conflicting options of the call are refused.
 // With an additional elevation map, options may repeat how that map is read and how the built map was built.
 void checkAgainstMap(const GroundOptions& options, const std::string& path, const Context& context) {
   const bool alone = isBuiltAlone(options, path);
-  if (alone) refuseReadOptions(options.dem);
+  if (alone) refuseReadOptions(options.elevation);
   const std::tuple<std::string, bool, bool> given[] = {
-      {"--keep-out", true, !options.layers.keep_out.empty()},
-      {"--layer", true, !options.layers.costs.empty()},
-      {"an option of thresholds, weights and risk", true,
-       fieldsOf(options.policy) != fieldsOf(costmap::TravelPolicy{})},
-      {"--below", alone, alone && options.dem.below_m.has_value()},
-      {"--terrain", alone, !options.layers.terrain.empty() || options.layers.terrain_band},
-      {"--rocks", alone, !options.layers.rocks.empty() || options.layers.rocks_band},
+      {"--keep-out", true, !options.keep_out.empty()},
+      {"--layer", true, !options.costs.empty()},
+      {"an option of thresholds, weights and risk", true, options.policy != costmap::TravelPolicy{}},
+      {"--below", alone, alone && options.elevation.below_m.has_value()},
+      {"--terrain", alone, !options.classes.empty() || options.classes_band},
+      {"--rocks", alone, !options.rocks.empty() || options.rocks_band},
       {"--soils", alone, !options.soils.empty()},
       {"--soil", alone, !options.soil.empty()},
       {"--model", alone, !options.model.empty()},
@@ -198,14 +103,9 @@ void checkAgainstMap(const GroundOptions& options, const std::string& path, cons
 // only.
 void checkSameRover(const GroundOptions& options, const terramech::Rover& own, const std::string& path) {
   if (options.rover.empty()) return;
-  const auto fields = [](const terramech::Rover& r) {
-    return std::tie(r.mass_kg, r.gravity_m_s2, r.wheel_count, r.wheel.radius_m, r.wheel.width_m,
-                    r.wheel.grouser_height_m, r.wheel.grouser_count, r.wheel.lug_thrust, r.wheelbase_m,
-                    r.track_m, r.clearance_m, r.centre_of_mass_height_m, r.centre_of_mass_ahead_m,
-                    r.centre_of_mass_left_m, r.max_pitch_rad, r.max_roll_rad, r.max_torque_Nm,
-                    r.max_speed_mps, r.turning_radius_m, r.hotel_power_W, r.steering);
-  };
-  if (fields(terramech::loadRover(options.rover)) != fields(own))
+  terramech::Rover given = terramech::loadRover(options.rover);
+  given.name = own.name;
+  if (!(given == own))
     throw InputError({path, "was built for rover '" + own.name + "', not for --rover " + options.rover,
                       "build a map for that one with talus costmap"});
 }
@@ -235,145 +135,38 @@ void checkSameSite(const maps::ElevationMap& dem, const costmap::TraversabilityM
 std::optional<maps::ElevationMap> siteOf(const GroundOptions& options, const std::string& path,
                                          const Context& context) {
   if (isBuiltAlone(options, path)) return std::nullopt;
-  if (std::filesystem::exists(options.dem.path)) return readMap(options.dem, context);
-  context.warn(path + " is not compared with the elevation map: " + options.dem.path + ": no such file");
+  if (std::filesystem::exists(options.elevation.path)) return readMap(options.elevation, readingOf(context));
+  context.warn(path + " is not compared with the elevation map: " + options.elevation.path +
+               ": no such file");
   return std::nullopt;
-}
-
-void warnOfRover(const terramech::Rover& rover, const Context& context) {
-  for (const std::string& assumed : terramech::slopeAssumptions(rover)) context.warn(assumed);
-}
-
-// All files read, those that the options name first, with their roles. A file that an option names and that was not
-// read is unused.
-std::vector<InputFile> manifestOf(const GroundOptions& options) {
-  std::vector<InputFile> named = filesOf(options), read = filesRead();
-  for (InputFile& file : named) {
-    const auto found = std::ranges::find(read, file.path, &InputFile::path);
-    file.used = found != read.end();
-    if (!file.used) continue;
-    std::tie(file.size, file.sha256) = std::tie(found->size, found->sha256);
-    read.erase(found);
-  }
-  named.insert(named.end(), read.begin(), read.end());
-  return named;
 }
 
 Ground fromMapFile(const GroundOptions& options, const std::string& path, const Context& context) {
   checkAgainstMap(options, path, context);
   const auto begin = Clock::now();
   const InputRecord record;
-  Ground ground{readBuiltMap(path, context), {}};
+  Ground ground{readBuiltMap(path, readingOf(context)), {}};
   checkSameRover(options, ground.map.model().rover(), path);
   if (const auto dem = siteOf(options, path, context)) checkSameSite(*dem, ground.map, path);
-  ground.files = manifestOf(options);
+  ground.files = manifestOf(options.files());
   const auto& before = ground.map.elevation().files;
   ground.files.insert(ground.files.end(), before.begin(), before.end());
   ground.load_s = since_s(begin);
-  warnOfRover(ground.map.model().rover(), context);
+  for (const std::string& line : terramech::slopeAssumptions(ground.map.model().rover())) context.warn(line);
   return ground;
-}
-
-void warnOfAssumptions(const GroundOptions& options, const Assumed& assumed, const Context& context) {
-  if (options.soil.empty() && options.soils.empty() && options.model.empty())
-    context.warn(std::string("no --soil or --soils: using default soil ") + assumed.soil);
-  if (options.rover.empty())
-    context.warn(std::string("no --rover: using default rover ") + assumed.rover + "");
-}
-
-void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::TravelPolicy& policy,
-                  const Context& context) {
-  for (const costmap::CostLayer& layer : layers) {
-    const auto& values = layer.added_J_per_m.values();
-    const auto unseen = std::ranges::count_if(values, [](float v) { return std::isnan(v); });
-    if (unseen == 0) continue;
-    context.warn(fmt::format("layer {} has no data in {} of {} cells: they {}", layer.name, unseen,
-                             values.size(),
-                             !policy.allow_unknown ? "count as unknown and are excluded"
-                             : layer.unseen_J_per_m > 0.0F
-                                 ? fmt::format("cost {:.6g} J/m more, as the highest", layer.unseen_J_per_m)
-                                 : "cost nothing more"));
-  }
-}
-
-// Class numbers from the strongest to the weakest ground, ordered by mean drawbar pull minus two standard
-// deviations (exceeded at 39 of 40 places).
-std::vector<int> weakestLast(const std::vector<costmap::GroundClass>& classes,
-                             const terramech::Rover& rover) {
-  std::vector<std::pair<double, int>> by_pull;
-  for (const costmap::GroundClass& c : classes) {
-    const double mean = costmap::referenceOf(c, rover).drawbar_pull_over_load;
-    by_pull.emplace_back(2.0 * std::hypot(c.pull_std, c.mean_std) - mean, c.number);
-  }
-  std::ranges::sort(by_pull);
-  std::vector<int> numbers;
-  for (const auto& [weakness, number] : by_pull) numbers.push_back(number);
-  return numbers;
-}
-
-costmap::GroundModel::Parts partsOf(const GroundOptions& options, const maps::ElevationMap& dem,
-                                    std::vector<int>& weakest_last, const Context& context) {
-  const Assumed& assumed = assumedOn(dem);
-  warnOfAssumptions(options, assumed, context);
-  costmap::GroundModel::Parts parts;
-  parts.rover = terramech::loadRover(options.rover.empty() ? assumed.rover : options.rover);
-  warnOfRover(parts.rover, context);
-  parts.classes = blamingFiles(options, [&] { return groundClasses(options, assumed, parts.rover); });
-  parts.policy = options.policy;
-  weakest_last = weakestLast(parts.classes, parts.rover);
-  return parts;
-}
-
-// Costs that are stated replace rover and soils.
-void refuseRover(const GroundOptions& options) {
-  costmap::TravelPolicy policy = options.policy;
-  policy.allow_unknown = false;
-  const std::string stated = options.is_cost ? "--cost" : "--cost-curve";
-  if (!options.rover.empty() || !options.soil.empty() || !options.soils.empty() || !options.model.empty() ||
-      !options.layers.rocks.empty() ||
-      (options.is_cost && (!options.layers.terrain.empty() || options.footprint_m > 0.0)) ||
-      fieldsOf(policy) != fieldsOf(costmap::TravelPolicy{}))
-    throw InputError({stated,
-                      "stands in place of --rover, --soil, --soils, --model, --rocks and the options of "
-                      "thresholds and shape",
-                      "remove them, or remove " + stated});
-}
-
-// Ground of stated costs, for which the class of greater cost on level ground is the weaker.
-costmap::GroundModel::Parts statedParts(const GroundOptions& options, std::vector<int>& weakest_last) {
-  refuseRover(options);
-  CostCurves curves = readCostCurves(options.cost_curve);
-  if (curves.classed != !options.layers.terrain.empty())
-    throw InputError(
-        {options.cost_curve, "a column class and --terrain belong together", "give both, or neither"});
-  costmap::GroundModel::Parts parts{.policy = options.policy, .stated = std::move(curves.costs)};
-  std::vector<std::pair<float, int>> by_cost;
-  for (std::size_t i = 0; i < curves.numbers.size(); ++i) {
-    parts.classes.push_back({.number = curves.numbers[i]});
-    by_cost.emplace_back(parts.stated->states[i]->at(0, costmap::TravelCurve::kBins / 2).energy_J_per_m,
-                         curves.numbers[i]);
-  }
-  std::ranges::sort(by_cost);
-  for (const auto& [cost, number] : by_cost) weakest_last.push_back(number);
-  return parts;
-}
-
-costmap::GroundModel::Parts partsOf(const CostRaster& raster, const costmap::TravelPolicy& policy) {
-  costmap::GroundModel::Parts parts{.policy = policy, .stated = raster.costs};
-  for (int k = 0; k < static_cast<int>(raster.costs.states.size()); ++k)
-    parts.classes.push_back({.number = k});
-  return parts;
 }
 
 }  // namespace
 
-std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map) {
-  const Assumed& one = assumedOn(map);
-  return {one.soil, one.rover};
+SiteFiles GroundOptions::files() const {
+  SiteFiles files = *this;
+  for (const auto& [path, role] : {std::pair{map_file, "map"}, {mission, "mission"}})
+    if (!path.empty()) files.further.push_back({.path = path, .role = role});
+  return files;
 }
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
-  addMapOptions(command, options.dem);
+  addMapOptions(command, options.elevation);
   command.add_option("--map", options.map_file, "traversability map from `talus costmap` or `talus update`")
       ->type_name("MAP.ot");
   groupOptions(command, "Elevation map");
@@ -381,7 +174,7 @@ void addGroundOptions(CLI::App& command, GroundOptions& options) {
 }
 
 void addGroundChoices(CLI::App& command, GroundOptions& options) {
-  addLayerOptions(command, options.layers);
+  addLayerOptions(command, options);
   command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
   auto* soil =
       command.add_option("--soil", options.soil, "soil of cells without a class: a library name or a file")
@@ -413,74 +206,18 @@ void addCostCurve(CLI::App& command, GroundOptions& options) {
       ->excludes("--cost-curve");
 }
 
-std::vector<InputFile> filesOf(const GroundOptions& options) {
-  std::vector<InputFile> files;
-  const auto add = [&](const std::string& path, const char* role) {
-    if (std::ranges::count(files, path, &InputFile::path) == 0) files.push_back({.path = path, .role = role});
-  };
-  add(options.dem.path, options.is_cost ? "cost" : "elevation");
-  const LayerOptions& layers = options.layers;
-  for (const auto& [path, role] : {std::pair{options.map_file, "map"},
-                                   {layers.terrain, "terrain classes"},
-                                   {layers.rocks, "rocks"},
-                                   {options.soils, "soils"},
-                                   {options.soil, "soil"},
-                                   {options.model, "model"},
-                                   {options.rover, "rover"},
-                                   {options.cost_curve, "cost curve"},
-                                   {options.mission, "mission"}})
-    if (std::ifstream(path).good()) add(path, role);
-  for (const std::string& path : layers.keep_out) add(path, "keep-out");
-  for (const std::string& given : layers.costs) add(layerNamed(given).second, "cost layer");
-  return files;
-}
-
 Ground readGround(const GroundOptions& options, const Context& context) {
-  if (!options.cost_curve.empty() && (!options.map_file.empty() || isBeliefMap(options.dem.path)))
+  if (!options.cost_curve.empty() && (!options.map_file.empty() || isBeliefMap(options.elevation.path)))
     throw InputError({"--cost-curve " + options.cost_curve,
                       "has no effect on a built map, which has its own costs", "plan on the elevation map"});
   if (!options.map_file.empty()) return fromMapFile(options, options.map_file, context);
-  if (isBeliefMap(options.dem.path)) return fromMapFile(options, options.dem.path, context);
+  if (isBeliefMap(options.elevation.path)) return fromMapFile(options, options.elevation.path, context);
   auto begin = Clock::now();
-  const InputRecord record;
-  if (options.is_cost) refuseRover(options);
-  std::optional<CostRaster> raster;
-  if (options.is_cost) raster = readCostRaster(options.dem, context);
-  maps::ElevationMap dem = raster ? std::move(raster->map) : readMap(options.dem, context);
-  std::vector<int> weakest_last;
-  const bool stated = raster || !options.cost_curve.empty();
-  costmap::GroundModel::Parts parts = raster   ? partsOf(*raster, options.policy)
-                                      : stated ? statedParts(options, weakest_last)
-                                               : partsOf(options, dem, weakest_last, context);
-  Layers layers = readLayers(options.layers, dem, weakest_last);
-  if (raster) layers.classes = std::move(raster->classes);
-  for (const std::string& note : layers.notes) context.warn(note);
+  Site site = readSite(options.files(), readingOf(context));
+  std::vector<InputFile> files = site.layers.elevation.files;
   const double load_s = since_s(begin);
   begin = Clock::now();
-  const double own_m = std::hypot(parts.rover.wheelbase_m, parts.rover.track_m),
-               widest_m = std::max(kFootprints * own_m, 2.0 * dem.grid().resolution_m);
-  if (!stated && options.footprint_m > widest_m)
-    throw InputError(
-        {"--footprint " + fmt::format("{:.6g}", options.footprint_m),
-         fmt::format("planes over more than {:.3g} m hide the steps and slopes that rover '{}' meets",
-                     widest_m, parts.rover.name),
-         "leave it out, or make it smaller"});
-  const double nearest_m = std::numbers::sqrt2 * dem.grid().resolution_m,  // 3 x 3 cells
-      footprint_m = stated && options.footprint_m == 0.0 ? nearest_m : options.footprint_m;
-  std::vector<InputFile> files = manifestOf(options);
-  dem.files = files;
-  costmap::MapLayers content{std::move(dem),
-                             std::move(layers.classes),
-                             std::move(layers.rock_abundance),
-                             std::move(layers.keep_out),
-                             {},
-                             std::move(layers.costs)};
-  warnOfUnseen(content.costs, options.policy, context);
-  costmap::TraversabilityMap map = blamingFiles(options, [&] {
-    return costmap::TraversabilityMap(
-        std::move(content), std::make_shared<costmap::GroundModel>(std::move(parts)),
-        {.footprint_radius_m = footprint_m, .threads = context.workers()}, context.watch("costmap"));
-  });
+  costmap::TraversabilityMap map = traversabilityMap(std::move(site), context.watch("costmap"));
   return {std::move(map), std::move(files), load_s, since_s(begin)};
 }
 

@@ -15,21 +15,14 @@ namespace talus::cli {
 
 struct Context;
 
-/// Inputs of a traversability map: elevation map (DEM), layers, soils, rover and policy.
-struct GroundOptions {
-  MapOptions dem;
-  LayerOptions layers;
-  std::string map_file;  ///< file of --map, which `talus costmap` wrote with its own layers, soils and rover
-  std::string soils;     ///< YAML file that assigns a soil to each terrain-class number
-  /// Library name or YAML file of the soil for ground without a class; empty: default of the body.
-  std::string soil;
-  std::string model;     ///< refined model from `talus trace` for ground without a class, instead of `soil`
-  std::string rover;     ///< library name or YAML file of the rover; empty: default of the body
-  bool is_cost = false;  ///< dem.path is a raster of costs a metre, in place of heights, rover and soils
-  std::string cost_curve{};  ///< CSV file of a cost over gradients in place of rover and soils; empty: none
-  std::string mission{};     ///< mission file that stated options of the call; empty: none
-  double footprint_m = 0.0;  ///< radius of the disc for slope fits; 0: derived from the rover
-  costmap::TravelPolicy policy;
+/// Inputs of a traversability map: the files of a site, or a built map.
+struct GroundOptions : SiteFiles {
+  std::string
+      map_file{};         ///< file of --map, which `talus costmap` wrote with its own layers, soils and rover
+  std::string mission{};  ///< mission file that stated options of the call; empty: none
+
+  /// Returns the files with map and mission in their manifest.
+  SiteFiles files() const;
 };
 
 /// Declares the option --map and the options of addMapOptions() and addGroundChoices().
@@ -51,12 +44,6 @@ struct Ground {
   /// Time for building the map.
   double build_s = 0.0;
 };
-
-/// Returns the files that the options name, each with its role; the first is the map.
-std::vector<InputFile> filesOf(const GroundOptions& options);
-
-/// Returns the default soil and the default rover for the body of the map.
-std::pair<std::string, std::string> assumedGround(const maps::ElevationMap& map);
 
 /// Returns a traversability map from its inputs. A DEM that is a file of `talus costmap` is treated like
 /// --map. @throws InputError

@@ -70,17 +70,17 @@ std::string place(const YamlFields& fields, const std::string& name, const std::
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
   maps.only(namesOf(missionMapKeys()));
-  ground.dem.path = beside(maps.word("dem", ""), folder);
+  ground.elevation.path = beside(maps.word("dem", ""), folder);
   take(ground.map_file, maps, "map", folder);
-  take(ground.layers.terrain, maps, "terrain", folder);
-  take(ground.layers.rocks, maps, "rocks", folder);
-  if (maps.has("keep_out")) ground.layers.keep_out.push_back(beside(maps.word("keep_out"), folder));
-  if (maps.has("resolution_m") && !ground.dem.read.resolution_m)
-    ground.dem.read.resolution_m = maps.number("resolution_m");
-  if (maps.flag("ignore_crs", false)) ground.dem.read.ignore_crs = true;
-  if (ground.dem.path.empty() && ground.map_file.empty())
+  take(ground.classes, maps, "terrain", folder);
+  take(ground.rocks, maps, "rocks", folder);
+  if (maps.has("keep_out")) ground.keep_out.push_back(beside(maps.word("keep_out"), folder));
+  if (maps.has("resolution_m") && !ground.elevation.read.resolution_m)
+    ground.elevation.read.resolution_m = maps.number("resolution_m");
+  if (maps.flag("ignore_crs", false)) ground.elevation.read.ignore_crs = true;
+  if (ground.elevation.path.empty() && ground.map_file.empty())
     maps.refuse("", "defines no map", "give dem: FILE, or map: FILE.ot");
-  if (ground.dem.path.empty()) ground.dem.path = ground.map_file;
+  if (ground.elevation.path.empty()) ground.elevation.path = ground.map_file;
 }
 
 // A policy value that differs from its default was set on the command line and is kept.
@@ -165,7 +165,7 @@ bool isMission(const std::string& path) {
 }
 
 void readMission(PlanOptions& options) {
-  options.ground.mission = options.ground.dem.path;
+  options.ground.mission = options.ground.elevation.path;
   const std::filesystem::path path = options.ground.mission;
   const std::filesystem::path folder = path.parent_path();
   const YamlFields fields = YamlFields::file(path.string());

@@ -58,7 +58,7 @@ std::span<const terramech::FileKey> thresholdKeys();
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
-/// Reads the mission file options.ground.dem.path into `options`. Values from the command line have
+/// Reads the mission file options.ground.elevation.path into `options`. Values from the command line have
 /// precedence. Paths in the file are relative to the file. @throws InputError with file and line
 void readMission(PlanOptions& options);
 

@@ -14,15 +14,15 @@ constexpr double kOverviewCells = 2'000'000;
 constexpr std::int64_t kPixelCache = 64 << 20;  // bytes
 
 maps::Grid wholeGrid(const GroundOptions& options) {
-  maps::ReadOptions read = options.dem.read;
-  if (!options.dem.window.empty()) read.window = maps::parseWindow(options.dem.window);
-  return maps::elevationGrid(options.dem.path, read);
+  maps::ReadOptions read = options.elevation.read;
+  if (!options.elevation.window.empty()) read.window = maps::parseWindow(options.elevation.window);
+  return maps::elevationGrid(options.elevation.path, read);
 }
 
 }  // namespace
 
 bool needsWindows(const GroundOptions& options, std::size_t cells) {
-  if (!options.map_file.empty() || costmap::octomapType(options.dem.path)) return false;
+  if (!options.map_file.empty() || costmap::octomapType(options.elevation.path)) return false;
   return wholeGrid(options).size() > cells;
 }
 
@@ -30,7 +30,8 @@ Ground readOverview(const GroundOptions& options, const Context& context) {
   maps::limitPixelCache(kPixelCache);
   GroundOptions coarse = options;
   const auto cells = static_cast<double>(wholeGrid(options).size());
-  coarse.dem.read.overview = std::max(2, static_cast<int>(std::ceil(std::sqrt(cells / kOverviewCells))));
+  coarse.elevation.read.overview =
+      std::max(2, static_cast<int>(std::ceil(std::sqrt(cells / kOverviewCells))));
   return readGround(coarse, context);
 }
 
@@ -38,8 +39,8 @@ planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overv
   const auto build = [part = options, quiet = context](
                          const planner::MapBox& box) mutable -> std::optional<costmap::TraversabilityMap> {
     quiet.quiet = true;  // warnings were printed for the overview
-    part.dem.window.clear();
-    part.dem.read.window = maps::Window{box.low, box.high};
+    part.elevation.window.clear();
+    part.elevation.read.window = maps::Window{box.low, box.high};
     try {
       return readGround(part, quiet).map;
     } catch (const InputError&) {  // window without data

@@ -249,10 +249,10 @@ RouteFile readRoute(const std::string& path) {
   readVertices(fields, file.route.vertices);
   requireLine(fields, document, file.route.vertices);
   const json summary = member(properties, "summary");
-  file.route.summary = summaryFrom(Fields(path, summary));
+  static_cast<planner::RouteSummary&>(file.route) = summaryFrom(Fields(path, summary));
   if (const json drive = member(summary, "drive"); drive.is_object()) {
     readDrive(fields, file.route.vertices);
-    file.route.summary.drive = shapeFrom(Fields(path, drive));
+    file.route.drive = shapeFrom(Fields(path, drive));
   }
   file.inputs = inputsOf(properties);
   file.provenance = provenanceOf(member(properties, "inputs"));

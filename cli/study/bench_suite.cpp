@@ -131,7 +131,7 @@ std::vector<BenchmarkCase> slipCases(const SuiteOptions& options, const Context&
 std::vector<BenchmarkCase> mapCases(const std::string& path, const SuiteOptions& options,
                                     const Context& context) {
   GroundOptions ground = options.ground;
-  ground.dem.path = path;
+  ground.elevation.path = path;
   const Ground read = readGround(ground, context);
   auto cases =
       pairsOn(std::filesystem::path(path).stem().string(), read.map.published(), options.pairs, context.seed);
@@ -158,7 +158,7 @@ bool isMap(const std::string& name) {
 void refuseUnusedGround(const SuiteOptions& options) {
   const GroundOptions& g = options.ground;
   const bool given = !g.soil.empty() || !g.soils.empty() || !g.model.empty() || !g.rover.empty() ||
-                     !g.layers.terrain.empty() || !g.layers.rocks.empty() || !g.layers.keep_out.empty();
+                     !g.classes.empty() || !g.rocks.empty() || !g.keep_out.empty();
   if (given && std::ranges::none_of(options.names, isMap))
     throw InputError({"talus bench", "a soil, rover or layer is given without an elevation map",
                       "name a map; the other suites have their own terrain"});

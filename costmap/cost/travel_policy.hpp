@@ -40,6 +40,8 @@ struct TravelPolicy {
 
   /// Returns the probability that insufficient drawbar pull immobilises the rover on this drive [-].
   double held() const noexcept { return unmonitored ? unmonitored_entrapment : entrapment; }
+
+  bool operator==(const TravelPolicy&) const = default;
 };
 
 }  // namespace talus::costmap

@@ -78,6 +78,8 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.stated) {  // a point
     parts_.policy.pose_error_m = parts_.policy.time_weight_W = parts_.policy.risk_weight_J = 0.0;
     parts_.rover = {.wheel = {.radius_m = 0.0, .width_m = 0.0}};
+  } else {
+    static_cast<void>(terramech::RoverStance(parts_.rover));  // a rover without a stance is refused here
   }
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)

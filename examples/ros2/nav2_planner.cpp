@@ -85,9 +85,7 @@ void Nav2Planner::configure(const Parent& parent, std::string name, std::shared_
   if (!(spacing_m_ > 0.0)) throw nav2_core::PlannerException(name + ".path_spacing_m must be > 0");
   try {
     map_ = patchedMap(*node, name, frame_);
-    planner_ = talus::planner::makePlanner(planner);
-    planner_->configure({.planner = planner, .time_limit_s = limit_s});
-    planner_->set_map(map_->published());
+    planner_.emplace(talus::PlannerSettings{.planner = planner, .time_limit_s = limit_s});
   } catch (const std::exception& error) {
     throw nav2_core::PlannerException(error.what());
   }
@@ -157,8 +155,7 @@ nav_msgs::msg::Path Nav2Planner::createPlan(const PoseStamped& start, const Pose
   talus::planner::Route route;
   const auto published = map_->published();
   try {
-    planner_->update(published);
-    route = planner_->plan(request);
+    route = planner_->plan(published, request);
   } catch (const std::exception& error) {
     throw nav2_core::PlannerException(error.what());
   }

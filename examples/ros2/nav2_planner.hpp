@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -68,7 +69,7 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
   std::shared_ptr<void> subscription_;  // uses map_
   std::shared_ptr<rclcpp::Publisher<visualization_msgs::msg::Marker>> categories_;
   std::mutex planning_;  // serialises plans
-  std::unique_ptr<talus::GlobalPlanner> planner_;
+  std::optional<talus::Planner> planner_;
   std::mutex stopping_;  // guards the members below
   std::stop_source stop_;
   bool active_ = false;

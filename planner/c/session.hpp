@@ -6,20 +6,17 @@
 #include <stop_token>
 #include <unordered_map>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
-#include <talus/planner/plugin/global_planner.hpp>
+#include <talus/planner/plan/planner.hpp>
 
 namespace talus::planner {
 
-/// Session of the C interface: a map with its planner, telemetry intake and latest route. The mutex `work` is
+/// Session of the C interface: a map with its planner and latest route. The mutex `work` is
 /// locked while a call reads or changes the session.
 struct Session {
-  explicit Session(costmap::TraversabilityMap built)
-      : map(std::move(built)), intake(map, nullptr, {.settles = true}) {}
+  explicit Session(Map built, Planner own = Planner()) : map(std::move(built)), planner(std::move(own)) {}
 
-  costmap::TraversabilityMap map;
-  costmap::DriveIntake intake;
-  std::unique_ptr<GlobalPlanner> planner;
+  Map map;
+  Planner planner;
   Route route;
   std::mutex work;
 

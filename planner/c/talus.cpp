@@ -11,10 +11,8 @@
 #include <talus.h>
 
 #include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/map/map_file.hpp>
 #include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/planner/c/border.hpp>
-#include <talus/planner/plan/plan_route.hpp>
 #include <talus/terramech/contact/rover.hpp>
 #include <talus/terramech/contact/soil.hpp>
 
@@ -112,19 +110,6 @@ talus::PlannerSettings settingsOf(const talus_options& options) {
   return settings;
 }
 
-std::unique_ptr<talus::GlobalPlanner> plannerOf(const talus::PlannerSettings& settings) {
-  auto planner = talus::planner::makePlanner(settings.planner);
-  planner->configure(settings);
-  return planner;
-}
-
-talus_session opened(talus::costmap::TraversabilityMap map, std::unique_ptr<talus::GlobalPlanner> planner) {
-  auto made = std::make_shared<Session>(std::move(map));
-  made->planner = std::move(planner);
-  made->planner->set_map(made->map.published());
-  return sessions().add(std::move(made));
-}
-
 // A missing or impossible value does not remove the row: the other values of the moment are still checked for
 // danger.
 talus::terramech::Telemetry telemetryOf(const talus_wheel* rows, std::size_t count) {
@@ -196,8 +181,11 @@ talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* s
     const talus::maps::Grid cells = gridOf(grid);
     const talus_layers& given = layersOf(layers, cells);
     requirePointer(given.elevation_m, "layers.elevation_m");
-    auto planner = plannerOf(settings);
-    talus::costmap::MapLayers built;
+    talus::Planner planner(settings);
+    talus::Site site{.layers = {},
+                     .ground = talus::costmap::GroundModel(std::move(parts)),
+                     .options = {.threads = how.threads}};
+    talus::costmap::MapLayers& built = site.layers;
     built.elevation.elevation_m = rasterOf(given.elevation_m, cells);
     built.classes = rasterOf(given.classes, cells);
     built.rock_abundance = rasterOf(given.rock_abundance, cells);
@@ -207,11 +195,7 @@ talus_code talus_create_with_costs(const talus_rover* rover, const talus_soil* s
             "cost_count = " + std::to_string(cost_count) +
                 ", must be <= " + std::to_string(talus::costmap::CostLayer::kMostLayers));
     for (std::size_t i = 0; i < cost_count; ++i) built.costs.push_back(costOf(costs[i], cells));
-    *session =
-        opened(talus::costmap::TraversabilityMap(
-                   std::move(built), std::make_shared<const talus::costmap::GroundModel>(std::move(parts)),
-                   {.threads = how.threads}),
-               std::move(planner));
+    *session = sessions().add(std::make_shared<Session>(talus::Map(std::move(site)), std::move(planner)));
     return TALUS_OK;
   });
 }
@@ -223,8 +207,9 @@ talus_code talus_open(const char* path, const talus_options* options, talus_sess
     requirePointer(session, "session");
     const talus_options& how = read(options, "options");
     require(how.allow_unknown == 0, "options: allow_unknown is the map file's own here; set it to 0");
-    auto planner = plannerOf(settingsOf(how));
-    *session = opened(talus::costmap::readMap(path, how.threads), std::move(planner));
+    talus::Planner planner(settingsOf(how));
+    *session =
+        sessions().add(std::make_shared<Session>(talus::Map::read(path, how.threads), std::move(planner)));
     return TALUS_OK;
   });
 }
@@ -233,7 +218,7 @@ talus_code talus_save(talus_session session, const char* path, talus_error* erro
   return guarded(error, [&] {
     const Held held(session);
     requirePointer(path, "path");
-    talus::costmap::writeMap(held->map, path);
+    held->map.save(path);
     return TALUS_OK;
   });
 }
@@ -244,7 +229,7 @@ talus_code talus_patch(talus_session session, const talus_grid* grid, const talu
     const Held held(session);
     const talus::maps::Grid cells = gridOf(grid);
     const talus_layers& given = layersOf(layers, cells);
-    const talus::maps::Grid& map = held->map.grid();
+    const talus::maps::Grid& map = held->map.ground().grid();
     require(cells.width <= map.width && cells.height <= map.height,
             "a patch of " + std::to_string(cells.width) + " x " + std::to_string(cells.height) +
                 " cells reaches off the map of " + std::to_string(map.width) + " x " +
@@ -260,9 +245,8 @@ talus_code talus_patch(talus_session session, const talus_grid* grid, const talu
 talus_code talus_move(talus_session session, int east_tiles, int north_tiles, talus_error* error) {
   return guarded(error, [&] {
     const Held held(session);
-    auto moved = std::make_shared<Session>(held->map.moved({east_tiles, north_tiles}));
-    held->planner->set_map(moved->map.published());
-    moved->planner = std::move(held->planner);
+    auto moved =
+        std::make_shared<Session>(held->map.moved({east_tiles, north_tiles}), std::move(held->planner));
     require(sessions().replace(session, std::move(moved)),
             "session " + std::to_string(session) + " was destroyed meanwhile");
     return TALUS_OK;
@@ -273,7 +257,7 @@ talus_code talus_read_grid(talus_session session, talus_grid* grid, talus_error*
   return guarded(error, [&] {
     const Held held(session);
     read(grid, "grid");
-    const talus::maps::Grid& cells = held->map.grid();
+    const talus::maps::Grid& cells = held->map.ground().grid();
     *grid = {sizeof *grid,       cells.width,          cells.height,
              cells.resolution_m, cells.south_west.x_m, cells.south_west.y_m};
     return TALUS_OK;
@@ -287,10 +271,8 @@ talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t co
     requirePointer(rows, "rows");
     require(count > 0, "count = 0, must be > 0");
     const talus::terramech::Telemetry telemetry = telemetryOf(rows, count);
-    const std::size_t before = held->intake.report().used;
-    held->intake.add(telemetry);
-    held->map.publish();
-    if (used != nullptr) *used = held->intake.report().used - before;
+    const std::size_t more = held->map.learnPart(telemetry);
+    if (used != nullptr) *used = more;
     return TALUS_OK;
   });
 }
@@ -298,8 +280,7 @@ talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t co
 talus_code talus_settle(talus_session session, talus_error* error) {
   return guarded(error, [&] {
     const Held held(session);
-    held->intake.settle();
-    held->map.publish();
+    held->map.settle();
     return TALUS_OK;
   });
 }
@@ -318,24 +299,22 @@ talus_code talus_plan(talus_session session, const talus_request* request, talus
                               .goal = {asked.goal_x_m, asked.goal_y_m},
                               .tolerance_m = asked.tolerance_m};
     wanted.watch.stop = held->begin();
-    wanted.hazards = [&map = held->map](talus::maps::Cell cell) { return map.surface().hazards(cell); };
-    held->planner->update(held->map.published());
     held->route = {};
-    held->route = held->planner->plan(wanted);
-    const talus::planner::Route& route = held->route;
+    held->route = held->planner.plan(held->map, wanted);
+    const talus::Route& route = held->route;
     if (summary != nullptr) {
       *summary = talus_summary{};
       summary->size = sizeof *summary;
       summary->vertices = route.vertices.size();
-      summary->cost_J = route.summary.cost;
-      summary->lower_bound_J = route.summary.lower_bound;
-      summary->energy_J = route.summary.energy_J;
-      summary->time_s = route.summary.time_s;
-      summary->energy_p90_J = route.summary.energy_p90_J;
-      summary->time_p90_s = route.summary.time_p90_s;
-      summary->length_m = route.summary.length_m;
-      summary->max_slip = route.summary.max_slip;
-      summary->max_slope_rad = route.summary.max_slope_rad;
+      summary->cost_J = route.cost;
+      summary->lower_bound_J = route.lower_bound;
+      summary->energy_J = route.energy_J;
+      summary->time_s = route.time_s;
+      summary->energy_p90_J = route.energy_p90_J;
+      summary->time_p90_s = route.time_p90_s;
+      summary->length_m = route.length_m;
+      summary->max_slip = route.max_slip;
+      summary->max_slope_rad = route.max_slope_rad;
       if (!route.vertices.empty()) summary->immobilisation_risk = route.vertices.back().immobilisation_risk;
     }
     setError(error, route.reason);
@@ -372,7 +351,7 @@ talus_code talus_read_cells(talus_session session, int column, int row, int widt
   return guarded(error, [&] {
     const Held held(session);
     requirePointer(buffer, "buffer");
-    const talus::maps::Grid& grid = held->map.grid();
+    const talus::maps::Grid& grid = held->map.ground().grid();
     require(column >= 0 && row >= 0 && width > 0 && height > 0 && width <= grid.width - column &&
                 height <= grid.height - row,
             "the box reaches off the map of " + std::to_string(grid.width) + " x " +
@@ -380,7 +359,7 @@ talus_code talus_read_cells(talus_session session, int column, int row, int widt
     const std::size_t cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     require(capacity >= cells,
             "capacity = " + std::to_string(capacity) + ", must be >= " + std::to_string(cells));
-    talus::costmap::PlaceBeliefs beliefs(held->map);
+    talus::costmap::PlaceBeliefs beliefs(held->map.ground());
     for (int r = 0; r < height; ++r)
       for (int c = 0; c < width; ++c) {
         const talus::costmap::CellBelief b = beliefs.at({column + c, row + r});

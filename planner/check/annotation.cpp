@@ -331,7 +331,7 @@ void setForecast(Route& route, const costmap::CostGrid& map, const TurnCost& tur
     total *= ratio;
     return std::isnan(total) ? total : std::max(effort.p90 + certain, total);
   };
-  RouteSummary& made = route.summary;
+  RouteSummary& made = route;
   made.energy_p90_J = set(&RouteVertex::energy_J, made.energy_J, turns.energy_J, drive.energy_J);
   made.time_p90_s = set(&RouteVertex::time_s, made.time_s, turns.time_s, drive.time_s);
 }
@@ -371,19 +371,19 @@ Route annotated(const Plan& plan, const AnnotationInput& input) {
   route.obstruction = plan.obstruction;
   route.interrupted = plan.interrupted;
   route.goal = plan.goal;
-  route.summary.planner = input.planner;
+  route.planner = input.planner;
   if (plan.points.empty()) return route;
   Annotator annotator(input);
   driveAlong(plan.drive, input.map, annotator);
   if (plan.drive.legs.empty()) polylineAlong(plan.points, annotator);
   annotator.arrive(plan.points.back());
-  route.summary = annotator.summary();
-  route.summary.planner = input.planner;
-  if (!plan.drive.legs.empty()) route.summary.drive = shape(plan.drive);
-  route.summary.cost = plan.cost_J;
-  route.summary.lower_bound = plan.lower_bound_J;
-  route.summary.gap = gapOf(plan.cost_J, plan.lower_bound_J);
-  route.summary.proof_s = plan.proof_s;
+  static_cast<RouteSummary&>(route) = annotator.summary();
+  route.planner = input.planner;
+  if (!plan.drive.legs.empty()) route.drive = shape(plan.drive);
+  route.cost = plan.cost_J;
+  route.lower_bound = plan.lower_bound_J;
+  route.gap = gapOf(plan.cost_J, plan.lower_bound_J);
+  route.proof_s = plan.proof_s;
   route.vertices = std::move(annotator.vertices);
   setForecast(route, input.map, annotator.turns);
   setRisk(route, input.map, input.watch);
@@ -397,7 +397,7 @@ Route checkedRoute(const Plan& plan, const AnnotationInput& input) {
   auto found = drives ? violationsOfChords(input.map, plan.points) : violations(input.map, plan.points);
   if (found.empty() && drives) found = violations(input.map, plan.drive, input.kinematics.turning_radius_m);
   Route none;
-  none.summary.planner = input.planner;
+  none.planner = input.planner;
   if (!found.empty()) {
     none.reason = refusalText(found.front(), input.planner);
   } else {

@@ -14,14 +14,14 @@
 #include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/route.hpp>
 
-/// Interface of all planners. Talus' own planners are created by makePlanner() or called by
+/// Interface of all planners. Talus' own planners are called by
 /// plan/plan_route.hpp. A planner in a shared library is exported as an object named `talus_planner`
 /// (plugin/plugin_export.hpp) and is loaded by plugin/plugin_loader.hpp.
 namespace talus {
 
 /// Version of this interface. The number increases with every change of this file that is incompatible with
 /// older plugins or programs.
-inline constexpr int kPlannerInterfaceVersion = 8;
+inline constexpr int kPlannerInterfaceVersion = 9;
 
 /// Properties of a plugin (a shared library with planners), and capabilities of its configured planner.
 struct PlannerCapabilities {

@@ -16,8 +16,6 @@
 #include <talus/common/output_file.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/planner/plan/plan_route.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/python_map.hpp>
 #include <talus/terramech/io/soil_library.hpp>
@@ -69,7 +67,7 @@ std::vector<costmap::CostLayer> costsOf(const py::dict& given, const maps::Grid&
   return layers;
 }
 
-costmap::TraversabilityMap built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
+Map built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
   const maps::Grid grid = gridOf(layers.heights, "heights",
                                  {.resolution_m = ground.resolution_m, .south_west = ground.south_west});
   if (ground.threads < 1)
@@ -86,9 +84,9 @@ costmap::TraversabilityMap built(const PythonMap::Layers& layers, const PythonMa
   costmap::GroundModel::Parts parts{
       .rover = ground.rover, .classes = classesOf(ground.soils, ground.rover), .policy = ground.policy};
   const py::gil_scoped_release released;
-  return {std::move(made),
-          std::make_shared<const costmap::GroundModel>(std::move(parts)),
-          {.threads = ground.threads}};
+  return Map({.layers = std::move(made),
+              .ground = costmap::GroundModel(std::move(parts)),
+              .options = {.threads = ground.threads}});
 }
 
 // Writes columns to a temporary file, so that rows are checked in the same way as rows of a telemetry file.
@@ -189,17 +187,13 @@ std::size_t PythonMap::learn(const py::object& given) {
   const auto lock = held(*session_);
   const terramech::Telemetry telemetry = telemetryOf(given);
   const py::gil_scoped_release released;
-  const std::size_t before = session_->intake.report().used;
-  session_->intake.add(telemetry);
-  session_->map.publish();
-  return session_->intake.report().used - before;
+  return session_->map.learnPart(telemetry);
 }
 
 void PythonMap::settle() {
   const auto lock = held(*session_);
   const py::gil_scoped_release released;
-  session_->intake.settle();
-  session_->map.publish();
+  session_->map.settle();
 }
 
 std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads) {
@@ -207,7 +201,7 @@ std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads)
   std::unique_ptr<PythonMap> map;
   {
     const py::gil_scoped_release released;
-    map = std::make_unique<PythonMap>(costmap::readMap(path, threads));
+    map = std::make_unique<PythonMap>(Map::read(path, threads));
   }
   const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
   const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
@@ -221,7 +215,7 @@ std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads)
 void PythonMap::save(const std::string& path) const {
   const auto lock = held(*session_);
   const py::gil_scoped_release released;
-  costmap::writeMap(map(), path);
+  session_->map.save(path);
 }
 
 void PythonMap::writeRoute(const Route& route, const std::string& path) const {
@@ -236,24 +230,16 @@ void PythonMap::writeRoute(const Route& route, const std::string& path) const {
 Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& request,
                       const py::object& progress) {
   const auto lock = held(*session_);
-  std::unique_ptr<GlobalPlanner>& planner = session_->planner;
-  const bool same = planner && settings.planner == settings_.planner && settings.seed == settings_.seed &&
+  const bool same = settings.planner == settings_.planner && settings.seed == settings_.seed &&
                     settings.threads == settings_.threads && settings.time_limit_s == settings_.time_limit_s;
-  if (!same) {
-    auto next = makePlanner(settings.planner);
-    next->configure(settings);
-    next->set_map(map().published());
-    planner = std::move(next);
-    settings_ = settings;
-  }
+  if (!same) session_->planner = Planner(settings);
+  settings_ = settings;
   Route route;
   inBackground(
       [&](const ProgressMonitor& watch) {
         PlanRequest asked = request;
         asked.watch = watch;
-        asked.hazards = [&at = map()](maps::Cell cell) { return at.surface().hazards(cell); };
-        planner->update(map().published());
-        route = planner->plan(asked);
+        route = session_->planner.plan(session_->map, asked);
       },
       progress);
   return route;
@@ -262,7 +248,7 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
 PythonMap PythonMap::moved(maps::Cell tiles) const {
   const auto lock = held(*session_);
   const py::gil_scoped_release released;
-  PythonMap next(map().moved(tiles));
+  PythonMap next(session_->map.moved(tiles));
   next.files_ = files_;
   return next;
 }

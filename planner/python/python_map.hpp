@@ -32,11 +32,11 @@ class PythonMap {
     int threads = 1;                 ///< number of threads, >= 1
   };
   PythonMap(const Layers& layers, const Ground& ground);
-  explicit PythonMap(costmap::TraversabilityMap map) : session_(std::make_shared<Session>(std::move(map))) {}
+  explicit PythonMap(Map map) : session_(std::make_shared<Session>(std::move(map))) {}
   /// Reads a map file; `threads` is the number of threads, >= 1.
   static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
 
-  const costmap::TraversabilityMap& map() const noexcept { return session_->map; }
+  const costmap::TraversabilityMap& map() const noexcept { return session_->map.ground(); }
 
   /// Updates the layers in a window with the south-western corner `south_west`; heights may be None.
   void patch(const Layers& layers, maps::Point south_west);

@@ -139,7 +139,7 @@ struct RouteSummary {
 };
 
 /// Result of planning with all data for reports and controllers.
-struct Route {
+struct Route : RouteSummary {
   RouteStatus status = RouteStatus::NoneFound;
   /// One line with the reason and a remedy if there is no route; empty if the status is Found.
   std::string reason;
@@ -147,9 +147,11 @@ struct Route {
   std::optional<Obstruction> obstruction{};  ///< reason of NoRoute, if two required points are not connected
   std::size_t goal = 0;  ///< index of the reached goal: 0 is PlanRequest::goal, k > 0 is other_goals[k - 1]
   std::vector<RouteVertex> vertices;  ///< vertices from start to goal
-  RouteSummary summary;
   /// Route rejected by the route check, which is an error of the planner; else null.
   std::shared_ptr<const Route> refused{};
+
+  /// Returns true if the status is Found.
+  bool found() const noexcept { return status == RouteStatus::Found; }
 };
 
 }  // namespace talus::planner

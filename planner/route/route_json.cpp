@@ -53,7 +53,7 @@ void addVertices(Json& properties, const Route& route) {
   add("energy_J", &RouteVertex::energy_J);
   add("time_s", &RouteVertex::time_s);
   add("immobilisation_risk", &RouteVertex::immobilisation_risk);
-  if (!route.summary.drive) return;
+  if (!route.drive) return;
   add("curvature_1_m", &RouteVertex::curvature_1_m);
   add("turn_rad", &RouteVertex::turn_rad);
   properties["reverse"] = values(route, [](const RouteVertex& vertex) { return vertex.reverse; });
@@ -90,7 +90,7 @@ Json originJson(const RouteOrigin& origin) {
 }
 
 Json summaryJson(const Route& route) {
-  const RouteSummary& s = route.summary;
+  const RouteSummary& s = route;
   Json made;
   made["status"] = std::string(name(route.status));
   if (route.vertices.empty()) {

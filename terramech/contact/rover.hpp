@@ -31,6 +31,8 @@ struct Rover {
   double turning_radius_m = 0.0;       ///< smallest turning radius: 0 (turn in place) or in [0.001, 1000]
   double hotel_power_W = 0.0;          ///< electrical power that is independent of driving, in [0, 1e6]
   Steering steering = Steering::Skid;
+
+  bool operator==(const Rover&) const = default;
 };
 
 /// Returns the load m g / wheel_count [N] on one wheel on level ground.

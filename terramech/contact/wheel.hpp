@@ -12,6 +12,8 @@ struct Wheel {
   /// Fraction of Bekker's shear force on the side faces of the lugs that shearGain() includes, in [0, 5] [-];
   /// 0 for a smooth wheel.
   double lug_thrust = 0.0;
+
+  bool operator==(const Wheel&) const = default;
 };
 
 /// Default lug_thrust for a rover file that contains no value [-]: 1 (bekker_1969), with standard deviation

@@ -35,12 +35,10 @@ TraversabilityMap mapOf(const maps::ElevationMap& elevation, const char* soil, c
 }
 
 Route planned(const TraversabilityMap& map, maps::Point start, maps::Point goal) {
-  const auto field = planner::makePlanner("field");
-  field->set_map(map.published());
   PlanRequest request;
   request.start = start;
   request.goal = goal;
-  return field->plan(request);
+  return Planner().plan(map.published(), request);
 }
 
 // Shares of a route's length on which a map refuses the heading: for lack of side force, of pull, of either.
@@ -103,11 +101,10 @@ void run(const std::array<const char*, 3>& ground, int pairs, unsigned seed, con
     ++drawn;
     refused += share.any > 0.0 ? 1 : 0;
     without += after.status != RouteStatus::Found ? 1 : 0;
-    std::printf("%4d  %13.1f  %18.1f %% %5.1f %% %5.1f %%  ", drawn, before.summary.energy_J / 1e3,
-                100 * share.side, 100 * share.pull, 100 * share.any);
+    std::printf("%4d  %13.1f  %18.1f %% %5.1f %% %5.1f %%  ", drawn, before.energy_J / 1e3, 100 * share.side,
+                100 * share.pull, 100 * share.any);
     if (after.status == RouteStatus::Found)
-      std::printf("%12.1f  %5.1f %%\n", after.summary.energy_J / 1e3,
-                  100 * (after.summary.length_m / before.summary.length_m - 1));
+      std::printf("%12.1f  %5.1f %%\n", after.energy_J / 1e3, 100 * (after.length_m / before.length_m - 1));
     else
       std::printf("%s\n", std::string(name(after.status)).c_str());
     if (folder.empty()) continue;

@@ -50,15 +50,15 @@ planner::Route exampleRoute() {
     route.vertices.push_back(v);
   }
   const double length_m = 60.0 * std::hypot(8.0, 3.0);
-  route.summary = {.cost = 60000.0,
-                   .energy_J = 54000.0,
-                   .time_s = 10200.0,
-                   .length_m = length_m,
-                   .max_slip = 0.4,
-                   .max_slope_rad = 0.2,
-                   .lower_bound = 59000.0,
-                   .gap = 60000.0 / 59000.0 - 1.0,
-                   .planner = "field"};
+  static_cast<planner::RouteSummary&>(route) = {.cost = 60000.0,
+                                                .energy_J = 54000.0,
+                                                .time_s = 10200.0,
+                                                .length_m = length_m,
+                                                .max_slip = 0.4,
+                                                .max_slope_rad = 0.2,
+                                                .lower_bound = 59000.0,
+                                                .gap = 60000.0 / 59000.0 - 1.0,
+                                                .planner = "field"};
   return route;
 }
 

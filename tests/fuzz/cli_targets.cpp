@@ -43,12 +43,12 @@ void readOptions(const std::string& bytes) {
   }
   cli::checkNumbers(app);
   if (!plan.start.empty()) maps::parsePlace(plan.start);
-  if (!plan.ground.dem.window.empty()) maps::parseWindow(plan.ground.dem.window);
+  if (!plan.ground.elevation.window.empty()) maps::parseWindow(plan.ground.elevation.window);
 }
 
 void readMissionFile(const std::string& bytes) {
   cli::PlanOptions options;
-  options.ground.dem.path = fileOf(bytes, ".yaml");
+  options.ground.elevation.path = fileOf(bytes, ".yaml");
   cli::readMission(options);
 }
 

@@ -9,11 +9,11 @@ foreach(file ${files})
     message(SEND_ERROR "${file} is installed as a link")
   endif()
 endforeach()
-set(open talus/talus.hpp talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
+set(open talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
          talus/planner/simulation/simulation.hpp talus/planner/plugin/plugin_export.hpp
          talus/planner/plugin/request_check.hpp)
 if(OFFLINE)
-  list(APPEND open talus/terramech/terramech_io.hpp talus/terramech/calibration.hpp talus/maps/maps_io.hpp)
+  list(APPEND open talus/talus.hpp talus/terramech/terramech_io.hpp talus/terramech/calibration.hpp talus/maps/maps_io.hpp)
 endif()
 set(public "")
 while(open)

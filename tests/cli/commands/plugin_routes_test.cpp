@@ -113,7 +113,7 @@ TEST_F(PluginRoutes, UnusablePluginsAreRejectedWithOneLine) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     return ran.err;
   };
-  EXPECT_THAT(with(TALUS_OTHER_PLUGIN), HasSubstr("built for planner interface 99, this program has 8"));
+  EXPECT_THAT(with(TALUS_OTHER_PLUGIN), HasSubstr("built for planner interface 99, this program has 9"));
   EXPECT_THAT(with("none.so"), HasSubstr("none.so: no such file"));
   EXPECT_THAT(with("wall.asc"), HasSubstr("cannot be loaded"));
   EXPECT_THAT(with(TALUS_STRAIGHT_PLUGIN, {"--via", "20,4"}), HasSubstr("via is not honoured"));

@@ -15,7 +15,7 @@ TEST(PluginsCommand, BuiltInAndPluginCapabilitiesAreListed) {
   ASSERT_EQ(loaded.code, 0) << loaded.err;
   const auto json = nlohmann::json::parse(loaded.out);
   EXPECT_EQ(json["name"], "talus");
-  EXPECT_EQ(json["interface_version"], 8);
+  EXPECT_EQ(json["interface_version"], 9);
   EXPECT_EQ(json["planners"][0], "field");
   EXPECT_THAT(json["features"], ::testing::Contains("lower bound"));
 }

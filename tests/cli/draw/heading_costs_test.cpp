@@ -25,8 +25,8 @@ Ground steepSite(const Folder& folder) {
                  return hole ? -9999.0 : (1.0 + row / 25.0) * std::sin(column / 6.0) + (column == 30 ? 2 : 0);
                }));
   GroundOptions options;
-  options.dem.path = folder / "steep.asc";
-  options.dem.read.resolution_m = 1.0;
+  options.elevation.path = folder / "steep.asc";
+  options.elevation.read.resolution_m = 1.0;
   options.soil = "sandy_loam";
   options.rover = "fido";
   Context context;

@@ -378,7 +378,7 @@ TEST(Page, RoutesAreCompared) {
   Scene scene = sceneOf(exampleMap(), {.title = "two"});
   NamedRoute first{"<b>one", exampleRoute(), {}}, second{"two", exampleRoute(), {}};
   for (std::size_t i = 20; i < 40; ++i) second.route.vertices[i].y_m += 40.0;
-  second.route.summary.length_m *= 1.1;
+  second.route.length_m *= 1.1;
   compare(scene, {first, second});
   const Shown shown = show(played(scene, R"(
     const svg = document.querySelector("#charts svg"), box = svg.getBoundingClientRect();

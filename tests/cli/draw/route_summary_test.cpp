@@ -41,7 +41,7 @@ TEST(RouteSummary, UnknownValuesAreOmitted) {
 TEST(RouteSummary, ZeroLengthRouteIsReportedAsEmpty) {
   planner::Route route = exampleRoute();
   route.vertices.resize(1);
-  route.summary.length_m = route.summary.time_s = 0.0;
+  route.length_m = route.time_s = 0.0;
   EXPECT_EQ(summaryText(route),
             "route                empty: the start is at the goal, or within its tolerance\n");
 }

@@ -41,7 +41,7 @@ TEST(Scene, DifferingAndEqualFactsAreSeparated) {
   Scene scene = sceneOf(exampleMap(), {.title = "two"});
   NamedRoute first{"a", exampleRoute(), {{"soil", "sand"}, {"seed", "1"}}};
   NamedRoute second{"b", exampleRoute(), {{"soil", "clay"}, {"seed", "1"}}};
-  second.route.summary.energy_J = 60000.0;
+  second.route.energy_J = 60000.0;
   for (std::size_t i = 4; i < 7; ++i) second.route.vertices[i].y_m += 1e4;
   compare(scene, {first, second});
   std::vector<std::string> differing;

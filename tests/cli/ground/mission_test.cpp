@@ -19,7 +19,7 @@ constexpr const char* kMission =
     "tolerance_m: 1.5\ntime_s: 20\nstart_heading_deg: 90\nreverse: false\noutput: r.geojson\n";
 
 PlanOptions readIn(const Folder& folder, PlanOptions options = {}) {
-  options.ground.dem.path = folder.write("m.yaml", kMission);
+  options.ground.elevation.path = folder.write("m.yaml", kMission);
   readMission(options);
   return options;
 }
@@ -31,12 +31,12 @@ TEST(Mission, EveryMissionFieldIsRead) {
   folder.write("dem.tif", "x");
   folder.write("soils.yaml", "x");
   const PlanOptions plan = readIn(folder);
-  EXPECT_EQ(plan.ground.dem.path, folder / "dem.tif");
+  EXPECT_EQ(plan.ground.elevation.path, folder / "dem.tif");
   EXPECT_EQ(plan.ground.soils, folder / "soils.yaml");
-  EXPECT_EQ(plan.ground.layers.terrain, folder / "classes.tif");  // not read here
+  EXPECT_EQ(plan.ground.classes, folder / "classes.tif");  // not read here
   EXPECT_EQ(plan.ground.rover, "mer");
-  EXPECT_THAT(plan.ground.layers.keep_out, ElementsAre(folder / "area.json"));
-  EXPECT_EQ(plan.ground.dem.read.resolution_m, 2.0);
+  EXPECT_THAT(plan.ground.keep_out, ElementsAre(folder / "area.json"));
+  EXPECT_EQ(plan.ground.elevation.read.resolution_m, 2.0);
   EXPECT_NEAR(plan.ground.policy.slope_margin_rad, 10.0 * kDegree, 1e-12);
   EXPECT_EQ(plan.ground.policy.risk_weight_J, 5e6);
   EXPECT_EQ(plan.planner, "hybrid");
@@ -55,7 +55,7 @@ TEST(Mission, CommandLineOverridesTheMission) {
   const Folder folder;
   PlanOptions said;
   said.ground.rover = "fido";
-  said.ground.dem.read.resolution_m = 0.5;
+  said.ground.elevation.read.resolution_m = 0.5;
   said.ground.policy.allow_marginal = false;
   said.ground.policy.risk_weight_J = 7e8;
   said.goals = {"3,3"};
@@ -64,7 +64,7 @@ TEST(Mission, CommandLineOverridesTheMission) {
   said.drive.start_heading_rad = 0.1;
   const PlanOptions plan = readIn(folder, said);
   EXPECT_EQ(plan.ground.rover, "fido");
-  EXPECT_EQ(plan.ground.dem.read.resolution_m, 0.5);
+  EXPECT_EQ(plan.ground.elevation.read.resolution_m, 0.5);
   EXPECT_FALSE(plan.ground.policy.allow_marginal);
   EXPECT_EQ(plan.ground.policy.risk_weight_J, 7e8);
   EXPECT_EQ(plan.ground.policy.time_weight_W, 3.0);  // not given on the command line
@@ -79,7 +79,7 @@ TEST(Mission, ErrorsNameFileAndField) {
   const auto refused = [&folder](const std::string& text) {
     return [path = folder.write("bad.yaml", text)] {
       PlanOptions options;
-      options.ground.dem.path = path;
+      options.ground.elevation.path = path;
       readMission(options);
     };
   };

@@ -14,8 +14,8 @@ double rolling(int column, int row) {
 
 GroundOptions options(const Folder& folder) {
   GroundOptions made;
-  made.dem.path = folder.write("dem.asc", asciiGrid(200, 150, rolling));
-  made.dem.read.resolution_m = 1.0;
+  made.elevation.path = folder.write("dem.asc", asciiGrid(200, 150, rolling));
+  made.elevation.read.resolution_m = 1.0;
   made.soil = "sandy_loam";
   made.rover = "fido";
   return made;

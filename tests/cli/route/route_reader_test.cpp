@@ -46,8 +46,8 @@ TEST(RouteReader, WrittenRouteIsReadExactly) {
     EXPECT_EQ(back.vertices[i].energy_J, route.vertices[i].energy_J);
     EXPECT_EQ(back.vertices[i].category, route.vertices[i].category);
   }
-  EXPECT_EQ(back.summary.cost, route.summary.cost);
-  EXPECT_EQ(back.summary.planner, route.summary.planner);
+  EXPECT_EQ(back.cost, route.cost);
+  EXPECT_EQ(back.planner, route.planner);
 }
 
 TEST(RouteReader, ErrorsNameFileAndField) {

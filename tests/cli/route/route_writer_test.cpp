@@ -55,7 +55,7 @@ TEST(RouteWriter, GeoPackageRoundTripsAsARoute) {
   const RouteFile back = readRoute(path);
   ASSERT_EQ(back.route.vertices.size(), route.vertices.size());
   EXPECT_EQ(back.route.vertices[5].slip, route.vertices[5].slip);
-  EXPECT_EQ(back.route.summary.energy_J, route.summary.energy_J);
+  EXPECT_EQ(back.route.energy_J, route.energy_J);
   std::map<std::string, int> types;
   maps::visitVector(path, mapOf(maps::kMoon), [&](const std::string&, const OGRGeometry* drawn) {
     if (drawn != nullptr) ++types[OGRToOGCGeomType(drawn->getGeometryType())];

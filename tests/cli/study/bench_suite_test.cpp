@@ -33,7 +33,7 @@ TEST(BenchSuite, PairsAreDistantConnectedAndReproducible) {
                    other.write("dem.asc", asciiGrid(60, 50, rolling))};
   options.pairs = 2;
   options.turning_radius_m = 2.5;
-  options.ground.dem.read.resolution_m = 1.0;
+  options.ground.elevation.read.resolution_m = 1.0;
   options.ground.soil = "sandy_loam";
   options.ground.rover = "fido";
   const auto cases = suiteCases(options, quiet()), again = suiteCases(options, quiet());

@@ -46,13 +46,13 @@ TEST(Annotation, VerticesLieOnCellBorders) {
   EXPECT_EQ(slope.category, terramech::Category::Safe);
   EXPECT_NEAR(slope.energy_J, 15.0, 1e-6);
   // Closed form: 3 m at 10 J/m and 25 J of climbing; 2 s/m; 1 - exp(-0.03).
-  EXPECT_NEAR(route.summary.energy_J, 55.0, 1e-5);
+  EXPECT_NEAR(route.energy_J, 55.0, 1e-5);
   EXPECT_NEAR(route.vertices.back().energy_J, 55.0, 1e-5);
-  EXPECT_NEAR(route.summary.time_s, 6.0, 1e-6);
+  EXPECT_NEAR(route.time_s, 6.0, 1e-6);
   EXPECT_NEAR(route.vertices.back().immobilisation_risk, 1 - std::exp(-0.03), 1e-6);
-  EXPECT_EQ(route.summary.length_m, 3.0);
-  EXPECT_NEAR(route.summary.max_slip, 0.25, 1e-6);
-  EXPECT_NEAR(route.summary.gap, 1.0, 1e-12);
+  EXPECT_EQ(route.length_m, 3.0);
+  EXPECT_NEAR(route.max_slip, 0.25, 1e-6);
+  EXPECT_NEAR(route.gap, 1.0, 1e-12);
 }
 
 // Property: annotating the vertices of a route again yields the same route, although vertices lie on sides
@@ -104,14 +104,14 @@ TEST(Annotation, ReversedRouteHasNegatedSlopes) {
   const Route route = annotated(back, {.map = *map});
   EXPECT_NEAR(route.vertices[1].slope_along_rad, -std::atan(0.25), 1e-12);
   EXPECT_NEAR(route.vertices[1].heading_rad, std::numbers::pi, 1e-12);
-  EXPECT_NEAR(route.summary.energy_J, 30.0, 1e-5);
+  EXPECT_NEAR(route.energy_J, 30.0, 1e-5);
 }
 
 TEST(Annotation, ZeroLengthRouteHasOneVertex) {
   const auto map = mapWithStates();
   const Route route = annotated({RouteStatus::Found, {}, {{0.5, 0.5}}, 0.0, 0.0}, {.map = *map});
   EXPECT_EQ(route.vertices.size(), 1U);
-  EXPECT_EQ(route.summary.gap, 0.0);
+  EXPECT_EQ(route.gap, 0.0);
 }
 
 }  // namespace annotation_test

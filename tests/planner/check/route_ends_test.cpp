@@ -11,7 +11,7 @@
 #include <talus/costmap/map/traversability_map.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_ends.hpp>
-#include <talus/planner/plan/plan_route.hpp>
+#include <talus/planner/plan/planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -114,7 +114,7 @@ TEST(RouteEnds, PlannedRouteEndsWithNoWheelOnAKeepOutArea) {
     const costmap::TraversabilityMap map(one, costmap::testGround(), {});
     PlanRequest request{.start = {102.25, 51.59}, .goal = {104.05, 53.99}};
     request.hazards = [&map](maps::Cell cell) { return map.surface().hazards(cell); };
-    const Route route = planRoute(map.published(), request);
+    const Route route = Planner().plan(map.published(), request);
     EXPECT_EQ(route.status, kept_out ? RouteStatus::NoneFound : RouteStatus::Found) << route.reason;
     EXPECT_THAT(route.reason, HasSubstr(kept_out ? "on ground to avoid at the end 104.05,53.99" : ""));
   }

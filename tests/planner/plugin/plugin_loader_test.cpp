@@ -34,7 +34,7 @@ TEST(PluginLoader, LoadsAPluginAndPlans) {
   request.goal = {3.5, 1.5};
   const Route route = planner->plan(request);
   ASSERT_EQ(route.status, RouteStatus::Found) << route.reason;
-  EXPECT_EQ(route.summary.planner, "field");
+  EXPECT_EQ(route.planner, "field");
   EXPECT_GE(route.vertices.size(), 4u);  // Property: a detour around two cells has two turns or more
 }
 
@@ -50,7 +50,7 @@ TEST(PluginLoader, LibraryStaysLoadedWhileItsPlannersExist) {
 TEST(PluginLoader, OtherInterfaceVersionIsRejected) {
   EXPECT_THAT([] { loadPlugin(TALUS_OTHER_PLUGIN); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("built for planner interface 99"),
-                                              HasSubstr("this program has 8"), HasSubstr("rebuild"))));
+                                              HasSubstr("this program has 9"), HasSubstr("rebuild"))));
 }
 
 // The dynamic linker ends the process without a signal if the table of relative relocations contains another

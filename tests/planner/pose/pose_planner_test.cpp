@@ -135,11 +135,11 @@ TEST(PosePlanner, ReportCountsTurns) {
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * std::numbers::pi / 2, 1e-3);
   const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
-  EXPECT_NEAR(route.summary.energy_J, 6.0 + 4.0 * std::numbers::pi / 2,
+  EXPECT_NEAR(route.energy_J, 6.0 + 4.0 * std::numbers::pi / 2,
               1e-9);  // the drawn map has no energy table
-  EXPECT_NEAR(route.summary.time_s, 2.0 + std::numbers::pi / 2, 1e-9);
-  ASSERT_TRUE(route.summary.drive.has_value());
-  EXPECT_EQ(route.summary.drive->turns_in_place, 1);
+  EXPECT_NEAR(route.time_s, 2.0 + std::numbers::pi / 2, 1e-9);
+  ASSERT_TRUE(route.drive.has_value());
+  EXPECT_EQ(route.drive->turns_in_place, 1);
   EXPECT_NEAR(route.vertices.front().turn_rad, -std::numbers::pi / 2, 1e-9);
   EXPECT_NEAR(route.vertices.front().heading_rad, std::numbers::pi / 2, 1e-9);
   EXPECT_NEAR(route.vertices[1].heading_rad, 0.0, 1e-9);

@@ -75,7 +75,7 @@ TEST(RouteJson, DriveFieldsArePresentForDrivesOnly) {
   Route route = exampleRoute();
   EXPECT_FALSE(summaryJson(route).contains("drive"));
   EXPECT_FALSE(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"].contains("reverse"));
-  route.summary.drive = RouteShape{.cusps = 2, .turns_in_place = 1};
+  route.drive = RouteShape{.cusps = 2, .turns_in_place = 1};
   EXPECT_EQ(summaryJson(route)["drive"]["cusps"], 2);
   EXPECT_EQ(routeGeoJson(route, exampleMap(), {})["features"][0]["properties"]["reverse"].size(),
             route.vertices.size());

@@ -37,7 +37,7 @@ TEST(Forecast, EnergyAndTimeOfDrivesAreAsForecast) {
     NamedPlanner planner;
     const Plan plan = planner.plan({.map = grid, .start = start, .goal = goal, .prove = false});
     ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
-    const RouteSummary forecast = annotated(plan, {.map = *grid, .planner = "field"}).summary;
+    const RouteSummary forecast = annotated(plan, {.map = *grid, .planner = "field"});
     double sum = 0.0, squares = 0.0, time_s = 0.0, within = 0.0, arrived = 0.0;
     for (const WorldResult& world :
          site.worlds({.belief = SoilKnowledge::Prior, .first = 0, .count = kWorlds})) {

@@ -9,15 +9,16 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/ground/stated_costs.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/costmap/cost/travel_states.hpp>
+#include <talus/maps/raster/layer_reader.hpp>
+#include <talus/planner/site/stated_costs.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
-namespace talus::cli {
+namespace talus {
 namespace {
 
 using costmap::TravelCurve;
@@ -122,33 +123,33 @@ std::shared_ptr<const costmap::TravelStates> statesOf(const Rows& rows, const co
 }
 
 // Costs of the cells [1/m]; infinite: impassable; NaN: no data.
-maps::ElevationMap costsOf(const MapOptions& options, const Context& context) {
-  MapOptions raster = options;
+maps::ElevationMap costsOf(const ElevationFile& file, const SiteReading& reading) {
+  ElevationFile raster = file;
   raster.read.keep_holes = true;
-  if (options.read.vertical_scale)
+  if (file.read.vertical_scale)
     throw InputError({"--vertical-scale", "does not apply to costs", "remove it"});
-  if (!options.path.ends_with(".yaml")) {
-    maps::ElevationMap map = readMap(raster, context);
+  if (!file.path.ends_with(".yaml")) {
+    maps::ElevationMap map = readMap(raster, reading);
     // a cell has the greatest cost of all pixels that it overlaps, and no data if one of them has none
-    map.elevation_m = maps::readAddedJoules({options.path, options.read.band}, map).J_per_m;
+    map.elevation_m = maps::readAddedJoules({file.path, file.read.band}, map).J_per_m;
     return map;
   }
-  if (options.read.resolution_m)
+  if (file.read.resolution_m)
     throw InputError({"--resolution", "does not apply to a Nav2 map, which states its own", "remove it"});
-  const auto file = terramech::YamlFields::file(options.path);
-  file.only({"image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"});
-  const auto origin = file.numbers("origin");
+  const auto yaml = terramech::YamlFields::file(file.path);
+  yaml.only({"image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"});
+  const auto origin = yaml.numbers("origin");
   if (origin.size() != 3 || origin[2] != 0.0)
-    file.refuse("origin", "origin must be [x, y, 0]: a turned map is not read",
+    yaml.refuse("origin", "origin must be [x, y, 0]: a turned map is not read",
                 "write the map without a yaw");
-  if (file.word("mode", "trinary") != "trinary") file.refuse("mode", "mode must be trinary", "write it so");
-  raster.path = (std::filesystem::path(options.path).parent_path() / file.word("image")).string();
-  raster.read.resolution_m = file.number("resolution");
-  maps::ElevationMap map = readMap(raster, context);
-  const int negate = file.integer("negate", 0);
-  const double occupied = file.number("occupied_thresh", 0.65), free = file.number("free_thresh", 0.25);
+  if (yaml.word("mode", "trinary") != "trinary") yaml.refuse("mode", "mode must be trinary", "write it so");
+  raster.path = (std::filesystem::path(file.path).parent_path() / yaml.word("image")).string();
+  raster.read.resolution_m = yaml.number("resolution");
+  maps::ElevationMap map = readMap(raster, reading);
+  const int negate = yaml.integer("negate", 0);
+  const double occupied = yaml.number("occupied_thresh", 0.65), free = yaml.number("free_thresh", 0.25);
   if (!(free >= 0.0 && free <= occupied && occupied <= 1.0) || (negate != 0 && negate != 1))
-    file.refuse("occupied_thresh",
+    yaml.refuse("occupied_thresh",
                 "thresholds must be 0 <= free_thresh <= occupied_thresh <= 1, negate 0 or 1",
                 "correct the file");
   for (float& value : map.elevation_m.values()) {
@@ -216,10 +217,10 @@ CostCurves readCostCurves(const std::string& path) {
   return curves;
 }
 
-CostRaster readCostRaster(const MapOptions& options, const Context& context) {
-  CostRaster out{.map = costsOf(options, context), .classes = {}, .costs = {}};
+CostRaster readCostRaster(const ElevationFile& file, const SiteReading& reading) {
+  CostRaster out{.map = costsOf(file, reading), .classes = {}, .costs = {}};
   std::vector<float>& values = out.map.elevation_m.values();
-  const std::vector<float> levels = levelsOf(values, options.path);
+  const std::vector<float> levels = levelsOf(values, file.path);
   out.classes = maps::Raster<std::uint8_t>(out.map.grid(), maps::kNoClass);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
@@ -234,4 +235,4 @@ CostRaster readCostRaster(const MapOptions& options, const Context& context) {
   return out;
 }
 
-}  // namespace talus::cli
+}  // namespace talus

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <talus/cli/ground/map_options.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/planner/site/elevation_file.hpp>
 
 /// Costs that are stated in place of a rover and soils.
-namespace talus::cli {
+namespace talus {
 
 /// Costs per horizontal metre that a file states, by class number. `classed` is false for a file without a column
 /// `class`; its one class has the number 0.
@@ -36,9 +36,9 @@ struct CostRaster {
 /// Class number of cells that no heading may enter.
 inline constexpr std::uint8_t kRefusedCost = 254;
 
-/// Reads `options.path`: a raster of costs per metre, above 0, where infinite is impassable; or the YAML file of a Nav2
+/// Reads `file.path`: a raster of costs per metre, above 0, where infinite is impassable; or the YAML file of a Nav2
 /// map (image, resolution, origin, negate, occupied_thresh, free_thresh), whose free cells cost 1 a metre and whose
 /// occupied cells are impassable. @throws InputError
-CostRaster readCostRaster(const MapOptions& options, const Context& context);
+CostRaster readCostRaster(const ElevationFile& file, const SiteReading& reading);
 
-}  // namespace talus::cli
+}  // namespace talus

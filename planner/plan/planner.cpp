@@ -1,0 +1,130 @@
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/chassis_planner.hpp>
+#include <talus/planner/grid/windowed_plan.hpp>
+#include <talus/planner/plan/named_planner.hpp>
+#include <talus/planner/plan/planner.hpp>
+#include <talus/planner/plan/risk_planner.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
+#include <talus/planner/plugin/request_check.hpp>
+#include <talus/planner/route/planner_names.hpp>
+
+namespace talus {
+
+using planner::NamedPlanner;
+using planner::Plan;
+using planner::PluginPlanner;
+using planner::Problem;
+
+using Choice = std::variant<std::unique_ptr<NamedPlanner>, PluginPlanner>;
+
+struct Planner::State {
+  PlannerSettings settings;
+  Choice planner;
+
+  // Returns the planning problem of a request, without its chassis and risk limit.
+  Problem problemOf(std::shared_ptr<const costmap::CostGrid> map, const PlanRequest& request) const {
+    return {.map = std::move(map),
+            .start = request.start,
+            .goal = request.goal,
+            .other_goals = request.other_goals,
+            .goal_tolerance_m = request.tolerance_m,
+            .via = request.via,
+            .time_limit_s = settings.time_limit_s,
+            .seed = settings.seed,
+            .threads = settings.threads,
+            .prove = request.prove,
+            .gap = request.gap,
+            .hazards = request.hazards,
+            .whole_field = settings.whole_field,
+            .watch = request.watch,
+            .start_heading_rad = request.start_heading_rad,
+            .goal_heading_rad = request.goal_heading_rad,
+            .kinematics = request.kinematics.value_or(planner::Kinematics{})};
+  }
+
+  Plan search(const Problem& problem, const PlanRequest& request) {
+    const auto once = [&](const Problem& asked) {
+      if (const auto* plugin = std::get_if<PluginPlanner>(&planner)) return plugin->plan(asked);
+      NamedPlanner& own = *std::get<0>(planner);
+      if (!request.risk_limit) return own.plan(asked);
+      return planner::planWithinRisk(asked, own, request.risk_limit->immobilisation);
+    };
+    return request.chassis ? planner::planOnChassis(problem, *request.chassis, once) : once(problem);
+  }
+};
+
+namespace {
+
+Choice planned(const std::string& name, const std::string& plugin) {
+  if (plugin.empty()) return std::make_unique<NamedPlanner>(name);
+  return PluginPlanner(plugin, name);
+}
+
+}  // namespace
+
+Planner::Planner(const PlannerSettings& settings, const std::string& plugin)
+    : state_(new State{planner::validated(settings), planned(settings.planner, plugin)}) {}
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+Planner::~Planner() = default;
+
+const std::string& Planner::name() const noexcept {
+  const auto* plugin = std::get_if<PluginPlanner>(&state_->planner);
+  return plugin ? plugin->name() : std::get<0>(state_->planner)->name();
+}
+
+PlannerCapabilities Planner::capabilities() const {
+  const auto* own = std::get_if<0>(&state_->planner);
+  const bool drives = !own || (*own)->drives();
+  return {.name = "talus",
+          .version = TALUS_VERSION,
+          .planners = planner::plannerNames(),
+          .planner = name(),
+          .heading_dependent = true,
+          .lower_bound = true,
+          .via_points = true,
+          .several_goals = true,
+          .headings = drives,
+          .turning_radius = drives,
+          .reversing = drives,
+          .chassis = true,
+          .risk_limit = own != nullptr,
+          .incremental_update = true,
+          .deterministic = true};
+}
+
+Route Planner::plan(const Map& map, PlanRequest request) {
+  request.hazards = [&at = map.ground()](maps::Cell cell) { return at.surface().hazards(cell); };
+  return plan(map.ground().published(), request);
+}
+
+Route Planner::plan(const std::shared_ptr<const costmap::CostGrid>& map, const PlanRequest& request) {
+  if (!map) throw std::invalid_argument("plan: no map");
+  planner::requireHonoured(request, capabilities());
+  const Problem problem = state_->problemOf(map, request);
+  return planner::checkedRoute(state_->search(problem, request), {.map = *map,
+                                                                  .planner = name(),
+                                                                  .kinematics = problem.kinematics,
+                                                                  .hazards = problem.hazards,
+                                                                  .watch = problem.watch});
+}
+
+Route Planner::plan(planner::WindowedMap& map, const PlanRequest& request) {
+  if (name() != planner::plannerNames().front())
+    throw std::invalid_argument("PlannerSettings: planner '" + name() + "' does not plan in windows; use '" +
+                                planner::plannerNames().front() + "'");
+  planner::requireHonoured(request, {.name = "talus, in windows", .planner = name(), .via_points = true});
+  Problem problem = state_->problemOf(map.overview(), request);
+  const Plan plan = planner::planInWindows(problem, map);  // sets problem.map
+  return planner::checkedRoute(plan, {.map = *problem.map,
+                                      .elevation_m = [&map](maps::Point p) { return map.elevation_m(p); },
+                                      .planner = name(),
+                                      .kinematics = problem.kinematics,
+                                      .watch = request.watch});
+}
+
+}  // namespace talus
