@@ -32,7 +32,6 @@ struct Node {
   std::uint32_t parent = kNone;
   std::int16_t heading = 0;   // index of the heading
   std::int8_t direction = 0;  // direction of travel: +1 forward, -1 reverse, 0 not moved yet
-  bool stands = false;        // the motion that led to the node has passed the check
 };
 
 struct Queued {
@@ -110,13 +109,20 @@ class HybridAStar {
     for (int k = 0; k < ways; ++k) offer({.place = problem_.start, .heading = static_cast<std::int16_t>(k)});
   }
 
-  // The node's motion was priced approximately; the exact cost is checked at expansion.
-  bool stands(const Node& node) const {
-    return !node.motion || cost_(poseOf(nodes_[node.parent]), node.motion->leg) < kInfinity;
+  // The node's motion was priced approximately. At expansion its exact cost along chords and the check follow, in
+  // which its arc passes all headings between those of the chords.
+  bool stands(std::uint32_t index) const {
+    const Node& node = nodes_[index];
+    return !node.motion || (cost_(poseOf(nodes_[node.parent]), node.motion->leg) < kInfinity &&
+                            checked(pathFrom(before(node.parent), index)));
+  }
+
+  std::uint32_t before(std::uint32_t index) const {
+    return nodes_[index].motion ? nodes_[index].parent : index;
   }
 
   void expand(std::uint32_t index) {
-    if (!stands(nodes_[index])) {
+    if (!stands(index)) {
       best(nodes_[index]) = std::numeric_limits<float>::infinity();
       return;
     }
@@ -188,24 +194,14 @@ class HybridAStar {
     const double so_far = static_cast<double>(node.cost) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
     if (so_far + cheapest_J_per_m_ * length_m(rest) >= best_cost_) return;
     const double cost = so_far + cost_(rest);
-    if (cost >= best_cost_ || !standsUp(index, rest.legs)) return;
+    if (cost >= best_cost_) return;
+    PosePath last = pathFrom(before(index), index);
+    last.legs.insert(last.legs.end(), rest.legs.begin(), rest.legs.end());
+    if (!checked(last)) return;
     if (last_ != kNever && cost < kBetter * best_cost_) last_ = expanded_ + options_.improve;
     best_cost_ = cost;
     best_node_ = index;
     best_finish_ = std::move(rest.legs);
-  }
-
-  // Returns true if the drive through a node passes the check. Each leg is checked once, together with the
-  // previous leg, because the check includes the turn between them.
-  bool standsUp(std::uint32_t index, const std::vector<PosePath::Leg>& finish) {
-    std::uint32_t from = index;
-    while (nodes_[from].motion && !nodes_[from].stands) from = nodes_[from].parent;
-    if (from != index && !checked(pathFrom(nodes_[from].motion ? nodes_[from].parent : from, index)))
-      return false;
-    for (std::uint32_t at = index; at != from; at = nodes_[at].parent) nodes_[at].stands = true;
-    PosePath last = pathFrom(nodes_[index].motion ? nodes_[index].parent : index, index);
-    last.legs.insert(last.legs.end(), finish.begin(), finish.end());
-    return checked(last);
   }
 
   const PoseProblem& problem_;
@@ -349,7 +345,8 @@ double MotionSet::quickCost(const Motion& motion, maps::Point from) const noexce
 bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics) {
   std::vector<maps::Point> points;
   for (const Pose& pose : chords(path, map)) points.push_back(pose.place);
-  return violations(map, path, kinematics.turning_radius_m).empty() && violations(map, points).empty();
+  return violations(map, path, kinematics.turning_radius_m).empty() &&
+         violationsOfChords(map, points).empty();
 }
 
 HybridSearch::HybridSearch(const HybridOptions& options) : options_(options) {
