@@ -205,12 +205,6 @@ struct PlacePair {
   std::optional<double> goal_heading_rad;
 };
 
-/// Settings that apply to all pairs.
-struct PairedRequest {
-  std::shared_ptr<const costmap::CostGrid> map;
-  PlanRequest request;  ///< request without start and goal; a heading of a pair replaces that of the request
-};
-
 constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
                               "goal_y_m",  "start_heading_rad", "goal_heading_rad"};
 constexpr std::size_t kNeeded = 4;
@@ -230,15 +224,15 @@ std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::str
   return found;
 }
 
-Json planned(const PlacePair& pair, const PairedRequest& common, Planner& planner) {
-  PlanRequest request = common.request;
+Json planned(const PlacePair& pair, const std::shared_ptr<const costmap::CostGrid>& map, PlanRequest request,
+             Planner& planner) {
   request.watch.progress = {};
   request.start = pair.start;
   request.goal = pair.goal;
   const bool headings = planner.capabilities().headings;
   if (headings && pair.start_heading_rad) request.start_heading_rad = pair.start_heading_rad;
   if (headings && pair.goal_heading_rad) request.goal_heading_rad = pair.goal_heading_rad;
-  const Route route = planner.plan(common.map, request);
+  const Route route = planner.plan(map, request);
   Json line = summaryJson(route);
   if (route.status != planner::RouteStatus::Found) line["reason"] = route.reason;
   return line;
@@ -281,29 +275,7 @@ std::vector<PlacePair> readPairs(const std::string& path) {
   return pairs;
 }
 
-/// Plans the routes of the pairs of a part, distributed over the ranks of the campaign. Returns one JSON object per
-/// pair in order: the output of `talus plan --json` with `pair`, or status, planner and `reason` if there is
-/// no route. An error in one pair becomes the reason of that pair and stops no other pair. Returns an empty
-/// vector on ranks other than 0.
-std::vector<Json> planPairs(const std::vector<PlacePair>& pairs, const PairedRequest& common,
-                            Planner& planner, const Campaign& campaign, const Part& part) {
-  const std::vector<std::size_t> own = part.of(pairs.size());
-  const auto outcomes = campaign.run(
-      own.size(), [&](std::size_t i) { return jsonText(planned(pairs[own[i]], common, planner)); },
-      common.request.watch);
-  std::vector<Json> lines;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    Json line{{"pair", own[i] + 1}};
-    if (outcomes[i].failed)
-      line.update(Json{{"status", "failed"}, {"reason", outcomes[i].text}});
-    else
-      line.update(Json::parse(outcomes[i].text));
-    lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-/// Returns the results of planPairs() as CSV: pair, status, planner, cost, energy_J, time_s, length_m,
+/// Returns results of pairs as CSV: pair, status, planner, cost, energy_J, time_s, length_m,
 /// max_slip, max_slope_rad, lower_bound, gap, immobilisation_risk, reason.
 std::string pairsCsv(const std::vector<Json>& lines) {
   constexpr std::array keys{"pair",          "status",      "planner",  "cost",
@@ -321,17 +293,26 @@ std::string pairsCsv(const std::vector<Json>& lines) {
   return text;
 }
 
-// Plans many routes on one map, distributed over the ranks of an MPI run.
+// Plans many routes on one map, distributed over the ranks of an MPI run. An error in one pair becomes its reason and
+// stops no other pair.
 int runPairs(const PlanOptions& options, Planner& planner, Context& context) {
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   const auto pairs = readPairs(options.pairs);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const auto lines = planPairs(
-      pairs,
-      {.map = ground.map.published(), .request = requestOf(options, planner.capabilities(), ground, context)},
-      planner, campaign, Part(options.part));
+  const auto map = ground.map.published();
+  const PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
+  const std::vector<std::size_t> own = Part(options.part).of(pairs.size());
+  const auto outcomes = campaign.run(
+      own.size(), [&](std::size_t i) { return jsonText(planned(pairs[own[i]], map, request, planner)); },
+      request.watch);
+  std::vector<Json> lines;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    lines.push_back({{"pair", own[i] + 1}});
+    lines.back().update(outcomes[i].failed ? Json{{"status", "failed"}, {"reason", outcomes[i].text}}
+                                           : Json::parse(outcomes[i].text));
+  }
   if (!campaign.leads()) return Exit::kDone;
   if (context.stop.stop_requested()) return Exit::kCancelled;
   if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));

@@ -116,9 +116,9 @@ std::optional<costmap::TraversabilityMap> missionMap(const RouteFile& file, cons
     std::string other;
     const auto found = findInput(input, route_path, other);
     if (!found) return std::nullopt;
-    if (input.role == "mission") plan.ground.dem.path = *found;
+    if (input.role == "mission") plan.ground.elevation.path = *found;
   }
-  if (plan.ground.dem.path.empty()) return std::nullopt;
+  if (plan.ground.elevation.path.empty()) return std::nullopt;
   readMission(plan);
   return readGround(plan.ground, context).map;
 }

@@ -177,14 +177,13 @@ using planner::Route;
 using planner::RouteVertex;
 using terramech::Category;
 constexpr Quantity kQuantities[] = {
-    {"length", [](const Route& r) { return r.summary.length_m; }, lengthText},
-    {"driving time", [](const Route& r) { return r.summary.time_s; }, durationText},
-    {"energy", [](const Route& r) { return r.summary.energy_J; }, energyText},
-    {"cost with time, risk", [](const Route& r) { return r.summary.cost; }, energyText},
-    {"max slip", [](const Route& r) { return r.summary.max_slip; },
+    {"length", [](const Route& r) { return r.length_m; }, lengthText},
+    {"driving time", [](const Route& r) { return r.time_s; }, durationText},
+    {"energy", [](const Route& r) { return r.energy_J; }, energyText},
+    {"cost with time, risk", [](const Route& r) { return r.cost; }, energyText},
+    {"max slip", [](const Route& r) { return r.max_slip; },
      [](double slip) { return fmt::format("{:.2f}", slip); }},
-    {"max slope",
-     [](const Route& r) { return std::max(r.summary.max_slope_rad, r.summary.max_slope_across_rad); },
+    {"max slope", [](const Route& r) { return std::max(r.max_slope_rad, r.max_slope_across_rad); },
      [](double slope_rad) { return fmt::format("{:.1f} deg", slope_rad / kDegree); }},
     {"immobilisation", [](const Route& r) { return r.vertices.back().immobilisation_risk; },
      [](double probability) { return fmt::format("{:.2g}", probability); }},

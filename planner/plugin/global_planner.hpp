@@ -53,6 +53,8 @@ struct PlannerSettings {
   /// Time limit of a plan, > 0; at the limit the best route found is returned.
   double time_limit_s = std::numeric_limits<double>::infinity();
   bool whole_field = false;  ///< true: search large maps completely at full resolution
+
+  bool operator==(const PlannerSettings&) const = default;
 };
 
 /// Chance constraint: upper limit of the probability that the rover is immobilised on the route.

@@ -1,7 +1,7 @@
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 #include <pybind11/stl/filesystem.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <talus/common/input_error.hpp>
@@ -89,34 +90,14 @@ Map built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
               .options = {.threads = ground.threads}});
 }
 
-// Writes columns to a temporary file, so that rows are checked in the same way as rows of a telemetry file.
+// Columns as a file in memory, so that rows are checked in the same way as rows of a telemetry file.
 class ColumnFile {
  public:
-  explicit ColumnFile(const py::dict& columns) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "talus-columns-XXXXXX").string();
-    const int descriptor = ::mkstemp(pattern.data());
-    if (descriptor < 0) throw std::runtime_error("no temporary file for the columns in " + pattern);
-    ::close(descriptor);
-    path_ = pattern;
-    try {
-      write(columns);
-    } catch (...) {  // a throwing constructor runs no destructor
-      std::filesystem::remove(path_);
-      throw;
-    }
-  }
-  ColumnFile(const ColumnFile&) = delete;
-  ColumnFile& operator=(const ColumnFile&) = delete;
-  ~ColumnFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  const std::filesystem::path& path() const noexcept { return path_; }
-
- private:
-  void write(const py::dict& columns) {
+  ColumnFile() : descriptor_(::memfd_create("columns", MFD_CLOEXEC)) {}
+  explicit ColumnFile(const py::dict& columns) : ColumnFile() {  // a throw runs the destructor
     std::vector<py::array> arrays;
-    std::ofstream out(path_);
+    std::ofstream out(path());
+    out << std::setprecision(17);
     for (const auto& [name, values] : columns) {
       const std::string column = py::str(name);
       if (!py::isinstance<py::array>(values) || values.cast<py::array>().ndim() != 1)
@@ -132,20 +113,23 @@ class ColumnFile {
         throw py::value_error("column '" + column + "' has " + std::to_string(arrays.back().size()) +
                               " values, must be " + std::to_string(arrays.front().size()) + " as the first");
     }
-    for (py::ssize_t row = 0; !arrays.empty() && row < arrays.front().size(); ++row) {
+    for (py::ssize_t row = 0; !arrays.empty() && row < arrays.front().size(); ++row)
       for (std::size_t k = 0; k < arrays.size(); ++k) {
-        char text[40] = "";
+        out << (k == 0 ? '\n' : ',');
         const double value = arrays[k].unchecked<double, 1>()(row);
-        if (!std::isnan(value)) std::snprintf(text, sizeof text, "%.17g", value);  // NaN: not measured
-        out << (k == 0 ? "\n" : ",") << text;
+        if (!std::isnan(value)) out << value;  // NaN: not measured
       }
-    }
     out << '\n';
     out.close();
-    if (!out) throw std::runtime_error("the columns cannot be written to " + path_.string());
+    if (!out) throw std::runtime_error("no memory for the columns");
   }
+  ColumnFile(const ColumnFile&) = delete;
+  ColumnFile& operator=(const ColumnFile&) = delete;
+  ~ColumnFile() { ::close(descriptor_); }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
-  std::filesystem::path path_;
+ private:
+  int descriptor_;
 };
 
 terramech::Telemetry telemetryOf(const py::object& given) {
@@ -157,8 +141,8 @@ terramech::Telemetry telemetryOf(const py::object& given) {
     return telemetry;
   } catch (const InputError& error) {
     std::string where = error.parts().where;
-    if (const auto at = where.find(file.path().string()); at != std::string::npos)
-      where.replace(at, file.path().string().size(), "columns");
+    if (const auto at = where.find(file.path()); at != std::string::npos)
+      where.replace(at, file.path().size(), "columns");
     throw InputError({where, error.parts().reason, error.parts().remedy});
   }
 }
@@ -230,9 +214,7 @@ void PythonMap::writeRoute(const Route& route, const std::string& path) const {
 Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& request,
                       const py::object& progress) {
   const auto lock = held(*session_);
-  const bool same = settings.planner == settings_.planner && settings.seed == settings_.seed &&
-                    settings.threads == settings_.threads && settings.time_limit_s == settings_.time_limit_s;
-  if (!same) session_->planner = Planner(settings);
+  if (!(settings == settings_)) session_->planner = Planner(settings);
   settings_ = settings;
   Route route;
   inBackground(

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22482}, {"maps", 7253},     {"costmap", 13045},
-                           {"planner", 24067}, {"cli", 14715},       {"examples", 1662}, {"tests", 59253}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 22482}, {"maps", 7249},     {"costmap", 13045},
+                           {"planner", 24048}, {"cli", 14487},       {"examples", 1662}, {"tests", 59235}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

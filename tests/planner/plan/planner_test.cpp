@@ -45,7 +45,8 @@ TEST(Planner, ElevationIsThatOfThePlannedVersion) {
     for (int column = 0; column < kPart.width; ++column)
       raised[{column, row}] = 3.0F + height(kPart.centre({column, row}));
   map.patch({.elevation_m = raised, .rock_abundance = {}, .classes = {}, .keep_out = {}});
-  const Route old_route = Planner().plan(before, across()), new_route = Planner().plan(map.published(), across());
+  const Route old_route = Planner().plan(before, across()),
+              new_route = Planner().plan(map.published(), across());
   ASSERT_EQ(old_route.status, RouteStatus::Found) << old_route.reason;
   ASSERT_EQ(new_route.status, RouteStatus::Found) << new_route.reason;
   // Closed form: all ground lies 3 m higher.
@@ -81,7 +82,8 @@ TEST(Planner, InvalidRequestIsRejectedByName) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("goal_heading_rad is not honoured")));
   request.goal_heading_rad.reset();
   request.goal.x_m = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT([&] { Planner().plan(map, request); }, ThrowsMessage<std::invalid_argument>(HasSubstr("goal.x_m")));
+  EXPECT_THAT([&] { Planner().plan(map, request); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("goal.x_m")));
 }
 
 TEST(Planner, WindowedRouteIsWithinAFewPercentOfTheFullMap) {
@@ -199,8 +201,7 @@ TEST(Planner, PluginRouteIsCheckedAndAnnotatedLikeOurs) {
   for (const bool chassis : {false, true}) {
     PlanRequest request = overTheYard();
     if (chassis) request.chassis = stepped(map);
-    const Route ours = own.plan(map.published(), request),
-                theirs = plugin.plan(map.published(), request);
+    const Route ours = own.plan(map.published(), request), theirs = plugin.plan(map.published(), request);
     ASSERT_EQ(ours.status, RouteStatus::Found) << ours.reason;
     ASSERT_EQ(theirs.status, RouteStatus::Found) << theirs.reason;
     EXPECT_NEAR(theirs.cost, ours.cost, 1e-9 * ours.cost);
@@ -258,6 +259,21 @@ TEST(OwnPlugin, CreatedPlannerHasDefaultSettingsAndNoMap) {
   const auto another = planner->create();
   EXPECT_EQ(another->capabilities().planner, "field");
   EXPECT_THROW(another->plan({}), std::logic_error);
+}
+
+// Property: explanation and route are those of the traversability map.
+TEST(Map, IsExplainedAndPlannedOnAsItsGround) {
+  Map map(built(kYard));
+  const maps::Cell cell{20, 20};
+  const maps::Point place = map.ground().grid().centre(cell);
+  EXPECT_EQ(map.explain(place, 0.5).verdict,
+            costmap::explain(map.ground(), cell, costmap::Direction{std::cos(0.5), std::sin(0.5)}).verdict);
+  EXPECT_EQ(map.explain(place).category, costmap::explain(map.ground(), cell).category);
+  EXPECT_THROW(map.explain({-1e6, 0.0}), std::invalid_argument);
+  map.ground().refuse(overTheYard().goal, 5.0);
+  map.ground().publish();
+  const Route route = Planner().plan(map, overTheYard());
+  EXPECT_EQ(route.status, RouteStatus::GoalInvalid);
 }
 
 }  // namespace planner_test
