@@ -180,8 +180,7 @@ TEST_F(SameRoute, EveryInterfaceYieldsTheSameRoute) {
   const Answer route = answerOf(Planner().plan(map(), kThere));
   ASSERT_GT(route.vertices.size(), 20U);
   EXPECT_TRUE(std::isfinite(route.vertices.front().elevation_m));
-  std::vector<std::pair<std::string, Answer>> others{
-      {"the program", byProgram()}, {"C", byC()}};
+  std::vector<std::pair<std::string, Answer>> others{{"the program", byProgram()}, {"C", byC()}};
   if (!std::string(TALUS_PYTHON).empty()) others.emplace_back("Python", byPython());
   for (const auto& [who, other] : others) {
     EXPECT_EQ(other.cost, route.cost) << who;
