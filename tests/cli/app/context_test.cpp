@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stop_token>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -25,6 +27,21 @@ TEST(Context, WarningsAreOneLineOnStderrUnlessQuiet) {
 TEST(Context, ProgressStatesTheTimeLeft) {
   EXPECT_EQ(progressText("plan", 0.0, 12.3), "plan, 12 s so far");
   EXPECT_EQ(progressText("site", 0.25, 2.0), "site [#######                       ]  25 %, 6 s left");
+}
+
+TEST(Context, StatusLineAppearsAfterHalfASecondAndIsErased) {
+  StatusLine line;
+  testing::internal::CaptureStderr();
+  const auto phase = line.begin("plan");
+  line.tick();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  testing::internal::CaptureStderr();
+  line.tick();
+  phase(1.0);
+  line.tick();
+  const std::string drawn = testing::internal::GetCapturedStderr();
+  EXPECT_TRUE(drawn.starts_with("\rplan, ") && drawn.ends_with(" s so far\033[K\r\033[K")) << drawn;
 }
 
 // Property: printed JSON parses again; NaN and infinity become null, and invalid UTF-8 bytes are replaced.

@@ -123,6 +123,8 @@ class MapTest(Refusals):
         before = ground.beliefs()["pull_mean"][20, 20]
         self.assertGreater(ground.learn(wheels(10.25, 10.25)), 0)
         self.assertLess(ground.beliefs()["pull_mean"][20, 20], before)
+        unmeasured = {**wheels(10.25, 10.25), "drawbar_pull_N": np.full(5, np.nan)}
+        self.assertEqual(level().learn(unmeasured), level().learn(wheels(10.25, 10.25)))
         with tempfile.TemporaryDirectory() as folder:
             table = pathlib.Path(folder) / "drive.csv"
             columns = wheels(20.25, 20.25)
