@@ -1,7 +1,7 @@
 // Shows   the planner in a rover's loop: observe the ground, plan, drive a little, process wheel telemetry.
 // Needs   talus::planner.
 // Prints  one line per step: position, remaining cost, and DP/W of the ground with its standard deviation.
-// Next    load_plugin.cpp: the same planner from a shared library.
+// Next    plan_site.cpp: the same types on a site of files.
 
 #include <algorithm>
 #include <cmath>

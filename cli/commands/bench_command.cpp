@@ -215,7 +215,7 @@ int run(const BenchOptions& options, Context& context) {
   for (const std::string& words : options.planners.empty() ? planner::warmAndCold() : options.planners)
     plan.planners.push_back(planner::wordsOf(planner::samplingSettings(words)));
   for (const std::string& file : options.plugins) {
-    const std::string name = pluginOf(file).name();
+    const std::string name = planner::PluginPlanner(file).name();
     plan.planners.push_back(name);
     plan.plugins[name] = file;
   }

@@ -211,7 +211,7 @@ int run(const DriveCommandOptions& options, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   std::optional<planner::PluginPlanner> plugin;
   if (!options.plugin.empty()) {
-    plugin.emplace(pluginOf(options.plugin));
+    plugin.emplace(options.plugin);
     context.threads = 1;  // the plugin forks, which a multi-threaded program must not do
   }
   const auto byPlugin = [&](planner::Problem problem) {

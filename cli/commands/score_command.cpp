@@ -126,7 +126,7 @@ std::vector<maps::Point> pointsOf(const ScoreOptions& options, const Ground& gro
   problem.threads = context.workers();
   problem.watch = context.watch("plan");
   if (options.time_limit_s > 0.0) problem.time_limit_s = options.time_limit_s;
-  planner::Plan plan = pluginOf(options.plugin).unchecked(problem);
+  planner::Plan plan = planner::PluginPlanner(options.plugin).unchecked(problem);
   if (plan.status != planner::RouteStatus::Found && !context.stop.stop_requested())
     throw InputError({options.plugin, "found no route: " + plan.reason, "choose other places"});
   return std::move(plan.points);

@@ -51,10 +51,6 @@ void addPluginTime(CLI::App& command, double& time_limit_s) {
       ->needs(command.get_option("--plugin"));
 }
 
-planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& planner) {
-  return planner::PluginPlanner(plugin, planner == "field" ? std::string() : planner);
-}
-
 void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   addCostCurve(command, options.ground);

@@ -15,10 +15,6 @@ void addPluginOption(CLI::App& command, std::string& plugin);
 /// Declares the option --time, the time limit of a plugin, for calls without another time limit.
 void addPluginTime(CLI::App& command, double& time_limit_s);
 
-/// Returns the planner `planner` of the shared library `plugin`. The value "field" (default of the program)
-/// selects the plugin's own default planner. @throws InputError
-planner::PluginPlanner pluginOf(const std::string& plugin, const std::string& planner = {});
-
 /// Declares the options of `talus plan`.
 void bindPlan(CLI::App& command, PlanOptions& options);
 

@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 724},    {"terramech", 22482}, {"maps", 7249},     {"costmap", 13045},
-                           {"planner", 24048}, {"cli", 14487},       {"examples", 1662}, {"tests", 59253}};
+                           {"planner", 24048}, {"cli", 14479},       {"examples", 1580}, {"tests", 59253}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
