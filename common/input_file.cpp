@@ -11,8 +11,7 @@
 #include <nettle/sha2.h>
 #endif
 
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus {
 namespace {

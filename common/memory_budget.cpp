@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 
 namespace talus {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus {
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/app/campaign.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/parallel_for.hpp>
 
 #ifdef TALUS_MPI

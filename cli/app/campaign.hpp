@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::cli {
 

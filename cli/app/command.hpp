@@ -6,10 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/app/help_format.hpp>
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::cli {
 

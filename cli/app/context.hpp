@@ -9,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 
 /// Namespace of the command-line program, which has one file per subcommand.
 namespace talus::cli {

@@ -8,10 +8,10 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
-#include <talus/terramech/estimate/pull_formula.hpp>
+#include <talus/terramech/estimate/model_pull.hpp>
 
 namespace talus::cli {
 namespace {

@@ -11,17 +11,14 @@
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/cli/study/bench_report.hpp>
 #include <talus/cli/study/bench_suite.hpp>
 #include <talus/common/checksum.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/progress_monitor.hpp>
-#include <talus/planner/bench/benchmark_log.hpp>
-#include <talus/planner/sampling/sampling_settings.hpp>
+#include <talus/common/common.hpp>
+#include <talus/planner/bench/benchmark.hpp>
+#include <talus/planner/sampling/sampling_planner.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/field_text.hpp>
 

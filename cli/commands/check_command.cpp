@@ -10,7 +10,7 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 

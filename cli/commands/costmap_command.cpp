@@ -7,14 +7,14 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/allowed_headings.hpp>
 #include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/category_files.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/site_layers.hpp>
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 

@@ -14,8 +14,8 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/planner/route/planner_names.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/planner/route/problem.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

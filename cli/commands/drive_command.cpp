@@ -16,13 +16,12 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/cli/route/provenance.hpp>
+#include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/progress_monitor.hpp>
-#include <talus/maps/vector/place_reader.hpp>
-#include <talus/planner/simulation/drive/simulation_site.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
+#include <talus/planner/simulation/simulation.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

@@ -8,14 +8,14 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/channel_report.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/cli/soil/trace_report.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

@@ -9,9 +9,9 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/motion_options.hpp>
-#include <talus/costmap/map/explanation.hpp>
-#include <talus/maps/vector/place_reader.hpp>
+#include <talus/cli/ground/plan_options.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps_io.hpp>
 
 namespace talus::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 

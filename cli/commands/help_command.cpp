@@ -4,13 +4,12 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/help_format.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

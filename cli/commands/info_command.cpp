@@ -8,9 +8,9 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/map_options.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/cli/ground/ground_options.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {

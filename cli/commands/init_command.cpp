@@ -12,7 +12,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::cli {

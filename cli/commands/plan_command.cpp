@@ -21,20 +21,16 @@
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
-#include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/cli/route/route_writer.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
-#include <talus/maps/vector/place_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/plan/planner.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
+#include <talus/planner/planner.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 

@@ -4,8 +4,8 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::cli {
 namespace {

@@ -5,10 +5,9 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

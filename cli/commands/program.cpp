@@ -26,11 +26,10 @@
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/app/help_format.hpp>
 #include <talus/cli/app/interrupt.hpp>
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/commands/program.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/nearest_name.hpp>
 

@@ -9,11 +9,10 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/maps/vector/place_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>

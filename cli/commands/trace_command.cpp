@@ -7,18 +7,15 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/soil/left_out_report.hpp>
-#include <talus/cli/soil/proposal_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/run_proposal.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

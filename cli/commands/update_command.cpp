@@ -16,15 +16,13 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/file_lock.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/map_options.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

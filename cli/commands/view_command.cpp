@@ -16,14 +16,12 @@
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/map_options.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {

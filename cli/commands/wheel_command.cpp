@@ -6,16 +6,14 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/wheel_case_table.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
-#include <talus/terramech/contact/rigid_ground.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

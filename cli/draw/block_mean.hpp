@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::cli {
 

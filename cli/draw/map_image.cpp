@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include <talus/cli/draw/map_image.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::cli {
 namespace {

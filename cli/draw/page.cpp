@@ -11,11 +11,11 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/canvas.hpp>
-#include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 
 // Embeds the bytes of the file between two symbols in the read-only data.
 asm(R"(

@@ -13,7 +13,7 @@
 #include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/cli/draw/ticks.hpp>
+#include <talus/cli/draw/scene.hpp>
 
 namespace talus::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::cli {
 namespace {
@@ -78,21 +78,13 @@ std::string marginText(const Route& route) {
 }
 
 std::string groundText(const Route& route) {
-  std::array<double, 4> length{};
-  double total = 0.0;
-  const std::vector<double> s = distances_m(route);
-  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
-    length[static_cast<std::size_t>(route.vertices[i].category)] += s[i + 1] - s[i];
-    total += s[i + 1] - s[i];
-  }
+  const std::array<double, 4> shares = categoryShares(route);
   std::string text;
-  for (std::size_t c = 0; c < length.size() && total > 0.0; ++c) {
-    if (length[c] <= 0.0) continue;
-    if (!text.empty()) text += ", ";
-    text += fmt::format("{} {:.1f} %", terramech::name(static_cast<terramech::Category>(c)),
-                        100.0 * length[c] / total);
-  }
-  return length[3] < total ? text : "";
+  for (std::size_t c = 0; c < shares.size(); ++c)
+    if (shares[c] > 0.0)
+      text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ",
+                          terramech::name(static_cast<terramech::Category>(c)), 100.0 * shares[c]);
+  return shares[3] < 1.0 ? text : "";
 }
 
 std::string wheelText(const Route& route) {
@@ -161,6 +153,15 @@ std::vector<double> distances_m(const Route& route) {
     s.push_back((i == 0 ? 0.0 : s.back()) + std::hypot(b.x_m - a.x_m, b.y_m - a.y_m));
   }
   return s;
+}
+
+std::array<double, 4> categoryShares(const Route& route) {
+  std::array<double, 4> shares{};
+  const std::vector<double> s = distances_m(route);
+  if (s.empty() || !(s.back() > 0.0)) return shares;
+  for (std::size_t i = 0; i + 1 < s.size(); ++i)
+    shares[static_cast<std::size_t>(route.vertices[i].category)] += (s[i + 1] - s[i]) / s.back();
+  return shares;
 }
 
 std::string lengthText(double metres) {

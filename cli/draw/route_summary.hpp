@@ -1,18 +1,22 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::cli {
 
 /// Returns for each vertex of a route the horizontal distance from the start along the route [m].
 std::vector<double> distances_m(const planner::Route& route);
+
+/// Returns the share of each category (terramech::Category) of the length of a route [-]; 0 for a route of length 0.
+std::array<double, 4> categoryShares(const planner::Route& route);
 
 /// Returns the summary of a route: up to ten quantities with value and unit; unknown quantities are omitted.
 /// For a route that was not found, the summary contains status and reason.

@@ -1,20 +1,73 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include <talus/cli/draw/allowed_headings.hpp>
 #include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/reach/reach.hpp>
 
 namespace talus::cli {
+
+double roundBelow(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value) + 1e-12));
+  const double mantissa = value / power * (1.0 + 1e-12);
+  return power * (mantissa >= 5.0 ? 5.0 : mantissa >= 2.0 ? 2.0 : 1.0);
+}
+
+std::vector<double> ticks(Range range, int count) {
+  const double span = range.high - range.low;
+  if (!(span > 0.0) || !std::isfinite(span)) return {range.low};
+  double step = roundBelow(span / count);
+  while (span / step > 1.6 * count) step = roundBelow(2.5 * step * (1.0 + 1e-9));  // the next round number
+  std::vector<double> marks;
+  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * span; ++k)
+    marks.push_back(k * step);
+  return marks;
+}
+
+std::string tickLabel(double value, double step) {
+  const double clean = std::abs(value) < 1e-9 * step ? 0.0 : value;
+  if (std::abs(value) >= 1e6 || (step < 1e-4 && step > 0.0)) return fmt::format("{:.3g}", clean);
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
+  return fmt::format("{:.{}f}", clean, decimals);
+}
+
+using costmap::CellCode;
+
+HeadingsOfCells::HeadingsOfCells(const costmap::TraversabilityMap& map)
+    : map_(map), grid_(map.published()), sets_(grid_->cost()), known_(grid_->cost().curves().size()) {}
+
+AllowedHeadings HeadingsOfCells::at(maps::Cell cell) {
+  const CellCode code = grid_->at(cell);
+  if (code.curve() >= CellCode::kUnknown)
+    return map_.costs().category(cell) == static_cast<std::uint8_t>(terramech::Category::Unknown)
+               ? AllowedHeadings::Unknown
+               : AllowedHeadings::None;
+  const double steepness = std::hypot(code.stepsX(), code.stepsY());
+  const AllowedHeadings gentler = on(code.curve(), static_cast<int>(std::floor(steepness))),
+                        steeper = on(code.curve(), static_cast<int>(std::ceil(steepness)));
+  return gentler == steeper ? gentler : of(code);
+}
+
+AllowedHeadings HeadingsOfCells::on(CellCode::Curve curve, int steepness) {
+  std::vector<AllowedHeadings>& known = known_[curve];
+  const auto step = static_cast<std::size_t>(steepness);
+  if (known.size() <= step) known.resize(step + 1, AllowedHeadings::Unknown);
+  if (known[step] == AllowedHeadings::Unknown)
+    known[step] = of(CellCode({.dz_dx = steepness * CellCode::kStep, .dz_dy = 0.0, .curve = curve}));
+  return known[step];
+}
+
+AllowedHeadings HeadingsOfCells::of(CellCode code) {
+  const planner::HeadingSet& set = sets_.of(code);
+  return set.all() ? AllowedHeadings::All : set.empty() ? AllowedHeadings::None : AllowedHeadings::Some;
+}
+
 namespace {
 
 using maps::Cell;
@@ -162,11 +215,9 @@ struct Quantity {
   std::string (*text)(double value);
 };
 
-/// Share of the vertices whose motion has the category.
 template <terramech::Category category>
 double share(const planner::Route& route) {
-  const auto count = std::ranges::count(route.vertices, category, &planner::RouteVertex::category);
-  return static_cast<double>(count) / static_cast<double>(route.vertices.size());
+  return categoryShares(route)[static_cast<std::size_t>(category)];
 }
 
 std::string percentText(double part) {

@@ -8,15 +8,52 @@
 #include <utility>
 #include <vector>
 
-#include <talus/cli/draw/colour.hpp>
-#include <talus/cli/draw/ticks.hpp>
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/costmap/cost/travel_cost.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/cli/draw/canvas.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/route.hpp>
-#include <talus/planner/simulation/drive/traverse_simulation.hpp>
-#include <talus/planner/simulation/worlds/true_world.hpp>
+#include <talus/planner/simulation/simulation.hpp>
+
+namespace talus::cli {
+
+/// A closed interval, low < high.
+struct Range {
+  double low = 0.0;
+  double high = 1.0;
+};
+
+/// Returns round tick values inside the range: about `count` multiples of 1, 2 or 5 times a power of ten.
+std::vector<double> ticks(Range range, int count);
+
+/// Returns the greatest number of the form 1, 2 or 5 times a power of ten that does not exceed `value` > 0.
+double roundBelow(double value);
+
+/// Returns a number as a tick label, with no more decimals than the step between ticks needs.
+std::string tickLabel(double value, double step);
+
+/// Allowed headings of the cells of a map (planner::HeadingSets). They depend on the ground and on the steepness of a
+/// cell: they are computed for steps of the steepness, and for the cells between steps that differ. Not thread-safe;
+/// the map must outlive the object.
+class HeadingsOfCells {
+ public:
+  explicit HeadingsOfCells(const costmap::TraversabilityMap& map);
+
+  AllowedHeadings at(maps::Cell cell);
+
+ private:
+  AllowedHeadings on(costmap::CellCode::Curve curve, int steepness);
+  AllowedHeadings of(costmap::CellCode code);
+
+  const costmap::TraversabilityMap& map_;
+  std::shared_ptr<const costmap::CostGrid> grid_;
+  planner::HeadingSets sets_;
+  std::vector<std::vector<AllowedHeadings>> known_;  // by curve and steepness; Unknown: not computed
+};
+
+}  // namespace talus::cli
 
 namespace talus::costmap {
 class TraversabilityMap;

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/draw/colour.hpp>
+#include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/ground/category_files.hpp>
 #include <talus/common/output_file.hpp>
-#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/maps_io.hpp>
 
 namespace talus::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::cli {
 

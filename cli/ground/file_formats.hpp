@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/io/file_keys.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
 

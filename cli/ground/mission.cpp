@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 

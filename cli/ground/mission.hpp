@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/terramech/io/file_keys.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
 

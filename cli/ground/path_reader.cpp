@@ -9,11 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/path_reader.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/plausible.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/terrain/place.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>

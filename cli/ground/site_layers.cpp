@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <talus/cli/draw/allowed_headings.hpp>
+#include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/site_layers.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::cli {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps_io.hpp>
 
 namespace talus::cli {
 

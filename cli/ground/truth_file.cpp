@@ -2,9 +2,8 @@
 #include <cmath>
 
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/planner/simulation/worlds/world_draw.hpp>
+#include <talus/planner/simulation/simulation.hpp>
 
 namespace talus::cli {
 

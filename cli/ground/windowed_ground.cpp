@@ -3,8 +3,8 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/windowed_ground.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/planner/grid/windowed_map.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace talus::cli {
 

@@ -4,9 +4,30 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
+
+struct Context;
+struct Ground;
+struct Scene;
+
+/// Returns the call of the program as a shell command, without arguments that do not affect results: outputs,
+/// --threads, --json, --quiet and --force. Returns an empty text for a call without arguments.
+std::string callText(const char* const* argv);
+
+/// Returns the lines of the provenance of a route from its member "inputs": command, rover, soil, files with
+/// their SHA-256, seed, version.
+std::vector<std::pair<std::string, std::string>> provenanceOf(const nlohmann::ordered_json& inputs);
+
+/// Returns the origin of results on this ground: files with their SHA-256, seed, rover, soils, and the call.
+planner::RouteOrigin originOf(const Ground& ground, const Context& context);
+
+/// Adds the origin of the results to a page or picture, and removes facts that the origin repeats.
+void addProvenance(Scene& scene, const planner::RouteOrigin& origin);
 
 /// Content of a route file of `talus plan`.
 struct RouteFile {
@@ -22,5 +43,21 @@ bool looksLikeRoute(const std::string& path);
 /// Returns the route of a file. @throws InputError with file and field if the file is not a route in GeoJSON
 /// or GeoPackage format
 RouteFile readRoute(const std::string& path);
+
+struct Context;
+
+/// File names that writeRoute() accepts, as the type name of an option.
+inline constexpr const char* kRouteFiles = "ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|ROUTE.csv";
+
+/// Checks, before planning, that the file format of `path` can store routes of the map. @throws InputError
+/// otherwise
+void requireRouteFormat(const std::string& path, const maps::ElevationMap& map);
+
+/// Writes a route of routeGeoJson() in the format that the ending of the file name selects: GeoPackage (in
+/// the CRS of the map, with the layers route, vertices and segments), GPX and KML (Earth only), CSV of the
+/// vertices, and GeoJSON for all other endings. Warns if GeoJSON cannot state the frame of the map. The GeoPackage contains styles for QGIS. @throws
+/// InputError
+void writeRoute(const std::string& path, const nlohmann::ordered_json& route, const maps::ElevationMap& map,
+                const Context& context);
 
 }  // namespace talus::cli

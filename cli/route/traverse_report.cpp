@@ -9,7 +9,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/route_summary.hpp>
-#include <talus/cli/route/provenance.hpp>
+#include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
 
 namespace talus::cli {

@@ -9,12 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/scene.hpp>
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/route_json.hpp>
-#include <talus/planner/simulation/drive/simulation_rates.hpp>
-#include <talus/planner/simulation/drive/simulation_site.hpp>
-#include <talus/planner/simulation/drive/traverse_log.hpp>
-#include <talus/terramech/contact/rover.hpp>
+#include <talus/planner/simulation/simulation.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::cli {
 

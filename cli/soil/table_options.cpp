@@ -8,14 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/app/help_format.hpp>
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/file_keys.hpp>
 #include <talus/terramech/io/table_columns.hpp>
+#include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
 namespace {

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <talus/cli/draw/html_report.hpp>
-#include <talus/cli/soil/channel_report.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 

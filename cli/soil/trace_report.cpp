@@ -5,15 +5,228 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
+#include <talus/terramech/calibration/table/answer_columns.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
+
+nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  for (terramech::Channel c : terramech::kAllChannels)
+    if (const double e = errors[static_cast<std::size_t>(c)]; std::isfinite(e)) out[name(c)] = e;
+  return out;
+}
+
+std::string changeText(const terramech::ChannelErrors& base, const terramech::ChannelErrors& refined) {
+  std::string text;
+  for (terramech::Channel c : terramech::kAllChannels)
+    if (const auto k = static_cast<std::size_t>(c); std::isfinite(base[k]))
+      text += fmt::format(" {} {:.4f} -> {:.4f}", name(c), base[k], refined[k]);
+  return text;
+}
+
+Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
+              const std::vector<NamedPredictions>& predictions) {
+  Plot plot{.title = std::string(name(channel)) + " over slip",
+            .x = {.label = "slip [-]"},
+            .y = {.label = std::string(name(channel)) + " [-]"},
+            .series = {}};
+  const auto c = static_cast<Eigen::Index>(channel);
+  const auto add = [&](const std::string& who, const Eigen::MatrixXd& values) {
+    Series series{.name = who, .x = {}, .y = {}, .mark = Series::Mark::Points};
+    for (Eigen::Index row = 0; row < values.rows(); ++row) {
+      const double slip = trial.slip[static_cast<std::size_t>(row)];
+      if (!std::isfinite(slip + trial.measured(row, c) + values(row, c))) continue;
+      series.x.push_back(slip);
+      series.y.push_back(values(row, c));
+    }
+    plot.series.push_back(std::move(series));
+  };
+  add("measured", trial.measured);
+  for (const auto& [who, predicted] : predictions) add(who, predicted);
+  return plot;
+}
+
+nlohmann::ordered_json searchedJson(const terramech::TraceResult& r) {
+  return {{"rows", r.trial.rows()},
+          {"rows_not_searched", r.unsearched.rows},
+          {"base_rmse_there", errorsJson(r.unsearched.base_rmse)},
+          {"refined_rmse_there", errorsJson(r.unsearched.refined_rmse)},
+          {"columns_dropped", r.trial.dropped}};
+}
+
+std::string searchedText(const terramech::TraceResult& result) {
+  std::string text;
+  if (const terramech::UnsearchedRows& rest = result.unsearched; rest.rows > 0) {
+    text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):{}\n",
+                        result.trial.rows(), result.trial.rows() + rest.rows, rest.rows,
+                        changeText(rest.base_rmse, rest.refined_rmse));
+  }
+  if (const auto& dropped = result.trial.dropped; !dropped.empty()) {
+    constexpr std::size_t kShown = 5;
+    text += fmt::format(
+        "{} further columns not searched, those least related to the residuals: {}{}\n", dropped.size(),
+        fmt::join(dropped.begin(), dropped.begin() + static_cast<long>(std::min(kShown, dropped.size())),
+                  ", "),
+        dropped.size() > kShown ? ", ... (--json lists them)" : "");
+  }
+  return text;
+}
+
+namespace {
+
+using namespace terramech;
+
+/// Channels in which the refined model has larger errors than the base.
+nlohmann::ordered_json worse(const LeftOutErrors& part) {
+  auto out = nlohmann::ordered_json::array();
+  for (Channel c : kAllChannels)
+    if (const auto k = static_cast<std::size_t>(c); part.refined[k] > part.base[k]) out.push_back(name(c));
+  return out;
+}
+
+}  // namespace
+
+std::string leftOutText(const std::vector<LeftOutErrors>& all) {
+  std::string out;
+  for (const LeftOutErrors& part : all) {
+    out += fmt::format("traced without {} ({} rows): {}\n  {:26s} {:>10s} {:>10s} {:>12s} {:>12s}\n",
+                       part.what, part.rows,
+                       part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")),
+                       "rmse", "base", "refined", "noise floor", "regression");
+    for (Channel c : kAllChannels) {
+      const auto k = static_cast<std::size_t>(c);
+      if (!std::isfinite(part.base[k])) continue;
+      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}{}\n", name(c), part.base[k],
+                         part.refined[k], part.floor[k], part.regression[k],
+                         part.refined[k] > part.base[k] ? "  refined is worse than base" : "");
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json leftOutJson(const std::vector<LeftOutErrors>& all) {
+  auto out = nlohmann::ordered_json::array();
+  for (const LeftOutErrors& part : all)
+    out.push_back({{"left_out", part.what},
+                   {"rows", part.rows},
+                   {"effects", part.effects},
+                   {"base_rmse", errorsJson(part.base)},
+                   {"refined_rmse", errorsJson(part.refined)},
+                   {"worse_than_base", worse(part)},
+                   {"noise_floor", errorsJson(part.floor)},
+                   {"regression_rmse", errorsJson(part.regression)}});
+  return out;
+}
+
 namespace {
 
 using nlohmann::ordered_json;
-using namespace terramech;
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
+}
+
+std::string headerOf(const ProposedRun& run, const TraceResult& result) {
+  std::string header = "run,slip";
+  for (const auto& [column, value] : run.columns) header += ',' + csvField(column);
+  for (const auto& [column, text] : run.groups) header += ',' + csvField(column);
+  for (const Channel c : kAllChannels)
+    if (result.trial.has(c)) header += std::string(",") + kAnswers[static_cast<std::size_t>(c)];
+  for (std::size_t k = 1; k <= run.predictions.size(); ++k) {
+    header += fmt::format(",predicted_{}_cause", k);
+    for (const Channel c : kAllChannels)
+      if (result.trial.has(c))
+        header +=
+            fmt::format(",predicted_{0}_{1},predicted_{0}_{1}_std", k, kAnswers[static_cast<std::size_t>(c)]);
+  }
+  return header + '\n';
+}
+
+}  // namespace
+
+std::string proposalTable(const std::vector<ProposedRun>& runs, const TraceResult& result) {
+  if (runs.empty()) return "";
+  std::string text = headerOf(runs.front(), result);
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    for (std::size_t row = 0; row < runs[k].slip.size(); ++row) {
+      text += fmt::format("proposed {},{}", k + 1, number(runs[k].slip[row]));
+      for (const auto& [column, value] : runs[k].columns) text += ',' + number(value);
+      for (const auto& [column, word] : runs[k].groups) text += ',' + csvField(word);
+      for (const Channel c : kAllChannels)
+        if (result.trial.has(c)) text += ',';
+      for (const RunPrediction& p : runs[k].row_predictions[row]) {
+        text += ',' + csvField(p.cause);
+        for (const Channel c : kAllChannels)
+          if (const auto at = static_cast<std::size_t>(c); result.trial.has(c))
+            text += ',' + number(p.mean[at]) + ',' + number(p.std[at]);
+      }
+      text += '\n';
+    }
+  return text;
+}
+
+ordered_json proposalsJson(const std::vector<ProposedRun>& runs) {
+  ordered_json all = ordered_json::array();
+  for (const ProposedRun& run : runs) {
+    ordered_json columns{{"slip", run.slip}};
+    for (const auto& [column, value] : run.columns) columns[column] = value;
+    for (const auto& [column, text] : run.groups) columns[column] = text;
+    ordered_json predictions = ordered_json::array();
+    for (const RunPrediction& p : run.predictions) {
+      ordered_json one{{"cause", p.cause}};
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        if (!std::isfinite(p.mean[c])) continue;
+        one[kAnswers[c]] = p.mean[c];
+        one[c == 0 ? "std" : std::string(kAnswers[c]) + "_std"] = p.std[c];
+      }
+      predictions.push_back(one);
+    }
+    all.push_back({{"columns", columns}, {"predictions", predictions}});
+  }
+  return all;
+}
+
+ordered_json scoresJson(const std::vector<CauseScore>& scores) {
+  ordered_json all = ordered_json::array();
+  for (const CauseScore& s : scores)
+    all.push_back({{"cause", s.cause}, {"log_likelihood", s.log_likelihood}, {"probability", s.probability}});
+  return all;
+}
+
+std::string proposalText(const std::vector<ProposedRun>& runs, const Trial& trial) {
+  if (runs.empty()) return "no run is proposed: no second cause gains anything\n";
+  std::string text;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    text += fmt::format("proposed run {}: slip {:.3g} to {:.3g}", k + 1, runs[k].slip.front(),
+                        runs[k].slip.back());
+    for (const auto& [column, value] : runs[k].columns)
+      if (std::find(trial.covariates.begin(), trial.covariates.end(), column) != trial.covariates.end())
+        text += fmt::format(", {} {:.4g}", column, value);
+    for (const auto& [column, word] : runs[k].groups) text += fmt::format(", {} {}", column, word);
+    text += '\n';
+    for (const RunPrediction& p : runs[k].predictions) {
+      text += "  " + p.cause + ':';
+      for (std::size_t c = 0; c < kChannels; ++c)
+        if (std::isfinite(p.mean[c]))
+          text += fmt::format(" {} {:.4g} +- {:.2g}", kAnswers[c], p.mean[c], p.std[c]);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string causeScoreText(const std::vector<CauseScore>& scores) {
+  std::string text;
+  for (const CauseScore& s : scores)
+    text += fmt::format("{}: log-likelihood {:.1f} of the measured runs, probability {:.3g}\n", s.cause,
+                        s.log_likelihood, s.probability);
+  return text;
+}
+
+namespace {
 
 /// Parameters of an effect by name; curves as knots and values per channel.
 ordered_json parametersJson(const Candidate& candidate) {

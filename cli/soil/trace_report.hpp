@@ -1,13 +1,65 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
+#include <talus/cli/draw/plot.hpp>
+#include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration/trace/left_out.hpp>
+#include <talus/terramech/calibration/trace/run_proposal.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace talus::cli {
+
+/// Errors and predictions by channel (measured quantity); channels without a value are omitted.
+
+/// Returns the errors as {NAME: ERROR}.
+nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
+
+/// Returns the errors of the base model and of the refined model as text: " NAME BASE -> REFINED" for each
+/// channel.
+std::string changeText(const terramech::ChannelErrors& base, const terramech::ChannelErrors& refined);
+
+/// Name and values of predictions: one matrix row per table row, one matrix column per channel (measured
+/// quantity).
+using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
+
+/// Returns a plot of one channel over the slip, measured and predicted. Rows without slip, measurement or
+/// prediction are omitted.
+Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
+              const std::vector<NamedPredictions>& predictions);
+
+/// Returns the rows and columns of a large table that were not searched, one line each; empty if all were
+/// searched.
+std::string searchedText(const terramech::TraceResult& result);
+
+/// Returns JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
+nlohmann::ordered_json searchedJson(const terramech::TraceResult& result);
+
+/// Returns the prediction errors on held-out rows as a table: base model, refined model, sensors alone and
+/// plain regression.
+std::string leftOutText(const std::vector<terramech::LeftOutErrors>& all);
+nlohmann::ordered_json leftOutJson(const std::vector<terramech::LeftOutErrors>& all);
+
+/// Returns a table of proposed test runs as CSV, one row per slip. Its columns are the conditions of the run;
+/// empty columns for the channels to be measured; and, for each possible cause K of the residual, the name of
+/// the cause, the predictions and their standard deviations (predicted_K_*).
+std::string proposalTable(const std::vector<terramech::ProposedRun>& runs,
+                          const terramech::TraceResult& result);
+
+nlohmann::ordered_json proposalsJson(const std::vector<terramech::ProposedRun>& runs);
+nlohmann::ordered_json scoresJson(const std::vector<terramech::CauseScore>& scores);
+
+/// Returns one line of text per run, with the columns that vary in the table and, for each cause, the
+/// prediction of the mean of the run's rows.
+std::string proposalText(const std::vector<terramech::ProposedRun>& runs, const terramech::Trial& trial);
+
+/// Returns one line of text per cause, with its score.
+std::string causeScoreText(const std::vector<terramech::CauseScore>& scores);
 
 /// Returns the columns that are correlated so strongly with the column `covariate` (|correlation| > 0.9) that
 /// the rows cannot discriminate between them.

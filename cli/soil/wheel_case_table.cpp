@@ -9,7 +9,7 @@
 
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/wheel_case_table.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/parallel_for.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>

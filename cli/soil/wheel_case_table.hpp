@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::cli {

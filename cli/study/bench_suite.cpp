@@ -2,22 +2,28 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <random>
 #include <set>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <talus/cli/app/context.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/study/bench_suite.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/bench/grid_suite.hpp>
-#include <talus/planner/bench/moving_ai.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/route/kinematics.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/planner/route/route.hpp>
+#include <talus/planner/simulation/simulation.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::cli {
+
 namespace {
 
 using planner::BenchmarkCase;
@@ -179,6 +185,240 @@ std::vector<BenchmarkCase> suiteCases(const SuiteOptions& options, const Context
       all.push_back(std::move(made));
     }
   return all;
+}
+
+namespace {
+
+using planner::BenchmarkPlan;
+using planner::BenchmarkRun;
+using planner::RouteStatus;
+
+constexpr std::size_t kMostPlots = 12;  // limit for a legible page
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(values);
+}
+
+BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
+                     const std::string& planner) {
+  BenchmarkLine line{.planner = planner};
+  std::vector<double> gaps, seconds, clearances;
+  int standing = 0;
+  for (const BenchmarkRun& run : runs) {
+    if (run.planner != planner) continue;
+    ++line.runs;
+    line.crashed += run.crashed;
+    line.breached += run.breached;
+    line.worst_megabytes = std::max(line.worst_megabytes, run.megabytes);
+    if (run.crashed) continue;
+    seconds.push_back(run.seconds);
+    if (run.status != RouteStatus::Found) continue;
+    ++line.found;
+    if (!planner::stands(run)) continue;
+    ++standing;
+    line.mean_cusps += run.cusps;
+    line.max_curvature_1_m = std::max(line.max_curvature_1_m, run.max_curvature_1_m);
+    clearances.push_back(-run.clearance_cells);
+    gaps.push_back(run.cost_J / planner::bestKnown_J(plan, runs, run.case_index) - 1.0);
+  }
+  line.median_gap = median(gaps);
+  line.worst_gap = largest(gaps);
+  line.mean_cusps /= std::max(1, standing);
+  line.least_clearance_cells = -largest(clearances);
+  line.median_seconds = median(seconds);
+  return line;
+}
+
+std::string hundredths(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
+}
+
+const std::vector<std::string> kColumns{"planner", "runs",      "solved",    "invalid",
+                                        "crashed", "gap p50 %", "gap max %", "time p50 s",
+                                        "MB max",  "cusps",     "curv. 1/m", "clearance"};
+
+std::vector<std::string> words(const BenchmarkLine& line) {
+  return {line.planner,
+          std::to_string(line.runs),
+          std::to_string(line.found),
+          std::to_string(line.breached),
+          std::to_string(line.crashed),
+          hundredths(100.0 * line.median_gap),
+          hundredths(100.0 * line.worst_gap),
+          fmt::format("{:.4f}", line.median_seconds),
+          fmt::format("{:.0f}", line.worst_megabytes),
+          fmt::format("{:.2f}", line.mean_cusps),
+          fmt::format("{:.3g}", line.max_curvature_1_m),
+          hundredths(line.least_clearance_cells)};
+}
+
+Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
+  Plot plot{.title = plan.cases[case_index].name,
+            .x = {"time [s]"},
+            .y = {"gap to the best known cost [%]"},
+            .series = {}};
+  const double best_J = planner::bestKnown_J(plan, runs, case_index);
+  double end_s = 0.0;
+  for (const BenchmarkRun& run : runs)
+    if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
+  for (const BenchmarkRun& run : runs) {
+    if (run.case_index != case_index || run.seed != 1 || !planner::stands(run) || run.progress.empty())
+      continue;
+    Series series{.name = run.planner, .x = {}, .y = {}};
+    for (const auto& at : run.progress) {
+      if (!series.x.empty()) {  // step curve: the cost holds until the next improvement
+        series.x.push_back(at.seconds);
+        series.y.push_back(series.y.back());
+      }
+      series.x.push_back(at.seconds);
+      series.y.push_back(100 * (at.cost_J / best_J - 1.0));
+    }
+    series.x.push_back(end_s);  // the last cost holds until the end
+    series.y.push_back(series.y.back());
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+// Groups of worlds in the order of the cases.
+std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
+  std::vector<std::string> groups;
+  for (const auto& asked : plan.cases)
+    if (asked.world && std::ranges::find(groups, asked.group) == groups.end()) groups.push_back(asked.group);
+  return groups;
+}
+
+// Table rows, beginning with the header.
+std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
+  std::vector<std::vector<std::string>> rows{
+      {"belief", "planner", "runs", "success %", "95 %", "time p50 s", "slip max p50"}};
+  for (const WorldLine& line : lines) {
+    const auto rate =
+        planner::share(static_cast<std::size_t>(line.reached), static_cast<std::size_t>(line.runs));
+    rows.push_back({line.group, line.planner, std::to_string(line.runs),
+                    fmt::format("{:.1f}", 100 * rate.value),
+                    fmt::format("{:.1f}-{:.1f}", 100 * rate.interval_95[0], 100 * rate.interval_95[1]),
+                    std::isfinite(line.median_drive_s) ? fmt::format("{:.0f}", line.median_drive_s) : "-",
+                    std::isfinite(line.median_max_slip) ? fmt::format("{:.2f}", line.median_max_slip) : "-"});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<BenchmarkLine> compared(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<BenchmarkLine> lines;
+  for (const std::string& planner : plan.planners) lines.push_back(lineOf(plan, runs, planner));
+  return lines;
+}
+
+std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<WorldLine> lines;
+  for (const std::string& group : groupsOf(plan))
+    for (const std::string& planner : plan.planners) {
+      WorldLine line{.group = group, .planner = planner};
+      std::vector<double> seconds, slips;
+      for (const BenchmarkRun& run : runs) {
+        if (run.planner != planner || plan.cases[run.case_index].group != group) continue;
+        ++line.runs;
+        line.reached += run.reached;
+        if (run.reached) seconds.push_back(run.drive_s);
+        if (run.status == RouteStatus::Found && !run.crashed) slips.push_back(run.max_slip);
+      }
+      line.median_drive_s = median(seconds);
+      line.median_max_slip = median(slips);
+      lines.push_back(std::move(line));
+    }
+  return lines;
+}
+
+std::string asText(const std::vector<WorldLine>& lines) {
+  if (lines.empty()) return "";
+  std::string text = "\n";
+  for (const auto& row : worldRows(lines)) {
+    text += fmt::format("{:<12}{:<16}", row[0], row[1]);
+    for (std::size_t i = 2; i < row.size(); ++i) text += fmt::format("{:>14}", row[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string asText(const std::vector<BenchmarkLine>& lines) {
+  std::string text = fmt::format("{:<16}", kColumns[0]);
+  for (std::size_t i = 1; i < kColumns.size(); ++i) text += fmt::format("{:>12}", kColumns[i]);
+  text += "\n";
+  for (const BenchmarkLine& line : lines) {
+    const auto cells = words(line);
+    text += fmt::format("{:<16}", cells[0]);
+    for (std::size_t i = 1; i < cells.size(); ++i) text += fmt::format("{:>12}", cells[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
+  auto array = nlohmann::ordered_json::array();
+  for (const BenchmarkLine& line : lines) {
+    array.push_back({{"planner", line.planner},
+                     {"runs", line.runs},
+                     {"found", line.found},
+                     {"breached", line.breached},
+                     {"crashed", line.crashed},
+                     {"median_gap", line.median_gap},
+                     {"worst_gap", line.worst_gap},
+                     {"median_seconds", line.median_seconds},
+                     {"worst_megabytes", line.worst_megabytes},
+                     {"mean_cusps", line.mean_cusps},
+                     {"max_curvature_1_m", line.max_curvature_1_m},
+                     {"least_clearance_cells", line.least_clearance_cells}});
+    for (const WorldLine& drive : drives)
+      if (drive.planner == line.planner)
+        array.back()["drives"].push_back({{"belief", drive.group},
+                                          {"runs", drive.runs},
+                                          {"reached", drive.reached},
+                                          {"median_drive_s", drive.median_drive_s},
+                                          {"median_max_slip", drive.median_max_slip}});
+  }
+  return array;
+}
+
+std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  std::vector<Plot> plots;
+  for (std::size_t c = 0; c < std::min(plan.cases.size(), kMostPlots); ++c)
+    plots.push_back(gapOverTime(plan, runs, c));
+  return plots;
+}
+
+std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  HtmlReport page("Planner benchmark");
+  if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
+    page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
+  std::vector<std::vector<std::string>> rows;
+  for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
+  page.table(kColumns, rows);
+  if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
+    page.heading("Simulated drives over the true slip");
+    page.table(drives.front(), {drives.begin() + 1, drives.end()});
+  }
+  page.charts(gapsOverTime(plan, runs));
+  page.paragraph(fmt::format(
+      "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
+      "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
+      "route; its gap, curvature and clearance are not counted. Clearance is in cells. OMPL's planners begin "
+      "with the field's "
+      "route, those with :cold with nothing.",
+      plan.cases.size(), plan.seeds, plan.time_limit_s));
+  page.paragraph(
+      "The curves are those of the first seed of each planner whose final route passes the check. "
+      "Intermediate costs are those that "
+      "the planner reports; none is drawn below the cost of the final route.");
+  return page.html();
 }
 
 }  // namespace talus::cli

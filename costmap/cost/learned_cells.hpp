@@ -3,12 +3,18 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::costmap {
+
+/// Returns the cost map with other cost weights. The result shares the tiles (blocks of 64x64 cells) of `map`
+/// and refuses the same motions. Throws std::domain_error if a cost curve of the map has no
+/// GroundCost::states, and std::invalid_argument for a negative weight.
+std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeights& weights);
 
 /// Sparse grid of 32-bit words for cells with learned values; all other cells have the word 0. Memory is
 /// allocated only for tiles (blocks of 64x64 cells) with non-zero words.
@@ -41,6 +47,26 @@ class LearnedCells {
 
   int tile_columns_;
   std::vector<std::unique_ptr<Tile>> tiles_;
+};
+
+/// Holder of the current version of the cost grid; a new version replaces the current one as a whole. load()
+/// is thread-safe. The class uses a mutex because std::atomic<std::shared_ptr> of GCC 12 unlocks without
+/// memory ordering: on a weakly ordered processor, a reader could combine one grid with the reference count
+/// of another.
+class PublishedGrid {
+ public:
+  std::shared_ptr<const CostGrid> load() const {
+    const std::lock_guard lock(mutex_);
+    return grid_;
+  }
+  void store(std::shared_ptr<const CostGrid> next) {
+    const std::lock_guard lock(mutex_);
+    grid_.swap(next);  // the previous version is destroyed after the unlock
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const CostGrid> grid_;
 };
 
 }  // namespace talus::costmap

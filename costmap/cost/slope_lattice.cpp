@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <talus/costmap/cost/slope_lattice.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::costmap {
 namespace {

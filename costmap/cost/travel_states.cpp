@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/costmap/cost/travel_states.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::costmap {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <talus/costmap/cost/travel_cost.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::costmap {

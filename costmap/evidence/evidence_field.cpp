@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include <talus/costmap/evidence/evidence_field.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
 #include <talus/costmap/evidence/evidence_store.hpp>
 #include <talus/costmap/evidence/local_ground.hpp>
 

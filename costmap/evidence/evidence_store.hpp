@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <talus/costmap/evidence/class_evidence.hpp>
-#include <talus/costmap/evidence/evidence_bricks.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
 #include <talus/costmap/site/ground_site.hpp>
 
 namespace talus::costmap {

@@ -1,16 +1,82 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/ground/category_table.hpp>
-#include <talus/costmap/ground/ground_kind.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
+
+/// Returns the heading that determines the category of a cell: straight uphill, or a heading across the slope
+/// if its equivalent climb is steeper by more than 1/32.
+Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept;
+
+/// Returns the category of ground with the estimate `belief` in one heading, and its probability. `state` is
+/// the result of TravelCost::detail() and `climb` the result of TravelCost::climb() for that heading. Ground that is
+/// refused (has infinite cost) for a reason other than its category is dangerous.
+RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
+                      double climb);
+
+/// Category of ground of one estimated strength, tabulated over the gradient of the plane of a cell in steps
+/// of CellCode. The category is the worst over all headings, and dangerous if worstHeading() is refused. The
+/// gradient of a cell is rounded up to a step.
+class CategoryTable {
+ public:
+  /// Table entry for one gradient.
+  struct Entry {
+    std::uint8_t category;  ///< terramech::Category as a number
+    /// Probability of the category in steps of 1/16, rounded to nearest if dangerous and down otherwise.
+    std::uint8_t confidence;
+  };
+
+  /// Makes a table with the category dangerous at every gradient.
+  CategoryTable() = default;
+  /// Makes the table of ground with the estimate `belief`; `ground` is the result of GroundModel::ground()
+  /// for it.
+  CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground);
+
+  /// Returns the entry for the gradient of a cell.
+  Entry at(CellCode cell) const noexcept;
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// Estimated strength of ground, quantised so that similar estimates share one cost curve. Each quantity is
+/// relative to the prior of the terrain class and rounded towards danger, in steps of
+///   - drawbar pull over load DP/W: 0.005, rounded down;
+///   - standard deviation of DP/W: a factor 2^(1/8), from 1/64 to 256 times that of the prior, rounded up;
+///   - sinkage over wheel radius: 0.02, rounded up.
+/// An estimate no worse than the prior is not rounded beyond the prior, so that little evidence never increases a
+/// cost.
+struct GroundKind {
+  static constexpr double kPullStep = 0.005;  ///< step of DP/W [-]
+
+  int class_index = 0;
+  /// Second possible terrain class of the ground; equal to class_index if there is only one.
+  int other_class = 0;
+  /// DP/W minus that of the prior, in steps of kPullStep.
+  int pull = 0;
+  int pull_std = 0;  ///< standard deviation of DP/W, in steps of a factor 2^(1/8) relative to the prior's
+  /// Sinkage over wheel radius minus that of the prior, in steps of 0.02.
+  int sinkage = 0;
+
+  auto operator<=>(const GroundKind&) const = default;  // NOLINT(modernize-use-nullptr): of clang 14
+
+  /// Returns the quantised form of the estimate `belief`. `prior` is the estimate of the class before any
+  /// evidence (GroundModel::prior()).
+  static GroundKind of(const GroundBelief& prior, int class_index, int other_class,
+                       const GroundBelief& belief) noexcept;
+
+  /// Returns the worst estimate that is quantised to this kind. The standard deviation of sinkage is reduced
+  /// in proportion to that of DP/W, and is at most ground.sinkage_std.
+  GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
+};
 
 /// Table of the cost curves of a map. A cost curve is the cost per metre over the gradient for ground of one
 /// estimated strength. The table assigns an index to each estimate. The indices 0 .. classes-1 belong to the priors

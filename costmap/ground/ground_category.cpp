@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include <talus/costmap/ground/ground_category.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <talus/costmap/cost/turn_price.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
-#include <talus/terramech/mobility/rut.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/terramech/mobility/turning.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::costmap {

@@ -1,21 +1,123 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <talus/costmap/cost/travel_cost.hpp>
-#include <talus/costmap/ground/ground_states.hpp>
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/contact/soil.hpp>
-#include <talus/terramech/effects/effects.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/mobility/category.hpp>
-#include <talus/terramech/mobility/mobility.hpp>
-#include <talus/terramech/numerics/estimate.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::costmap {
+
+using terramech::Estimate;
+
+/// Estimated strength of ground: quantities of a wheel at the reference slip 0.5, each with standard
+/// deviation.
+struct GroundBelief {
+  Estimate pull;     ///< drawbar pull over load, DP/W [-]
+  Estimate sinkage;  ///< sinkage over wheel radius, z/r [-]
+};
+
+/// A category and its probability.
+struct RankedCategory {
+  terramech::Category category = terramech::Category::Unknown;
+  double probability = 0.0;
+};
+
+/// Category of ground by its pull against the slope and by its sinkage (thesis 3.5).
+class GroundCategory {
+ public:
+  GroundCategory(const TravelPolicy& policy, const terramech::Rover& rover);
+
+  /// Returns the category of ground of a known pull over load and sinkage over radius at a gradient.
+  terramech::Category at(double pull, double sinkage, double gradient) const;
+  /// Returns the category of ground with the mean strength of `belief` at a gradient, and the probability of
+  /// that category under the uncertainty of `belief`.
+  RankedCategory ranked(const GroundBelief& belief, double gradient) const;
+
+ private:
+  // `low` is the DP/W below which a slope is dangerous, and `high` is the DP/W above which it is safe.
+  struct Edges {
+    double low, high;
+  };
+  Edges edges(double gradient) const noexcept;
+
+  double tan_margin_, threshold_, critical_;
+};
+
+/// Permissions, weights and limits of the rover by which ground is priced.
+struct GroundRules {
+  TravelPolicy policy;
+  terramech::Rover rover;
+  GroundCategory category{policy, rover};
+};
+
+/// A class to which ground may belong, and the strength of the ground relative to that class.
+struct StrengthOfClass {
+  std::shared_ptr<const SlopeLattice> lattice;
+  int class_index = 0;
+  Estimate strength;    ///< relative to the class [-]
+  double deeper = 1.0;  ///< sinkage relative to the class [-]
+};
+
+/// Travel states of ground whose strength s is normally distributed. At a node of the lattice the motion holds for
+/// s >= s_0, and a decision requires s >= s_d (StrengthColumn). With e(s) the energy and t(s) the time of a metre:
+///   forecast   energy = E[e(s) | s >= s_0], time = E[t(s) | s >= s_0], slip, torque and sinkage at E[s];
+///   decision   refused if E[s] < s_d, or if P(s < s_d) exceeds policy.max_immobilisation, and by category,
+///              sinkage, torque and tipping;
+///   cost       E[e(s); s >= s_0] + 2 e(s_0) P(s < s_0), the attempt at the limit and the way back (ours),
+///              likewise for time, and risk_J times the hazard of immobilisation by P(s < s_d).
+/// All integrals are exact, because e and t are linear between the entries of the lattice. Ground that may belong
+/// to two classes has the worse value of each quantity. Costs are raised to those of rows with less gradient
+/// across. Thread-safe.
+class GroundStates final : public TravelStates {
+ public:
+  /// `classes` has one or two entries; `added_J_per_m` is added to the energy of each metre.
+  GroundStates(std::shared_ptr<const GroundRules> rules, std::vector<StrengthOfClass> classes,
+               const GroundBelief& belief, double added_J_per_m = 0.0);
+
+  TravelState at(int row, int bin) const override;
+  TravelCurve curve(const CostWeights& weights) const override;
+  SlopeHold hold(const terramech::Gradient& gradient) const override;
+  double climb(const terramech::Gradient& gradient) const override;
+  double steepest(double gradient) const override;
+  TravelForecast forecast(const terramech::Gradient& gradient) const override;
+
+  /// Returns the state on a slope without gradient across, interpolated between nodes.
+  TravelState onClimb(double gradient) const;
+  std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
+
+ private:
+  // Terms of the cost of a node; infinite if refused.
+  struct Terms {
+    double energy_J_per_m, time_s_per_m, risk_per_m;
+  };
+  struct Node {
+    TravelState state;
+    Terms terms;
+  };
+  class WeightTable;
+  Node node(int row, int bin, const std::vector<WeightTable>* weights = nullptr) const;
+  Node node(const StrengthOfClass& of, const WeightTable* weights, int row, int bin) const;
+  std::vector<std::array<float, 3>> terms() const;
+  bool isAllowed(std::size_t node) const;
+  int rows() const noexcept;
+
+  std::shared_ptr<const GroundRules> rules_;
+  std::vector<StrengthOfClass> classes_;
+  GroundBelief belief_;
+  double added_J_per_m_;
+  mutable std::once_flag once_;
+  mutable std::vector<bool> allowed_;  // by node: neither this row nor one with less gradient across refuses
+};
 
 /// A terrain class: the prior for the strength of the ground of its cells. Plain data.
 struct GroundClass {
@@ -161,5 +263,20 @@ class GroundModel {
   std::vector<Reference> references_;
   std::vector<std::shared_ptr<Lazy>> grounds_;
 };
+
+/// Returns the terrain class number `number` for a soil prior and a rover. GroundClass::mean_std is the
+/// standard deviation of drawbar pull over load DP/W at the reference slip 0.5, by first-order propagation of
+/// the standard deviations of cohesion, friction angle, sinkage exponent, moduli, shear modulus and
+/// slip-sinkage exponent as independent parameters; a prior without standard deviations keeps GroundClass's
+/// default. A soil that was tested in greater gravity is converted by underGravity(); mean_std then includes
+/// the effect of a gravity exponent of 0.5 instead of 1. Throws std::invalid_argument if MobilityCurve
+/// rejects the soil or the rover.
+GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
+
+/// Returns the terrain class number `number` for a refined model (soil and effects fitted to wheel data) and
+/// a rover. mean_std is the standard deviation of DP/W at the reference slip by the model's covariance; a
+/// model without a covariance keeps GroundClass's default. Sensor effects are omitted. Gravity is converted
+/// as for a soil prior. Throws std::invalid_argument if MobilityCurve rejects the soil or the rover.
+GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

@@ -5,10 +5,14 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/maps/grid/grid.hpp>
-#include <talus/terramech/contact/rover.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::costmap {
+
+/// Returns for each cell, by its index in the grid, whether a cell of another terrain class lies within
+/// `reach` columns and rows of it. Returns an empty vector for an empty raster.
+std::vector<bool> classBorders(const maps::Raster<std::uint8_t>& classes, int reach);
 
 /// Computes the drawbar pull over load DP/W of a whole rover whose centre is in a cell, from the estimated
 /// ground under all its wheels.

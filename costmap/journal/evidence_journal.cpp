@@ -3,12 +3,10 @@
 
 #include <sqlite3.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/evidence/observation_fault.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
-#include <talus/costmap/journal/journal_rows.hpp>
-#include <talus/costmap/journal/journal_schema.hpp>
 
 namespace talus::costmap {
 namespace {

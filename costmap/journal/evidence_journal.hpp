@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
 
 namespace talus::costmap {
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/evidence/spreading.hpp>
-#include <talus/costmap/ground/category_table.hpp>
-#include <talus/costmap/map/explanation.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
+#include <talus/costmap/ground/cost_curve_table.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
 
 namespace talus::costmap {
 namespace {

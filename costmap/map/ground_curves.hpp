@@ -7,13 +7,35 @@
 
 #include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/evidence/class_evidence.hpp>
-#include <talus/costmap/evidence/evidence_beliefs.hpp>
-#include <talus/costmap/evidence/evidence_field.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
+#include <talus/costmap/evidence/local_ground.hpp>
 #include <talus/costmap/ground/cost_curve_table.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/costmap/ground/wheel_swath.hpp>
-#include <talus/costmap/site/added_cost.hpp>
+#include <talus/costmap/site/surface_patch.hpp>
+#include <talus/costmap/surface/surface.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
+
+class TraversabilityMap;
+
+/// Computes the estimates of the cells of a map from its surface, evidence and published categories. Data
+/// common to adjacent cells are cached. Valid until the map changes. Not thread-safe.
+class PlaceBeliefs {
+ public:
+  explicit PlaceBeliefs(const TraversabilityMap& map);
+
+  /// Returns the estimate of a cell inside the map.
+  CellBelief at(maps::Cell cell);
+  /// Returns the estimated strength of a cell's ground, from the prior of the terrain class and the evidence;
+  /// nullopt for a cell without a class.
+  std::optional<GroundBelief> ground(maps::Cell cell);
+
+ private:
+  const TraversabilityMap& map_;
+  EvidenceBeliefs beliefs_;
+};
 
 /// Assigns an index of a cost curve (cost per metre over the gradient) to each cell. If all ground that a
 /// wheel may touch has the same estimated strength, the curve is that of the cell's ground; otherwise it is

@@ -2,11 +2,11 @@
 #include <array>
 #include <utility>
 
-#include <talus/costmap/cost/published_grid.hpp>
-#include <talus/costmap/evidence/evidence_beliefs.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/evidence/local_ground.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
-#include <talus/costmap/map/map_costs.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -15,13 +15,12 @@
 #include <vector>
 
 #include <talus/common/checksum.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/output_file.hpp>
-#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
 #include <talus/costmap/map/map_text.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {

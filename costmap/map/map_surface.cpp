@@ -4,9 +4,8 @@
 #include <string>
 #include <utility>
 
-#include <talus/costmap/map/map_surface.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/site/surface_patch.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/costmap/map/map_text.hpp>
 
 namespace talus::costmap {

@@ -7,7 +7,7 @@
 
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/costmap/site/ground_site.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/costmap/surface/cell_belief.hpp>
-#include <talus/costmap/surface/surface_cells.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/costmap/surface/surface.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
 

@@ -1,12 +1,12 @@
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
+
 namespace {
 
 constexpr double kMostCounted = 0.5;

@@ -9,9 +9,9 @@
 #include <ostream>
 #include <sstream>
 
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/surface/octree_keys.hpp>
-#include <talus/costmap/surface/traversability_tree.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/surface/surface.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {
 namespace {

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/evidence/observation_fault.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
-#include <talus/costmap/telemetry/drive_id.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/evidence/wheel_observation.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
+#include <talus/costmap/telemetry/telemetry_rows.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::costmap {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
 

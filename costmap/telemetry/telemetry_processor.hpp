@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
 #include <talus/costmap/telemetry/drive_posterior.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 

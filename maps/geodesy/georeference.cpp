@@ -9,8 +9,8 @@
 #include <GeographicLib/PolarStereographic.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/maps/geodesy/georeference.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 namespace {

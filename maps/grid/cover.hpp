@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/maps/grid/point_heights.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 

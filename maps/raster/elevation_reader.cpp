@@ -11,9 +11,9 @@
 #include <gdal_alg.h>
 #include <gdal_priv.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>

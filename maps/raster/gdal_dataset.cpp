@@ -34,8 +34,7 @@
 #include <ogr_srs_api.h>
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::maps {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 
 class GDALDataset;
 class GDALDriver;

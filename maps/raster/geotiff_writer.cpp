@@ -8,11 +8,11 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/geotiff_writer.hpp>
-#include <talus/maps/raster/spatial_reference.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
 
 namespace talus::maps {
 namespace {

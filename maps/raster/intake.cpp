@@ -9,8 +9,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <talus/maps/grid/grid.hpp>
-#include <talus/maps/raster/read_options.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/maps/maps_io.hpp>
 
 class GDALDataset;
 class GDALRasterBand;

@@ -14,13 +14,13 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/grid/cover.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
-#include <talus/maps/raster/layer_reader.hpp>
-#include <talus/maps/terrain/place.hpp>
 
 namespace talus::maps {
 namespace {

@@ -20,7 +20,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>

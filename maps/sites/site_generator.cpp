@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/parallel_for.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 

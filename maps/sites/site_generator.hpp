@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/maps/grid/grid.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 

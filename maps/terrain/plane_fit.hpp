@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 

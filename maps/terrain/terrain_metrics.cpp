@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <talus/common/parallel_for.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/maps/terrain/plane_fit.hpp>
 #include <talus/maps/terrain/step_height.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace {

@@ -9,10 +9,9 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/spatial_reference.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 
 namespace talus::maps {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 

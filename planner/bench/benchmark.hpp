@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
@@ -102,5 +102,12 @@ bool stands(const BenchmarkRun& run) noexcept;
 /// Returns the best known cost of a case [J]: the optimum if it is known, otherwise the lowest cost of all
 /// runs of the case for which stands() is true; infinite if there is no such run.
 double bestKnown_J(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index);
+
+/// Returns the runs of one case in the form of an OMPL benchmark log (text) for ompl_benchmark_statistics.py
+/// and Planner Arena. The properties of a run are time, memory, status, correctness, cost, length, turns, gap
+/// to the best known cost, cusps, turns in place, curvature and clearance. The progress of a run is its cost
+/// over time.
+std::string benchmarkLog(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs,
+                         std::size_t case_index);
 
 }  // namespace talus::planner

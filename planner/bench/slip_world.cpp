@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include <talus/common/constants.hpp>
-#include <talus/costmap/cost/travel_states.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/route/polyline.hpp>

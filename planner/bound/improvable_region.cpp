@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <talus/planner/bound/improvable_region.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 
 namespace talus::planner {
 namespace {

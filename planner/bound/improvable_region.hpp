@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {

@@ -2,16 +2,217 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/bound/sub_solution_check.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {
+
+namespace {
+
+using costmap::CellCode;
+using costmap::TravelCurve;
+using maps::Cell;
+using maps::Point;
+
+constexpr int kRounds = 6;
+
+// Lowest cost per metre of a cell over all headings, by curve and by the steepest gradient in bins. Rows with
+// a gradient across cost no less than row 0 (TravelCurve).
+class LowestCosts {
+ public:
+  explicit LowestCosts(const costmap::TravelCost& cost) : least_(cost.curves().size()) {
+    for (std::size_t k = 0; k < least_.size(); ++k) {
+      const auto& row = cost.curves()[k].cost_J_per_m;
+      double least = kInfinity;
+      for (int reach = 0; reach <= kMiddle; ++reach) {
+        least =
+            std::min({least, static_cast<double>(row[static_cast<std::size_t>(kMiddle - reach)]),
+                      reach < kMiddle ? static_cast<double>(row[static_cast<std::size_t>(kMiddle + reach)])
+                                      : kInfinity});
+        least_[k][static_cast<std::size_t>(reach)] = std::max(least, 0.0);
+      }
+    }
+  }
+
+  // Infinite for a cell without a curve.
+  double operator()(CellCode cell) const noexcept {
+    if (cell.curve() >= least_.size()) return kInfinity;
+    const double steepest = std::hypot(cell.dzDx(), cell.dzDy()) * (1.0 + 1e-9);  // headings are rounded
+    const int reach =
+        static_cast<int>(std::min(std::ceil(steepest * TravelCurve::kBinsPerUnit), double{kMiddle}));
+    return least_[cell.curve()][static_cast<std::size_t>(reach)];
+  }
+
+ private:
+  static constexpr int kMiddle = TravelCurve::kBins / 2;
+  std::vector<std::array<double, kMiddle + 1>> least_;
+};
+
+// Lowest cost per metre of the cells that a curve of length `length_m` between the two places can touch.
+// Infinite if no such cell has a curve; 0 when stopped.
+double cheapestWithin(const costmap::CostGrid& map, const LowestCosts& metres, const Segment& places,
+                      double length_m, const StopCheck& stop) {
+  const maps::Grid& grid = map.grid();
+  // Margin of half a cell diagonal per leg: distances are measured to cell centres.
+  const double reach_m = length_m + std::numbers::sqrt2 * 1.001 * grid.resolution_m;
+  const auto line = [&](double middle_m, double origin_m, double off_m, int count) {
+    const double at = (middle_m + off_m - origin_m) / grid.resolution_m;
+    return static_cast<int>(std::clamp(at, 0.0, count - 1.0));
+  };
+  const Point middle{0.5 * (places.from.x_m + places.to.x_m), 0.5 * (places.from.y_m + places.to.y_m)};
+  const double half_m = 0.5 * reach_m;
+  const Cell first{line(middle.x_m, grid.south_west.x_m, -half_m, grid.width),
+                   line(middle.y_m, grid.south_west.y_m, -half_m, grid.height)};
+  const Cell last{line(middle.x_m, grid.south_west.x_m, half_m, grid.width),
+                  line(middle.y_m, grid.south_west.y_m, half_m, grid.height)};
+  double least = kInfinity;
+  for (int row = first.row; row <= last.row; ++row) {
+    if ((row & 63) == 0 && stop()) return 0.0;
+    for (int column = first.column; column <= last.column; ++column) {
+      const double metre = metres(map.at({column, row}));
+      if (!(metre < least)) continue;
+      const Point centre = grid.centre({column, row});
+      if (distance_m(places.from, centre) + distance_m(centre, places.to) <= reach_m) least = metre;
+    }
+  }
+  return least;
+}
+
+double cheapestOfAny(const costmap::TravelCost& cost) noexcept {
+  double least = kInfinity;
+  for (const TravelCurve& curve : cost.curves())
+    for (const float value : curve.cost_J_per_m) least = std::min(least, static_cast<double>(value));
+  return std::isfinite(least) ? std::max(least, 0.0) : 0.0;
+}
+
+}  // namespace
+
+double cheapestMetre_J(const costmap::CostGrid& map) {
+  std::vector<bool> used(std::size_t{costmap::CellCode::kBlocked} + 1);
+  for (std::size_t i = 0; i < map.content().tiles.size(); ++i)
+    for (const costmap::CellCode cell : map.content().tiles.tile(i).cells) used[cell.curve()] = true;
+  float cheapest = std::numeric_limits<float>::infinity();
+  const auto& curves = map.cost().curves();
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    if (used[k]) cheapest = std::min(cheapest, *std::ranges::min_element(curves[k].cost_J_per_m));
+  return std::isfinite(cheapest) ? static_cast<double>(std::max(cheapest, 0.0F)) : 0.0;
+}
+
+double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m) {
+  return cheapestOfAny(map.cost()) * std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
+}
+
+double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+                           double known_J, const StopCheck& stop) {
+  const LowestCosts metres(map.cost());
+  const double straight_m = std::max(0.0, distance_m(places.from, places.to) - tolerance_m);
+  double cheapest = cheapestOfAny(map.cost());
+  for (int round = 0; round < kRounds && std::isfinite(known_J) && cheapest > 0.0; ++round) {
+    const double least = cheapestWithin(map, metres, places, known_J / cheapest + tolerance_m, stop);
+    if (std::isinf(least) || !(least > cheapest * 1.0001)) break;
+    cheapest = least;
+  }
+  const double twice_m = 2.0 * distance_m(places.from, places.to);
+  if (const double least = cheapestWithin(map, metres, places, twice_m, stop); std::isfinite(least))
+    cheapest = std::max(cheapest, least);
+  return std::min(known_J, cheapest * straight_m);
+}
+
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kCheapest = 16;  // units of the cheapest edge that an octagon permits
+
+Octagon nothing() noexcept {
+  Octagon octagon;
+  octagon.fill(kNone);
+  return octagon;
+}
+
+// Returns the costs of the eight steps into a corner of cells. `below` and `above` point to the western of
+// the two cells south and north of the corner.
+Octagon stepsInto(const Octagon* below, const Octagon* above) noexcept {
+  constexpr float root = 1.4142135F;
+  Octagon into{};
+  into[kEast] = std::min(above[1][kWest], below[1][kWest]);
+  into[kWest] = std::min(above[0][kEast], below[0][kEast]);
+  into[kNorth] = std::min(above[0][kSouth], above[1][kSouth]);
+  into[kSouth] = std::min(below[0][kNorth], below[1][kNorth]);
+  into[kNorthEast] = root * above[1][kSouthWest];
+  into[kNorthWest] = root * above[0][kSouthEast];
+  into[kSouthWest] = root * below[0][kNorthEast];
+  into[kSouthEast] = root * below[1][kNorthWest];
+  return into;
+}
+
+// Calls each(corner, costs of the steps into the corner) for every corner, row by row. Returns false when
+// stopped.
+template <typename Each>
+bool forEachCorner(const maps::Grid& grid, const OctagonOf& octagon_of, RouteSense sense,
+                   const StopCheck& stop, Each each) {
+  const auto width = static_cast<std::size_t>(grid.width);
+  std::vector<Octagon> below(width + 2, nothing()), above = below;
+  for (int row = 0; row <= grid.height; ++row) {
+    if (stop()) return false;
+    for (std::size_t i = 0; i < width; ++i) {
+      Octagon& octagon = above[i + 1];
+      octagon = row < grid.height ? octagon_of({static_cast<int>(i), row}) : nothing();
+      if (sense == RouteSense::FromStart) std::rotate(octagon.begin(), octagon.begin() + 4, octagon.end());
+    }
+    for (std::size_t column = 0; column <= width; ++column)
+      each(maps::Cell{static_cast<int>(column), row}, stepsInto(&below[column], &above[column]));
+    std::swap(below, above);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::shared_ptr<const EdgeLayer> admissibleEdges(const std::shared_ptr<const costmap::CostGrid>& map,
+                                                 const OctagonOf& octagon_of, const StopCheck& stop,
+                                                 RouteSense sense) {
+  const maps::Grid& grid = map->grid();
+  const double side_m = grid.resolution_m, cheapest_J = cheapestMetre_J(*map);
+  if (!(cheapest_J > 0.0)) return nullptr;
+  const double unit_J = FittedOctagons::kLeastShare * cheapest_J * side_m / (kCheapest + 1);
+  auto edges = std::make_shared<EdgeLayer>(map, EdgeUnits(unit_J, kCheapest),
+                                           EdgeLayer::Unfilled{grid.width + 1, grid.height + 1});
+  const bool filled =
+      forEachCorner(grid, octagon_of, sense, stop, [&](maps::Cell corner, const Octagon& into) {
+        std::uint16_t* steps = edges->into(edges->padded().index(corner));
+        for (std::size_t k = 0; k < 8; ++k) {
+          steps[k] = EdgeLayer::kBlocked;
+          if (std::isinf(into[k]))
+            continue;  // the step crosses or borders no cell that the heading may enter
+          const double units = std::floor(static_cast<double>(into[k]) * side_m / unit_J);
+          steps[k] =
+              static_cast<std::uint16_t>(std::clamp(units, double{kCheapest}, EdgeUnits::kBlocked - 1.0));
+        }
+      });
+  return filled ? edges : nullptr;
+}
+
+std::vector<float> cornerField(const std::shared_ptr<const costmap::CostGrid>& map,
+                               const OctagonOf& octagon_of, std::vector<FieldGoal> ends,
+                               const StopCheck& stop, RouteSense sense) {
+  const auto edges = admissibleEdges(map, octagon_of, stop, sense);
+  if (!edges) return {};
+  for (FieldGoal& end : ends) end.cost_J = std::max(0.0, end.cost_J - edges->units().unit_J());  // is rounded
+  CostToGo field(edges, ends);
+  if (!field.settleAll(stop)) return {};
+  const PaddedGrid& corners = edges->padded();
+  std::vector<float> costs_J;
+  costs_J.reserve(static_cast<std::size_t>(corners.width) * static_cast<std::size_t>(corners.height));
+  for (int row = 0; row < corners.height; ++row)
+    for (int column = 0; column < corners.width; ++column)
+      costs_J.push_back(
+          static_cast<float>(field.cost_J({column, row}).value_or(std::numeric_limits<double>::infinity())));
+  return costs_J;
+}
+
 namespace {
 
 constexpr auto kFar = static_cast<float>(kInfinity);

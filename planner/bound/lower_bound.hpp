@@ -1,16 +1,77 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include <talus/planner/bound/admissible_edges.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/planner/bound/fitted_octagon.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
+
+/// Returns the lowest cost per metre [J/m] over all cost curves (kinds of ground, costmap::TravelCurve) that
+/// occur on the map and all gradients; 0 if no cell has a cost curve. Only row 0 of each cost curve (no
+/// gradient across the heading) is read, because no other row has a lower cost.
+double cheapestMetre_J(const costmap::CostGrid& map);
+
+/// Returns a lower bound [J] of the cost of any motion from `places.from` to within `tolerance_m` of
+/// `places.to`: the distance times the lowest cost per metre of all cost curves (kinds of ground). The
+/// function reads no cell.
+double straightBound_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m = 0.0);
+
+/// Returns a lower bound [J] from the lowest cost per metre of the reachable cells. `known_J` is the cost of
+/// a known route, infinite if none is known. The result is at least min(straightBound_J(), known_J) and at
+/// most known_J. On uniform ground the bound proves that the straight line is optimal. After a stop, returns
+/// the bound found so far.
+///
+/// Derivation (ours, not from the literature). Let D be the distance and S >= 2 D. The points whose distances
+/// to both places sum to at most S form an ellipse. A route that leaves the ellipse drives at least (S - D) /
+/// 2 from the first place to its boundary and at least the same distance back to the second place. Therefore
+/// every route drives D metres inside the ellipse, each at no less than the lowest cost per metre there. A
+/// route of at most known_J is no longer than S = known_J / (lowest cost per metre), also if S < 2 D. A
+/// tolerance shortens all lengths equally. The computation takes a few nanoseconds per cell of the bounding
+/// box of the ellipse and iteration.
+double straightBoundOver_J(const costmap::CostGrid& map, const Segment& places, double tolerance_m,
+                           double known_J = std::numeric_limits<double>::infinity(),
+                           const StopCheck& stop = {});
+
+/// Returns the octagon of a cell inside the map; infinite weights for a cell that no route enters.
+using OctagonOf = std::function<Octagon(maps::Cell)>;
+
+/// Direction of the routes: from the corners of cells to the goal, or from the start to the corners.
+enum class RouteSense { ToGoal, FromStart };
+
+/// Returns lower bounds of the costs between neighbouring cell corners, along cell sides and across cells.
+/// The cost-to-go field over these edges is a lower bound of the cost of every continuous route of any shape
+/// and heading, not only of grid routes. Corners are numbered like cells: a corner has the index of the cell
+/// to its north-east. The corner grid has one column and one row more than the cell grid. For
+/// RouteSense::FromStart every edge has the cost of the opposite motion.
+///
+/// Proof of the lower bound (ours, not from the literature). The gauge N of an Octagon is convex and at most
+/// equal to the cost per metre of the cell. Take a field over corners whose differences along the sides and
+/// both diagonals of the cell are at most w_k, and interpolate the field linearly along the sides. Between any
+/// two points of the cell's boundary the field then changes by at most N. Therefore the field can be extended
+/// into the cell such that it changes no faster than N (McShane 1934 [mcshane_1934]). Along any allowed motion
+/// the extended field changes by at most the cost of the motion. A step along a side has the lower of the
+/// costs in the two cells beside the side. Costs are rounded down to whole units.
+///
+/// Returns null after a stop, or if the lowest cost per metre of the map is 0.
+std::shared_ptr<const EdgeLayer> admissibleEdges(const std::shared_ptr<const costmap::CostGrid>& map,
+                                                 const OctagonOf& octagon_of, const StopCheck& stop = {},
+                                                 RouteSense sense = RouteSense::ToGoal);
+
+/// Returns the cost-to-go field [J] over admissibleEdges() by index of the corner, row by row: at most the
+/// given value at `ends`, infinite where no route leads. The result is empty after a stop, or if the
+/// lowest cost per metre of the map is 0.
+std::vector<float> cornerField(const std::shared_ptr<const costmap::CostGrid>& map,
+                               const OctagonOf& octagon_of, std::vector<FieldGoal> ends,
+                               const StopCheck& stop = {}, RouteSense sense = RouteSense::ToGoal);
 
 /// Computes a lower bound of the cost of every route to a goal, of any shape and heading, in levels. Each level
 /// is a cost-to-go field over admissibleEdges(), and none lowers the bound.

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include <talus/planner/bound/mesh_costs.hpp>
 #include <talus/planner/bound/mesh_search.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/stop_check.hpp>

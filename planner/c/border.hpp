@@ -10,7 +10,7 @@
 
 #include <talus.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/c/session.hpp>
 
 /// Boundary to the C interface: checks of sizes and pointers, and conversion of exceptions to an error code

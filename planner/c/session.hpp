@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <unordered_map>
 
-#include <talus/planner/plan/planner.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace talus::planner {
 

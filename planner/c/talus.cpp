@@ -10,11 +10,10 @@
 
 #include <talus.h>
 
-#include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/map/place_beliefs.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
 #include <talus/planner/c/border.hpp>
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace {
 

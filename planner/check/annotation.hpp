@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/maps/grid/grid.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/route.hpp>
 

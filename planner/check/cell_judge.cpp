@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/planner/check/cell_judge.hpp>
-#include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {

@@ -3,8 +3,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <talus/maps/terrain/elevation_map.hpp>
-#include <talus/planner/check/chassis.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
 
 namespace talus::planner {

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include <talus/planner/check/chassis.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <talus/costmap/cost/travel_state.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
 

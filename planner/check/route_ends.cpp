@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <talus/costmap/surface/hazards.hpp>
+#include <talus/costmap/surface/surface.hpp>
 #include <talus/planner/check/route_ends.hpp>
 
 namespace talus::planner {

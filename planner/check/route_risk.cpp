@@ -9,7 +9,7 @@
 #include <string>
 
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::planner {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::planner {

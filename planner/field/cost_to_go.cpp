@@ -1,11 +1,8 @@
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <utility>
 
 #include <talus/planner/field/cost_to_go.hpp>
-#include <talus/planner/field/edge_layer.hpp>
 
 #if defined(__x86_64__)
 #include <immintrin.h>

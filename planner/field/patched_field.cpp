@@ -7,7 +7,7 @@
 #include <queue>
 #include <utility>
 
-#include <talus/planner/field/bucket_queue.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/field/patched_field.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <talus/common/parallel_for.hpp>
 #include <talus/planner/field/pooled_grid.hpp>
-#include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {
 namespace {

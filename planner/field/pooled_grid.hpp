@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

@@ -4,15 +4,15 @@
 #include <string>
 #include <utility>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
-#include <talus/planner/reach/cell_route.hpp>
-#include <talus/planner/reach/obstruction_search.hpp>
+#include <talus/planner/reach/cell_chain.hpp>
+#include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/stop_check.hpp>

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include <talus/planner/bound/straight_bound.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/grid/point_route.hpp>
-#include <talus/planner/refine/edge_crossings.hpp>
+#include <talus/planner/refine/corridor_search.hpp>
 #include <talus/planner/refine/vertices.hpp>
-#include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {

@@ -7,12 +7,11 @@
 #include <talus/common/parallel_for.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
-#include <talus/planner/field/edge_units.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/field/pooled_grid.hpp>
 #include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/tube_planner.hpp>
-#include <talus/planner/refine/route_windows.hpp>
+#include <talus/planner/refine/any_angle.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/stop_check.hpp>

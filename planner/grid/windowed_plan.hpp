@@ -1,6 +1,6 @@
 #pragma once
 
-#include <talus/planner/grid/windowed_map.hpp>
+#include <talus/planner/planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {

@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/planner/plan/map.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace talus {
 

@@ -7,7 +7,7 @@
 
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

@@ -26,7 +26,7 @@ Plan planToCheapest(const Problem& problem, const std::function<Plan(const Probl
 /// per thread; the objects may share a map.
 class NamedPlanner {
  public:
-  /// `name` is a name of planner_names.hpp; empty: the default planner. Options may follow the name of an
+  /// `name` is a name of problem.hpp; empty: the default planner. Options may follow the name of an
   /// OMPL planner, for example "NAME:cold:range=20" (samplingSettings()). Throws std::invalid_argument for an
   /// invalid name.
   explicit NamedPlanner(const std::string& name = {});

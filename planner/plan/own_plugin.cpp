@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/planner/plan/planner.hpp>
+#include <talus/planner/planner.hpp>
 #include <talus/planner/plugin/plugin_export.hpp>
 
 namespace talus::planner {

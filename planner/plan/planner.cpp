@@ -6,11 +6,11 @@
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/plan/planner.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
+#include <talus/planner/planner.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
-#include <talus/planner/plugin/request_check.hpp>
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus {
 

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/cost_weights.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/maps/grid/grid.hpp>
-#include <talus/planner/check/chassis.hpp>
-#include <talus/planner/route/kinematics.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/route.hpp>
+
+namespace talus {
 
 /// Interface of all planners. Talus' own planners are called by
 /// plan/plan_route.hpp. A planner in a shared library is exported as an object named `talus_planner`
-/// (plugin/plugin_export.hpp) and is loaded by plugin/plugin_loader.hpp.
-namespace talus {
+/// (plugin/plugin_export.hpp) and is loaded by loadPlugin().
 
 /// Version of this interface. The number increases with every change of this file that is incompatible with
 /// older plugins or programs.
@@ -127,3 +127,24 @@ class GlobalPlanner {
 };
 
 }  // namespace talus
+
+namespace talus::planner {
+
+/// Loads the shared library `path` and creates its planner. The library stays loaded for the lifetime of the
+/// planner and of all planners that it created. If a field of a request is set that the planner does not
+/// support, an exception is thrown before the plugin is called. Throws talus::InputError
+/// with the file name if the file is missing, is not a library, exports no `talus_planner`, or was built for
+/// another interface version. The library is first loaded and unloaded in a child process with a memory limit
+/// of 4 GiB. InputError is also thrown if this trial crashes or takes longer than `trial_s` > 0 seconds of
+/// wall time.
+std::unique_ptr<GlobalPlanner> loadPlugin(const std::string& path, double trial_s = 10.0);
+
+/// Throws std::invalid_argument with the name of the first field of `request` that is out of range, or that
+/// is set although a planner with the capabilities `offers` does not support it. Every planner of
+/// loadPlugin() and Planner call this function.
+void requireHonoured(const PlanRequest& request, const PlannerCapabilities& offers);
+
+/// Returns `settings` after a check of the ranges. Throws std::invalid_argument with field, value and bound.
+const PlannerSettings& validated(const PlannerSettings& settings);
+
+}  // namespace talus::planner

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include <talus/common/input_error.hpp>
-#include <talus/planner/plugin/child_process.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/plugin/layer_plugin.hpp>
 #include <talus/planner/plugin/plugin_export.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 
 namespace talus::planner {
 namespace {

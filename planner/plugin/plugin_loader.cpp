@@ -11,11 +11,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
-#include <talus/planner/plugin/child_process.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
-#include <talus/planner/plugin/request_check.hpp>
+#include <talus/common/common.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 
 namespace talus::planner {
 namespace {

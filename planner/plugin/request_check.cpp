@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <talus/planner/plugin/request_check.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
 
 namespace talus::planner {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>

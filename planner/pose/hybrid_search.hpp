@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
-#include <talus/planner/route/heading_cost.hpp>
+#include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/pose_path.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include <talus/planner/bound/improvable_region.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/pose/pose_planner.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
-#include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/polyline.hpp>
+#include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
 #include <talus/terramech/contact/turning_radius.hpp>
 #include <talus/terramech/numerics/range.hpp>

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/pose/pose_shortcut.hpp>
 
 namespace talus::planner {

@@ -7,9 +7,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/maps/grid/grid.hpp>
-#include <talus/maps/grid/point_heights.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 
 /// Conversion between NumPy arrays and rasters. An input array of any strides is copied once. An output array
 /// is a read-only view that keeps the owner of its memory alive. `name` is the name of the argument for error

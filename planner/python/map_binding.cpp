@@ -8,8 +8,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <talus/costmap/map/place_beliefs.hpp>
-#include <talus/maps/grid/point_heights.hpp>
+#include <talus/costmap/map/ground_curves.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>

@@ -1,4 +1,4 @@
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/python/bindings.hpp>
 
 PYBIND11_MODULE(_talus, module) {

@@ -13,14 +13,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
-#include <talus/common/progress_monitor.hpp>
-#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/python_map.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace py = pybind11;
 

@@ -3,12 +3,12 @@
 
 #include <pybind11/stl.h>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/planner/python/python_map.hpp>
-#include <talus/planner/simulation/drive/simulation_site.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/planner/simulation/simulation.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace py = pybind11;
 

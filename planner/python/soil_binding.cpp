@@ -2,12 +2,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace py = pybind11;
 

@@ -7,7 +7,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/planner/reach/cell_side.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/planner/reach/cell_chain.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

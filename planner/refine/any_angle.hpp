@@ -1,12 +1,81 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include <talus/planner/refine/corridor_search.hpp>
-#include <talus/planner/refine/route_windows.hpp>
+#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {
+
+/// Cache of refined windows (sections) of routes, so that an identical window on unchanged ground is not
+/// refined again. Results used in the last two rounds remain; a round is the refinement of one route.
+/// Thread-safe except for newRound(), forget() and clear().
+class RefinementCache {
+ public:
+  /// Returns the stored result for a window; empty if there is none.
+  std::optional<Polyline> find(const Polyline& window);
+
+  /// Stores the result for a window. The result depends on the ground within `reach_m` of the bounding box of
+  /// the window.
+  void keep(const Polyline& window, const Polyline& result, double reach_m);
+
+  /// Removes results that depend on the ground in the rectangle with the opposite corners `corners`.
+  void forget(const Segment& corners);
+
+  void clear() { known_.clear(); }
+
+  /// Begins the refinement of another route: removes entries that were not used since the previous call.
+  void newRound();
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Polyline& window) const noexcept;
+  };
+  struct Entry {
+    Polyline result;
+    maps::Point low, high;  // bounding box of the ground that the result depends on
+    std::uint64_t round;    // round of the latest use
+  };
+
+  std::mutex mutex_;
+  std::unordered_map<Polyline, Entry, Hash> known_;
+  std::uint64_t round_ = 0;
+};
+
+/// Parameters for the division of a route into windows (consecutive sections).
+struct WindowCut {
+  double length_m = 0.0;   ///< length of a window
+  double overlap_m = 0.0;  ///< length, on both sides of a joint of two windows, that is refined again
+  /// Distance from the bounding box of a window up to which ground affects the result of the work.
+  double reach_m = 0.0;
+};
+
+/// Function that returns a path with the same ends as its argument. The result must depend only on the
+/// argument and the ground.
+using WindowWork = std::function<Polyline(const Polyline&)>;
+
+/// Applies `work` to the windows of a route, then to the surroundings of the joints between windows, with
+/// `threads` threads; the result does not depend on their number. Windows whose results are in `memo` are not
+/// processed again. After a stop, windows that were not started remain unchanged.
+Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, RefinementCache& memo,
+                   int threads = 1, const StopCheck& stop = {});
+
+/// Performs byWindows() for windows that are already cut; each window begins at the end of the previous
+/// window.
+Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
+                     RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
+
+/// Performs the second step of overWindows(): processes the surroundings of the joints and joins the windows.
+/// Each window begins at the end of the previous window.
+Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
+                     RefinementCache& memo, int threads = 1, const StopCheck& stop = {});
 
 /// Parameters of the refinement.
 struct RefineOptions {

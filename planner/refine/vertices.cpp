@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <limits>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/refine/vertices.hpp>
-#include <talus/planner/route/heading_sweep.hpp>
+#include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {
 namespace {

@@ -1,11 +1,10 @@
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {
+
 namespace {
 
 using std::numbers::pi;

@@ -1,15 +1,71 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <new>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
-#include <talus/costmap/cost/travel_cost.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::planner {
+
+/// Returns the signed smaller angle from heading `from` to heading `to`, (-pi, pi]; left > 0.
+inline double turnBetween_rad(costmap::Direction from, costmap::Direction to) noexcept {
+  return std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+}
+
+/// Returns true if `holds`(heading) is true at all sampled headings between two headings, on the side of the
+/// smaller angle. The samples are at most `apart_rad` > 0 apart; `from` and `to` themselves are excluded.
+template <typename Holds>
+bool holdsBetween(costmap::Direction from, costmap::Direction to, double apart_rad, Holds holds) {
+  const double turn_rad = turnBetween_rad(from, to);
+  const int parts = static_cast<int>(std::ceil(std::abs(turn_rad) / apart_rad));
+  for (int k = 1; k < parts; ++k) {
+    const double by = turn_rad * k / parts, c = std::cos(by), s = std::sin(by);
+    if (!holds(costmap::Direction{from.x * c - from.y * s, from.x * s + from.y * c})) return false;
+  }
+  return true;
+}
+
+/// Cost per metre for a fixed heading, for loops over many cells. The values are bit-identical to those of
+/// TravelCost::costPerMetre(). The TravelCost must outlive the object.
+class HeadingCost {
+ public:
+  HeadingCost(const costmap::TravelCost& cost, costmap::Direction heading) noexcept
+      : HeadingCost(cost, heading.x * costmap::CellCode::kStep, heading.y * costmap::CellCode::kStep) {}
+
+  /// (x, y) is the unit vector of the heading times CellCode::kStep.
+  HeadingCost(const costmap::TravelCost& cost, double x, double y) noexcept
+      : curves_(cost.curves().data()),
+        curve_count_(cost.curves().size()),
+        max_along_(cost.limits().max_along),
+        max_across_(cost.limits().max_across),
+        x_(x),
+        y_(y) {}
+
+  /// Returns the cost per horizontal metre [J/m] on a cell; infinite if the cell does not permit the heading.
+  float operator()(costmap::CellCode cell) const noexcept {
+    if (cell.curve() >= curve_count_) return kBlocked;
+    const double along = cell.stepsX() * x_ + cell.stepsY() * y_;
+    const double across = cell.stepsY() * x_ - cell.stepsX() * y_;
+    if (!(std::abs(along) <= max_along_ && std::abs(across) <= max_across_)) return kBlocked;
+    return curves_[cell.curve()].price(along, across);
+  }
+
+ private:
+  static constexpr float kBlocked = std::numeric_limits<float>::infinity();
+
+  const costmap::TravelCurve* curves_;
+  std::size_t curve_count_;
+  double max_along_, max_across_;
+  double x_, y_;  // unit vector of the heading times CellCode::kStep
+};
 
 /// Closed interval of headings, from `from_rad` counter-clockwise over `width_rad`.
 struct HeadingArc {

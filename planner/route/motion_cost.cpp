@@ -3,10 +3,8 @@
 #include <optional>
 #include <utility>
 
-#include <talus/common/constants.hpp>
-#include <talus/planner/route/heading_cost.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/heading_set.hpp>
-#include <talus/planner/route/heading_sweep.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 namespace talus::planner {

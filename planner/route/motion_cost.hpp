@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/maps/grid/grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::planner {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::planner {
 

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <utility>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/pose_path.hpp>
 
 namespace talus::planner {

@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include <talus/planner/route/kinematics.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/route.hpp>
 

@@ -1,10 +1,108 @@
-#include <string>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
 
+#include <talus/common/nearest_name.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
+
+namespace {
+
+struct Refused {
+  std::string_view name;
+  std::string_view reason;
+};
+
+constexpr std::string_view kShared =
+    "it assumes that every edge is traversable in both directions; its route is invalid where only "
+    "descending is allowed";
+constexpr std::string_view kUntried = "it is not proven correct for direction-dependent cost";
+constexpr std::string_view kBlind = "it ignores the cost of a motion";
+
+constexpr std::array kRefused{
+    Refused{"PRM", kShared},
+    Refused{"PRMstar", kShared},
+    Refused{"LazyPRM", kShared},
+    Refused{"LazyPRMstar", kShared},
+    Refused{"SPARS", kShared},
+    Refused{"SPARStwo", kShared},
+    Refused{"BFMT", kShared},
+    Refused{"LBTRRT", kBlind},
+    Refused{"LazyLBTRRT", kBlind},
+    Refused{"AITstar",
+            "in OMPL 1.5.2 it does not terminate or finds no route under a direction-dependent cost"},
+    Refused{"RRTXstatic", kUntried},
+    Refused{"RRTsharp", kUntried},
+    Refused{"CForest", "its result depends on thread timing"},
+    Refused{"AnytimePathShortening", "its shortcuts ignore the cost of a motion"},
+    Refused{"SORRTstar", kUntried},
+    Refused{"RRT", kBlind},
+    Refused{"RRTConnect", kBlind},
+    Refused{"LazyRRT", kBlind},
+    Refused{"TRRT", "it considers the cost of states, not of motions"},
+    Refused{"BiTRRT", "it considers the cost of states, not of motions"},
+    Refused{"EST", kBlind},
+    Refused{"BiEST", kBlind},
+    Refused{"ProjEST", kBlind},
+    Refused{"KPIECE1", kBlind},
+    Refused{"BKPIECE1", kBlind},
+    Refused{"LBKPIECE1", kBlind},
+    Refused{"SBL", kBlind},
+    Refused{"PDST", kBlind},
+    Refused{"STRIDE", kBlind},
+};
+
+// Normalised name: "Informed-RRT*" and "informedrrtstar" are equal.
+std::string plain(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    if (c == '*') result += "star";
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return result;
+}
+
+// "; the nearest is 'field'", or an empty text without a similar name.
+std::string suggestion(const std::string& word) {
+  std::vector<std::string> plain_names;
+  for (const std::string& name : plannerNames()) plain_names.push_back(plain(name));
+  const auto near = std::ranges::find(plain_names, nearestName(word, plain_names));
+  if (near == plain_names.end()) return "";
+  return "; the nearest is '" + plannerNames()[static_cast<std::size_t>(near - plain_names.begin())] + "'";
+}
+
+std::string offered() {
+  std::string list;
+  for (const std::string& name : plannerNames()) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace
+
+const std::vector<std::string>& plannerNames() {
+  static const std::vector<std::string> names{"field",   "hybrid",   "RRTstar", "InformedRRTstar",
+                                              "BITstar", "ABITstar", "SST",     "FMT"};
+  return names;
+}
+
+std::string plannerName(std::string_view asked) {
+  if (asked.empty()) return plannerNames().front();
+  const std::string word = plain(asked);
+  for (const std::string& name : plannerNames())
+    if (plain(name) == word) return name;
+  for (const Refused& refused : kRefused)
+    if (plain(refused.name) == word)
+      throw std::invalid_argument("planner '" + std::string(refused.name) + "' is refused: " +
+                                  std::string(refused.reason) + "; use one of " + offered());
+  throw std::invalid_argument("planner '" + std::string(asked) + "' is unknown" + suggestion(word) +
+                              ", there are " + offered());
+}
+
 namespace {
 
 // Replaces "start" and "goal" in the reason of a failed leg by the number of the via point.

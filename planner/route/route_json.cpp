@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/route_json.hpp>
 
 namespace talus::planner {

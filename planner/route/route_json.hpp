@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::planner {

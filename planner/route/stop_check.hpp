@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::planner {
 

@@ -9,7 +9,7 @@
 #include <ompl/base/Planner.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::planner {
 

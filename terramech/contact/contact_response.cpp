@@ -1,8 +1,8 @@
 #include <array>
 #include <cmath>
 
-#include <talus/terramech/contact/contact_geometry.hpp>
-#include <talus/terramech/contact/contact_response.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 
 namespace talus::terramech {

@@ -1,10 +1,12 @@
+#include <algorithm>
 #include <cmath>
 
-#include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
 namespace {
 
 // 1 - sin(h)/h. Below h = 0.1 the difference cancels, so the series is used; the first omitted term
@@ -38,6 +40,20 @@ Mobilisation mobilisation(const Wheel& wheel, const WheelSample& sample, double 
   const double bottom = wheel.radius_m * (theta_1 - (1.0 - sample.slip) * std::sin(theta_1));
   return {.peak = -std::expm1(-peakShearDisplacement_m(wheel, sample) / shear_modulus_m),
           .bottom = -std::expm1(-bottom / shear_modulus_m)};
+}
+
+double shearStrength_Pa(const Soil& soil, double normal_Pa) {
+  return soil.cohesion_Pa + normal_Pa * std::tan(soil.friction_angle_rad);
+}
+
+double janosiHanamoto_Pa(const Soil& soil, double normal_Pa, double displacement_m) {
+  const double mobilised = -std::expm1(-std::abs(displacement_m) / soil.shear_modulus_m);
+  return std::copysign(shearStrength_Pa(soil, normal_Pa) * mobilised, displacement_m);
+}
+
+double elastoPlastic_Pa(const Soil& soil, double normal_Pa, double displacement_m) {
+  const double mobilised = std::min(std::abs(displacement_m) / soil.shear_modulus_m, 1.0);
+  return std::copysign(shearStrength_Pa(soil, normal_Pa) * mobilised, displacement_m);
 }
 
 }  // namespace talus::terramech

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <talus/terramech/contact/rover.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
 

@@ -3,14 +3,15 @@
 #include <stdexcept>
 #include <string>
 
+#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
-#include <talus/terramech/contact/shear_displacement.hpp>
-#include <talus/terramech/contact/shear_stress.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
 double bekkerPressure_Pa(const Soil& soil, double width_m, double depth_m) {
   return sinkageModulus(soil, width_m) * std::pow(depth_m, soil.sinkage_exponent);
 }
@@ -188,6 +189,19 @@ TyreForces tyreOnSoftGround(const Tyre& tyre, const Soil& soil, const TyreOperat
       pressureOf(tyre) >= critical ? roundTyre(tyre, soil, operation) : flatTyre(tyre, soil, operation);
   forces.critical_pressure_Pa = critical;
   return forces;
+}
+
+RigidGroundForces rigidGroundForces(const Wheel& wheel, const GroundFriction& friction, double load_N,
+                                    double torque_Nm) {
+  validate(wheel);
+  const RangeCheck check{"wheel on rigid ground"};
+  check.above("load_N", load_N, 0.0);
+  check.finite("torque_Nm", torque_Nm);
+  check.atLeast("kinetic_coefficient", friction.kinetic_coefficient, 0.0);
+  check.atLeast("static_coefficient", friction.static_coefficient, friction.kinetic_coefficient);
+  const double thrust_N = torque_Nm / wheel.radius_m;
+  if (std::abs(thrust_N) <= friction.static_coefficient * load_N) return {thrust_N, false};
+  return {std::copysign(friction.kinetic_coefficient * load_N, torque_Nm), true};
 }
 
 }  // namespace talus::terramech

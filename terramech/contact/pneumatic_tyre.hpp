@@ -1,12 +1,12 @@
 #pragma once
 
-#include <talus/terramech/contact/soil.hpp>
-#include <talus/terramech/contact/wheel.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+
+namespace talus::terramech {
 
 /// Forces on a pneumatic tyre on rigid and on soft ground (thesis C.2.2, C.2.3; wong_2001 chapter 2). The
 /// tyre flattens if the sum of inflation pressure p_i and carcass pressure p_c is below the critical pressure
 /// p_cr, the contact pressure of a rigid wheel of the same size.
-namespace talus::terramech {
 
 /// Returns the pressure p = (k_c/b + k_phi) z^n [Pa] (Bekker, thesis Eq. A.1; bekker_1969) under a plate or
 /// wheel whose smaller dimension is b = width_m > 0, at the depth z = depth_m >= 0.
@@ -66,12 +66,32 @@ double criticalPressure_Pa(const Soil& soil, const Wheel& wheel, double load_N);
 TyreForces tyreOnRigidGround(const Tyre& tyre, const TyreOperation& operation);
 
 /// Returns the forces on a tyre on soft ground. If p_i + p_c >= p_cr, the tyre acts as the rigid wheel of
-/// wong_reece.hpp. Otherwise the flat part carries the pressure p_i + p_c at the depth z_0 = ((p_i +
+/// wheel_on_soil.hpp. Otherwise the flat part carries the pressure p_i + p_c at the depth z_0 = ((p_i +
 /// p_c)/k)^{1/n}, the round part in front of the flat part carries Bekker's pressure at the local depth, and
 /// the tyre deflection is the one at which the sum equals the load. The shear stress follows the law of
 /// Janosi and Hanamoto over the whole contact. The shear displacement j follows thesis Eq. C.6 along the
 /// round part and increases by i per metre along the flat part. Throws the exceptions of tyreOnRigidGround(),
 /// criticalPressure_Pa() and equilibrium(), and std::domain_error if no deflection carries the load.
 TyreForces tyreOnSoftGround(const Tyre& tyre, const Soil& soil, const TyreOperation& operation);
+
+/// Drawbar pull of a rigid wheel on rigid flat ground (thesis C.2.1).
+
+/// Coefficients of Coulomb friction between a wheel and rigid ground.
+struct GroundFriction {
+  double static_coefficient = 0.7;   ///< static friction coefficient mu_s >= mu_k [-]
+  double kinetic_coefficient = 0.6;  ///< kinetic friction coefficient mu_k >= 0 [-]
+};
+
+/// Result of rigidGroundForces() for a wheel at a given torque.
+struct RigidGroundForces {
+  double drawbar_pull_N = 0.0;  ///< drawbar pull DP, with the sign of the torque
+  bool slips = false;           ///< true: the torque exceeds static friction and the wheel slips
+};
+
+/// Returns the drawbar pull DP of a wheel under the load W = load_N > 0 at the torque T = torque_Nm (thesis
+/// Eq. C.11). If |T|/r <= mu_s W, then DP = T/r. Otherwise the wheel slips and DP = mu_k W with the sign of
+/// T. Throws std::invalid_argument if the wheel, the load or a friction coefficient is outside its range.
+RigidGroundForces rigidGroundForces(const Wheel& wheel, const GroundFriction& friction, double load_N,
+                                    double torque_Nm);
 
 }  // namespace talus::terramech

@@ -1,10 +1,72 @@
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/numerics/range.hpp>
+
+namespace talus::terramech {
+
+namespace {
+
+void check(const Wheel& wheel, double sinkage) {
+  const RangeCheck range("wheel contact");
+  range.above("radius_m", wheel.radius_m, 0.0);
+  range.within("sinkage_m", sinkage, {0.0, std::nextafter(2.0 * wheel.radius_m, 0.0)});
+}
+
+}  // namespace
+
+double entryAngle_rad(const Wheel& wheel, double sinkage_m) {
+  check(wheel, sinkage_m);
+  return 2.0 * std::asin(std::sqrt(sinkage_m / (2.0 * wheel.radius_m)));
+}
+
+double sinkage_m(const Wheel& wheel, double entry_angle_rad) {
+  const double s = std::sin(0.5 * entry_angle_rad);
+  return 2.0 * wheel.radius_m * s * s;
+}
+
+double contactChord_m(const Wheel& wheel, double sinkage_m) {
+  check(wheel, sinkage_m);
+  return 2.0 * std::sqrt(sinkage_m * (2.0 * wheel.radius_m - sinkage_m));
+}
+
+double ShearDisplacement::signChange_rad(double lowest_rad) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  // j exceeds 0 below the entry only if q cos theta_1 < 1. The maximum of j is at q cos theta = 1; below that
+  // angle j falls.
+  if (p_.slip >= 0.0 || !(travel_ * std::cos(p_.entry_angle_rad) < 1.0)) return kNone;
+  double positive = std::acos(1.0 / travel_), negative = lowest_rad;
+  if (at_m(negative) >= 0.0) return kNone;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (positive + negative);
+    (at_m(middle) > 0.0 ? positive : negative) = middle;
+  }
+  return 0.5 * (positive + negative);
+}
+
+double resultantSlip(double slip, double slip_angle_rad) {
+  const double beta = std::min(std::abs(slip_angle_rad), kSteepestSlipAngle_rad);
+  const double c = std::cos(beta), s = std::sin(beta);
+  if (slip < 0.0) return std::hypot(slip * c, s);  // divided by v, where r omega = (1 + slip) v cos beta
+  return std::hypot(slip * c, (1.0 - slip) * s) /
+         std::max(c, 1.0 - slip);  // divided by r omega; both times cos beta
+}
+
+SideSlipDisplacement::SideSlipDisplacement(const Parameters& p)
+    : p_(p),
+      travel_(std::min(travelRatio(p.slip), 1e6)),
+      lateral_m_(p.radius_m * travel_ *
+                 std::tan(std::clamp(p.slip_angle_rad, -kSteepestSlipAngle_rad, kSteepestSlipAngle_rad))),
+      sin_entry_(std::sin(p.entry_angle_rad)) {}
+
+double SideSlipDisplacement::signChange_rad(double lowest_rad) const {
+  return ShearDisplacement{{p_.shear_radius_m, p_.slip, p_.entry_angle_rad}}.signChange_rad(lowest_rad);
+}
+
+}  // namespace talus::terramech
 
 namespace talus::terramech::detail {
 

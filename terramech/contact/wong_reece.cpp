@@ -3,10 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/side_bulldozing.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {

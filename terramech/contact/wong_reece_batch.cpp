@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <talus/terramech/contact/shear_displacement.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/contact/wong_reece_kernel.hpp>
 

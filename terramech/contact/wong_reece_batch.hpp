@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include <talus/terramech/contact/wheel_case.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/contact/wong_reece_kernel.hpp>
 
 /// Sinkage and forces of many rigid wheels, computed in batches.
 namespace talus::terramech {
@@ -12,7 +12,7 @@ namespace talus::terramech {
 /// field for rebound: operation.rebound must be 0.
 WheelCase wheelCase(const Soil& soil, const Wheel& wheel, const WheelOperation& operation);
 
-/// Returns sinkage and forces of one case, computed by equilibrium() of wong_reece.hpp. Throws the exceptions
+/// Returns sinkage and forces of one case, computed by equilibrium() of wheel_on_soil.hpp. Throws the exceptions
 /// of that function.
 WheelForces equilibrium(const WheelCase& wheel_case);
 

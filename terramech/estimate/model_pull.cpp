@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include <talus/terramech/estimate/model_pull.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
 namespace {
 
 // Keeps the fitted parameters marked in `keep`, with their rows and columns of the covariance.
@@ -111,6 +114,22 @@ PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, do
           .most_slip = at.slip,
           .sinkage_over_radius = reference.sinkage_over_radius,
           .climbable_slope_rad = climbableSlope_rad(most)};
+}
+
+const std::vector<std::string>& pullFormulas() {
+  static const std::vector<std::string> names{"single-force", "small-angle", "triangular", "plane"};
+  return names;
+}
+
+Estimate pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
+                        const ReadingErrors& errors) {
+  const Estimate ours = pullOverLoad(wheel, sample, errors);
+  if (formula == "single-force") return ours;
+  if (formula == "small-angle") return {pullAtSmallAngle(wheel, sample), std::hypot(ours.std, 0.013)};
+  if (formula == "triangular") return {pullOfTriangularStress(wheel, sample), std::hypot(ours.std, 0.014)};
+  if (formula == "plane") return {kThesisPlane.at(wheel, sample), std::hypot(ours.std, 0.028)};
+  throw std::invalid_argument("formula '" + formula +
+                              "' is unknown, must be single-force, small-angle, triangular or plane");
 }
 
 }  // namespace talus::terramech

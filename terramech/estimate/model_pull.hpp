@@ -1,11 +1,15 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <talus/terramech/effects/refined_model.hpp>
-#include <talus/terramech/estimate/pull_forecast.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
+
+namespace talus::terramech {
 
 /// True drawbar pull that a base or refined wheel model predicts, without sensor errors (ours). In contrast,
 /// predict() returns sensor readings with sensor errors.
-namespace talus::terramech {
 
 /// Returns true if an effect of a model changes only a sensor reading and leaves the wheel-soil contact
 /// unchanged.
@@ -31,5 +35,16 @@ ModelPull pullOf(const RefinedModel& truth, const WheelState& state);
 /// slip is an exact input without reading error. Throws std::invalid_argument for a reference slip outside
 /// (0, 1].
 PullForecast forecastPull(const RefinedModel& truth, const WheelState& state, double reference_slip = 0.5);
+
+/// Returns the names of the formulas of drawbar_pull.hpp that compute drawbar pull over load DP/W from
+/// readings: "single-force" (ours, pullOverLoad()), "small-angle" (thesis Eq. 3.6), "triangular" (Eq. 3.12),
+/// "plane" (Eq. 3.21).
+const std::vector<std::string>& pullFormulas();
+
+/// Returns DP/W [-] of a sample by the named formula. The standard deviation includes the errors of the
+/// readings and the rms error of the formula over thesis Table 2.1 (`talus reproduce --goals`). Throws
+/// std::invalid_argument for an unknown name, and the exceptions of drawbar_pull.hpp.
+Estimate pullOverLoadBy(const std::string& formula, const Wheel& wheel, const WheelSample& sample,
+                        const ReadingErrors& errors);
 
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
 
 namespace talus::terramech {

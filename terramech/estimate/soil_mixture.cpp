@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/estimate/soil_mixture.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {

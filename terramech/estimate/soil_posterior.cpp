@@ -4,10 +4,9 @@
 
 #include <Eigen/QR>
 
-#include <talus/terramech/estimate/many_samples.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
-#include <talus/terramech/estimate/soil_posterior.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {

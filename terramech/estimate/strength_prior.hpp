@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/estimate/soil_prior.hpp>
-#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

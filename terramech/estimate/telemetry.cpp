@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {

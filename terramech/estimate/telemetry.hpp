@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Measured data of wheels, stored by column. The reader of CSV files is telemetry_reader.hpp.
+/// Measured data of wheels, stored by column. The reader of CSV files is terramech_io.hpp.
 namespace talus::terramech {
 
 /// Maps a column of a file to a known column, whose name in Talus differs.

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <set>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/bevameter_table.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
-#include <talus/terramech/strength/plate_trials.hpp>
+#include <talus/terramech/strength/bevameter.hpp>
 
 namespace talus::terramech {
 

@@ -9,8 +9,7 @@
 
 #include <csv.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/table_columns.hpp>

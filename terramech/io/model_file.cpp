@@ -5,9 +5,8 @@
 
 #include <talus/common/nearest_name.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/model_fit_fields.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 #include <talus/terramech/numerics/range.hpp>
 

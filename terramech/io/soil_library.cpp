@@ -3,11 +3,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/file_keys.hpp>
-#include <talus/terramech/io/library_text.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {

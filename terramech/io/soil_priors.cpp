@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

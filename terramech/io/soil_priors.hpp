@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/estimate/soil_mixture.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/strength_prior.hpp>
 
 /// Converts the option --prior of the program to the priors of each estimation method.

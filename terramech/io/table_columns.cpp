@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/field_text.hpp>

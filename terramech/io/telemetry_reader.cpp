@@ -14,12 +14,12 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 namespace talus::terramech {

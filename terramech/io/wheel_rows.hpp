@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
-#include <talus/terramech/estimate/wheel_reading.hpp>
 
 namespace talus::terramech {
 

@@ -1,12 +1,43 @@
 #pragma once
 
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include <talus/terramech/numerics/estimate.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+
+namespace talus::terramech {
+
+/// Names of keys and columns in the input files of Talus. The readers, `talus help formats` and
+/// docs/formats.md use them.
+
+/// Key of a YAML file or column of a table. Its name has the unit as suffix.
+struct FileKey {
+  const char* name = "";
+  const char* meaning = "";  ///< quantity, with range, and default or "required"
+};
+
+/// Returns the keys of a soil file.
+std::span<const FileKey> soilKeys();
+/// Return the keys of a rover file, and those of its mapping `wheels`.
+std::span<const FileKey> roverKeys();
+std::span<const FileKey> wheelKeys();
+/// Returns the columns of telemetry and of other tables of wheels.
+std::span<const FileKey> telemetryKeys();
+
+/// Returns the names of the keys in order.
+std::vector<std::string> namesOf(std::span<const FileKey> keys);
+
+/// Returns the known key that the user probably meant by an unknown key. This is the key of the same name
+/// without unit or with a unit of another kind (`cohesion`, `mass_N`), otherwise the key of nearest spelling.
+/// Returns an empty text if there is no similar key.
+std::string meantKey(const std::string& key, const std::vector<std::string>& known);
+
+}  // namespace talus::terramech
 
 namespace YAML {
 class Node;
@@ -14,6 +45,7 @@ class Node;
 
 /// Strict reader of YAML configuration files. Every field is read by name and unit; every error contains file
 /// and line.
+
 namespace talus::terramech {
 
 /// Returns at most the first forty bytes of a text from a file, for messages.
@@ -89,5 +121,13 @@ class YamlFields {
 
   std::shared_ptr<State> state_;
 };
+
+}  // namespace talus::terramech
+namespace talus::terramech {
+
+/// Return the YAML texts of the built-in soils and rovers by name, generated from terramech/library/ when
+/// CMake configures the build.
+const std::map<std::string, std::string>& librarySoilTexts();
+const std::map<std::string, std::string>& libraryRoverTexts();
 
 }  // namespace talus::terramech

@@ -1,12 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include <talus/common/common.hpp>
 #include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/numerics/gauss_legendre.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
 namespace {
 
 constexpr int kSafe = 0, kMarginal = 1, kDangerous = 2;
@@ -70,6 +74,92 @@ Category categorise(const WheelCondition& condition, const CategoryThresholds& t
     rank += demotion(*condition.torque_over_load_radius, t.t_threshold, t.t_critical);
   if (condition.slip) rank += demotion(*condition.slip, {}, t.steering_slip);
   return static_cast<Category>(std::min(rank, kDangerous));
+}
+
+namespace {
+
+double below(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+
+double density(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+}
+
+/// Limits of the middle one of the three bands of a quantity.
+struct Bands {
+  double low, high;
+};
+
+/// Limits of a band in standard deviations from the mean. For an exact quantity (std 0) the limits of its
+/// band are -infinity and infinity (probability 1), and both limits of the other bands are infinity.
+Bands standardised(Bands edges, int band, double mean, double std, int known_band) {
+  if (std == 0.0) return band == known_band ? Bands{-kInfinity, kInfinity} : Bands{kInfinity, kInfinity};
+  const double low = (edges.low - mean) / std, high = (edges.high - mean) / std;
+  return band == 0 ? Bands{-kInfinity, low} : band == 1 ? Bands{low, high} : Bands{high, kInfinity};
+}
+
+void check(const ConditionEstimate& belief) {
+  const RangeCheck range{"category belief"};
+  range.finite("drawbar_pull_over_load", belief.mean.drawbar_pull_over_load);
+  range.finite("sinkage_over_radius", belief.mean.sinkage_over_radius);
+  range.atLeast("drawbar_pull_over_load_std", belief.drawbar_pull_over_load_std, 0.0);
+  range.atLeast("sinkage_over_radius_std", belief.sinkage_over_radius_std, 0.0);
+  range.within("correlation", belief.correlation, {-1.0, 1.0});
+}
+
+/// Category of a pair of bands of drawbar pull DP/W and sinkage z/r, with torque and slip of the mean.
+Category categoryOf(const ConditionEstimate& belief, const CategoryThresholds& t, int pull_band,
+                    int sinkage_band) {
+  WheelCondition condition = belief.mean;
+  condition.drawbar_pull_over_load = pull_band == 0   ? t.dp_low - 1.0
+                                     : pull_band == 1 ? t.dp_low
+                                                      : t.dp_high + 1.0;
+  condition.sinkage_over_radius = sinkage_band == 0   ? t.z_threshold - 1.0
+                                  : sinkage_band == 1 ? t.z_threshold
+                                                      : t.z_critical + 1.0;
+  return categorise(condition, t);
+}
+
+}  // namespace
+
+double probability(const NormalRectangle& q) {
+  // int phi(y) [Phi((x2 - rho y)/s) - Phi((x1 - rho y)/s)] dy, in panels no wider than the transition of Phi.
+  constexpr auto kRule = gaussLegendre<8>();
+  const double rho = std::clamp(q.correlation, -0.999, 0.999), s = std::sqrt(1.0 - rho * rho);
+  const double low = std::max(q.y1, -8.5), high = std::min(q.y2, 8.5);
+  if (!(low < high) || !(q.x1 < q.x2)) return 0.0;
+  const double width = std::min(0.5, 3.0 * s / std::max(std::abs(rho), 1e-3));
+  const int panels = static_cast<int>(std::ceil((high - low) / width));
+  const double panel = (high - low) / panels;
+  double sum = 0.0;
+  for (int k = 0; k < panels; ++k)
+    for (std::size_t i = 0; i < kRule.node.size(); ++i) {
+      const double y = low + panel * (k + kRule.node[i]);
+      sum += kRule.weight[i] * density(y) * (below((q.x2 - rho * y) / s) - below((q.x1 - rho * y) / s));
+    }
+  return sum * panel;
+}
+
+CategoryProbability categoryProbability(const ConditionEstimate& belief, const CategoryThresholds& t) {
+  check(belief);
+  validate(t);
+  const double pull = belief.mean.drawbar_pull_over_load, sinkage = belief.mean.sinkage_over_radius;
+  const int pull_band = pull < t.dp_low ? 0 : pull > t.dp_high ? 2 : 1;
+  const int sinkage_band = sinkage > t.z_critical ? 2 : sinkage < t.z_threshold ? 0 : 1;
+  CategoryProbability sum{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Bands x =
+          standardised({t.dp_low, t.dp_high}, i, pull, belief.drawbar_pull_over_load_std, pull_band);
+      const Bands y = standardised({t.z_threshold, t.z_critical}, j, sinkage, belief.sinkage_over_radius_std,
+                                   sinkage_band);
+      sum[static_cast<std::size_t>(categoryOf(belief, t, i, j))] +=
+          probability({x.low, x.high, y.low, y.high, belief.correlation});
+    }
+  const double total = sum[0] + sum[1] + sum[2];
+  for (double& p : sum) p /= total;
+  return sum;
 }
 
 }  // namespace talus::terramech

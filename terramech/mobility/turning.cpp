@@ -1,10 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include <Eigen/Dense>
+
+#include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/mobility/turning.hpp>
+#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
 namespace {
 
 // Mean over the axles of a function of the axle position x.
@@ -48,6 +54,112 @@ TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcep
   };
   return {.on_arc = effort(scrub_J, row_m / rover.max_speed_mps),
           .in_place = effort(scrub_J + ground.rolling_J_per_m * rolled_m, swept_m / rover.max_speed_mps)};
+}
+
+double steeringSlipLimit(const Soil& soil, const Wheel& wheel, const SteeringDemand& demand) {
+  validate(soil);
+  validate(wheel);
+  const RangeCheck check{"steering demand"};
+  check.above("load_N", demand.load_N, 0.0);
+  check.within("slip_angle_rad", demand.slip_angle_rad, {1e-6, 1.57});
+  check.atLeast("side_force_over_load", demand.side_force_over_load, 0.0);
+  WheelContact contact = contactOf(soil, wheel);
+  contact.load_N = demand.load_N;
+  contact.slip_angle_rad = demand.slip_angle_rad;
+  contact.cohesion_Pa *= shearGain(wheel);
+  contact.tan_friction *= shearGain(wheel);
+  const auto steers = [&](double slip) {
+    contact.slip = slip;
+    return std::abs(solveContact(contact).side_force_N) >= demand.side_force_over_load * demand.load_N;
+  };
+  if (!steers(0.0)) return 0.0;
+  double low = 0.0, high = 1.0;
+  for (int step = 0; step < 40; ++step) {
+    const double middle = 0.5 * (low + high);
+    (steers(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+namespace {
+
+void checkWheels(const Rover& rover) {
+  validate(rover);
+  if (rover.wheel_count >= 4 && rover.wheel_count <= RoverStance::kMostWheels && rover.wheel_count % 2 == 0)
+    return;
+  throw std::invalid_argument("rover '" + rover.name +
+                              "': wheels.count = " + std::to_string(rover.wheel_count) +
+                              ", must be even, 4 to 12, on slopes in two dimensions");
+}
+
+}  // namespace
+
+RoverStance::RoverStance(const Rover& rover)
+    : half_base_m_(0.5 * rover.wheelbase_m),
+      half_track_m_(0.5 * rover.track_m),
+      centre_m_{rover.centre_of_mass_ahead_m, rover.centre_of_mass_left_m},
+      height_m_(rover.centre_of_mass_height_m) {
+  checkWheels(rover);
+  wheels_ = rover.wheel_count;
+  const int axles = wheels_ / 2;
+  for (int k = 0; k < wheels_; ++k) {
+    const double x = half_base_m_ * (1.0 - 2.0 * (k / 2) / (axles - 1.0));
+    const double y = k % 2 == 0 ? half_track_m_ : -half_track_m_;
+    position_m_[static_cast<std::size_t>(k)] = {x, y};
+    sum_xx_ += x * x;
+    sum_yy_ += y * y;
+  }
+}
+
+RoverStance::Loads RoverStance::shares(const Planar& demand) const {
+  // Point at which the line of action of the weight meets the plane.
+  const Planar at{centre_m_.x - height_m_ * demand.x, centre_m_.y - height_m_ * demand.y};
+  Loads shares{};
+  bool lifts = false;
+  for (int k = 0; k < wheels_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    shares[i] = 1.0 / wheels_ + at.x * position_m_[i].x / sum_xx_ + at.y * position_m_[i].y / sum_yy_;
+    lifts = lifts || shares[i] < 0.0;
+  }
+  return lifts ? lifted(at, shares) : shares;
+}
+
+RoverStance::Loads RoverStance::lifted(const Planar& at, Loads shares) const {
+  std::array<bool, kMostWheels> down{};
+  for (int k = 0; k < wheels_; ++k)
+    down[static_cast<std::size_t>(k)] = shares[static_cast<std::size_t>(k)] >= 0.0;
+  for (int round = 0; round < wheels_; ++round) {
+    // Least squares with sum N = 1, sum N x = at.x, sum N y = at.y: N = A^T (A A^T)^-1 (1, at).
+    Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+    const auto row = [&](std::size_t i) { return Eigen::Vector3d{1.0, position_m_[i].x, position_m_[i].y}; };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(wheels_); ++i)
+      if (down[i]) square += row(i) * row(i).transpose();
+    const Eigen::Vector3d weights =
+        square.completeOrthogonalDecomposition().solve(Eigen::Vector3d{1.0, at.x, at.y});
+    bool again = false;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(wheels_); ++i) {
+      shares[i] = down[i] ? row(i).dot(weights) : 0.0;
+      if (shares[i] < 0.0) {
+        down[i] = false;
+        again = true;
+      }
+    }
+    if (!again) break;
+  }
+  double sum = 0.0;
+  for (double& share : shares) sum += share = std::max(share, 0.0);
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+double RoverStance::stabilityMargin_rad(const Planar& demand) const {
+  if (height_m_ == 0.0) return std::numeric_limits<double>::quiet_NaN();
+  const auto margin = [&](double reach_m, double demand_towards) {
+    return std::atan2(reach_m, height_m_) - std::atan(demand_towards);
+  };
+  return std::min(
+      {margin(half_base_m_ + centre_m_.x, demand.x), margin(half_base_m_ - centre_m_.x, -demand.x),
+       margin(half_track_m_ + centre_m_.y, demand.y), margin(half_track_m_ - centre_m_.y, -demand.y)});
 }
 
 }  // namespace talus::terramech

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/contact/soil.hpp>
+#include <array>
+
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+
+namespace talus::terramech {
 
 /// Energy and time that a rover needs to change its heading.
-namespace talus::terramech {
 
 /// Ground properties that determine the energy of a turn.
 struct TurningGround {
@@ -45,5 +47,76 @@ double bulldozing_N(const Soil& soil, const Rover& rover, double sinkage_m) noex
 /// v; in place the time is max rho_k / v, and (b/2) / v for skid steering. Hotel power is consumed during
 /// this time.
 TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcept;
+
+/// Side force that steering requires of a wheel.
+struct SteeringDemand {
+  double load_N = 0.0;             ///< vertical load on the wheel, > 0
+  double slip_angle_rad = 0.2618;  ///< largest slip angle that steering may cause, (0, pi/2); default 15 deg
+  /// Required side force divided by the load, for a turn or a side slope, >= 0 [-].
+  double side_force_over_load = 0.1;
+};
+
+/// Returns the slip in [0, 1] above which the side force of a wheel at the slip angle of `demand` is below
+/// the required side force. A spinning wheel shears the soil backwards, and the strength that remains across
+/// the wheel plane falls to 0 at slip 1, because the shear stress acts along the resultant displacement
+/// (ishigami_2007). Returns 0 if the side force is too small even at slip 0. The result is a value for
+/// CategoryThresholds::steering_slip; the method is not in the thesis. Throws std::invalid_argument if a
+/// field is outside its range.
+double steeringSlipLimit(const Soil& soil, const Wheel& wheel, const SteeringDemand& demand);
+
+/// Rover on an inclined plane: positions of the wheels, loads on the wheels, and angle to tip-over.
+
+/// Vector in the plane of the ground, in the axes of the body.
+struct Planar {
+  double x = 0.0;  ///< forward component
+  double y = 0.0;  ///< component to the left
+};
+
+/// Loads on the wheels of a rover on an inclined plane. The wheels are in left-right pairs on axles that are
+/// evenly spaced over the wheelbase. Of all loads in equilibrium, those with the least sum of squares are
+/// used, as a load-equalising suspension gives; for two axles this is the usual load transfer in pitch and
+/// roll. Immutable; thread-safe.
+class RoverStance {
+ public:
+  /// Largest number of wheels of a rover.
+  static constexpr int kMostWheels = 12;
+  /// Fraction of the normal force on each wheel; entries beyond wheels() are 0.
+  using Loads = std::array<double, kMostWheels>;
+
+  /// Throws std::invalid_argument if a field of the rover is outside its range, or if the number of wheels is
+  /// odd or not in [4, 12].
+  explicit RoverStance(const Rover& rover);
+
+  int wheels() const { return wheels_; }
+
+  /// Returns the position of a wheel from the mean position of all wheels [m]. Wheels are numbered from 0:
+  /// front left, front right, left of the next axle, and so on.
+  Planar position_m(int wheel) const { return position_m_[static_cast<std::size_t>(wheel)]; }
+
+  /// Returns the projection of the centre of mass on the ground plane, from the mean position of all wheels
+  /// [m].
+  Planar centre_m() const { return centre_m_; }
+
+  /// Returns the fraction of the normal force on each wheel; the fractions have sum 1. `demand` is the
+  /// downhill component of the weight over its normal component, for each body axis: tan(slope), with x > 0
+  /// if uphill is forward and y > 0 if uphill is to the left. The load moves downhill by the height of the
+  /// centre of mass times `demand`. A wheel that would need a negative load has load 0.
+  Loads shares(const Planar& demand) const;
+
+  /// Returns the angle [rad] by which the plane may tilt further until the vertical through the centre of
+  /// mass passes the nearest edge of the rectangle of the outermost wheels (static stability). A negative
+  /// angle means that the rover tips over. Returns NaN if the height of the centre of mass is 0, i.e.
+  /// unknown. `demand` has the meaning of the argument of shares().
+  double stabilityMargin_rad(const Planar& demand) const;
+
+ private:
+  Loads lifted(const Planar& at, Loads shares) const;
+
+  int wheels_ = 0;
+  std::array<Planar, kMostWheels> position_m_{};
+  double half_base_m_, half_track_m_, sum_xx_ = 0.0, sum_yy_ = 0.0;
+  Planar centre_m_;
+  double height_m_;
+};
 
 }  // namespace talus::terramech

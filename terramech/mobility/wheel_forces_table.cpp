@@ -1,14 +1,27 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
-#include <talus/terramech/mobility/steady_wheel.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::terramech {
+
+Soil rutted(const Soil& soil) {
+  Soil rut = soil;
+  rut.cohesive_modulus *= soil.rut_stiffness;
+  rut.frictional_modulus *= soil.rut_stiffness;
+  rut.shear_modulus_m /= std::sqrt(soil.rut_stiffness);
+  return rut;
+}
+
+RefinedModel rutted(const RefinedModel& model) {
+  RefinedModel rut = model;
+  if (!knowsPasses(model.effects)) rut.soil = rutted(model.soil);
+  return rut;
+}
+
 namespace {
 
 constexpr double kRightAngle = 1.5707963267948966;

@@ -1,14 +1,39 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
 
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/contact/soil.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
+
+/// Returns the state of a wheel of a rover in steady motion. For a slip s >= 0 the rim speed is the rover's
+/// maximum speed v and the travel speed is v (1 - s). For s < 0 (braking) the rim speed is v (1 + s) and the
+/// travel speed is v. Pass number and slope of the state are unknown.
+inline WheelState steadyWheel(const Rover& rover, double load_N, double slip, double slip_angle_rad = 0.0) {
+  WheelState state;
+  state.wheel = rover.wheel;
+  state.load_N = load_N;
+  state.slip = slip;
+  state.slip_angle_rad = slip_angle_rad;
+  state.rim_speed_mps = rover.max_speed_mps * (1.0 + std::min(slip, 0.0));
+  state.speed_mps = rover.max_speed_mps * (1.0 - std::max(slip, 0.0));
+  state.gravity_m_s2 = rover.gravity_m_s2;
+  return state;
+}
+
+/// Returns the soil in the rut of an equal wheel: k_c and k_phi times Soil::rut_stiffness r, K over sqrt(r). When a plate
+/// reloads soil, the soil is some tens of times stiffer (wong_2001, response to repetitive loading), but a slipping
+/// wheel continues to dig: with r = 4 the resistance of a second wheel is about half that of the first, because
+/// resistance increases with the square root of the sinkage. Compacted soil has a smaller K (in senatore_sandu_2011 K
+/// falls with density). Cohesion and friction angle are unchanged (ours: their increase is neglected).
+Soil rutted(const Soil& soil);
+/// Returns the model in the rut of an equal wheel: unchanged if it has a multipass effect, which then describes
+/// the second pass; otherwise on the soil in the rut.
+RefinedModel rutted(const RefinedModel& model);
 
 /// Index of a tabulated quantity of a wheel [-]: drawbar pull over load DP/N, side force over load F/N,
 /// torque ratio T/(rN), and sinkage over radius z/r. kWheelChannels is the number of quantities.
@@ -26,7 +51,7 @@ struct WheelRatios {
   std::array<double, kWheelChannels> value{}, by_slip{}, by_angle{};
 };
 
-/// Load N, slip and slip angle of a wheel, with the definitions of WheelOperation in wong_reece.hpp.
+/// Load N, slip and slip angle of a wheel, with the definitions of WheelOperation in wheel_on_soil.hpp.
 struct WheelMotion {
   double load_N = 0.0;          ///< load normal to the ground, > 0
   double slip = 0.0;            ///< slip along the wheel plane, [-1, 1]
@@ -46,7 +71,7 @@ class WheelForcesTable {
   static constexpr double kSlipStep = 0.05, kAngleStep_rad = 0.0698131700797732;  // 4 deg, to 60 deg
 
   /// Tabulates the forces on a soil, for loads of 0.2 to 4.8 even loads. Throws the std::invalid_argument
-  /// exceptions of wong_reece.hpp.
+  /// exceptions of wheel_on_soil.hpp.
   WheelForcesTable(const Soil& soil, const Rover& rover);
 
   /// Tabulates a wheel model with effects, without sensor errors, at the rover's maximum speed and a

@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/numerics/estimate.hpp>
-#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
+
+namespace talus::terramech {
 
 /// Soil parameters from a bevameter, an instrument that presses plates into the soil and shears the soil
 /// below a plate (thesis App. B.1; wong_1980).
-namespace talus::terramech {
 
 /// Reading of a plate that is pressed into the soil.
 struct PlateReading {
@@ -106,5 +107,21 @@ struct ShearFit {
 /// and weighted with m^2; the equation is then a line in sigma, so that only K needs a search. Throws
 /// std::domain_error with fewer than three readings or with a single normal stress.
 ShearFit fitShear(std::span<const ShearReading> readings);
+
+/// Trial: readings of one test in which one plate is pressed into the soil.
+struct PlateTrial {
+  std::string soil, name;  ///< texts of the table; may be empty
+  std::vector<PlateReading> readings;
+};
+
+/// Returns common mean and scatter of values with known standard errors, by the method of moments
+/// (dersimonian_laird_1986, Eqs. 7 to 9).
+RandomEffect randomEffect(std::span<const Estimate> values);
+
+/// Returns the pressure-sinkage parameters of each soil, in the order of the trials. Each trial has its own
+/// exponent n and its own pressure at TrialSoil::depth_m, because a joint fit of a firm shallow trial and a
+/// soft deep trial would give too small an n. Trials without two depths are ignored. Throws std::domain_error
+/// if no trial of a soil has two depths.
+std::vector<TrialSoil> trialSoils(std::span<const PlateTrial> trials);
 
 }  // namespace talus::terramech

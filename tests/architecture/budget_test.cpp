@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22482}, {"maps", 7249},     {"costmap", 13045},
-                           {"planner", 24048}, {"cli", 14479},       {"examples", 1580}, {"tests", 59253}};
+const Budget kBudgets[] = {{"common", 705},    {"terramech", 21884}, {"maps", 7098},     {"costmap", 12568},
+                           {"planner", 23451}, {"cli", 14188},       {"examples", 1580}, {"tests", 58555}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include <talus/costmap/cost/travel_state.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/terramech/terramech_io.hpp>

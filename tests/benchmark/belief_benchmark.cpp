@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace {
 

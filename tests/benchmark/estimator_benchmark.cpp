@@ -3,9 +3,9 @@
 #include <benchmark/benchmark.h>
 #include <thesis_runs.hpp>
 
-#include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/strength/iagnemma.hpp>
-#include <talus/terramech/strength/shear_modulus_grid.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -15,7 +15,7 @@
 #include <pthread.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>

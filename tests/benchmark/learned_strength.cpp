@@ -9,9 +9,9 @@
 #include <random>
 #include <string>
 
-#include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace {
 

@@ -10,11 +10,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <talus/costmap/ground/ground_class.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace {
 

@@ -11,11 +11,10 @@
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 
-#include <talus/maps/raster/elevation_reader.hpp>
-#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/maps/terrain/plane_fit.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace {
 

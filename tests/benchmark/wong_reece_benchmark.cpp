@@ -8,7 +8,7 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 
 // Wheel equilibria per second over the soils of thesis Table 2.1 (wheel r = b = 0.1 m, 60 to 100 N, slip 0.2

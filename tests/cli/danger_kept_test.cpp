@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "run_program.hpp"
 

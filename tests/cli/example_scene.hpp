@@ -1,7 +1,7 @@
 #pragma once
 
 #include <talus/cli/draw/scene.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/route.hpp>
 
 namespace talus::cli {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "bad_input.hpp"
 

@@ -1,4 +1,4 @@
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus {
 namespace input_error_test {

@@ -3,8 +3,7 @@
 
 #include <refused.hpp>
 
-#include <talus/common/input_error.hpp>
-#include <talus/common/input_file.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus {
 namespace input_file_test {

@@ -1,4 +1,4 @@
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 
 namespace talus {

@@ -10,7 +10,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::costmap {

@@ -3,16 +3,16 @@
 
 #include <CLI/CLI.hpp>
 
-#include <talus/cli/app/number_check.hpp>
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/motion_options.hpp>
 #include <talus/cli/ground/path_reader.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/maps/terrain/place.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 
 #include "targets.hpp"
 

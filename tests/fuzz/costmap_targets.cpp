@@ -9,9 +9,8 @@
 
 #include <talus/common/checksum.hpp>
 #include <talus/common/memory_budget.hpp>
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/surface/octomap_surface.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_tree.hpp>
 
 #include "targets.hpp"
 

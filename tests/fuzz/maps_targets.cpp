@@ -1,8 +1,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <talus/maps/raster/elevation_reader.hpp>
-#include <talus/maps/raster/layer_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
 
 #include "targets.hpp"

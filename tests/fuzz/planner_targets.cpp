@@ -1,8 +1,8 @@
 #include <fstream>
 #include <iterator>
 
-#include <talus/planner/bench/moving_ai.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/bench/grid_suite.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 
 #include "targets.hpp"
 

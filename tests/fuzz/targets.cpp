@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <yaml-cpp/exceptions.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 
 namespace talus::fuzz {

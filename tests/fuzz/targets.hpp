@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::fuzz {
 

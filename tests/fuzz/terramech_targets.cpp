@@ -1,9 +1,7 @@
 #include <functional>
 
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "targets.hpp"
 

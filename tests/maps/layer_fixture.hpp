@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <talus/maps/raster/elevation_reader.hpp>
-#include <talus/maps/raster/layer_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 
 #include "raster_fixture.hpp"
 

@@ -14,7 +14,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::maps {
 

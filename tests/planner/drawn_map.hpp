@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::planner::testing {
 

@@ -8,7 +8,6 @@
 #include <ompl/base/SpaceInformation.h>
 
 #include <talus/planner/sampling/map_space.hpp>
-#include <talus/planner/sampling/travel_objective.hpp>
 
 namespace talus::planner::testing {
 

@@ -7,7 +7,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/planner/simulation/drive/simulation_site.hpp>
+#include <talus/planner/simulation/simulation.hpp>
 
 namespace talus::planner {
 namespace reliability_test {

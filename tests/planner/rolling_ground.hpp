@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include <talus/planner/grid/windowed_map.hpp>
+#include <talus/planner/planner.hpp>
 
 namespace talus::planner::testing {
 

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/contact/shear_stress.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 #include "figure_parts.hpp"
 

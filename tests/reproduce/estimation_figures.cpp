@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <thesis_runs.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/strength/iagnemma.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 #include "figure_parts.hpp"
 

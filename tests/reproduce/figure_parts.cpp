@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::reproduce {
 

@@ -6,7 +6,7 @@
 
 #include <thesis_runs.hpp>
 
-#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 #include "thesis_figures.hpp"
 

@@ -7,14 +7,12 @@
 #include <fmt/format.h>
 #include <thesis_runs.hpp>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
-#include <talus/terramech/estimate/pull_forecast.hpp>
-#include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
-#include <talus/terramech/strength/iagnemma.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
-#include <talus/terramech/strength/shear_modulus_grid.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::reproduce {
 namespace {

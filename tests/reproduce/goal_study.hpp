@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 
 namespace talus::reproduce {
 

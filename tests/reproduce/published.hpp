@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <talus/cli/draw/plot.hpp>
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::reproduce {

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/constants.hpp>
-#include <talus/costmap/cost/travel_states.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/planner/plan/named_planner.hpp>
 
 #include "published.hpp"

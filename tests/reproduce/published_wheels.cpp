@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 #include "published.hpp"

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <thesis_runs.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/mobility/category.hpp>
 

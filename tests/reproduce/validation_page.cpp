@@ -8,9 +8,8 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/commands/reproduce_command.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
-#include <talus/common/progress_monitor.hpp>
 
 #include "goal_study.hpp"
 #include "published.hpp"

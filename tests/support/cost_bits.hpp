@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <talus/costmap/cost/cost_grid.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 
 namespace talus::costmap {
 

@@ -7,7 +7,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 

@@ -5,10 +5,9 @@
 #include <random>
 #include <vector>
 
-#include <talus/terramech/contact/wheel_sample.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/estimate/soil_mixture.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 /// Simulated telemetry of the thesis (section 2.3): soils drawn from Table 2.1, and a wheel driven over them
 /// with the slip pattern of the thesis.

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <talus/terramech/effects/effects.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
 #include "made_rows.hpp"

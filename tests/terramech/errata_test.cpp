@@ -7,13 +7,13 @@
 
 #include <thesis_runs.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/contact/contact_geometry.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/contact/linear_stress.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/mobility/category.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 namespace errata_test {

@@ -5,9 +5,9 @@
 
 #include <thesis_runs.hpp>
 
-#include <talus/terramech/contact/contact_response.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
-/// The likelihood of soil_posterior.hpp by quadrature instead of linearisation, for tests.
+/// The likelihood of soil_estimation.hpp by quadrature instead of linearisation, for tests.
 namespace talus::terramech {
 
 inline double gaussian(double away, double std) {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include <talus/terramech/contact/contact_geometry.hpp>
 #include <talus/terramech/contact/linear_stress.hpp>
-#include <talus/terramech/contact/wheel_sample.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 /// Readings of a wheel with exactly the stresses that the linear-offset method assumes, for which the
 /// estimators of the method are exact. For tests.

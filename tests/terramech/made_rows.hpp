@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {

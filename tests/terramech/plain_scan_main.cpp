@@ -1,8 +1,7 @@
 // Applies the plain scan to a table: plain_scan T.csv BASE.yaml. Prints one column a line.
 #include <cstdio>
 
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "plain_scan.hpp"
 

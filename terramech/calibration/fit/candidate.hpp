@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/effects/effects.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
 

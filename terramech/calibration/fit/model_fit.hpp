@@ -13,7 +13,7 @@
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
-#include <talus/terramech/numerics/estimate.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
 

@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>

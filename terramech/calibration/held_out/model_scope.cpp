@@ -7,7 +7,7 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/noise/folds.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {

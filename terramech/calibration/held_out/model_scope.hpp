@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 /// Scope of a refined model: the channels and column ranges in which its effects (corrections of the base
 /// model) are applied, because held-out rows do not contradict the effects there. For extrapolation, the rows with the outermost values

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <talus/terramech/calibration/noise/input_calibration.hpp>
-#include <talus/terramech/numerics/squared.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

@@ -9,8 +9,7 @@
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
 #include <talus/terramech/calibration/table/answer_columns.hpp>
-#include <talus/terramech/numerics/median.hpp>
-#include <talus/terramech/numerics/squared.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -4,8 +4,8 @@
 #include <Eigen/QR>
 
 #include <talus/terramech/calibration/noise/spline_basis.hpp>
-#include <talus/terramech/effects/effects.hpp>
-#include <talus/terramech/numerics/natural_spline.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

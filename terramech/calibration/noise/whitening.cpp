@@ -7,8 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <talus/terramech/calibration/noise/whitening.hpp>
-#include <talus/terramech/numerics/median.hpp>
-#include <talus/terramech/numerics/squared.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {

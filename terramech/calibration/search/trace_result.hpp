@@ -9,8 +9,8 @@
 
 #include <talus/terramech/calibration/fit/candidate.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/numerics/estimate.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 

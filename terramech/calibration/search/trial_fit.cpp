@@ -6,7 +6,7 @@
 #include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
-#include <talus/terramech/numerics/median.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include <talus/terramech/effects/channel_reading.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
 

@@ -1,7 +1,7 @@
 #include <utility>
 
 #include <talus/terramech/calibration/table/model_rows.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 namespace talus::terramech {

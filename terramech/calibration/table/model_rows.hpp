@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <talus/terramech/calibration/table/trial.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 /// Table of wheel telemetry together with the wheel model for its rows.
 namespace talus::terramech {

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/answer_columns.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 

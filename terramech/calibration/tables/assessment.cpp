@@ -1,14 +1,11 @@
 #include <cmath>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
-#include <talus/terramech/estimate/pull_forecast.hpp>
-#include <talus/terramech/estimate/pull_formula.hpp>
-#include <talus/terramech/io/model_file.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 namespace talus::terramech {

@@ -4,11 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
-#include <talus/terramech/estimate/pull_forecast.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/mobility/category.hpp>
-#include <talus/terramech/mobility/category_probability.hpp>
 
 namespace talus::terramech {
 

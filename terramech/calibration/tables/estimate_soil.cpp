@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
 #include <talus/terramech/calibration/tables/line_estimate.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>

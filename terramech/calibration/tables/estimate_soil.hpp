@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
 
 namespace talus::terramech {

@@ -2,16 +2,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/line_estimate.hpp>
 #include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
-#include <talus/terramech/strength/iagnemma.hpp>
-#include <talus/terramech/strength/plate_trials.hpp>
-#include <talus/terramech/strength/shear_modulus_grid.hpp>
-#include <talus/terramech/strength/sojourner.hpp>
+#include <talus/terramech/strength/bevameter.hpp>
+#include <talus/terramech/strength/shear_modulus.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

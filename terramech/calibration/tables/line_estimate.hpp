@@ -1,6 +1,6 @@
 #pragma once
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
 
 namespace talus::terramech {

@@ -5,17 +5,16 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
 #include <talus/terramech/calibration/tables/no_soil.hpp>
 #include <talus/terramech/calibration/tables/soil_groups.hpp>
 #include <talus/terramech/calibration/verdict/model_soil.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
-#include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 namespace talus::terramech {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/no_soil.hpp>
 
 namespace talus::terramech {

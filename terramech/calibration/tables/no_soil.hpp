@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
-#include <talus/terramech/effects/channel_reading.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
 

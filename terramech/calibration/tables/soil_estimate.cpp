@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
 
 namespace talus::terramech {

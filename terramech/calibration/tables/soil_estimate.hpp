@@ -7,10 +7,10 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/estimate/soil_posterior.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/strength/bevameter.hpp>
-#include <talus/terramech/strength/mohr_coulomb_line.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

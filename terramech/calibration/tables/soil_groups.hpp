@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <talus/terramech/estimate/reading_errors.hpp>
-#include <talus/terramech/estimate/soil_posterior.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 namespace talus::terramech {

@@ -3,7 +3,7 @@
 #include <talus/terramech/calibration/table/model_rows.hpp>
 #include <talus/terramech/calibration/tables/table_applicability.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/model_validity.hpp>
 
 namespace talus::terramech {

@@ -9,7 +9,7 @@
 
 #include <Eigen/Dense>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 
 namespace talus::terramech {

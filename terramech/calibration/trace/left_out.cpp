@@ -5,7 +5,7 @@
 
 #include <Eigen/SVD>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/held_out/model_scope.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 
 /// Cross-validation of the complete procedure of residual tracing: effects and parameters are determined

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/fit/effect_candidates.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
@@ -15,7 +15,7 @@
 #include <talus/terramech/calibration/search/column_screening.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/mobility/rut.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -149,7 +149,7 @@ void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
 }
 
 /// Prior information on a rover's own drive. The pull follows from the slope and has the error of an
-/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (rut.hpp),
+/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (wheel_forces_table.hpp),
 /// whose stiffness is fitted.
 RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   constexpr double kSlopeError_rad = 0.005;

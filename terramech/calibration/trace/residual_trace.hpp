@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>
 

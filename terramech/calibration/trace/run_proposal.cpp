@@ -9,7 +9,7 @@
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
 #include <talus/terramech/calibration/trace/run_proposal.hpp>
-#include <talus/terramech/contact/shear_displacement.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/calibration/trace/model_validity.hpp>
 #include <talus/terramech/calibration/verdict/verdict.hpp>

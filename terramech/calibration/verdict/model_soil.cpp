@@ -4,7 +4,7 @@
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/verdict/model_soil.hpp>
 #include <talus/terramech/calibration/verdict/verdict.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/verdict/verdict.hpp>
-#include <talus/terramech/numerics/squared.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include <talus/cli/app/output_file.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 
 #include "bad_input.hpp"
 

@@ -6,9 +6,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "run_program.hpp"
 

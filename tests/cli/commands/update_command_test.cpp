@@ -13,9 +13,8 @@
 #include <unistd.h>
 
 #include <talus/costmap/journal/evidence_journal.hpp>
-#include <talus/terramech/contact/rover.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "bad_input.hpp"
 

@@ -7,8 +7,8 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/costmap/map/explanation.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/costmap.hpp>
 
 #include "bad_input.hpp"
 #include "browser.hpp"

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/draw/html_report.hpp>
 #include <talus/cli/draw/page.hpp>
-#include <talus/common/constants.hpp>
+#include <talus/cli/draw/plot.hpp>
+#include <talus/common/common.hpp>
 
 #include "bad_input.hpp"
 #include "browser.hpp"

@@ -53,6 +53,15 @@ TEST(RouteSummary, FailedRouteIsSummarisedByItsReason) {
   EXPECT_EQ(summaryText(route), "route                no_route: a cliff\n");
 }
 
+// Closed form: 1 m safe and 3 m marginal.
+TEST(RouteSummary, SharesOfCategoriesAreThoseOfTheLength) {
+  planner::Route route;
+  route.vertices = {{.category = terramech::Category::Safe},
+                    {.x_m = 1.0, .category = terramech::Category::Marginal},
+                    {.x_m = 4.0}};
+  EXPECT_THAT(categoryShares(route), testing::ElementsAre(0.25, 0.75, 0.0, 0.0));
+}
+
 TEST(RouteSummary, DurationsHaveTwoUnitsAtMost) {
   EXPECT_EQ(durationText(45.0), "45 s");
   EXPECT_EQ(durationText(1800.0), "30 min");

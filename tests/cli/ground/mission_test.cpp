@@ -1,6 +1,5 @@
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 #include "run_program.hpp"
 

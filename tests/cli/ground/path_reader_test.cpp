@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
 #include <talus/cli/ground/path_reader.hpp>
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 #include "example_scene.hpp"
 #include "run_program.hpp"

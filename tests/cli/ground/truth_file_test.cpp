@@ -1,6 +1,6 @@
 #include <talus/cli/ground/truth_file.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "run_program.hpp"
 

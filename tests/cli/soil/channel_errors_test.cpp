@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/channel_report.hpp>
+#include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
 namespace channel_errors_test {

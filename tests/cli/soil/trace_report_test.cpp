@@ -4,7 +4,25 @@
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
+
 namespace trace_report_test {
+
+// Property: rows without slip, measurement or prediction are omitted.
+TEST(ChannelReport, OnlyWholeRowsAreShownOverSlip) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  terramech::Trial trial;
+  trial.measured = Eigen::MatrixXd::Constant(4, 4, kNone);
+  trial.slip = {0.2, 0.1, 0.4, kNone};
+  Eigen::MatrixXd told = Eigen::MatrixXd::Zero(4, 4);
+  const auto c = static_cast<Eigen::Index>(terramech::Channel::Torque);
+  trial.measured.col(c) << 0.3, kNone, 0.1, 0.2;
+  told.col(c) << 0.31, 0.0, 0.12, 0.2;
+  const Plot plot = overSlip(terramech::Channel::Torque, trial, {{"model", told}});
+  ASSERT_EQ(plot.series.size(), 2U);
+  EXPECT_EQ(plot.series[0].x, (std::vector{0.2, 0.4}));
+  EXPECT_EQ(plot.series[0].y, (std::vector{0.3, 0.1}));
+  EXPECT_EQ(plot.series[1].y, (std::vector{0.31, 0.12}));
+}
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -86,4 +104,5 @@ TEST(TraceReport, RowsBeyondTheAxleAreReportedWithTheirErrors) {
 }
 
 }  // namespace trace_report_test
+
 }  // namespace talus::cli

@@ -2,8 +2,8 @@
 #include <fstream>
 
 #include <talus/cli/soil/wheel_case_table.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 #include "run_program.hpp"

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include <talus/costmap/cost/cost_grid.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
 namespace cost_grid_test {

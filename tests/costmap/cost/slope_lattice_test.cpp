@@ -7,7 +7,7 @@
 #include <site_fixture.hpp>
 
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::costmap {
 namespace slope_lattice_test {

@@ -5,9 +5,9 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/cost/travel_cost.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::costmap {
 namespace travel_cost_test {

@@ -3,9 +3,9 @@
 
 #include <site_map.hpp>
 
+#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/evidence/class_evidence.hpp>
-#include <talus/costmap/evidence/evidence_field.hpp>
-#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
 
 namespace talus::costmap {
 namespace evidence_field_test {

@@ -3,8 +3,8 @@
 
 #include <site_map.hpp>
 
+#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/evidence/evidence_store.hpp>
-#include <talus/costmap/map/traversability_map.hpp>
 
 namespace talus::costmap {
 namespace evidence_store_test {

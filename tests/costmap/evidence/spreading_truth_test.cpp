@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include <talus/costmap/evidence/spreading.hpp>
+#include <talus/costmap/evidence/class_evidence.hpp>
 
 namespace talus::costmap {
 namespace spreading_truth_test {

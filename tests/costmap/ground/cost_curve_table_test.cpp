@@ -1,4 +1,6 @@
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include <site_fixture.hpp>
@@ -6,7 +8,108 @@
 #include <talus/costmap/ground/cost_curve_table.hpp>
 
 namespace talus::costmap {
+
 namespace cost_curve_table_test {
+
+CategoryTable tableOf(const GroundModel& model) {
+  return {model, model.prior(0), model.ground(0, model.prior(0))};
+}
+
+// Property: the category is that of the model in the steepest heading, or worse because of the planners'
+// rounding.
+TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
+  const auto model = testGround();
+  const CategoryTable table = tableOf(*model);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> gradient(-0.5, 0.5);
+  int same = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const CellCode cell({gradient(random), gradient(random), 0});
+    const double steps = std::ceil(std::hypot(cell.stepsX(), cell.stepsY()));
+    const double worst = model->lattice(0)->steepest(steps * CellCode::kStep);
+    const RankedCategory expected = model->category(model->prior(0), worst);
+    const CategoryTable::Entry seen = table.at(cell);
+    ASSERT_GE(seen.category, static_cast<std::uint8_t>(expected.category));
+    if (seen.category != static_cast<std::uint8_t>(expected.category)) continue;
+    ++same;
+    const double sixteenths = 16.0 * expected.probability;
+    const bool danger = expected.category == terramech::Category::Dangerous;
+    ASSERT_EQ(seen.confidence, danger ? std::round(sixteenths) : std::floor(sixteenths));
+  }
+  EXPECT_GT(same, 1600);  // nodes are 4 steps apart
+}
+
+// Property: the map's category of a cell is at least as bad as its category in any heading. A cell that the
+// map shows as safe or marginal is not refused in its worst heading.
+TEST(CategoryTable, NoHeadingHasAWorseCategory) {
+  const auto model = testGround();
+  const CategoryTable table = tableOf(*model);
+  const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
+  for (double gradient = 0.01; gradient < 0.45; gradient += 0.0137)
+    for (int k = 0; k < 48; ++k) {
+      const double heading = k * std::numbers::pi / 24;
+      const CellCode cell({.dz_dx = gradient * std::cos(k), .dz_dy = gradient * std::sin(k), .curve = 0});
+      const TravelState state = cost.detail(cell, {std::cos(heading), std::sin(heading)});
+      const auto seen = static_cast<terramech::Category>(table.at(cell).category);
+      EXPECT_GE(seen, state.category) << gradient << ' ' << k;
+      if (seen == terramech::Category::Dangerous) continue;
+      EXPECT_EQ(cost.detail(cell, worstHeading(cost, cell)).refusal, Refusal::None) << gradient << ' ' << k;
+    }
+}
+
+TEST(CategoryTable, SteepestRepresentableGradientIsDangerous) {
+  const auto model = testGround();
+  const CategoryTable table = tableOf(*model);
+  // Property: a gradient of 2.8 is dangerous.
+  EXPECT_EQ(table.at(CellCode({-2.0, -2.0, 0})).category,
+            static_cast<std::uint8_t>(terramech::Category::Dangerous));
+}
+
+GroundBelief anyBelief(std::mt19937_64& random) {
+  const auto drawn = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  return {.pull = {drawn(-1.0, 1.0), drawn(0.0, 3.0)}, .sinkage = {drawn(0.0, 2.0), 0.1}};
+}
+
+const GroundBelief kPrior{.pull = {0.137, 0.09}, .sinkage = {0.23, 0.1}};
+
+bool noBetter(const GroundBelief& belief, const GroundBelief& than) {
+  return belief.pull.value <= than.pull.value && belief.pull.std >= than.pull.std &&
+         belief.sinkage.value >= than.sinkage.value;
+}
+
+// Property: the rounded estimate is no better than the exact one in any quantity, and rounds to itself.
+TEST(GroundKind, RoundingIsConservative) {
+  std::mt19937_64 random(3);
+  const GroundClass ground{.soil = testSand()};
+  for (int i = 0; i < 5000; ++i) {
+    const GroundBelief belief = anyBelief(random);
+    const GroundKind kind = GroundKind::of(kPrior, 0, 0, belief);
+    const GroundBelief worst = kind.belief(kPrior, ground);
+    // A difference of a millionth of a step is floating-point rounding.
+    GroundBelief a_little_better = belief;
+    a_little_better.pull.value += 1e-6;
+    a_little_better.pull.std -= 1e-5;
+    a_little_better.sinkage.value -= 1e-6;
+    ASSERT_TRUE(noBetter(worst, a_little_better)) << i;
+    ASSERT_EQ(GroundKind::of(kPrior, 0, 0, worst), kind);
+  }
+}
+
+// Property: an estimate no worse than the prior of its class is rounded to a value no worse than the prior.
+TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
+  std::mt19937_64 random(4);
+  const GroundClass ground{.soil = testSand()};
+  for (int i = 0; i < 2000; ++i) {
+    const auto better = [&](double most) {
+      return std::uniform_real_distribution<double>(0.0, most)(random);
+    };
+    const GroundBelief belief{.pull = {kPrior.pull.value + better(0.1), kPrior.pull.std - better(0.05)},
+                              .sinkage = {kPrior.sinkage.value - better(0.2), 0.1}};
+    ASSERT_TRUE(noBetter(kPrior, GroundKind::of(kPrior, 0, 0, belief).belief(kPrior, ground)));
+  }
+}
 
 // Property: the cost of an estimate does not depend on which of several similar estimates was requested
 // first.
@@ -100,4 +203,5 @@ TEST(CostCurveTable, RestoredPriorReproducesItsCosts) {
 }
 
 }  // namespace cost_curve_table_test
+
 }  // namespace talus::costmap

@@ -2,7 +2,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/ground/ground_model.hpp>
 
 namespace talus::costmap {
 namespace ground_class_test {

@@ -7,9 +7,8 @@
 #include <refused.hpp>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/ground/ground_class.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::costmap {
 namespace ground_model_test {

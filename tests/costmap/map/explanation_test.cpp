@@ -3,8 +3,8 @@
 
 #include <site_map.hpp>
 
-#include <talus/costmap/ground/category_table.hpp>
-#include <talus/costmap/map/explanation.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/ground/cost_curve_table.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 
 namespace talus::costmap {

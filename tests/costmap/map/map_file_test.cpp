@@ -5,8 +5,8 @@
 #include <octomap/AbstractOcTree.h>
 #include <site_map.hpp>
 
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/map/map_file.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace map_file_test {

@@ -7,8 +7,8 @@
 #include <cost_bits.hpp>
 #include <site_map.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
 namespace map_surface_test {

@@ -2,7 +2,7 @@
 
 #include <site_fixture.hpp>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/costmap/map/map_text.hpp>
 
 namespace talus::costmap {

@@ -11,8 +11,8 @@
 
 #include <site_map.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
 namespace publish_order_test {

@@ -11,8 +11,8 @@
 #include <refused.hpp>
 #include <site_map.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
-#include <talus/costmap/surface/cell_boxes.hpp>
+#include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
 namespace traversability_map_test {

@@ -1,8 +1,8 @@
 #include <memory>
 #include <sstream>
 
-#include <talus/common/input_error.hpp>
-#include <talus/costmap/surface/traversability_tree.hpp>
+#include <talus/common/common.hpp>
+#include <talus/costmap/surface/surface.hpp>
 
 namespace talus::costmap {
 namespace traversability_tree_test {

@@ -11,7 +11,7 @@
 #include <site_map.hpp>
 #include <unistd.h>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace drive_danger_test {

@@ -6,11 +6,10 @@
 #include <site_map.hpp>
 #include <unistd.h>
 
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::costmap {
 namespace drive_evidence_test {

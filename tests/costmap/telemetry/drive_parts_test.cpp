@@ -14,8 +14,7 @@
 #include <rover_drive.hpp>
 #include <unistd.h>
 
-#include <talus/costmap/map/map_file.hpp>
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace drive_parts_test {

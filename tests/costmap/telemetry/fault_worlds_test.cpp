@@ -14,7 +14,7 @@
 #include <campaign_part.hpp>
 #include <rover_drive.hpp>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace fault_worlds_test {

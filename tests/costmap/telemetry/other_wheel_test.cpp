@@ -5,7 +5,7 @@
 #include <rover_drive.hpp>
 #include <unistd.h>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace other_wheel_test {

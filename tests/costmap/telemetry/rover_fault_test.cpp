@@ -7,7 +7,7 @@
 
 #include <rover_drive.hpp>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace rover_fault_test {

@@ -7,7 +7,7 @@
 #include <rover_drive.hpp>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/telemetry/drive_evidence.hpp>
+#include <talus/costmap/costmap.hpp>
 
 namespace talus::costmap {
 namespace sensor_fault_test {

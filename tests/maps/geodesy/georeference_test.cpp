@@ -6,8 +6,8 @@
 
 #include <refused.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/maps/geodesy/georeference.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 namespace georeference_test {

@@ -1,7 +1,7 @@
 #include <limits>
 #include <random>
 
-#include <talus/maps/grid/grid.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 namespace grid_test {

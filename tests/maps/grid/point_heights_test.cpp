@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <talus/maps/grid/point_heights.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 namespace point_heights_test {

@@ -4,9 +4,8 @@
 #include <functional>
 #include <set>
 
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
-#include <talus/maps/raster/layer_reader.hpp>
 
 #include "layer_fixture.hpp"
 #include "raster_fixture.hpp"

@@ -8,8 +8,8 @@
 #include <random>
 #include <regex>
 
-#include <talus/common/constants.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 #include "raster_fixture.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 
 #include "raster_fixture.hpp"
 #include "requirement.hpp"

@@ -3,8 +3,8 @@
 
 #include <sys/stat.h>
 
-#include <talus/common/input_file.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 

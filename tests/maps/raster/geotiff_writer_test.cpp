@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/maps/raster/geotiff_writer.hpp>
+#include <talus/maps/maps_io.hpp>
 
 #include "layer_fixture.hpp"
 

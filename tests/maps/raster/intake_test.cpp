@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
 

@@ -3,8 +3,7 @@
 #include <numbers>
 #include <random>
 
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 
 #include "layer_fixture.hpp"
 

@@ -3,9 +3,8 @@
 
 #include <refused.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/maps/raster/elevation_reader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/intake.hpp>
 #include <talus/maps/raster/numpy_raster.hpp>
 

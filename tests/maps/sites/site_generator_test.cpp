@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <refused.hpp>
 
+#include <talus/maps/maps.hpp>
 #include <talus/maps/sites/site_generator.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace site_generator_test {

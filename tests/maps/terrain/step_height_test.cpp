@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <talus/maps/maps.hpp>
 #include <talus/maps/terrain/step_height.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
 namespace step_height_test {

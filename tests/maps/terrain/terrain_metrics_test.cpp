@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <refused.hpp>
 
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/maps/maps.hpp>
 
 namespace talus::maps {
 namespace terrain_metrics_test {

@@ -1,6 +1,6 @@
 #include <ogrsf_frmts.h>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 

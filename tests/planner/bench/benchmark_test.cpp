@@ -1,13 +1,18 @@
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
 #include <thread>
 
+#include <gmock/gmock.h>
+
 #include <talus/planner/bench/benchmark.hpp>
-#include <talus/planner/bench/benchmark_log.hpp>
 
 #include "drawn_map.hpp"
 
 namespace talus::planner {
+
 namespace benchmark_test {
 
 using ::testing::HasSubstr;
@@ -87,5 +92,171 @@ TEST(Benchmark, StopEndsTheCurrentRun) {
   EXPECT_TRUE(runBenchmark(plan, watch).empty());  // otherwise the test takes ten minutes
 }
 
+// An independent reader of the log grammar that OMPL's ompl_benchmark_statistics.py (1.6) parses line by
+// line for Planner Arena. Throws where that script would fail.
+class ArenaReader {
+ public:
+  struct Planner {
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> runs;
+    std::vector<std::vector<std::pair<double, double>>> progress;
+  };
+
+  explicit ArenaReader(const std::string& log) : stream_(log) {
+    words({{1, "version"}});
+    experiment = words({{0, "Experiment"}}).back();
+    const int properties = std::stoi(words({{-2, "experiment"}, {-1, "properties"}}).front());
+    for (int k = 0; k < properties; ++k)
+      if (line().find(" = ") == std::string::npos) throw std::runtime_error("property without ' = '");
+    words({{0, "Running"}});
+    words({{0, "Starting"}});
+    block();
+    std::stoi(words({{-2, "random"}, {-1, "seed"}}).front());
+    std::stod(words({{-3, "seconds"}, {-2, "per"}, {-1, "run"}}).front());
+    std::stod(words({{-3, "MB"}, {-2, "per"}, {-1, "run"}}).front());
+    std::stoi(words({{-3, "runs"}, {-2, "per"}, {-1, "planner"}}).front());
+    std::stod(words({{-3, "collect"}, {-2, "the"}, {-1, "data"}}).front());
+    const int enums = std::stoi(words({{-2, "enum"}}).front());
+    for (int k = 0; k < enums; ++k) {
+      const auto parts = split(line(), "|");
+      for (std::size_t i = 1; i < parts.size(); ++i) meanings[parts[0]].push_back(parts[i]);
+    }
+    const int count = std::stoi(words({{-1, "planners"}}).front());
+    for (int k = 0; k < count; ++k) readPlanner();
+    std::string rest;
+    if (std::getline(stream_, rest)) throw std::runtime_error("more than the planners: " + rest);
+  }
+
+  std::string experiment;
+  std::map<std::string, std::vector<std::string>> meanings;
+  std::map<std::string, Planner> planners;
+
+ private:
+  static std::vector<std::string> split(const std::string& text, const std::string& by) {
+    std::vector<std::string> parts;
+    std::size_t from = 0;
+    for (std::size_t at; (at = text.find(by, from)) != std::string::npos; from = at + by.size())
+      parts.push_back(text.substr(from, at - from));
+    parts.push_back(text.substr(from));
+    return parts;
+  }
+
+  std::string line() {
+    std::string text;
+    if (!std::getline(stream_, text)) throw std::runtime_error("the log ends early");
+    return text;
+  }
+
+  // The words of a line. `expected` gives some of them by position; negative positions count from the end.
+  std::vector<std::string> words(const std::map<int, std::string>& expected) {
+    std::istringstream text(line());
+    std::vector<std::string> all;
+    for (std::string word; text >> word;) all.push_back(word);
+    for (const auto& [place, word] : expected) {
+      const int at = place < 0 ? static_cast<int>(all.size()) + place : place;
+      if (at < 0 || at >= static_cast<int>(all.size()) || all[static_cast<std::size_t>(at)] != word)
+        throw std::runtime_error("expected '" + word + "' in '" + text.str() + "'");
+    }
+    return all;
+  }
+
+  void block() {
+    if (!line().starts_with("<<<|")) throw std::runtime_error("no <<<|");
+    while (!line().starts_with("|>>>")) {
+    }
+  }
+
+  std::vector<std::string> columns(int count) {
+    std::vector<std::string> names;
+    const std::set<std::string> types{"REAL", "INTEGER", "BOOLEAN", "ENUM"};
+    for (int k = 0; k < count; ++k) {
+      const auto field = words({});
+      if (!types.contains(field.back())) throw std::runtime_error("unknown type " + field.back());
+      std::string name;
+      for (std::size_t i = 0; i + 1 < field.size(); ++i) name += (i == 0 ? "" : "_") + field[i];
+      names.push_back(name);
+    }
+    return names;
+  }
+
+  void readPlanner() {
+    const std::string name = line();
+    for (int k = std::stoi(line()); k > 0; --k) line();  // common properties
+    Planner& planner = planners[name];
+    planner.columns = columns(std::stoi(line()));
+    for (int k = std::stoi(line()); k > 0; --k) {
+      auto values = split(line(), "; ");
+      values.pop_back();
+      if (values.size() != planner.columns.size()) throw std::runtime_error("a run of another width");
+      for (const std::string& value : values)
+        if (!value.empty()) std::stod(value);
+      planner.runs.push_back(values);
+    }
+    const std::string next = line();
+    if (next == ".") return;
+    if (columns(std::stoi(next)).front() != "time") throw std::runtime_error("progress without time");
+    if (std::stoul(line()) != planner.runs.size()) throw std::runtime_error("progress of other runs");
+    for (std::size_t k = 0; k < planner.runs.size(); ++k) {
+      auto samples = split(line(), ";");
+      samples.pop_back();
+      std::set<double> times;  // with the run, a primary key
+      planner.progress.emplace_back();
+      for (const std::string& sample : samples) {
+        const auto values = split(sample, ",");
+        if (values.size() != 3) throw std::runtime_error("a sample of another width");
+        if (!times.insert(std::stod(values[0])).second) throw std::runtime_error("a time twice");
+        planner.progress.back().emplace_back(std::stod(values[0]), std::stod(values[1]));
+      }
+    }
+    if (line() != ".") throw std::runtime_error("no full stop after a planner");
+  }
+
+  std::istringstream stream_;
+};
+
+BenchmarkPlan plan() {
+  const auto map = testing::drawn({"......", "..##..", "......"});
+  return {.cases = {{.name = "two words", .map = map, .start = {0.5, 1.5}, .goal = {5.5, 1.5}}},
+          .planners = {"field", "hybrid", "RRTstar"},
+          .seeds = 2,
+          .time_limit_s = 0.5};
+}
+
+TEST(BenchmarkLog, PlannerArenaReadsTheLog) {
+  const BenchmarkPlan asked = plan();
+  const auto runs = runBenchmark(asked);
+  const ArenaReader arena(benchmarkLog(asked, runs, 0));
+  EXPECT_EQ(arena.experiment, "two_words");
+  ASSERT_EQ(arena.planners.size(), 3u);
+  EXPECT_EQ(arena.meanings.at("status").at(6), "Exact solution");
+  for (const auto& [name, planner] : arena.planners) {
+    EXPECT_EQ(planner.runs.size(), 2u) << name;
+    EXPECT_EQ(planner.columns.at(5), "solution_cost");
+    EXPECT_EQ(planner.runs[0].at(2), "6") << name;
+    EXPECT_FALSE(planner.progress.at(1).empty()) << name;
+  }
+}
+
+TEST(BenchmarkLog, FailuresAndEqualTimesAreReadable) {
+  BenchmarkPlan asked = plan();
+  asked.planners = {"field"};
+  asked.seeds = 3;
+  std::vector<BenchmarkRun> runs(3);
+  for (std::size_t k = 0; k < 3; ++k) runs[k].planner = "field";
+  runs[0].crashed = true;
+  runs[1].status = RouteStatus::NoRoute;
+  runs[2].status = RouteStatus::Found;
+  runs[2].cost_J = 50.0;
+  runs[2].progress = {{0.25, 70.0}, {0.25, 60.0}, {0.5, 50.0}};
+  const ArenaReader arena(benchmarkLog(asked, runs, 0));
+  const auto& planner = arena.planners.at("field");
+  EXPECT_EQ(arena.meanings.at("status").at(std::stoul(planner.runs[0].at(2))), "Crash");
+  EXPECT_EQ(planner.runs[0].at(5), "");
+  EXPECT_EQ(planner.runs[1].at(3), "0");
+  ASSERT_EQ(planner.progress[2].size(), 2u);
+  EXPECT_DOUBLE_EQ(planner.progress[2][0].second, 60.0);
+}
+
 }  // namespace benchmark_test
+
 }  // namespace talus::planner

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <string>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>

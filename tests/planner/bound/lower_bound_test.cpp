@@ -1,19 +1,176 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stop_token>
+#include <string>
+#include <vector>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
+#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
+#include <talus/planner/route/motion_cost.hpp>
 
 #include "drawn_map.hpp"
 #include "jagged_cost.hpp"
 
 namespace talus::planner {
+
 namespace lower_bound_test {
 
 using testing::drawn;
+
+// Closed form: the minimum over the curves that occur in cells: 10 J times the number of the curve plus one.
+TEST(CheapestMetre, MinimumIsTakenOverCurvesInUse) {
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"234", "#?4"})), 30.0, 1e-5);
+  EXPECT_NEAR(cheapestMetre_J(*drawn({"4.4"})), 10.0, 1e-5);
+  EXPECT_EQ(cheapestMetre_J(*drawn({"#?"})), 0.0);
+}
+
+// Closed form: 10 J/m on level ground in every direction; the cheaper gradients of a ramp elsewhere do not
+// count.
+TEST(StraightBound, BoundEqualsStraightLineCostOnUniformGround) {
+  const auto map = drawn(std::vector<std::string>(60, std::string(60, '.')));
+  for (int k = 0; k < 24; ++k) {
+    const double angle = 0.2618 * k + 0.1;
+    const Segment ends{{30.2, 29.7}, {30.2 + 25.0 * std::cos(angle), 29.7 + 25.0 * std::sin(angle)}};
+    const double cost_J = MotionCost(map)(ends);
+    EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0, cost_J), cost_J, 1e-6 * cost_J) << k;
+    EXPECT_NEAR(straightBoundOver_J(*map, ends, 5.0, cost_J), 0.8 * cost_J, 1e-6 * cost_J) << k;
+    EXPECT_LE(straightBound_J(*map, ends), straightBoundOver_J(*map, ends, 0.0)) << k;
+  }
+}
+
+// Closed form: 30 J/m; ground of 10 J/m lies so far aside that reaching it costs more than the straight
+// line.
+TEST(StraightBound, CheapGroundOutOfReachIsExcluded) {
+  std::vector<std::string> rows(120, std::string(120, '2'));
+  for (int k = 0; k < 20; ++k)
+    rows[static_cast<std::size_t>(k)].replace(100, 20, std::string(20, '.'));  // north-east
+  const auto map = drawn(rows);
+  const Segment ends{{10.5, 10.5}, {30.5, 20.5}};
+  const double cost_J = MotionCost(map)(ends);
+  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0, cost_J), cost_J, 1e-6 * cost_J);
+  EXPECT_NEAR(straightBoundOver_J(*map, ends, 0.0), cost_J, 1e-6 * cost_J);
+}
+
+// Closed form: a track of 10 J/m begins 3 m behind the start and ends 3 m behind the goal. The detour over
+// ground of 50 J/m at both ends and the track is cheaper than the straight line of 1000 J.
+TEST(StraightBound, CheapTrackBehindTheStartIsIncluded) {
+  std::vector<std::string> rows(60, std::string(100, '4'));
+  const auto track = [&rows](int column, int y) {
+    rows[static_cast<std::size_t>(59 - y)][static_cast<std::size_t>(column)] = '.';
+  };
+  for (int y = 30; y <= 48; ++y) track(37, y), track(63, y);
+  for (int column = 37; column <= 63; ++column) track(column, 48);
+  const auto map = drawn(rows);
+  const Segment ends{{40.5, 30.5}, {60.5, 30.5}};
+  const MotionCost cost(map);
+  const double round_J =
+      cost.along({ends.from, {37.5, 30.5}, {37.5, 48.5}, {63.5, 48.5}, {63.5, 30.5}, ends.to});
+  ASSERT_LT(round_J, cost(ends));
+  EXPECT_LE(straightBoundOver_J(*map, ends, 0.0), round_J);
+  EXPECT_LE(straightBoundOver_J(*map, ends, 0.0, cost(ends)), round_J);
+}
+
+// Property: for any known route, no random motion through any third place costs less than the bound.
+TEST(StraightBound, BoundIsBelowEveryMotionForAnyKnownRoute) {
+  std::size_t tried = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const auto map = testing::randomMap(
+        {.width = 40, .height = 30, .seed = seed, .blocked = 0.0, .roughness = 0.01 * (seed % 8)});
+    const MotionCost cost(map);
+    std::mt19937 random(seed);
+    const auto place = [&random] {
+      return maps::Point{static_cast<double>(random() % 401) / 10, static_cast<double>(random() % 301) / 10};
+    };
+    const Segment ends{place(), place()};
+    std::vector<double> costs;
+    for (int k = 0; k < 100; ++k)
+      if (const double cost_J = cost.along({ends.from, place(), ends.to}); std::isfinite(cost_J))
+        costs.push_back(cost_J);
+    if (const double cost_J = cost(ends); std::isfinite(cost_J)) costs.push_back(cost_J);
+    if (costs.empty()) continue;
+    const double least_J = *std::min_element(costs.begin(), costs.end());
+    for (const double known_J : costs)
+      EXPECT_LE(straightBoundOver_J(*map, ends, 0.0, known_J), least_J * (1 + 1e-9)) << seed;
+    tried += costs.size();
+  }
+  EXPECT_GT(tried, 500U);
+}
+
+OctagonOf octagonsOf(const std::shared_ptr<const costmap::CostGrid>& map) {
+  return [map, octagons = std::make_shared<FittedOctagons>(map->cost())](maps::Cell cell) {
+    return octagons->of(map->at(cell));
+  };
+}
+
+// Property: the field over the corners is below the cost of every allowed motion between two corners,
+// straight or with one bend, in any heading; on uniform patches, where the bound is close to the cost.
+TEST(AdmissibleEdges, FieldIsALowerBoundOfEveryMotion) {
+  int tried = 0, sharp = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&random](unsigned limit) { return static_cast<int>(random() % limit); };
+    maps::Raster<costmap::CellCode> cells({.width = 24, .height = 24, .resolution_m = 2.0, .south_west = {}});
+    std::vector<costmap::CellCode> patches;
+    for (int k = 0; k < 9; ++k)
+      patches.push_back(costmap::CellCode({.dz_dx = (below(300) - 150) / 1024.0,
+                                           .dz_dy = (below(300) - 150) / 1024.0,
+                                           .curve = static_cast<std::uint8_t>(below(3))}));
+    for (int row = 0; row < 24; ++row)
+      for (int column = 0; column < 24; ++column)
+        cells[{column, row}] = patches[static_cast<std::size_t>(row / 8 * 3 + column / 8)];
+    const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, testing::driveCost()));
+    const MotionCost cost(map);
+    const auto edges = admissibleEdges(map, octagonsOf(map)),
+               back = admissibleEdges(map, octagonsOf(map), {}, RouteSense::FromStart);
+    ASSERT_TRUE(edges && back);
+    const auto corner = [&below] { return maps::Cell{below(25), below(25)}; };
+    const auto place = [](maps::Cell c) { return maps::Point{2.0 * c.column, 2.0 * c.row}; };
+    for (int g = 0; g < 4; ++g) {
+      const maps::Cell goal = corner();
+      CostToGo field(edges, {{.cell = goal}}), from_there(back, {{.cell = goal}});
+      ASSERT_TRUE(field.settleAll() && from_there.settleAll());
+      for (int k = 0; k < 400; ++k) {
+        const maps::Cell start = corner();
+        const double cost_J = k % 2 == 0 ? cost({place(start), place(goal)})
+                                         : cost.along({place(start), place(corner()), place(goal)});
+        if (!std::isfinite(cost_J)) continue;
+        ++tried;
+        const auto bound_J = field.cost_J(start);
+        ASSERT_TRUE(bound_J);
+        ASSERT_LE(*bound_J, cost_J * (1 + 1e-9)) << seed;
+        sharp += *bound_J > 0.85 * cost_J;
+        const double back_J = cost({place(goal), place(start)});
+        ASSERT_LE(*from_there.cost_J(start), back_J * (1 + 1e-9)) << seed;
+      }
+    }
+  }
+  EXPECT_GT(tried, 2'000);
+  EXPECT_GT(sharp, 50);
+}
+
+TEST(AdmissibleEdges, StopYieldsNoEdges) {
+  std::stop_source source;
+  source.request_stop();
+  const auto map = drawn({".."});
+  const ProgressMonitor stopped{.progress = {}, .stop = source.get_token()};
+  EXPECT_EQ(admissibleEdges(map, octagonsOf(map), stopped), nullptr);
+}
+
+TEST(AdmissibleEdges, ZeroCostGroundYieldsNoEdges) {
+  costmap::TravelCurve free_of_charge;
+  free_of_charge.cost_J_per_m.fill(0.0F);
+  const maps::Raster<costmap::CellCode> cells(
+      {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}}, costmap::CellCode({.curve = 0}));
+  const auto cost =
+      std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{free_of_charge});
+  const auto map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, cost));
+  EXPECT_EQ(admissibleEdges(map, octagonsOf(map)), nullptr);
+}
+
 using testing::randomMap;
 
 // Property: no route costs less than the bound; the refined best route of the planner is the strictest
@@ -184,4 +341,5 @@ TEST(LowerBound, KnownCostNarrowsTheSearchSoundly) {
 }
 
 }  // namespace lower_bound_test
+
 }  // namespace talus::planner

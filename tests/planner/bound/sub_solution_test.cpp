@@ -4,7 +4,6 @@
 #include <random>
 
 #include <talus/planner/bound/lower_bound.hpp>
-#include <talus/planner/bound/straight_bound.hpp>
 #include <talus/planner/bound/sub_solution_check.hpp>
 #include <talus/planner/grid/point_route.hpp>
 

@@ -2,8 +2,7 @@
 #include <numbers>
 #include <random>
 
-#include <talus/costmap/cost/travel_state.hpp>
-#include <talus/costmap/cost/travel_states.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 

@@ -2,8 +2,8 @@
 #include <random>
 #include <stdexcept>
 
-#include <talus/common/constants.hpp>
-#include <talus/planner/check/cell_judge.hpp>
+#include <talus/common/common.hpp>
+#include <talus/planner/check/route_check.hpp>
 
 #include "drawn_map.hpp"
 

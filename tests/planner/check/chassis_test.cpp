@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <refused.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/maps/terrain/elevation_map.hpp>
-#include <talus/planner/check/chassis.hpp>
+#include <talus/common/common.hpp>
+#include <talus/maps/maps.hpp>
+#include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
 
 #include "drawn_map.hpp"

@@ -6,11 +6,11 @@
 #include <gmock/gmock.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/problem.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 #include "drawn_map.hpp"
 

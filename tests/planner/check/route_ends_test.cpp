@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_ends.hpp>
-#include <talus/planner/plan/planner.hpp>
+#include <talus/planner/planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stop_token>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 

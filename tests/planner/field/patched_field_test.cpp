@@ -1,4 +1,4 @@
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/field/patched_field.hpp>
 
 #include "changed_map.hpp"

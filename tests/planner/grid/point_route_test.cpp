@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>

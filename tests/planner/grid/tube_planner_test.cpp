@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/common/progress_monitor.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>

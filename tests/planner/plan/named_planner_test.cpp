@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/route/problem.hpp>
 
 #include "drawn_map.hpp"
 

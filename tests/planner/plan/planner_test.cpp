@@ -3,11 +3,11 @@
 #include <limits>
 #include <numbers>
 
-#include <talus/maps/terrain/elevation_map.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/plan/planner.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/planner/planner.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>
 
 #include "drawn_map.hpp"

@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <stop_token>
 
-#include <talus/costmap/cost/cost_weights.hpp>
-#include <talus/costmap/cost/travel_states.hpp>
+#include <talus/costmap/cost/cost_model.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/motion_cost.hpp>

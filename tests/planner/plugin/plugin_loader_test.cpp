@@ -12,8 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/planner/plugin/plugin_loader.hpp>
+#include <talus/common/common.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 
 #include "drawn_map.hpp"
 

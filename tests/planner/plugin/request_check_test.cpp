@@ -1,4 +1,4 @@
-#include <talus/planner/plugin/request_check.hpp>
+#include <talus/planner/plugin/global_planner.hpp>
 
 #include "drawn_map.hpp"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <site_fixture.hpp>
 
-#include <talus/costmap/map/traversability_map.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 
 namespace talus::planner {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <site_fixture.hpp>
 
-#include <talus/common/constants.hpp>
+#include <talus/common/common.hpp>
 #include <talus/planner/route/motion_cost.hpp>
-#include <talus/terramech/mobility/rover_stance.hpp>
+#include <talus/terramech/mobility/turning.hpp>
 
 #include "drawn_map.hpp"
 

@@ -5,7 +5,6 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/sampling/field_ompl_planner.hpp>
 #include <talus/planner/sampling/map_space.hpp>
-#include <talus/planner/sampling/travel_objective.hpp>
 
 #include "drawn_map.hpp"
 

@@ -7,7 +7,7 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include <talus/planner/route/planner_names.hpp>
+#include <talus/planner/route/problem.hpp>
 #include <talus/planner/sampling/ompl_planner.hpp>
 
 #include "drawn_map.hpp"

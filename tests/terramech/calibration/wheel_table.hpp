@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "temporary_file.hpp"
 

@@ -1,7 +1,6 @@
 #include <cmath>
 
-#include <talus/terramech/contact/contact_response.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
 namespace contact_response_test {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
 namespace measured_wheel_test {

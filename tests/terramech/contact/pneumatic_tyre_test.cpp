@@ -4,9 +4,10 @@
 #include <refused.hpp>
 
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
+
 namespace pneumatic_tyre_test {
 
 Soil loam() {
@@ -156,5 +157,23 @@ TEST(PressureSinkage, SoilWithoutBearingCapacityIsRejected) {
                  "pressure_Pa = -1, must be >= 0");
 }
 
+TEST(RigidGround, PullIsTorqueOverRadiusUpToTheFrictionLimit) {
+  const Wheel wheel{.radius_m = 0.2, .width_m = 0.1};
+  const GroundFriction friction{.static_coefficient = 0.7, .kinetic_coefficient = 0.5};
+  // Closed form: C.11.
+  EXPECT_DOUBLE_EQ(rigidGroundForces(wheel, friction, 100.0, 10.0).drawbar_pull_N, 50.0);
+  EXPECT_FALSE(rigidGroundForces(wheel, friction, 100.0, 0.2 * 0.7 * 100.0).slips);
+  const RigidGroundForces slipping = rigidGroundForces(wheel, friction, 100.0, -14.1);
+  EXPECT_TRUE(slipping.slips);
+  EXPECT_DOUBLE_EQ(slipping.drawbar_pull_N, -50.0);
+}
+
+TEST(RigidGround, InvalidLoadAndFrictionAreRejected) {
+  EXPECT_REFUSED(rigidGroundForces({}, {}, 0.0, 1.0), std::invalid_argument, "load_N = 0, must be > 0");
+  EXPECT_REFUSED(rigidGroundForces({}, {.static_coefficient = 0.1, .kinetic_coefficient = 0.5}, 1.0, 1.0),
+                 std::invalid_argument, "static_coefficient = 0.1, must be >= 0.5");
+}
+
 }  // namespace pneumatic_tyre_test
+
 }  // namespace talus::terramech

@@ -3,11 +3,11 @@
 #include <random>
 #include <stdexcept>
 
-#include <talus/terramech/contact/shear_displacement.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/side_bulldozing.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
-/// Tests of wong_reece.hpp for a wheel that travels at an angle to its plane.
+/// Tests of wheel_on_soil.hpp for a wheel that travels at an angle to its plane.
 namespace talus::terramech {
 namespace side_slip_test {
 

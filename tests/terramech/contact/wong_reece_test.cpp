@@ -5,8 +5,8 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <refused.hpp>
 
-#include <talus/terramech/contact/shear_displacement.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "reference/reference_table.hpp"
 

@@ -1,4 +1,4 @@
-#include <talus/terramech/estimate/reading_errors.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 
 namespace talus::terramech {
 namespace reading_errors_test {

@@ -2,7 +2,7 @@
 
 #include <thesis_runs.hpp>
 
-#include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 
 namespace talus::terramech {
 namespace soil_filter_test {

@@ -3,8 +3,8 @@
 
 #include <refused.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/estimate/soil_mixture.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
 
 namespace talus::terramech {
 namespace soil_mixture_test {

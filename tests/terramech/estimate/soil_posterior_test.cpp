@@ -6,9 +6,9 @@
 #include <refused.hpp>
 #include <thesis_runs.hpp>
 
-#include <talus/common/constants.hpp>
-#include <talus/terramech/estimate/soil_posterior.hpp>
-#include <talus/terramech/numerics/normal_distribution.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 #include "exact_likelihood.hpp"
 

@@ -2,7 +2,7 @@
 #include <numbers>
 #include <string>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/bevameter_table.hpp>
 
 #include "temporary_file.hpp"

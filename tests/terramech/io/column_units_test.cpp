@@ -3,11 +3,11 @@
 
 #include <refused.hpp>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "requirement.hpp"
 #include "temporary_file.hpp"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 #include "temporary_file.hpp"

@@ -3,8 +3,8 @@
 
 #include <unistd.h>
 
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace model_file_test {

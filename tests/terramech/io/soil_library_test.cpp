@@ -1,9 +1,8 @@
 #include <cmath>
 #include <fstream>
 
-#include <talus/common/constants.hpp>
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 #include "temporary_file.hpp"

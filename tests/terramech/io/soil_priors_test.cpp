@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "temporary_file.hpp"
 

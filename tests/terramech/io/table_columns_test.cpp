@@ -1,7 +1,7 @@
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/table_columns.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "temporary_file.hpp"
 

@@ -1,7 +1,7 @@
 #include <string>
 
-#include <talus/common/input_error.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/common/common.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 
 #include "temporary_file.hpp"

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include <talus/terramech/contact/wheel.hpp>
-#include <talus/terramech/contact/wheel_sample.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "reference_table.hpp"
 

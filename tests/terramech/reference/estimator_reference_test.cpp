@@ -1,9 +1,7 @@
 #include <cmath>
 
-#include <talus/terramech/strength/iagnemma.hpp>
-#include <talus/terramech/strength/linear_offset.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
-#include <talus/terramech/strength/sojourner.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 #include "estimator_cases.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/simulation/drive/simulation_site.hpp>
+#include <talus/planner/simulation/simulation.hpp>
 
 namespace talus::planner {
 namespace forecast_test {

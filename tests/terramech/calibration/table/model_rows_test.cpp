@@ -1,6 +1,6 @@
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/model_rows.hpp>
-#include <talus/terramech/io/soil_library.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "made_rows.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <talus/terramech/calibration/table/prediction_table.hpp>
-#include <talus/terramech/numerics/estimate.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "made_rows.hpp"
 #include "temporary_file.hpp"

@@ -3,7 +3,7 @@
 
 #include <refused.hpp>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
 
 #include "calibration/wheel_table.hpp"

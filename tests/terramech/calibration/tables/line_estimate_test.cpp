@@ -1,7 +1,7 @@
 #include <cmath>
 #include <string>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/line_estimate.hpp>
 
 #include "calibration/wheel_table.hpp"

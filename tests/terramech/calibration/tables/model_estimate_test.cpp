@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/soil_estimate.hpp>
 
 namespace talus::terramech {

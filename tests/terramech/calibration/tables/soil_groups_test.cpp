@@ -2,7 +2,7 @@
 #include <random>
 
 #include <talus/terramech/calibration/tables/soil_groups.hpp>
-#include <talus/terramech/contact/wong_reece.hpp>
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 #include "calibration/wheel_table.hpp"
 

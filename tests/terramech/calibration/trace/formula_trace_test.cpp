@@ -4,9 +4,9 @@
 
 #include <gmock/gmock.h>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
-#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace formula_trace_test {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 
 #include "made_rows.hpp"

@@ -2,7 +2,7 @@
 
 #include <talus/terramech/calibration/trace/model_validity.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
 #include "made_rows.hpp"
 

@@ -2,7 +2,7 @@
 #include <set>
 #include <string>
 
-#include <talus/common/input_error.hpp>
+#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 
 #include "calibration/traced_world.hpp"

@@ -1,0 +1,83 @@
+#include <array>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+
+#include <boost/math/special_functions/erf.hpp>
+
+#include <talus/terramech/numerics/functions.hpp>
+
+namespace talus::terramech {
+
+namespace {
+
+/// Second derivatives at the knots of the natural cubic spline (tridiagonal system, Thomas algorithm).
+std::vector<double> curvatures(std::span<const double> x, std::span<const double> y) {
+  const std::size_t n = x.size();
+  std::vector<double> m(n, 0.0), upper(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double a = x[i] - x[i - 1], b = x[i + 1] - x[i];
+    const double pivot = 2.0 * (a + b) - a * upper[i - 1];
+    upper[i] = b / pivot;
+    m[i] = (6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a) - a * m[i - 1]) / pivot;
+  }
+  for (std::size_t i = n; i-- > 2;) m[i - 1] -= upper[i - 1] * m[i];
+  return m;
+}
+
+}  // namespace
+
+NaturalSpline::NaturalSpline(std::vector<double> knots, std::vector<double> values)
+    : knots_(std::move(knots)), values_(std::move(values)), curvatures_(curvatures(knots_, values_)) {}
+
+double NaturalSpline::operator()(double x) const {
+  const std::size_t n = knots_.size();
+  if (n == 0) return 0.0;
+  if (n == 1 || x <= knots_.front()) return values_.front();
+  if (x >= knots_.back()) return values_.back();
+  std::size_t i = 0;
+  while (x > knots_[i + 1]) ++i;
+  const double h = knots_[i + 1] - knots_[i], b = (x - knots_[i]) / h, a = 1.0 - b;
+  return a * values_[i] + b * values_[i + 1] +
+         ((a * a * a - a) * curvatures_[i] + (b * b * b - b) * curvatures_[i + 1]) * h * h / 6.0;
+}
+
+namespace {
+
+constexpr std::array<int, 8> kBases{2, 3, 5, 7, 11, 13, 17, 19};
+
+double radicalInverse(Eigen::Index index, int base) {
+  double value = 0.0;
+  double digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) value += digit * static_cast<double>(index % base);
+  return value;
+}
+
+}  // namespace
+
+double normalDensity(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+}
+
+double normalProbability(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+
+double normalQuantile(double p) {
+  if (!(p > 0.0 && p < 1.0)) throw std::invalid_argument("normal quantile: probability must be in (0, 1)");
+  using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p, InDouble());
+}
+
+Eigen::MatrixXd evenPoints(Eigen::Index rows, Eigen::Index count) {
+  if (rows > static_cast<Eigen::Index>(kBases.size()))
+    throw std::invalid_argument("even points: at most eight rows");
+  Eigen::MatrixXd points(rows, count);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index k = 0; k < count; ++k)
+      points(row, k) = radicalInverse(k + 1, kBases[static_cast<std::size_t>(row)]);
+  }
+  return points;
+}
+
+}  // namespace talus::terramech
