@@ -447,7 +447,7 @@ struct DriveReport {
   /// Number of places without a terrain class that were declared impassable, because wheels indicated danger
   /// there.
   std::size_t unobserved = 0;
-  /// Number of rows whose wheel or load differs from that of the map's rover; such rows count as unverified.
+  /// Number of rows with another wheel or load than the map's rover has; such rows count as unverified.
   std::size_t others = 0;
   std::string first_reason;           ///< reason of the first rejected row; empty without rejected rows
   std::vector<std::string> findings;  ///< results of the sensor checks, one line each

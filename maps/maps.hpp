@@ -372,7 +372,7 @@ struct TerrainMetrics {
   Raster<float> roughness_m;  ///< root mean square of the residuals
   Raster<float> relief_m;     ///< greatest residual minus least residual
   /// Greatest height step under the rover. The slope on both sides of the step is subtracted
-  /// (step_height.hpp). relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts.
+  /// (StepReach). relief_m is only 0.5 to 0.8 of a vertical step, because the fitted plane tilts.
   Raster<float> step_m;
   int footprint_cells = 0;  ///< number of cells of a complete footprint
   bool fell_back = false;   ///< true if 3x3 cells replace a smaller footprint

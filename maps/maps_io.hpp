@@ -38,8 +38,7 @@ struct ReadOptions {
   std::uint64_t max_cells = 400'000'000;
 };
 
-/// Returns the elevation map of a file: any raster that GDAL opens, or a NumPy .npz archive with the arrays
-/// elevation, xmin, xmax, ymin, ymax (degrees), as distributed with matplotlib. Rasters in degrees, and
+/// Returns the elevation map of a file: any raster that GDAL opens. Rasters in degrees, and
 /// rasters with rotated or non-square pixels, are resampled to square cells in metres; ElevationMap::notes
 /// record the resampling. A cell without data is interpolated if at least three pairs of opposite neighbours
 /// are known and their means agree within a quarter of the cell's side (ours), unless ReadOptions::keep_holes.

@@ -1,18 +1,88 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <memory>
+#include <mutex>
+#include <stop_token>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <talus/common/common.hpp>
 
-/// Namespace of the command-line program, which has one file per subcommand.
 namespace talus::cli {
+
+/// Returns the text of a phase of work with its completed fraction [-]: a bar with the time left, or the elapsed
+/// time if the fraction is 0, which means unknown.
+std::string progressText(std::string_view what, double fraction, double elapsed_s);
+
+/// The last line of a terminal on stderr, which shows the present phase of work once the phase takes longer than half
+/// a second. Thread-safe.
+class StatusLine {
+ public:
+  /// Begins a phase, which hides those begun before until it ends. Returns the callback of its progress monitor;
+  /// the phase ends with the fraction 1 or with the last copy of the callback, which must not outlive this object.
+  std::function<void(double)> begin(std::string_view what);
+
+  /// Draws the line. To be called several times a second.
+  void tick();
+
+  /// Erases the line until the next tick().
+  void erase();
+
+ private:
+  struct Phase;
+
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<Phase>> phases_;  // the last one that has not ended is shown
+  bool drawn_ = false;
+};
+
+/// Converts the first SIGINT or SIGTERM to a stop request. Terminates the process if the work does not end
+/// within 0.4 s of CPU time or 3 s of wall time, or uses no CPU time for 0.3 s (blocked, for example on a
+/// FIFO), unless answered() is set. A second signal always terminates the process. Unfinished files are
+/// removed. The object must be created before any other thread, so that all threads inherit the blocked
+/// signals.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  /// Returns the token through which work receives the stop request.
+  std::stop_token token() const noexcept { return source_.get_token(); }
+  bool requested() const noexcept { return source_.stop_requested(); }
+  /// Returns the exit code of the received signal: 130 for SIGINT, 143 for SIGTERM.
+  int code() const noexcept { return code_; }
+  /// Returns the flag that work sets if it ends by itself after the stop request, such as planners, which
+  /// return their best route.
+  std::atomic<bool>& answered() noexcept { return answered_; }
+  /// Returns the line that the listener thread draws until the first signal.
+  StatusLine& status() noexcept { return status_; }
+
+ private:
+  void listen();
+  void watch();
+
+  sigset_t signals_{};
+  std::stop_source source_;
+  std::atomic<int> code_ = 130;
+  std::atomic<bool> answered_ = false;
+  std::atomic<bool> closing_ = false;
+  StatusLine status_;
+  std::thread listener_;
+};
+
+/// Namespace of the command-line program, which has one file per subcommand.
 
 class StatusLine;
 

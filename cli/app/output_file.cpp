@@ -139,7 +139,7 @@ fs::path journalBehind(const fs::path& path) {
 
 // File name endings of the formats that Talus writes; endings in one row denote the same format.
 using Names = std::vector<std::string_view>;
-const std::array<Names, 15> kFormats{{{".tif", ".tiff"},
+const std::array<Names, 14> kFormats{{{".tif", ".tiff"},
                                       {".asc"},
                                       {".png"},
                                       {".jpg", ".jpeg"},
@@ -152,16 +152,16 @@ const std::array<Names, 15> kFormats{{{".tif", ".tiff"},
                                       {".csv"},
                                       {".yaml", ".yml"},
                                       {".ot"},
-                                      {".bt"},
-                                      {".npz"}}};
+                                      {".bt"}}};
 
 // Endings of formats that Talus never writes.
-const Names kForeign{
-    ".db",  ".sqlite", ".sqlite3", ".shp",  ".kmz", ".xml",  ".vrt", ".img", ".lbl",  ".nc",  ".h5",  ".hdf5",
-    ".mat", ".npy",    ".parquet", ".las",  ".laz", ".ply",  ".pcd", ".obj", ".stl",  ".bag", ".pdf", ".ps",
-    ".eps", ".gif",    ".bmp",     ".webp", ".pgm", ".ppm",  ".pnm", ".jp2", ".zip",  ".gz",  ".tgz", ".bz2",
-    ".xz",  ".zst",    ".7z",      ".tar",  ".xls", ".xlsx", ".ods", ".doc", ".docx", ".odt", ".tex", ".md",
-    ".c",   ".h",      ".cpp",     ".hpp",  ".py",  ".js",   ".so",  ".a",   ".o",    ".exe", ".deb"};
+const Names kForeign{".db",   ".sqlite", ".sqlite3", ".shp", ".kmz", ".xml", ".vrt",     ".img", ".lbl",
+                     ".nc",   ".h5",     ".hdf5",    ".mat", ".npy", ".npz", ".parquet", ".las", ".laz",
+                     ".ply",  ".pcd",    ".obj",     ".stl", ".bag", ".pdf", ".ps",      ".eps", ".gif",
+                     ".bmp",  ".webp",   ".pgm",     ".ppm", ".pnm", ".jp2", ".zip",     ".gz",  ".tgz",
+                     ".bz2",  ".xz",     ".zst",     ".7z",  ".tar", ".xls", ".xlsx",    ".ods", ".doc",
+                     ".docx", ".odt",    ".tex",     ".md",  ".c",   ".h",   ".cpp",     ".hpp", ".py",
+                     ".js",   ".so",     ".a",       ".o",   ".exe", ".deb"};
 
 const Names* formatOf(const std::string& name) {
   std::string extension = fs::path(name).extension().string();

@@ -20,7 +20,6 @@
 #include <talus/planner/bench/benchmark.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/field_text.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {

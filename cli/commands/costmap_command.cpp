@@ -9,9 +9,8 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/category_files.hpp>
+#include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/site_layers.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>

@@ -13,7 +13,7 @@
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/common.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::cli {
 namespace {

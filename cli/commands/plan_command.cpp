@@ -20,9 +20,9 @@
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
@@ -49,8 +49,7 @@ Planner plannerOf(const PlanOptions& options, const Context& context) {
   const bool plugin = !options.plugin.empty();
   PlannerSettings settings{.planner = plugin && options.planner == "field" ? std::string() : options.planner,
                            .seed = context.seed,
-                           .threads = context.workers(),
-                           .whole_field = options.whole_field};
+                           .threads = context.workers()};
   if (options.time_limit_s > 0.0) settings.time_limit_s = options.time_limit_s;
   Planner own(settings, options.plugin);
   if (!plugin && options.drive.any() && !own.capabilities().headings)

@@ -26,7 +26,6 @@
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/app/interrupt.hpp>
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/commands/program.hpp>
 #include <talus/common/common.hpp>

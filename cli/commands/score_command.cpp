@@ -15,10 +15,10 @@
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
+#include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {

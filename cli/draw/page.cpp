@@ -11,8 +11,8 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/canvas.hpp>
-#include <talus/cli/draw/map_image.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/common/common.hpp>

@@ -1,14 +1,9 @@
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
-#include <talus/cli/draw/block_mean.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/common.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
-#include <talus/maps/maps.hpp>
 #include <talus/planner/reach/reach.hpp>
 
 namespace talus::cli {

@@ -1,12 +1,29 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <talus/costmap/costmap.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
+
+/// Returns the path of the QGIS style file that belongs to a GeoTIFF of categories.
+std::filesystem::path categoryStyle(const std::filesystem::path& tif);
+
+/// Writes the category of each cell in its worst heading as an integer GeoTIFF with category names, colour
+/// table and overviews (coarser copies), and a QGIS style file. @throws InputError
+void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
+
+/// Returns the path of the image that belongs to the YAML file of a ROS map_server map.
+std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
+
+/// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Safe cells, and marginal cells if
+/// the map's policy permits them, are free. Dangerous cells, and other marginal cells, are occupied. Cells of
+/// unknown category are unknown. Coordinates are those of the map [m]. @throws InputError
+void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml);
 
 /// Description of a file format for users, or of a mapping inside such a file.
 struct FileFormat {

@@ -1,11 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps_io.hpp>
+#include <talus/planner/planner.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/planner/site/site.hpp>
+
+namespace talus::cli {
+
+/// Returns the layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category
+/// (of the worst heading), allowed_headings (AllowedHeadings), drawbar_pull_over_load, drawbar_pull_over_load_std,
+/// sinkage_over_radius, energy_per_metre_uphill, energy_per_metre_downhill. Units are SI and radians; NaN:
+/// unknown. Categories are 0 safe, 1 marginal, 2 dangerous, 3 unknown; cells with a hazard are dangerous.
+std::vector<maps::Layer> siteLayers(const costmap::TraversabilityMap& map, int threads);
+
+}  // namespace talus::cli
 
 namespace CLI {
 class App;
@@ -71,5 +84,19 @@ struct Ground {
 /// Returns a traversability map from its inputs. A DEM that is a file of `talus costmap` is treated like
 /// --map. @throws InputError
 Ground readGround(const GroundOptions& options, const Context& context);
+
+}  // namespace talus::cli
+namespace talus::cli {
+
+/// Returns true if the options state an elevation map (DEM) with more than `cells` cells; false for built
+/// maps and OctoMaps.
+bool needsWindows(const GroundOptions& options, std::size_t cells);
+
+/// Returns the whole ground of the DEM, resampled to about two million cells. @throws InputError
+Ground readOverview(const GroundOptions& options, const Context& context);
+
+/// Returns the ground at full resolution as a map that is read window by window. `overview` is the result of
+/// readOverview(). @throws InputError
+planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overview, const Context& context);
 
 }  // namespace talus::cli

@@ -14,9 +14,7 @@
 #include <talus/maps/maps.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
-#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::cli {
 namespace {

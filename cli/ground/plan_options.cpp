@@ -5,7 +5,7 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/common.hpp>
-#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 
 namespace talus::cli {
 

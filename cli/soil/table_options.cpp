@@ -12,7 +12,7 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/table_columns.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {

@@ -13,7 +13,6 @@
 #include <talus/common/parallel_for.hpp>
 #include <talus/common/plausible.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
-#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {

@@ -16,7 +16,6 @@
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
-#include <talus/maps/raster/numpy_raster.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
 
 namespace talus::maps {
@@ -111,7 +110,7 @@ int overviewCells(int cells, int overview) {
 
 Selection select(const std::string& path, const ReadOptions& options, std::vector<std::string>& notes) {
   check(options);
-  Dataset file = isNumpyFile(path) ? openNumpyRaster(path, notes) : openRaster(path, options.allow_vrt);
+  Dataset file = openRaster(path, options.allow_vrt);
   const int band = chooseBand(*file,
                               {.path = path,
                                .band = options.band,

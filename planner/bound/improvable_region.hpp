@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <talus/costmap/cost/cost_model.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 

@@ -9,7 +9,6 @@
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/bound/fitted_octagon.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <talus/planner/bound/sub_solution.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {

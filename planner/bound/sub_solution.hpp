@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <talus/planner/bound/mesh_search.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <talus/planner/bound/sub_solution_check.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/kernels.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 

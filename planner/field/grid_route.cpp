@@ -1,11 +1,15 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <vector>
 
-#include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/field/patched_field.hpp>
 
 namespace talus::planner {
+
 namespace {
 
 // Link with the lowest total cost to the goal; null if no link reaches the goal.
@@ -54,6 +58,99 @@ std::optional<Polyline> gridRouteAfter(CellBox changed, const MotionCost& cost, 
   if (outcome == PatchedField::Outcome::TooMuch) return std::nullopt;
   if (outcome == PatchedField::Outcome::Stopped) return Polyline{};
   return downField(cost, field, links, places);
+}
+
+namespace {
+
+using maps::Cell;
+using maps::Point;
+
+std::string text(Point p) {
+  char buffer[80];
+  std::snprintf(buffer, sizeof buffer, "%.2f,%.2f", p.x_m, p.y_m);
+  return buffer;
+}
+
+double squared_m2(Point a, Point b) noexcept {
+  return (a.x_m - b.x_m) * (a.x_m - b.x_m) + (a.y_m - b.y_m) * (a.y_m - b.y_m);
+}
+
+// The cell nearest to a place among the cells with wanted(cell).
+template <typename Wanted>
+std::optional<Cell> nearest(const maps::Grid& grid, Point place, Wanted wanted) {
+  std::optional<Cell> best;
+  double best_m2 = std::numeric_limits<double>::infinity();
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const double away_m2 = squared_m2(grid.centre({column, row}), place);
+      if (away_m2 >= best_m2 || !wanted(Cell{column, row})) continue;
+      best_m2 = away_m2;
+      best = Cell{column, row};
+    }
+  return best;
+}
+
+// Description of the hazard in a cell; empty if the cell has no hazard of its own.
+const char* inWords(costmap::Hazard found) noexcept {
+  using costmap::Hazard;
+  if (has(found, Hazard::KeepOut)) return "a keep-out area, or where a layer refuses";
+  if (has(found, Hazard::Obstacle)) return "a terrain class declared impassable";
+  if (has(found, Hazard::Rocks)) return "rocks";
+  if (has(found, Hazard::Step)) return "a step higher than the wheels climb";
+  if (has(found, Hazard::Slope)) return "ground steeper than the rover may stand";
+  if (has(found, Hazard::Roughness)) return "ground too rough for the rover's belly";
+  return has(found, Hazard::Unknown) ? "unobserved ground" : "";
+}
+
+// Reason for the clearance in a cell: the nearest cell with a hazard, or the map border if nearer.
+std::string clearOf(const maps::Grid& grid, Cell cell, const HazardsOf& hazards) {
+  const int to_rim =
+      std::min({cell.column, cell.row, grid.width - 1 - cell.column, grid.height - 1 - cell.row}) + 1;
+  const auto near = nearest(grid, grid.centre(cell), [&](Cell c) {
+    return std::max(std::abs(c.column - cell.column), std::abs(c.row - cell.row)) <= to_rim &&
+           *inWords(hazards(c)) != '\0';
+  });
+  return near ? inWords(hazards(*near)) : "the rim of the map";
+}
+
+std::string whyInvalid(const costmap::CostGrid& map, Point place, const HazardsOf& hazards) {
+  const auto cell = map.grid().cellAt(place);
+  if (!cell) return "lies outside the map";
+  const auto curve = map.at(*cell).curve();
+  if (curve == costmap::CellCode::kUnknown) return "lies on an unobserved cell";
+  if (curve != costmap::CellCode::kBlocked) return "lies on a dangerous cell: no heading is allowed there";
+  if (!hazards) return "lies on a blocked cell";
+  const std::string found = inWords(hazards(*cell));
+  return found.empty() ? "lies on a blocked cell, too near to " + clearOf(map.grid(), *cell, hazards)
+                       : "lies on a blocked cell: " + found;
+}
+
+}  // namespace
+
+std::string invalidPlace(const costmap::CostGrid& map, const std::string& which, Point place,
+                         const PlaceDiagnostics& help) {
+  const std::string line = which + " " + text(place) + " " + whyInvalid(map, place, help.hazards);
+  const MotionCost cost(std::make_shared<costmap::CostGrid>(map));
+  const auto allowed = [&](Cell c) { return cost.allowed(map.grid().centre(c)); };
+  if (help.joined) {
+    const auto joined = nearest(map.grid(), place, [&](Cell c) { return help.joined(c) && allowed(c); });
+    if (joined)
+      return line + "; the nearest traversable cell is " + text(map.grid().centre(*joined)) +
+             (which == "start" ? ", from which the goal can be reached"
+                               : ", which can be reached from the start");
+  }
+  const auto cell = nearest(map.grid(), place, allowed);
+  if (!cell) return line + "; no cell of this map is traversable";
+  return line + "; the nearest traversable cell is " + text(map.grid().centre(*cell));
+}
+
+bool mayEnd(const MotionCost& cost, Point place, double tolerance_m) {
+  if (cost.allowed(place)) return true;
+  if (!(tolerance_m > 0.0)) return false;
+  const maps::Grid& grid = cost.map().grid();
+  for (const Cell cell : cellsWithin(grid, place, tolerance_m))
+    if (cost.allowed(grid.centre(cell))) return true;
+  return false;
 }
 
 }  // namespace talus::planner

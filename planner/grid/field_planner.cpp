@@ -8,7 +8,6 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/field/grid_route.hpp>
-#include <talus/planner/field/remedy.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
 #include <talus/planner/reach/cell_chain.hpp>

@@ -13,7 +13,7 @@
 #include <talus/planner/refine/corridor_search.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/heading_set.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {

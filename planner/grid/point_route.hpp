@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

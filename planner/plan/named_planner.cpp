@@ -88,11 +88,6 @@ NamedPlanner::NamedPlanner(const std::string& name) {
   settings_ = samplingSettings(name);
 }
 
-Plan NamedPlanner::planField(const Problem& problem) {
-  const bool large = problem.map && problem.map->grid().size() > kLarge;
-  return large && !problem.whole_field ? tube_.plan(problem) : field_.plan(problem);
-}
-
 Plan NamedPlanner::plan(const Problem& problem) {
   Plan plan = problem.other_goals.empty()
                   ? planOne(problem)
@@ -102,9 +97,9 @@ Plan NamedPlanner::plan(const Problem& problem) {
 }
 
 Plan NamedPlanner::planOne(const Problem& problem) {
-  if (settings_.planner == plannerNames().front()) return planField(problem);
+  if (settings_.planner == plannerNames().front()) return field_.plan(problem);
   if (drives()) return drive_.plan(problem);
-  const auto field = [this](const Problem& leg) { return planField(leg); };
+  const auto field = [this](const Problem& leg) { return field_.plan(leg); };
   return planBySampling(problem, settings_, settings_.cold ? InitialPathProvider() : field);
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/pose/pose_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
@@ -41,23 +40,16 @@ class NamedPlanner {
   /// and only for problems without via points.
   void onBetter(std::function<void(double)> better) { settings_.better = std::move(better); }
 
-  /// Number of cells from which the cost-to-go field is computed only in a tube around a coarse route
-  /// (TubePlanner), unless Problem::whole_field is true. At 20 bytes per cell the whole field would need more
-  /// than 400 MB.
-  static constexpr std::size_t kLarge = 20'000'000;
-
   /// Returns the cheapest route found from the start through all via points in order to the goal, or a plan
   /// with the reason why there is no route. Throws std::invalid_argument if the problem has no map.
   Plan plan(const Problem& problem);
 
  private:
   Plan planOne(const Problem& problem);
-  Plan planField(const Problem& problem);
 
   SamplingSettings settings_;
   FieldPlanner field_;
   PosePlanner drive_;
-  TubePlanner tube_;
 };
 
 }  // namespace talus::planner

@@ -9,7 +9,7 @@
 #include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace {

@@ -52,7 +52,6 @@ struct PlannerSettings {
   int threads = 1;         ///< number of threads, >= 1; does not affect the route
   /// Time limit of a plan, > 0; at the limit the best route found is returned.
   double time_limit_s = std::numeric_limits<double>::infinity();
-  bool whole_field = false;  ///< true: search large maps completely at full resolution
 
   bool operator==(const PlannerSettings&) const = default;
 };

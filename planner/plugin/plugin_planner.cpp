@@ -22,7 +22,6 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

@@ -12,7 +12,7 @@
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
-#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::planner {

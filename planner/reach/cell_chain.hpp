@@ -12,7 +12,6 @@
 
 #include <talus/maps/maps.hpp>
 #include <talus/planner/route/heading_set.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/reach/reach.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/route.hpp>
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <talus/planner/refine/corridor_search.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

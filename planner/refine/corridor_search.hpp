@@ -8,7 +8,7 @@
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/kernels.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

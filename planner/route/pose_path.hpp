@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/route.hpp>
 
 /// Routes in position and heading (poses joined by arcs), with their costs and sampled poses.

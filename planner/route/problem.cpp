@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include <talus/common/nearest_name.hpp>
-#include <talus/planner/route/motion_cost.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 

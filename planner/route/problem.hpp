@@ -49,7 +49,6 @@ struct Problem {
   /// Function that returns the hazard for which the rover may not enter a cell on any heading, used to
   /// describe an obstruction. If empty, every such cell is attributed to hazards. Must outlive planning.
   HazardsOf hazards{};
-  bool whole_field = false;  ///< true: compute the whole cost-to-go field even on large maps (NamedPlanner)
   ProgressMonitor watch{};   ///< receives the progress and requests a stop
   /// Heading of the rover at the start, for planners of drives (routes with a turning radius); empty: any
   /// heading.

@@ -9,7 +9,7 @@
 #include <talus/costmap/cost/turn_price.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/route/route.hpp>
-#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::planner {

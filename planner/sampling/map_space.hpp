@@ -15,7 +15,7 @@
 
 #include <talus/maps/maps.hpp>
 #include <talus/planner/bound/improvable_region.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 
 #include <talus/maps/maps.hpp>
+#include <talus/planner/grid/field_planner.hpp>
 
 namespace talus::planner {
 
@@ -72,5 +74,26 @@ bool isOmpls(const std::string& name);
 /// Throws std::invalid_argument if `name` is not that of an OMPL planner, for an unknown parameter, and for
 /// an invalid value.
 void checkParameters(const std::string& name, const std::map<std::string, std::string>& parameters);
+
+/// Adapter that offers FieldPlanner as a planner of OMPL over states of MapSpace, for SimpleSetup,
+/// ompl::tools::Benchmark and similar tools. It uses the first start state and the goal (a single state,
+/// whose threshold is the goal tolerance), and adds one solution path with its exact cost. Further start
+/// states are ignored; for other types of goals it returns UNRECOGNIZED_GOAL_TYPE. The cost-to-go field of a
+/// goal is kept until clear().
+class FieldOmplPlanner : public ompl::base::Planner {
+ public:
+  FieldOmplPlanner(const ompl::base::SpaceInformationPtr& space, std::shared_ptr<const costmap::CostGrid> map,
+                   int threads = 1);
+
+  ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& done) override;
+  void clear() override;
+
+ private:
+  ompl::base::PathPtr pathOf(const Plan& plan) const;
+
+  std::shared_ptr<const costmap::CostGrid> map_;
+  int threads_;
+  std::unique_ptr<FieldPlanner> field_;
+};
 
 }  // namespace talus::planner

@@ -8,7 +8,7 @@
 #include <ompl/base/goals/GoalState.h>
 #include <ompl/geometric/PathGeometric.h>
 
-#include <talus/planner/field/remedy.hpp>
+#include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>

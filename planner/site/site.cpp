@@ -24,7 +24,6 @@
 #include <talus/planner/plugin/layer_plugin.hpp>
 #include <talus/planner/site/site.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>

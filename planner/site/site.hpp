@@ -22,7 +22,7 @@ struct ElevationFile {
   ElevationFile(std::string file) : path(std::move(file)) {}
   ElevationFile(const char* file) : path(file) {}
 
-  std::string path;  ///< raster, NumPy .npz or OctoMap
+  std::string path;  ///< raster or OctoMap
   std::string
       window{};  ///< part of the raster: "x0,y0,x1,y1", or "lat,lon,lat,lon" with the suffix d on each
   std::optional<double> below_m{};  ///< for an OctoMap only: ground above this height is not used

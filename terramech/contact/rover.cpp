@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <talus/terramech/contact/turning_radius.hpp>
+#include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/numerics/range.hpp>
 

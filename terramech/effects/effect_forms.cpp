@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <talus/terramech/contact/side_bulldozing.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech::detail {

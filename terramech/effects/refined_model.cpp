@@ -4,7 +4,6 @@
 #include <unordered_map>
 
 #include <talus/terramech/contact/rim_contact.hpp>
-#include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/numerics/functions.hpp>

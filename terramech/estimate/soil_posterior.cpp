@@ -1,15 +1,123 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/QR>
 
+#include <talus/common/common.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
+
+namespace {
+
+// Row of thesis Table 2.1: parameters that differ between the classes.
+struct TableRow {
+  const char* name;
+  Interval cohesion_kPa;
+  Interval friction_deg;
+  Interval modulus_MN;
+};
+
+SoilClass classOf(const TableRow& row) {
+  SoilClass soil{.name = row.name, .probability = 0.25};
+  soil.parameters[kCohesion] = Marginal::uniform(1e3 * row.cohesion_kPa.low, 1e3 * row.cohesion_kPa.high);
+  soil.parameters[kFriction] =
+      Marginal::uniform(kDegree * row.friction_deg.low, kDegree * row.friction_deg.high);
+  soil.parameters[kExponent] = Marginal::uniform(0.5, 1.2);
+  soil.parameters[kModulus] = Marginal::uniform(1e6 * row.modulus_MN.low, 1e6 * row.modulus_MN.high);
+  soil.parameters[kShear] = Marginal::uniform(0.01, 0.03);
+  return soil;
+}
+
+SoilClass anySoil(double probability) {
+  SoilClass soil{.name = "other", .probability = probability};
+  soil.parameters[kCohesion] = Marginal::uniform(0.0, 2e4);
+  soil.parameters[kFriction] = Marginal::uniform(15.0 * kDegree, 50.0 * kDegree);
+  soil.parameters[kExponent] = Marginal::uniform(0.3, 1.8);
+  soil.parameters[kModulus] = Marginal::logUniform(1e4, 1e8);
+  soil.parameters[kShear] = Marginal::logUniform(0.003, 0.06);
+  return soil;
+}
+
+}  // namespace
+
+Marginal Marginal::fixed(double value) {
+  Marginal m;
+  m.low_ = m.high_ = value;
+  return m;
+}
+
+Marginal Marginal::uniform(double low, double high) {
+  RangeCheck("prior").above("upper bound", high, low);
+  Marginal m;
+  m.low_ = low;
+  m.high_ = high;
+  return m;
+}
+
+Marginal Marginal::logUniform(double low, double high) {
+  RangeCheck("prior").above("lower bound", low, 0.0);
+  Marginal m = uniform(std::log(low), std::log(high));
+  m.shape_ = Shape::LogUniform;
+  return m;
+}
+
+Marginal Marginal::normal(double mean, double std, double least) {
+  RangeCheck("prior").above("std", std, 0.0);
+  Marginal m;
+  m.shape_ = Shape::Normal;
+  m.low_ = least;
+  m.mean_ = mean;
+  m.std_ = std;
+  return m;
+}
+
+double Marginal::at(double y) const {
+  if (shape_ == Shape::Normal) return std::max(low_, mean_ + std_ * y);
+  const double value = low_ + (high_ - low_) * y;
+  return shape_ == Shape::LogUniform ? std::exp(value) : value;
+}
+
+double Marginal::slope(double y) const {
+  if (shape_ == Shape::Normal) return mean_ + std_ * y > low_ ? std_ : 0.0;
+  return shape_ == Shape::LogUniform ? at(y) * (high_ - low_) : high_ - low_;
+}
+
+ContactSoil SoilClass::at(const SoilVector& y) const {
+  return {.cohesion_Pa = parameters[kCohesion].at(y[kCohesion]),
+          .friction_angle_rad = parameters[kFriction].at(y[kFriction]),
+          .sinkage_exponent = parameters[kExponent].at(y[kExponent]),
+          .sinkage_modulus = parameters[kModulus].at(y[kModulus]),
+          .shear_modulus_m = parameters[kShear].at(y[kShear]),
+          .c1 = c1,
+          .c2 = c2};
+}
+
+SoilVector SoilClass::slope(const SoilVector& y) const {
+  SoilVector slope;
+  for (int k = 0; k < kSoilParameters; ++k) slope[k] = parameters[static_cast<std::size_t>(k)].slope(y[k]);
+  return slope;
+}
+
+SoilMixture thesisSoils() {
+  return {classOf({"sand", {0.0, 1.0}, {30.0, 35.0}, {1.5, 2.0}}),
+          classOf({"clay", {5.0, 7.0}, {20.0, 25.0}, {1.0, 1.5}}),
+          classOf({"loam", {2.0, 4.0}, {20.0, 30.0}, {1.5, 2.0}}),
+          classOf({"firm soil", {0.0, 1.0}, {30.0, 35.0}, {2.5, 3.0}})};
+}
+
+SoilMixture thesisSoilsOrOther(double other_probability) {
+  SoilMixture prior = thesisSoils();
+  for (SoilClass& soil : prior) soil.probability *= 1.0 - other_probability;
+  prior.push_back(anySoil(other_probability));
+  return prior;
+}
+
 namespace {
 
 // Probability below which classes are not sampled.
@@ -212,6 +320,107 @@ SoilPosterior fitSoil(const Wheel& wheel, std::span<const WheelSample> samples, 
   std::vector<WheelReading> readings;
   for (const WheelSample& s : samples) readings.push_back({wheel, s});
   return fitSoil(readings, prior, options);
+}
+
+namespace {
+
+// Number of samples up to which modes are searched without an initial value, because each sample changes the
+// modes much.
+constexpr std::size_t kFresh = 4;
+
+}  // namespace
+
+struct SoilFilter::State {
+  struct Track {  // state of one class
+    SoilQuadratic before;
+    SoilMode mode;
+  };
+
+  SoilObjective objective(std::size_t soil_class) const {
+    return {prior[soil_class], {options.fit.noise, options.fit.outlier_share, population, {}}};
+  }
+
+  Wheel wheel;
+  SoilMixture prior;
+  Options options;
+  std::vector<Track> tracks{};
+  std::vector<WheelReading> window{};  // oldest first
+  StatePopulation population{};        // population of all samples
+  std::size_t count = 0;
+};
+
+SoilFilter::SoilFilter(const Wheel& wheel, SoilMixture prior, const Options& options)
+    : state_(new State{.wheel = wheel, .prior = std::move(prior), .options = options}) {
+  validate(wheel);
+  checkFit({}, options.fit);
+  if (state_->prior.empty() || options.window < 1)
+    throw std::invalid_argument("soil filter: no class of soil, or no window");
+  state_->tracks.resize(state_->prior.size());
+}
+
+SoilFilter::SoilFilter(const SoilFilter& other) : state_(new State(*other.state_)) {}
+SoilFilter::SoilFilter(SoilFilter&&) noexcept = default;
+SoilFilter::~SoilFilter() = default;
+
+SoilFilter& SoilFilter::operator=(SoilFilter other) noexcept {
+  state_.swap(other.state_);
+  return *this;
+}
+
+std::size_t SoilFilter::samples() const {
+  return state_->count;
+}
+
+void SoilFilter::add(const WheelSample& sample) {
+  add({state_->wheel, sample});
+}
+
+void SoilFilter::add(const WheelReading& reading) {
+  State& s = *state_;
+  checkFit({&reading, 1}, s.options.fit);
+  s.window.push_back(reading);
+  s.population.add(reading.sample, s.options.fit.noise);
+  ++s.count;
+  const bool full = s.window.size() > s.options.window;
+  for (std::size_t k = 0; k < s.tracks.size(); ++k) {
+    State::Track& track = s.tracks[k];
+    if (full) {  // remove the oldest sample, keep its quadratic about the mode
+      track.before =
+          s.objective(k).expandWhole(track.mode.likelihood.at, std::span(s.window).first(1), track.before);
+    }
+    const auto kept = std::span(s.window).subspan(full ? 1 : 0);
+    track.mode = !full && s.count <= kFresh ? findModeAfresh(s.objective(k), kept)
+                                            : findMode(s.objective(k), kept, track.before, track.mode.x);
+  }
+  if (full) s.window.erase(s.window.begin());
+}
+
+SoilPosterior SoilFilter::posterior() const {
+  const State& s = *state_;
+  if (s.count == 0) throw std::domain_error("soil filter: no sample yet");
+  std::vector<ClassFit> classes;
+  for (std::size_t k = 0; k < s.tracks.size(); ++k)
+    classes.push_back({s.objective(k), s.tracks[k].before, s.tracks[k].mode});
+  return samplePosterior(classes, s.window, s.options.fit.draws);
+}
+
+std::vector<double> SoilFilter::classProbabilities() const {
+  std::vector<double> p;
+  for (std::size_t k = 0; k < state_->tracks.size(); ++k) {
+    p.push_back(std::log(state_->prior[k].probability) + state_->tracks[k].mode.log_evidence);
+  }
+  const double most = *std::ranges::max_element(p);
+  double sum = 0.0;
+  for (double& value : p) sum += value = std::exp(value - most);
+  for (double& value : p) value /= sum;
+  return p;
+}
+
+ContactSoil SoilFilter::mode() const {
+  const auto p = classProbabilities();
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(p) - p.begin());
+  return state_->prior[best].at(state_->count == 0 ? SoilVector(SoilVector::Constant(0.5))
+                                                   : state_->tracks[best].mode.likelihood.at);
 }
 
 }  // namespace talus::terramech

@@ -3,14 +3,55 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <talus/terramech/estimate/telemetry.hpp>
-#include <talus/terramech/io/field_text.hpp>
 
 namespace talus::terramech {
+
+/// Parses a whole text field as a number ("1", "-2.5e3", "+4", "nan", "inf"), with `.` as decimal point in
+/// any locale. Returns false if the field is not a number.
+bool parseNumber(std::string_view field, double& value) noexcept;
+
+/// Returns true if a text is valid UTF-8 without NUL characters.
+bool isText(std::string_view text);
+
+/// Returns the factor between two units of the same kind: value in `to` = factor * value in `from`. Units
+/// have the names of column suffixes, for example "deg" and "rad". Returns nullopt if the units are of
+/// different kinds or a unit is unknown.
+std::optional<double> conversion(std::string_view from, std::string_view to);
+
+/// Returns the names of all units of the same kind, for messages ("N, mN, kN"); an empty text for an unknown
+/// unit.
+std::string unitsLike(std::string_view unit);
+
+/// Returns the longest known unit that follows an underscore at the end of a name ("kPa" of "cohesion_kPa"),
+/// or an empty text.
+std::string_view unitOf(std::string_view name);
+
+/// Returns a name without its unit ("cohesion" of "cohesion_kPa").
+std::string stemOf(std::string_view name);
+
+/// Returns a name with separators replaced by `_` and the signs % and degree by words: "load [N]" becomes "load_N".
+std::string plainName(std::string_view name);
+
+/// Appends the units of a row below the header ("N", "[m/s]", "%") to the names. Returns false and changes nothing if
+/// a field is a number or none is a known unit. @throws InputError if a name states another unit
+bool takeUnits(std::vector<std::string>& header, const std::vector<std::string>& row,
+               const std::string& file);
+
+/// Throws InputError if the header of a file contains a known column under another name or unit. The message
+/// names file and column, and the name and unit to write. Without this check the column would count as an
+/// unknown column, and its measurements would be ignored. Errors are another unit (`sinkage_mm` for
+/// `sinkage_m`; a mass for a force, percent for a ratio or an angle), a missing unit (`sinkage`; except time
+/// and axes), and another spelling (`Load_N`, `load [N]`). `known` lists the known columns with their unit as
+/// suffix. Any other name (`sinkage_note`, `load_cell_id`) is accepted as an unknown column, and so is any
+/// name in a file that also contains the known column.
+void checkColumnUnits(const std::vector<std::string>& header, const std::vector<std::string>& known,
+                      const std::string& file);
 
 /// One record of a CSV file.
 struct CsvRow {
@@ -53,5 +94,42 @@ class CsvReader {
 /// Returns a text as a field of a CSV file. The field is in quotes if it contains a comma, a quote, a line
 /// break, or a leading or trailing blank.
 std::string csvField(std::string_view text);
+
+/// Columns of a table, converted from the names and units of a file to those of Talus. The options of the
+/// TableFile specify names and units of the file.
+class TableColumns {
+ public:
+  /// `header` contains the column names of the file. With decimal_commas, numbers may have a decimal comma.
+  /// Throws InputError if a mapped column is missing or mapped twice, if the known column exists as well, or
+  /// if the unit is of another kind.
+  TableColumns(std::vector<std::string> header, const TableFile& table, bool decimal_commas);
+
+  const std::vector<std::string>& header() const noexcept { return header_; }
+
+  /// Converts the fields of a row to the units of Talus and appends the constant columns. With `whole`, blank
+  /// fields beyond the header are removed first.
+  void apply(std::vector<std::string>& fields, bool whole) const;
+
+ private:
+  struct Conversion {
+    std::size_t column;
+    double factor;
+  };
+
+  void map(const MappedColumn& mapped, const TableFile& table);
+  void convertUnits(const TableFile& table);
+  void nameLookalikes(const TableFile& table) const;
+  bool has(const std::string& name) const;
+
+  std::vector<std::string> header_;
+  std::vector<Conversion> conversions_;
+  std::vector<std::string> constants_;
+  std::size_t own_ = 0;  ///< number of columns in the file
+  bool decimal_commas_;
+};
+
+/// Returns the factor from `unit` to the unit of the known column `known`. For a column without unit, percent
+/// and permille are accepted. Returns nullopt for units of different kinds.
+std::optional<double> columnFactor(const std::string& unit, const std::string& known);
 
 }  // namespace talus::terramech

@@ -17,7 +17,6 @@
 #include <talus/common/common.hpp>
 #include <talus/common/memory_budget.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
 

@@ -160,7 +160,7 @@ struct TelemetryOptions {
 /// outside [-1, 1], ...), if a required field is empty, or if the row has a wrong number of fields. In
 /// unknown columns NaN is a missing value. The columns are kept in memory, not the text of the file. Throws
 /// InputError if the file cannot be read, has no header, has a column twice or in another unit or spelling
-/// (column_units.hpp), lacks a required column, or has no usable row.
+///, lacks a required column, or has no usable row.
 Telemetry readTelemetry(const TableFile& table, const TelemetryOptions& options = {},
                         const ProgressMonitor& watch = {});
 

@@ -12,9 +12,7 @@
 #include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/common/plausible.hpp>
-#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/field_text.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::terramech {

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 705},    {"terramech", 21884}, {"maps", 7098},     {"costmap", 12568},
-                           {"planner", 23451}, {"cli", 14188},       {"examples", 1580}, {"tests", 58555}};
+const Budget kBudgets[] = {{"common", 705},    {"terramech", 21760}, {"maps", 6709},     {"costmap", 12545},
+                           {"planner", 23099}, {"cli", 14075},       {"examples", 1580}, {"tests", 57853}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

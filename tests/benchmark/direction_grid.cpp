@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <talus/planner/plugin/plugin_export.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace direction_grid {
 

@@ -20,7 +20,6 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/tube_planner.hpp>
 #include <talus/planner/refine/any_angle.hpp>
 
 namespace {
@@ -259,20 +258,6 @@ void refinement(benchmark::State& state) {
   state.counters["grid_over_refined"] = cost.along(route) / refined_J;
 }
 
-// Planning in a tube on a pooled map, and the excess of the route's cost over that of the full field.
-void tube(benchmark::State& state) {
-  auto problem = across(rollingGround(static_cast<int>(state.range(0))));
-  problem.threads = static_cast<int>(state.range(1));
-  TubePlanner planner;
-  planner.plan(problem);
-  double cost_J = 0.0;
-  for (auto _ : state) {
-    problem.start.x_m += 1.0;
-    cost_J = planner.plan(problem).cost_J;
-  }
-  state.counters["above_whole_percent"] = 100.0 * (cost_J / FieldPlanner().plan(problem).cost_J - 1.0);
-}
-
 // Routes between corners and sides, refined with the default options and with a search twice as fine and
 // three times as wide.
 void againstFinest(benchmark::State& state) {
@@ -353,7 +338,6 @@ BENCHMARK(refinement)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(layersToRoute)->Args({1000, 1})->Args({1000, 2})->Args({2000, 1})->Unit(benchmark::kMillisecond);
 BENCHMARK(lowerBound)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(anotherStart)->Arg(2000)->Unit(benchmark::kMillisecond);
-BENCHMARK(tube)->Args({2000, 1})->Args({8000, 1})->Args({8000, 2})->Unit(benchmark::kMillisecond);
 BENCHMARK(againstFinest)->Arg(1000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(cancelling)->Arg(1000)->Arg(2000)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(monitor)->Unit(benchmark::kMillisecond);

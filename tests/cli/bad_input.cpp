@@ -58,7 +58,6 @@ BadFiles::BadFiles() {
   folder_.write("empty", "");
   folder_.write("garbage.tif", garbage());
   folder_.write("tiff_head.tif", std::string("II*\0\x08\0\0\0", 8));
-  folder_.write("garbage.npz", garbage());
   folder_.write("garbage.ot", garbage());
   folder_.write("head.ot",
                 "# Octomap OcTree file\nid TraversabilityTree\nsize 99999999999\nres 1\ndata\n" + garbage());

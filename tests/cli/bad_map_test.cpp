@@ -18,7 +18,6 @@ TEST(BadInput, InvalidElevationMapsAreRejectedWithOneLine) {
           {{"info", "empty"}, 2, "empty"},
           {{"info", "garbage.tif"}, 2, "garbage.tif"},
           {{"info", "tiff_head.tif"}, 2, "tiff_head.tif"},
-          {{"info", "garbage.npz"}, 2, "garbage.npz"},
           {{"info", "good.asc"}, 2, "--resolution"},
           {{"info", "cut.asc", "--resolution", "1"}, 2, "cut.asc"},
           {{"info", "nodata.asc", "--resolution", "1"}, 2, "nodata.asc"},

@@ -17,7 +17,7 @@ struct Target {
   std::vector<std::string> refused_seeds{};  ///< that it refuses for what stands deep inside
 };
 
-/// Readers by module: telemetry and YAML; GeoJSON, rasters, .npy and .npz; MAP.ot, octrees and journals; MovingAI files and
+/// Readers by module: telemetry and YAML; GeoJSON and rasters; MAP.ot, octrees and journals; MovingAI files and
 /// plugins; options, missions, truths, paths and routes.
 std::vector<Target> terramechTargets();
 std::vector<Target> mapsTargets();

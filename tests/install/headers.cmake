@@ -10,8 +10,7 @@ foreach(file ${files})
   endif()
 endforeach()
 set(open talus/terramech/terramech.hpp talus/maps/maps.hpp talus/costmap/costmap.hpp talus/planner/planner.hpp
-         talus/planner/simulation/simulation.hpp talus/planner/plugin/plugin_export.hpp
-         talus/planner/plugin/request_check.hpp)
+         talus/planner/simulation/simulation.hpp talus/planner/plugin/plugin_export.hpp)
 if(OFFLINE)
   list(APPEND open talus/talus.hpp talus/terramech/terramech_io.hpp talus/terramech/calibration.hpp talus/maps/maps_io.hpp)
 endif()

@@ -6,7 +6,7 @@
 
 #include <talus/costmap/costmap.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/simulation/simulation.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/turning.hpp>

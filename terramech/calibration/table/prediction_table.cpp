@@ -6,7 +6,6 @@
 #include <talus/terramech/calibration/table/answer_columns.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
-#include <talus/terramech/io/column_units.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::terramech {

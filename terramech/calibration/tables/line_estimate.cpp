@@ -4,7 +4,6 @@
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration/tables/line_estimate.hpp>
-#include <talus/terramech/io/bevameter_table.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>

@@ -1,6 +1,10 @@
 #include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
 
 #include <CLI/CLI.hpp>
+#include <site_map.hpp>
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/ground_options.hpp>
@@ -12,6 +16,63 @@
 namespace talus::cli {
 
 namespace ground_options_test {
+
+std::map<std::string, maps::Raster<float>> layersOf(const costmap::TraversabilityMap& map) {
+  std::map<std::string, maps::Raster<float>> layers;
+  for (maps::Layer& layer : siteLayers(map, 1)) layers.emplace(layer.name, std::move(layer.values));
+  return layers;
+}
+
+// Closed form: a plane rising eastwards by 0.1 has slope atan 0.1; uphill costs more than downhill; cells
+// without elevation are NaN except for their category.
+TEST(SiteLayers, LayersOfAPlaneMatchClosedForm) {
+  const std::vector<std::string> rows(14, "1111111?222222");
+  auto layers = layersOf(costmap::mapOf(rows, 0.1));
+  EXPECT_EQ(layers.size(), 13U);
+  const maps::Cell sand{3, 7}, hole{7, 7}, dust{11, 7};
+  EXPECT_NEAR(layers["slope"][sand], std::atan(0.1), 1e-4);
+  EXPECT_NEAR(layers["elevation"][sand], 1000.3, 1e-3);
+  EXPECT_NEAR(layers["step"][sand], layers["step"][dust], 1e-3);
+  EXPECT_GT(layers["energy_per_metre_uphill"][sand], layers["energy_per_metre_downhill"][sand]);
+  EXPECT_EQ(layers["class"][sand], 1.0F);
+  EXPECT_EQ(layers["class"][dust], 2.0F);
+  EXPECT_TRUE(std::isnan(layers["elevation"][hole]));
+  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][hole]));
+}
+
+// Property: the layer equals a count of 720 headings by the cost of a metre; each kind of cell occurs.
+TEST(SiteLayers, AllowedHeadingsMatchTheCostsOfHeadings) {
+  std::set<float> seen;
+  for (const double gradient : {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5}) {
+    const auto map = costmap::mapOf(std::vector<std::string>(14, "1111111222222"), gradient);
+    auto layers = layersOf(map);
+    const auto grid = map.published();
+    for (const maps::Cell cell : {maps::Cell{3, 7}, maps::Cell{10, 7}}) {
+      int allowed = 0;
+      for (int k = 0; k < 720; ++k) {
+        const double heading = k * std::numbers::pi / 360.0;
+        allowed +=
+            std::isfinite(grid->cost().costPerMetre(grid->at(cell), {std::cos(heading), std::sin(heading)}));
+      }
+      const float expected = allowed == 720 ? 0.0F : allowed > 0 ? 1.0F : 2.0F;
+      EXPECT_EQ(layers["allowed_headings"][cell], expected) << gradient;
+      seen.insert(expected);
+    }
+  }
+  EXPECT_EQ(seen.size(), 3U);
+}
+
+// Property: the weaker soil has less drawbar pull and more sinkage; categories equal those of the map.
+TEST(SiteLayers, LayersMatchTheMap) {
+  const auto map = costmap::mapOf({"1111111222222", "1111111222222", "11111112222#2", "1111111222222"});
+  auto layers = layersOf(map);
+  EXPECT_GT((layers["drawbar_pull_over_load"][{2, 1}]), (layers["drawbar_pull_over_load"][{11, 2}]));
+  EXPECT_LT((layers["sinkage_over_radius"][{2, 1}]), (layers["sinkage_over_radius"][{11, 2}]));
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 13; ++column)
+      EXPECT_EQ((layers["category"][{column, row}]), static_cast<float>(map.belief({column, row}).category));
+  EXPECT_TRUE(std::isnan(layers["energy_per_metre_uphill"][{11, 1}]));  // keep-out cell
+}
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -257,6 +318,55 @@ TEST(GroundOptions, WeakestClassAndRocksOfPartialPixelsAreUsed) {
             << column;
       }
   }
+}
+
+double rolling(int column, int row) {
+  return 2.0 * std::sin(column / 9.0) * std::cos(row / 7.0);
+}
+
+GroundOptions options(const Folder& folder) {
+  GroundOptions made;
+  made.elevation.path = folder.write("dem.asc", asciiGrid(200, 150, rolling));
+  made.elevation.read.resolution_m = 1.0;
+  made.soil = "sandy_loam";
+  made.rover = "fido";
+  return made;
+}
+
+TEST(WindowedGround, WindowsAreUsedOnlyAboveTheCellLimit) {
+  const Folder folder;
+  const GroundOptions large = options(folder);
+  EXPECT_TRUE(needsWindows(large, 29'999));
+  EXPECT_FALSE(needsWindows(large, 30'000));
+  GroundOptions built = large;
+  built.map_file = "map.ot";
+  EXPECT_FALSE(needsWindows(built, 10));
+}
+
+// Property: cell codes read by windows equal those of the full ground except near the edge of the DEM; the
+// cells of the overview are larger by an integer factor and cover the map.
+TEST(WindowedGround, WindowsAreBitIdenticalToTheFullGround) {
+  const Folder folder;
+  const GroundOptions of = options(folder);
+  Context context;
+  context.quiet = true;
+  const Ground overview = readOverview(of, context), whole = readGround(of, context);
+  EXPECT_GE(overview.map.grid().resolution_m, 2.0);
+  EXPECT_GE(overview.map.grid().width * overview.map.grid().resolution_m, 200.0);
+  EXPECT_GE(overview.map.grid().height * overview.map.grid().resolution_m, 150.0);
+  planner::WindowedMap windows = windowsOn(of, overview, context);
+  EXPECT_EQ(windows.grid().width, 200);
+  const auto near = windows.around({{30.0, 30.0}, {80.0, 60.0}}, 8.0);
+  const auto expected = whole.map.published();
+  int same = 0;
+  for (int row = 0; row < 150; ++row)
+    for (int column = 0; column < 200; ++column) {
+      const auto code = near->at({column, row});
+      if (code.curve() == costmap::CellCode::kUnknown) continue;
+      ASSERT_EQ(code, expected->at({column, row})) << column << "," << row;
+      ++same;
+    }
+  EXPECT_GT(same, 3'000);
 }
 
 }  // namespace ground_options_test

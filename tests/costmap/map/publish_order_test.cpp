@@ -223,16 +223,16 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationWithForgottenReadings) {
 // Property: after any evidence, patches, refusals and moves, in pieces of any size, the costs are
 // bit-identical to those of the whole map published at once.
 TEST(PublishOrder, IncrementalEqualsFullPublication) {
-  runAll({.seed = 1, .rounds = 30}, 4);
+  runAll({.seed = 1, .rounds = 20}, 3);
 }
 
 TEST(PublishOrder, IncrementalEqualsFullPublicationForSingleReadings) {
-  runAll({.seed = 11, .rounds = 60, .most_readings = 1}, 2);
+  runAll({.seed = 11, .rounds = 40, .most_readings = 1}, 2);
 }
 
 // Case with more places than one Gaussian process uses, and blocks of several cells.
 TEST(PublishOrder, IncrementalEqualsFullPublicationForDenseEvidence) {
-  runAll({.seed = 21, .resolution_m = 0.25, .rounds = 25, .most_readings = 80, .pull_spread = 0.05}, 2);
+  runAll({.seed = 21, .resolution_m = 0.25, .rounds = 12, .most_readings = 80, .pull_spread = 0.05}, 2);
 }
 
 TEST(PublishOrder, IncrementalEqualsFullPublicationWithoutClassRaster) {
@@ -240,7 +240,7 @@ TEST(PublishOrder, IncrementalEqualsFullPublicationWithoutClassRaster) {
 }
 
 TEST(PublishOrder, IncrementalEqualsFullPublicationWithUnknownAllowed) {
-  runAll({.seed = 41, .rounds = 20, .policy = {.allow_unknown = true, .pose_error_m = 0.0}}, 2);
+  runAll({.seed = 41, .rounds = 8, .policy = {.allow_unknown = true, .pose_error_m = 0.0}}, 2);
 }
 
 // Property: if the curves run out, no cost of incremental publication is lower than that of full

@@ -1,13 +1,224 @@
+// Height of a step under a rover, independent of the plane over the footprint.
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
+#include <gtest/gtest.h>
 #include <refused.hpp>
 
 #include <talus/maps/maps.hpp>
+#include <talus/maps/terrain/terrain_metrics.hpp>
 
 namespace talus::maps {
+
+namespace footprint_test {
+
+TEST(Footprint, ContainsCellsWithCentresWithinTheRadius) {
+  for (const double radius : {1.5, 2.0, 2.9, 5.0, 7.3}) {
+    const Footprint disc = discFootprint(radius);
+    std::set<std::pair<int, int>> held;
+    for (const auto& o : disc.offsets) held.insert({o.column, o.row});
+    ASSERT_EQ(held.size(), disc.offsets.size());
+    // Closed form, by brute force: every cell of a larger square is checked.
+    for (int row = -9; row <= 9; ++row)
+      for (int column = -9; column <= 9; ++column)
+        EXPECT_EQ(held.contains({column, row}), std::hypot(column, row) <= radius + 1e-9)
+            << radius << ": " << column << ' ' << row;
+  }
+}
+
+TEST(Footprint, SmallRadiusYieldsThreeByThreeCells) {
+  EXPECT_EQ(discFootprint(0.1).offsets.size(), 9U);
+  EXPECT_EQ(discFootprint(0.1).reach, 1);
+}
+
+TEST(Footprint, MomentsMatchTheOffsets) {
+  for (const double radius : {1.0, 3.0, 6.4}) {
+    const Footprint disc = discFootprint(radius);
+    double x = 0.0, xy = 0.0, xx = 0.0, yy = 0.0;
+    int reach = 0;
+    for (const auto& o : disc.offsets) {
+      x += o.column, xy += o.column * o.row;
+      xx += o.column * o.column, yy += o.row * o.row;
+      reach = std::max(reach, std::abs(o.column));
+    }
+    // Property: the footprint is symmetric, so that the plane's normal equations are diagonal.
+    EXPECT_EQ(x, 0.0);
+    EXPECT_EQ(xy, 0.0);
+    EXPECT_EQ(xx, yy);
+    EXPECT_EQ(disc.sum_xx, xx);
+    EXPECT_EQ(disc.reach, reach);
+  }
+}
+
+}  // namespace footprint_test
+
+namespace partial_plane_test {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+TEST(PartialPlane, MatchesLeastSquaresOverCellsWithData) {
+  const Grid grid{.width = 9, .height = 9, .resolution_m = 0.5, .south_west = {}};
+  const Footprint disc = discFootprint(2.0);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> height(-1.0F, 1.0F), chance(0.0F, 1.0F);
+  int fitted = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    Raster<float> z(grid);
+    for (float& value : z.values()) value = chance(random) < 0.4F ? kNaN : height(random);
+    const Cell cell{static_cast<int>(random() % 9), static_cast<int>(random() % 9)};
+    const auto fit = fitPartialPlane(z, disc, cell);
+    if (!fit) continue;
+    ++fitted;
+    // Closed form: independent least squares by QR decomposition (Eigen) over the cells with data.
+    std::vector<Eigen::Vector3d> seen;
+    for (const auto& o : disc.offsets) {
+      const Cell c{cell.column + o.column, cell.row + o.row};
+      if (grid.contains(c) && !std::isnan(z[c]))
+        seen.emplace_back(0.5 * o.column, 0.5 * o.row, static_cast<double>(z[c]));
+    }
+    Eigen::MatrixX3d a(static_cast<Eigen::Index>(seen.size()), 3);
+    Eigen::VectorXd b(a.rows());
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      const Eigen::Vector3d& p = seen[static_cast<std::size_t>(i)];
+      a.row(i) << p.x(), p.y(), 1.0;
+      b(i) = p.z();
+    }
+    const Eigen::Vector3d plane = a.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd residual = b - a * plane;
+    // Tolerance: heights of 1 m as floats.
+    EXPECT_NEAR(fit->dz_dx, plane.x(), 1e-5);
+    EXPECT_NEAR(fit->dz_dy, plane.y(), 1e-5);
+    EXPECT_NEAR(fit->roughness_m, std::sqrt(residual.squaredNorm() / static_cast<double>(b.size())), 1e-5);
+    EXPECT_NEAR(fit->relief_m, residual.maxCoeff() - residual.minCoeff(), 1e-5);
+  }
+  EXPECT_GT(fitted, 60);
+}
+
+TEST(PartialPlane, TooFewOrCollinearCellsYieldNoPlane) {
+  const Grid grid{.width = 5, .height = 5, .resolution_m = 1.0, .south_west = {}};
+  Raster<float> z(grid, kNaN);
+  const Footprint disc = discFootprint(1.5);
+  EXPECT_FALSE(fitPartialPlane(z, disc, {2, 2}));
+  for (int column = 0; column < 5; ++column) z[{column, 2}] = 1.0F;
+  EXPECT_FALSE(fitPartialPlane(z, disc, {2, 2})) << "all in one line";
+  EXPECT_FALSE(fitPartialPlane(z, disc, {2, 3})) << "the middle has no data";
+}
+
+}  // namespace partial_plane_test
+
+namespace plane_kernel_test {
+
+struct Fitted {
+  std::vector<float> dz_dx, dz_dy, roughness_m, relief_m;
+};
+
+Fitted fitted(PlaneKernel kernel, const Footprint& disc, const std::vector<std::vector<float>>& rows,
+              int width) {
+  const auto n = static_cast<std::size_t>(width);
+  Fitted out{std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<float>(n)};
+  std::vector<const float*> heights;
+  for (const auto& row : rows) heights.push_back(row.data() + disc.reach);
+  kernel(disc, {.heights = heights.data(),
+                .width = width,
+                .cells_per_metre = 2.0F,
+                .dz_dx = out.dz_dx.data(),
+                .dz_dy = out.dz_dy.data(),
+                .roughness_m = out.roughness_m.data(),
+                .relief_m = out.relief_m.data()});
+  return out;
+}
+
+std::vector<std::vector<float>> rowsOf(const Footprint& disc, int width, auto&& height) {
+  std::vector<std::vector<float>> rows;
+  for (int r = -disc.reach; r <= disc.reach; ++r) {
+    auto& row = rows.emplace_back();
+    for (int c = -disc.reach; c < width + disc.reach + kPlaneLanes; ++c) row.push_back(height(c, r));
+  }
+  return rows;
+}
+
+TEST(PlaneKernel, FitReproducesAPlane) {
+  const Footprint disc = discFootprint(2.5);
+  const auto rows = rowsOf(
+      disc, 13, [](int c, int r) { return 0.125F * static_cast<float>(c) - 0.25F * static_cast<float>(r); });
+  const Fitted out = fitted(planeKernel(), disc, rows, 13);
+  for (std::size_t i = 0; i < 13; ++i) {
+    // Closed form: cells of half a metre. Tolerance: float.
+    EXPECT_NEAR(out.dz_dx[i], 0.25, 1e-6);
+    EXPECT_NEAR(out.dz_dy[i], -0.5, 1e-6);
+    EXPECT_NEAR(out.roughness_m[i], 0.0, 1e-6);
+    EXPECT_NEAR(out.relief_m[i], 0.0, 2e-6);
+  }
+}
+
+TEST(PlaneKernel, KernelsAreBitIdentical) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> height(-3.0F, 3.0F), chance(0.0F, 1.0F);
+  for (const double radius : {1.0, 2.5, 4.0}) {
+    const Footprint disc = discFootprint(radius);
+    const auto rows = rowsOf(disc, 37, [&](int, int) {
+      const float z = height(random);
+      return chance(random) < 0.02F ? std::numeric_limits<float>::quiet_NaN() : z;
+    });
+    const Fitted plain = fitted(fitPlanesBaseline, disc, rows, 37),
+                 fast = fitted(planeKernel(), disc, rows, 37);
+    // Property: NaN occurs in the same places; other values are bit-identical.
+    const auto same = [](float a, float b) {
+      return (std::isnan(a) && std::isnan(b)) ||
+             std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+    };
+    for (std::size_t i = 0; i < 37; ++i) {
+      EXPECT_TRUE(same(plain.dz_dx[i], fast.dz_dx[i])) << i;
+      EXPECT_TRUE(same(plain.dz_dy[i], fast.dz_dy[i])) << i;
+      EXPECT_TRUE(same(plain.roughness_m[i], fast.roughness_m[i])) << i;
+      EXPECT_TRUE(same(plain.relief_m[i], fast.relief_m[i])) << i;
+    }
+  }
+}
+
+// Property: kernels are bit-identical for heights far below the datum, where single precision is coarse.
+#if defined(__x86_64__)
+TEST(PlaneKernel, KernelsAreBitIdenticalFarFromTheDatum) {
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this processor has no AVX2";
+  const Footprint footprint = discFootprint(3.2);
+  const int width = 61;
+  const int stride = width + 2 * footprint.reach + kPlaneLanes;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-4501.0F, -4499.0F);
+  std::vector<float> heights(static_cast<std::size_t>(stride * (2 * footprint.reach + 1)));
+  for (float& h : heights) h = uniform(random);
+  heights[200] = std::numeric_limits<float>::quiet_NaN();
+  std::vector<const float*> rows;
+  for (int r = 0; r <= 2 * footprint.reach; ++r)
+    rows.push_back(heights.data() + r * stride + footprint.reach);
+  const auto bits = [&](PlaneKernel kernel) {
+    std::vector<float> out(static_cast<std::size_t>(4 * width));
+    kernel(footprint, {.heights = rows.data(),
+                       .width = width,
+                       .cells_per_metre = 0.3F,
+                       .dz_dx = out.data(),
+                       .dz_dy = out.data() + width,
+                       .roughness_m = out.data() + 2 * width,
+                       .relief_m = out.data() + 3 * width});
+    std::vector<std::uint32_t> words;
+    for (float v : out) words.push_back(std::bit_cast<std::uint32_t>(v));
+    return words;
+  };
+  EXPECT_EQ(bits(fitPlanesBaseline), bits(fitPlanesAvx2));
+}
+#endif
+
+}  // namespace plane_kernel_test
+
 namespace terrain_metrics_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -20,6 +231,161 @@ Raster<float> surface(const Grid& grid, const auto& height) {
       z[{c, r}] = static_cast<float>(height(p.x_m, p.y_m));
     }
   return z;
+}
+
+// The definition, pair by pair, in double precision.
+class SlowSteps {
+ public:
+  SlowSteps(const Raster<float>& z, double radius_cells, int span)
+      : z_(z), radius_(radius_cells), span_(span) {}
+
+  double at(Cell middle) const {
+    double highest = 0.0;
+    for (int row = 0; row < z_.grid().height; ++row)
+      for (int column = 0; column < z_.grid().width; ++column)
+        for (int apart = 1; apart <= span_; ++apart)
+          for (const Cell line : {Cell{1, 0}, Cell{0, 1}, Cell{1, 1}, Cell{1, -1}}) {
+            const Cell first{column, row}, last{column + apart * line.column, row + apart * line.row};
+            if (near(first, middle) || near(last, middle))
+              highest = std::max(highest, pair(first, {last.column - column, last.row - row}));
+          }
+    return highest;
+  }
+
+ private:
+  bool near(Cell a, Cell b) const { return std::hypot(a.column - b.column, a.row - b.row) <= radius_ + 1e-9; }
+
+  double height(Cell c) const { return z_.grid().contains(c) ? static_cast<double>(z_[c]) : std::nan(""); }
+
+  double pair(Cell first, Cell by) const {
+    const auto at = [&](int k) { return height({first.column + k * by.column, first.row + k * by.row}); };
+    const double rise = at(1) - at(0);
+    double before = at(0) - at(-1), after = at(2) - at(1);
+    if (std::isnan(rise)) return 0.0;
+    if (std::isnan(before) && std::isnan(after)) {
+      if (by.column != 0 && by.row != 0) return 0.0;
+      before = after = 0.0;
+    }
+    if (std::isnan(before)) before = after;
+    if (std::isnan(after)) after = before;
+    double shared = 0.0;
+    if (before * after > 0.0) shared = std::abs(before) < std::abs(after) ? before : after;
+    return std::abs(rise - shared);
+  }
+
+  const Raster<float>& z_;
+  double radius_;
+  int span_;
+};
+
+// Property: the kernel equals the definition on rough ground with holes, for any footprint and span.
+TEST(StepHeight, MatchesThePairwiseDefinition) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int trial = 0; trial < 24; ++trial) {
+    const Grid grid{.width = 5 + trial, .height = 29 - trial, .resolution_m = 0.5, .south_west = {}};
+    const double holes = trial % 3 == 0 ? 0.0 : 0.04 * (trial % 5);
+    const Raster<float> z = surface(grid, [&](double x, double y) {
+      return uniform(random) < holes ? std::nan("") : 0.4 * x - 0.2 * y + 0.3 * uniform(random);
+    });
+    const double radius = 0.7 * (trial % 6);
+    const int span = 1 + trial % 4;
+    const TerrainMetrics m = terrainMetrics(z, {.radius_m = 0.5 * radius, .step_span_m = 0.5 * span});
+    const SlowSteps slow(z, radius, span);
+    for (int row = 0; row < grid.height; ++row)
+      for (int column = 0; column < grid.width; ++column) {
+        const Cell c{column, row};
+        ASSERT_EQ(std::isnan(m.step_m[c]), std::isnan(m.dz_dx[c])) << trial;
+        // Heights below 20 m in single precision: four errors of 1e-6 m.
+        if (!std::isnan(m.step_m[c])) {
+          ASSERT_NEAR(static_cast<double>(m.step_m[c]), slow.at(c), 1e-5)
+              << trial << ' ' << column << ' ' << row;
+        }
+      }
+  }
+}
+
+// Property: the step at a vertical edge in any direction on any slope is at least the height of the edge.
+TEST(StepHeight, VerticalStepHasItsHeightForAnyCellSizeSlopeAndDirection) {
+  for (const double cell_m : {0.1, 0.25, 0.5, 1.0})
+    for (const double slope : {0.0, 0.2, -0.45})
+      for (int k = 0; k < 12; ++k) {
+        const double turn = k * std::numbers::pi / 12 + 0.01;
+        const Grid grid{.width = 25, .height = 25, .resolution_m = cell_m, .south_west = {}};
+        const Point middle = grid.centre({12, 12});
+        const auto across = [&](double x, double y) {
+          return (x - middle.x_m) * std::cos(turn) + (y - middle.y_m) * std::sin(turn) - 0.3 * cell_m;
+        };
+        const Raster<float> z =
+            surface(grid, [&](double x, double y) { return slope * x + (across(x, y) > 0 ? 0.4 : 0.0); });
+        const TerrainMetrics m = terrainMetrics(z, {.radius_m = 0.7, .step_span_m = 0.25});
+        for (int row = 5; row < 20; ++row)
+          for (int column = 5; column < 20; ++column) {
+            const Point p = grid.centre({column, row});
+            if (std::abs(across(p.x_m, p.y_m)) > 0.7 * cell_m) continue;
+            // Closed form: 0.4 m. Single precision.
+            ASSERT_GE((m.step_m[{column, row}]), 0.4F - 1e-5F) << cell_m << ' ' << slope << ' ' << turn;
+          }
+      }
+}
+
+// Property: smooth ground has no step except the change of slope between cells, curvature times the square
+// of the distance.
+TEST(StepHeight, SmoothSteepGroundHasNoStep) {
+  for (const double cell_m : {0.25, 1.0}) {
+    const Grid grid{.width = 80, .height = 80, .resolution_m = cell_m, .south_west = {}};
+    const Raster<float> plane = surface(grid, [](double x, double y) { return 0.466 * x + 0.1 * y; });
+    const TerrainMetrics flat = terrainMetrics(plane, {.radius_m = 0.7, .step_span_m = 0.5});
+    // Closed form: 25 degrees, 0. Heights up to 40 m in single precision.
+    EXPECT_LT(*std::ranges::max_element(flat.step_m.values()), 2e-5F);
+    // A dune of 25 degrees, 40 m from crest to crest: its curvature is 0.466 * 2 pi / 40 = 0.073 /m.
+    const double k = 2 * std::numbers::pi / 40;
+    const Raster<float> dune = surface(grid, [&](double x, double) { return 0.466 / k * std::sin(k * x); });
+    const TerrainMetrics smooth = terrainMetrics(dune, {.radius_m = 0.7, .step_span_m = 0.5});
+    const double distance_m = std::max(cell_m, 0.5);
+    // For a diagonal pair the squared distance is doubled and the curvature along the pair is halved: the
+    // product is equal.
+    EXPECT_LT(*std::ranges::max_element(smooth.step_m.values()), 1.05 * 0.466 * k * distance_m * distance_m);
+  }
+}
+
+// Property: a scarp that resampling spread over a wheel diameter has its full height.
+TEST(StepHeight, ScarpWithinTheSpanHasItsFullHeight) {
+  const Grid grid{.width = 61, .height = 5, .resolution_m = 0.1, .south_west = {}};
+  const Raster<float> z =
+      surface(grid, [](double x, double) { return 0.4 * std::clamp((x - 3.05) / 0.3, 0.0, 1.0); });
+  EXPECT_NEAR((terrainMetrics(z, {.step_span_m = 0.3}).step_m[{30, 2}]), 0.4, 1e-6);
+  // Closed form: adjacent cells differ by a third of the height.
+  EXPECT_NEAR((terrainMetrics(z, {}).step_m[{30, 2}]), 0.4 / 3, 1e-6);
+}
+
+// Property: all kernels are bit-identical, with and without NaN, for wide and narrow maps.
+TEST(StepHeight, KernelsAreBitIdentical) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(-4501.0F, -4499.0F);
+  for (const int span : {1, 3})
+    for (const double radius : {0.0, 1.0, 3.7}) {
+      const StepReach reach = StepReach::of(radius, span);
+      constexpr int kWidth = 43, kRows = 9;
+      const int stride = kWidth + 2 * reach.cells() + 2 * kStepLanes;
+      std::vector<float> heights(static_cast<std::size_t>(stride * (kRows + 2 * reach.cells())));
+      for (float& z : heights) z = random() % 60 == 0 ? kNaN : uniform(random);
+      std::vector<const float*> from;
+      for (int r = 0; r < kRows + 2 * reach.cells(); ++r)
+        from.push_back(heights.data() + r * stride + reach.cells());
+      const auto bits = [&](StepKernel kernel) {
+        std::vector<float> out(static_cast<std::size_t>(kWidth * kRows), kNaN);
+        std::vector<float*> to;
+        for (int r = 0; r < kRows; ++r) to.push_back(out.data() + r * kWidth);
+        kernel(
+            reach,
+            {.heights = from.data() + reach.cells(), .step_m = to.data(), .width = kWidth, .count = kRows});
+        std::vector<std::uint32_t> words;
+        for (const float v : out) words.push_back(std::bit_cast<std::uint32_t>(v));
+        return words;
+      };
+      EXPECT_EQ(bits(measureStepsBaseline), bits(stepKernel()));
+    }
 }
 
 Raster<float> noise(const Grid& grid, double share_of_holes) {
@@ -181,4 +547,5 @@ TEST(TerrainMetrics, InvalidOptionsAreRejected) {
 }
 
 }  // namespace terrain_metrics_test
+
 }  // namespace talus::maps

@@ -5,7 +5,7 @@
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {
 namespace slip_world_test {

@@ -10,7 +10,7 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "drawn_map.hpp"
 #include "jagged_cost.hpp"

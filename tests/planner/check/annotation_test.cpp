@@ -4,7 +4,7 @@
 
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/check/annotation.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "drawn_map.hpp"
 

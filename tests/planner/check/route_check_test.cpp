@@ -8,7 +8,7 @@
 
 #include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 

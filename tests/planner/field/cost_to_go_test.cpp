@@ -9,7 +9,7 @@
 
 #include <talus/common/common.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "drawn_map.hpp"
 

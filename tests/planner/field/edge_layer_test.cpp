@@ -7,7 +7,7 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/edge_layer.hpp>
 #include <talus/planner/route/kernels.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "changed_map.hpp"
 #include "drawn_map.hpp"

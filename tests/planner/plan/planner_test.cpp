@@ -8,7 +8,7 @@
 #include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "drawn_map.hpp"
 #include "rolling_ground.hpp"

@@ -6,7 +6,7 @@
 #include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "drawn_map.hpp"
 

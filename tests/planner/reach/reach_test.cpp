@@ -5,7 +5,7 @@
 
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/reach/reach.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 
 #include "contour_plane.hpp"
 #include "drawn_map.hpp"

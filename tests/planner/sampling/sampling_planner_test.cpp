@@ -9,7 +9,7 @@
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/route/motion_cost.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 

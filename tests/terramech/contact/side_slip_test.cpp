@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include <talus/terramech/contact/rim_contact.hpp>
-#include <talus/terramech/contact/side_bulldozing.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 
 /// Tests of wheel_on_soil.hpp for a wheel that travels at an angle to its plane.

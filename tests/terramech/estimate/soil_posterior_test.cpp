@@ -13,7 +13,50 @@
 #include "exact_likelihood.hpp"
 
 namespace talus::terramech {
+
 namespace soil_posterior_test {
+
+TEST(SoilMixture, ThesisSoilsSpanTable21) {
+  // Printed in: thesis Table 2.1.
+  const SoilMixture soils = thesisSoils();
+  ASSERT_EQ(soils.size(), 4u);
+  const ContactSoil clay = soils[1].at(SoilVector::Zero());
+  EXPECT_NEAR(clay.cohesion_Pa, 5000.0, 1e-9);
+  EXPECT_NEAR(clay.friction_angle_rad / kDegree, 20.0, 1e-9);
+  EXPECT_NEAR(clay.sinkage_exponent, 0.5, 1e-12);
+  const ContactSoil firm = soils[3].at(SoilVector::Ones());
+  EXPECT_NEAR(firm.sinkage_modulus, 3e6, 1e-3);
+  EXPECT_NEAR(firm.shear_modulus_m, 0.03, 1e-12);
+}
+
+TEST(SoilMixture, ProbabilitiesSumToOne) {
+  double sum = 0.0;
+  for (const SoilClass& soil : thesisSoilsOrOther(0.1)) sum += soil.probability;
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST(Marginal, SlopeIsTheDerivative) {
+  // Property: slope() equals central differences.
+  for (const Marginal& m :
+       {Marginal::uniform(2.0, 5.0), Marginal::logUniform(0.1, 10.0), Marginal::normal(1.0, 0.3, 0.0)}) {
+    for (const double y : {0.2, 0.5, 0.9}) {
+      EXPECT_NEAR((m.at(y + 1e-6) - m.at(y - 1e-6)) / 2e-6, m.slope(y), 1e-6 * (1.0 + m.slope(y)));
+    }
+  }
+}
+
+TEST(Marginal, FixedIsConstantAndNormalIsBoundedBelow) {
+  EXPECT_EQ(Marginal::fixed(3.0).at(0.9), 3.0);
+  EXPECT_EQ(Marginal::fixed(3.0).slope(0.9), 0.0);
+  EXPECT_EQ(Marginal::normal(1.0, 1.0, 0.0).at(-5.0), 0.0);
+  EXPECT_EQ(Marginal::normal(1.0, 1.0, 0.0).slope(-5.0), 0.0);
+}
+
+TEST(Marginal, InvalidBoundsAreRejected) {
+  EXPECT_REFUSED(Marginal::uniform(2.0, 2.0), std::invalid_argument, "upper bound = 2, must be > 2");
+  EXPECT_REFUSED(Marginal::logUniform(0.0, 2.0), std::invalid_argument, "lower bound = 0, must be > 0");
+  EXPECT_REFUSED(Marginal::normal(0.0, 0.0, -1.0), std::invalid_argument, "std = 0, must be > 0");
+}
 
 TEST(SoilPosterior, MatchesImportanceSamplingFromThePrior) {
   // Property: means, standard deviations and class probabilities equal those of draws from the prior,
@@ -193,5 +236,77 @@ TEST(SoilPosterior, BrakedAndBuriedWheelsAreRejected) {
                  "no sample, or no class of soil");
 }
 
+TEST(SoilFilter, EqualsTheBatchEstimateWithinTheWindow) {
+  // Property: filter and batch fit have the same modes within the tolerance of the search, and therefore
+  // almost equal draws.
+  ThesisRuns runs(8);
+  const ThesisRun run = runs.next({.noise = 0.05});
+  SoilFilter filter(kThesisWheel, thesisSoils(), {});
+  for (const WheelSample& s : run.samples) filter.add(s);
+  const SoilPosterior batch = fitSoil(kThesisWheel, run.samples, thesisSoils());
+  EXPECT_NEAR(filter.posterior().mean.cohesion_Pa, batch.mean.cohesion_Pa,
+              0.15 * std::sqrt(batch.covariance(0, 0)));
+  EXPECT_NEAR(filter.posterior().mean.friction_angle_rad, batch.mean.friction_angle_rad,
+              0.15 * std::sqrt(batch.covariance(1, 1)));
+}
+
+TEST(SoilFilter, MatchesTheBatchEstimateBeyondTheWindow) {
+  // Property: with 40 samples, 12 of them kept, the result is within half a standard deviation of the fit of
+  // all 40.
+  ThesisRuns runs(12);
+  const ThesisRun run = runs.next({.noise = 0.05, .samples = 40});
+  SoilFilter filter(kThesisWheel, thesisSoils(), {});
+  for (const WheelSample& s : run.samples) filter.add(s);
+  const SoilPosterior batch = fitSoil(kThesisWheel, run.samples, thesisSoils());
+  const SoilPosterior p = filter.posterior();
+  EXPECT_NEAR(p.mean.cohesion_Pa, batch.mean.cohesion_Pa, 0.5 * std::sqrt(batch.covariance(0, 0)) + 50.0);
+  EXPECT_NEAR(p.mean.sinkage_exponent, batch.mean.sinkage_exponent,
+              0.5 * std::sqrt(batch.covariance(2, 2)) + 0.01);
+  EXPECT_EQ(filter.samples(), 40u);
+}
+
+TEST(SoilFilter, RejectedSampleLeavesTheStateUnchanged) {
+  ThesisRuns runs(3);
+  SoilFilter filter(kThesisWheel, thesisSoils(), {});
+  for (const WheelSample& s : runs.next({.noise = 0.05}).samples) filter.add(s);
+  const double before = filter.mode().cohesion_Pa;
+  EXPECT_THROW(filter.add({.load_N = -1.0, .torque_Nm = 1.0, .sinkage_m = 0.01, .slip = 0.3}),
+               std::invalid_argument);
+  EXPECT_EQ(filter.mode().cohesion_Pa, before);
+  EXPECT_EQ(filter.samples(), 10u);
+}
+
+TEST(SoilFilter, SinkageExponentHasNoBiasOverManySamples) {
+  // Property: over eight runs of sixty samples the mean departure of n from the batch fit is below 0.3
+  // standard deviations. Without the slope of the normalisation n is 0.7 too low.
+  ThesisRuns runs(44);
+  double departure = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const ThesisRun run = runs.next({.noise = 0.05, .samples = 60});
+    const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
+    SoilFilter filter(kThesisWheel, known, {});
+    for (const WheelSample& s : run.samples) filter.add(s);
+    const SoilPosterior batch = fitSoil(kThesisWheel, run.samples, known);
+    departure += (filter.posterior().mean.sinkage_exponent - batch.mean.sinkage_exponent) /
+                 std::sqrt(batch.covariance(kExponent, kExponent)) / 8.0;
+  }
+  EXPECT_NEAR(departure, 0.0, 0.3);
+}
+
+TEST(SoilFilter, RetainsInformationOfSamplesOutsideTheWindow) {
+  // Property: sixty samples on a known class give smaller standard deviations of phi and K than the last
+  // twelve alone.
+  ThesisRuns runs(44);
+  const ThesisRun run = runs.next({.noise = 0.05, .samples = 60});
+  const SoilMixture known{thesisSoils()[static_cast<std::size_t>(run.soil_class)]};
+  SoilFilter filter(kThesisWheel, known, {});
+  for (const WheelSample& s : run.samples) filter.add(s);
+  const auto all = filter.posterior().covariance;
+  const auto window = fitSoil(kThesisWheel, std::span(run.samples).last(12), known).covariance;
+  EXPECT_LT(all(kShear, kShear), 0.5 * window(kShear, kShear));
+  EXPECT_LT(all(kFriction, kFriction), 0.5 * window(kFriction, kFriction));
+}
+
 }  // namespace soil_posterior_test
+
 }  // namespace talus::terramech

@@ -1,15 +1,196 @@
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+
+#include <refused.hpp>
 
 #include <talus/common/common.hpp>
+#include <talus/terramech/estimate/telemetry.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
+#include <talus/terramech/io/terramech_io.hpp>
 
+#include "requirement.hpp"
 #include "temporary_file.hpp"
 
 namespace talus::terramech {
+
 namespace csv_reader_test {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
+
+std::string errorOf(const std::vector<std::string>& header) {
+  try {
+    checkColumnUnits(header, knownTelemetryColumns(), "t.csv");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Property: a misspelled known column is rejected with a suggestion; any other name is accepted.
+TEST(ColumnUnits, MisspelledKnownColumnIsRejectedWithASuggestion) {
+  EXPECT_THAT(errorOf({"drawbar_pul_N"}), HasSubstr("write column drawbar_pull_N"));
+  EXPECT_THAT(errorOf({"torqe_Nm"}), HasSubstr("write column torque_Nm"));
+  EXPECT_EQ(errorOf({"drawbar_pul_N", "drawbar_pull_N"}), "");
+  EXPECT_EQ(errorOf({"draw_bar_tension_N", "Fx", "dust_index"}), "");
+}
+
+// Property: a known quantity in another unit is rejected, never ignored.
+TEST(ColumnUnits, KnownColumnInAnotherUnitIsRejected) {
+  for (const auto& [name, write] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"sinkage_mm", "sinkage_m, in m (sinkage_mm times 0.001)"},
+           {"sinkage_cm", "sinkage_m, in m (sinkage_cm times 0.01)"},
+           {"sinkage_um", "sinkage_m, in m"},
+           {"sinkage_inch", "sinkage_m, in m"},
+           {"sinkage_percent", "sinkage_m, in m"},
+           {"torque_mNm", "torque_Nm, in Nm (torque_mNm times 0.001)"},
+           {"torque_kNm", "torque_Nm, in Nm (torque_kNm times 1000)"},
+           {"torque_Ncm", "torque_Nm, in Nm (torque_Ncm times 0.01)"},
+           {"drawbar_pull_kN", "drawbar_pull_N, in N (drawbar_pull_kN times 1000)"},
+           {"side_force_mN", "side_force_N, in N"},
+           {"load_kN", "load_N, in N"},
+           {"load_kg", "load_N, in N"},
+           {"load_lbf", "load_N, in N"},
+           {"slip_angle_deg", "slip_angle_rad, in rad (slip_angle_deg times 0.01745329252)"},
+           {"slip_pct", "slip, a number"},
+           {"slip_deg", "slip, a number"},
+           {"slope_percent", "slope_rad, in rad"},
+           {"slope_mrad", "slope_rad, in rad"},
+           {"roll_deg", "roll_rad, in rad"},
+           {"pitch_degrees", "pitch_rad, in rad"},
+           {"heading_deg", "heading_rad, in rad"},
+           {"time_ms", "time_s, in s (time_ms times 0.001)"},
+           {"time_min", "time_s, in s (time_min times 60)"},
+           {"speed_kmh", "speed_mps, in mps"},
+           {"speed_m_s", "speed_mps, in mps"},
+           {"rim_speed_cmps", "rim_speed_mps, in mps (rim_speed_cmps times 0.01)"},
+           {"rim_speed_rpm", "rim_speed_mps, in mps"},
+           {"x_km", "x_m, in m"},
+           {"z_mm", "z_m, in m"},
+           {"wheel_radius_mm", "wheel_radius_m, in m"},
+           {"wheel_width_cm", "wheel_width_m, in m"},
+           {"grouser_height_mm", "grouser_height_m, in m"},
+           {"shear_modulus_mm", "shear_modulus_m, in m"},
+           {"shear_modulus_kPa", "shear_modulus_m, in m"}}) {
+    const std::string error = errorOf({"run", name});
+    EXPECT_THAT(error, HasSubstr(std::string("t.csv:1: column ") + name)) << name;
+    EXPECT_THAT(error, HasSubstr(std::string("write column ") + write)) << name;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << name;
+  }
+}
+
+TEST(ColumnUnits, AlternativeSpellingIsAcceptedBesideTheKnownColumn) {
+  for (const char* name : {"sinkage_mm", "sinkage", "Sinkage_m"})
+    EXPECT_EQ(errorOf({"sinkage_m", name}), "") << name;
+}
+
+TEST(ColumnUnits, KnownColumnWithoutUnitIsRejected) {
+  for (const std::string& column : knownTelemetryColumns()) {
+    const std::size_t end = column.rfind('_');
+    if (column == "slip" || column == "pass_index" || column == "grouser_count") continue;
+    if (column == "time_s" || end == 1) continue;  // may be a date or an axis
+    EXPECT_THAT(errorOf({column.substr(0, end)}),
+                HasSubstr("names no unit; write column " + column + ", in "));
+  }
+}
+
+TEST(ColumnUnits, KnownColumnWithOtherCaseOrPunctuationIsRejected) {
+  for (const char* name : {"Load_N", "load_n", "LOAD_N", "load [N]", "Load (N)", "load-N"})
+    EXPECT_THAT(errorOf({name}), HasSubstr("resembles a known column; write column load_N, in N")) << name;
+  EXPECT_THAT(errorOf({"Slip"}), HasSubstr("write column slip, a number"));
+  EXPECT_THAT(errorOf({"slip (%)"}), HasSubstr("pass --column 'slip=slip"));
+  EXPECT_THAT(errorOf({"Slip angle [\xC2\xB0]"}), HasSubstr("write column slip_angle_rad"));
+  EXPECT_THAT(errorOf({"Sinkage (mm)"}), HasSubstr("write column sinkage_m"));
+  EXPECT_THAT(errorOf({"speed [m/s]"}), HasSubstr("write column speed_mps"));
+}
+
+// Property: every known name is accepted, and so are other names that resemble a known name.
+TEST(ColumnUnits, UserColumnsAreAccepted) {
+  EXPECT_EQ(errorOf(knownTelemetryColumns()), "");
+  for (const char* name : {"",
+                           "run",
+                           "wheel",
+                           "sinkage_note",
+                           "load_cell_id",
+                           "temperature_C",
+                           "slip_class",
+                           "torque_limit",
+                           "torque_limit_Nm",
+                           "load_case",
+                           "load_std_N",
+                           "slip_long",
+                           "slip_yaw",
+                           "slip_fl",
+                           "slip_t",
+                           "slip_min",
+                           "speed_min",
+                           "speed_max",
+                           "speed_limit_mps",
+                           "sinkage_raw_mm",
+                           "sink_fl_m",
+                           "time_of_day",
+                           "time_of_day_h",
+                           "x_mps",
+                           "y_N",
+                           "z_rad",
+                           "z_raw_m",
+                           "heading_source",
+                           "slope_class",
+                           "roll_number",
+                           "pitch_note",
+                           "wheel_id",
+                           "wheel_m",
+                           "run_s",
+                           "wheel_diameter_m",
+                           "wheel_radius_class",
+                           "grain_mm",
+                           "moisture_percent",
+                           "payload_kg",
+                           "soil",
+                           "soil_temperature_C",
+                           "current_A",
+                           "predicted_sinkage_mm",
+                           "drawbar_raw",
+                           "time",
+                           "x",
+                           "F_N",
+                           "p_Pa",
+                           "mm",
+                           "kN",
+                           "sinkage_true",
+                           "dp_true",
+                           "density_kg_m3",
+                           "pass",
+                           "grouser",
+                           "side",
+                           "rim"})
+    EXPECT_EQ(errorOf({name}), "");
+  EXPECT_EQ(errorOf({"slip", "slip_mps"}), "") << "beside the slip, a slip speed is another quantity";
+}
+
+TEST(ColumnUnits, TelemetryReaderRejectsWrongUnits) {
+  const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.1,12\n"};
+  EXPECT_REFUSED(readTelemetry(file.path(), {.required = {"load_N", "slip"}}), InputError,
+                 "column sinkage_mm has another unit than the known column; write column sinkage_m, in m");
+}
+
+TEST(ColumnUnits, MeasuredDataFilesAreAccepted) {
+  const char* folder = std::getenv("TALUS_MEASURED_DATA");
+  TALUS_REQUIRE(folder != nullptr, "TALUS_MEASURED_DATA is not set");
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".csv") continue;
+    ++files;
+    std::vector<std::string> header = CsvReader(entry.path()).header();
+    // These tables contain digitised points over the slope in degrees and are not telemetry, in which the
+    // column would be rejected.
+    if (entry.path().parent_path().filename() == "slope_slip") std::erase(header, "slope_deg");
+    EXPECT_EQ(errorOf(header), "") << entry.path();
+  }
+  EXPECT_GE(files, 8);
+}
+
+using testing::ElementsAre;
 
 std::vector<CsvRow> rowsOf(const std::string& content) {
   const test::TemporaryFile file{content};
@@ -91,7 +272,7 @@ TEST(CsvReader, ReportsFieldCountAndRepeatedHeaderFaults) {
   EXPECT_EQ(rows[5].fault, "has 1 fields, the header 2");
 }
 
-std::string errorOf(const std::string& path) {
+std::string readError(const std::string& path) {
   try {
     CsvReader reader{path};
     CsvRow row;
@@ -111,24 +292,24 @@ TEST(CsvReader, UnbalancedQuoteSpanningRowsIsRejected) {
        {std::string("a,b\n1,2\n3,\"4\n5,6\n"), std::string("a,b\n1,2\n\"3,4\n5,6\n\"7,8\n"),
         std::string("a,b\r1,2\r\"3,4\r5,6\r7\",8\r"), many}) {
     const test::TemporaryFile file{text};
-    EXPECT_THAT(errorOf(file.path()), HasSubstr(":3: a quote of this line holds the rows behind it"))
+    EXPECT_THAT(readError(file.path()), HasSubstr(":3: a quote of this line holds the rows behind it"))
         << text.substr(0, 40);
   }
 }
 
 TEST(CsvReader, MissingEmptyAndAmbiguousFilesAreRejected) {
-  EXPECT_THAT(errorOf("/nowhere/at_all.csv"), HasSubstr("/nowhere/at_all.csv: No such file"));
-  EXPECT_THAT(errorOf("/tmp"), HasSubstr("is a directory"));
+  EXPECT_THAT(readError("/nowhere/at_all.csv"), HasSubstr("/nowhere/at_all.csv: No such file"));
+  EXPECT_THAT(readError("/tmp"), HasSubstr("is a directory"));
   const test::TemporaryFile nothing{""}, empty{"\n\n"}, twice{"a,b,a\n"};
-  EXPECT_THAT(errorOf(nothing.path()), HasSubstr("is empty; the first row names the columns"));
-  EXPECT_THAT(errorOf(empty.path()), HasSubstr("is empty"));
-  EXPECT_THAT(errorOf(twice.path()), HasSubstr(":1: column a appears twice"));
+  EXPECT_THAT(readError(nothing.path()), HasSubstr("is empty; the first row names the columns"));
+  EXPECT_THAT(readError(empty.path()), HasSubstr("is empty"));
+  EXPECT_THAT(readError(twice.path()), HasSubstr(":1: column a appears twice"));
   std::string wide = "c0";
   for (int k = 1; k <= 1000; ++k) wide += ",c" + std::to_string(k);
   const test::TemporaryFile columns{wide + '\n'};
-  EXPECT_THAT(errorOf(columns.path()), HasSubstr("has 1001 columns, at most 1000"));
+  EXPECT_THAT(readError(columns.path()), HasSubstr("has 1001 columns, at most 1000"));
   const test::TemporaryFile binary{std::string("a\0b\n", 4)};
-  EXPECT_THAT(errorOf(binary.path()), HasSubstr("is not text"));
+  EXPECT_THAT(readError(binary.path()), HasSubstr("is not text"));
 }
 
 // Property: the formats of spreadsheets with semicolons, tabs and decimal commas are read.
@@ -171,5 +352,111 @@ TEST(CsvField, QuotesOnlyWhereNeeded) {
   EXPECT_EQ(csvField(" x"), "\" x\"");
 }
 
+// A table with other names, units and separators.
+constexpr const char* kStudent = "Fz;slip_pct;Mx;Fx;sinkage_mm\n80,5;20;2,25;12;12,5\n90;30;3;15;15\n";
+
+std::string refusal(const std::string& content, const std::vector<MappedColumn>& columns,
+                    const std::vector<std::pair<std::string, double>>& constants = {}) {
+  const test::TemporaryFile file{content};
+  TableFile table(file.path());
+  table.columns = columns;
+  table.constants = constants;
+  try {
+    CsvReader reader(table);
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// Closed form: conversion from percent and millimetres.
+TEST(TableColumns, MapsColumnNamesUnitsAndConstants) {
+  const test::TemporaryFile file{kStudent};
+  TableFile table(file.path());
+  table.columns = {{.known = "load_N", .name = "Fz"},
+                   {.known = "slip", .name = "slip_pct", .unit = "percent"},
+                   {.known = "torque_Nm", .name = "Mx"}};
+  table.constants = {{"wheel_radius_m", 0.1}, {"wheel_width_m", 0.08}};
+  std::vector<std::string> notes;
+  table.note = [&](const std::string& text) { notes.push_back(text); };
+  const Telemetry read = readTelemetry(table, {.required = {"load_N", "slip", "torque_Nm", "sinkage_m"}});
+  EXPECT_THAT(read.at("load_N"), ElementsAre(80.5, 90.0));
+  EXPECT_THAT(read.at("slip"), ElementsAre(0.2, 0.3));
+  EXPECT_THAT(read.at("torque_Nm"), ElementsAre(2.25, 3.0));
+  EXPECT_THAT(read.at("sinkage_m"), ElementsAre(0.0125, 0.015));
+  EXPECT_THAT(read.at("wheel_radius_m"), ElementsAre(0.1, 0.1));
+  EXPECT_THAT(read.at("Fx"), ElementsAre(12.0, 15.0));
+  EXPECT_THAT(
+      notes,
+      ElementsAre("column Fz is read as load_N", "column slip_pct is read as slip, times 0.01",
+                  "column Mx is read as torque_Nm", "column sinkage_mm is read as sinkage_m, times 0.001",
+                  "column Fx is kept as a column of your own; if it is drawbar_pull_N, pass --column "
+                  "drawbar_pull_N=Fx"));
+}
+
+// Closed form: 5 % is 0.05, also in a column of percent; a percent of newtons is no number. Times of clocks that count
+// nanoseconds since 1970 are exact to a quarter of a microsecond in double precision.
+TEST(TableColumns, PercentCellsAndNanosecondsAreRead) {
+  const test::TemporaryFile file{"load_N,slip,time_ns\n80,5%,1764000000123456789\n8%,0.1,1\n"};
+  TableFile table(file.path());
+  table.note = [](const std::string&) {};
+  const Telemetry read = readTelemetry(table);
+  EXPECT_THAT(read.at("slip"), ElementsAre(0.05));
+  EXPECT_NEAR(read.at("time_s").front(), 1764000000.123456789, 2.5e-7);
+  const test::TemporaryFile other{"slip_percent\n5%\n5\n"};
+  TableFile percents(other.path());
+  percents.columns = {{.known = "slip", .name = "slip_percent"}};
+  EXPECT_THAT(readTelemetry(percents).at("slip"), ElementsAre(0.05, 0.05));
+}
+
+// Property: a column in another unit is rejected without a mapping, because an unnoticed conversion could be
+// wrong.
+TEST(TableColumns, OtherUnitWithoutMappingIsRejected) {
+  const test::TemporaryFile file{"load_N,slip,sinkage_mm\n80,0.2,12\n"};
+  EXPECT_THROW(readTelemetry(file.path()), InputError);
+}
+
+TEST(TableColumns, StatedUnitOverridesTheUnitInTheName) {
+  const auto load = [](const std::string& name, const std::string& unit) {
+    const test::TemporaryFile file{name + "\n2\n"};
+    TableFile table(file.path());
+    table.columns = {{.known = "load_N", .name = name, .unit = unit}};
+    return readTelemetry(table).at("load_N").front();
+  };
+  EXPECT_EQ(load("Fz_kN", ""), 2000.0);
+  EXPECT_EQ(load("Fz", "kN"), 2000.0);
+  EXPECT_EQ(load("Fz_kN", "N"), 2.0);
+  EXPECT_EQ(load("W_t", ""), 2.0);
+}
+
+TEST(TableColumns, InvalidMappingsAreRejected) {
+  EXPECT_THAT(refusal(kStudent, {{.known = "load_N", .name = "Fn"}}),
+              HasSubstr(":1: no column Fn (--column load_N=Fn)"));
+  EXPECT_THAT(refusal(kStudent, {{.known = "load_N", .name = "Fz", .unit = "mm"}}),
+              HasSubstr("'mm' is no unit of load_N"));
+  EXPECT_THAT(refusal(kStudent, {{.known = "slip", .name = "slip_pct", .unit = "deg"}}),
+              HasSubstr("'deg' is no unit of slip"));
+  EXPECT_THAT(refusal("load_N,Fz\n1,2\n", {{.known = "load_N", .name = "Fz"}}),
+              HasSubstr("has column load_N already"));
+  EXPECT_THAT(refusal("load_N,wheel_radius_m\n1,2\n", {}, {{"wheel_radius_m", 0.1}}),
+              HasSubstr("has column wheel_radius_m, which is also given"));
+  EXPECT_THAT(refusal(kStudent, {{.known = "load_N", .name = "Fz"}, {.known = "side_force_N", .name = "Fz"}}),
+              HasSubstr("or it is mapped twice"));
+}
+
+TEST(TableColumns, TruncatedRowKeepsItsFault) {
+  const test::TemporaryFile file{"a,b\n1\n1,2,,\n"};
+  TableFile table(file.path());
+  table.constants = {{"c", 3.0}};
+  CsvReader reader(table);
+  CsvRow row;
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(row.fault, "has 1 fields, the header 2");
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(row.fault, "");
+  EXPECT_THAT(row.fields, ElementsAre("1", "2", "3"));
+}
+
 }  // namespace csv_reader_test
+
 }  // namespace talus::terramech

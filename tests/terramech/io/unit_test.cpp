@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include <talus/terramech/io/column_units.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::terramech {
 namespace unit_test {

@@ -5,10 +5,11 @@
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/route/pose_path.hpp>
 
+namespace talus::planner {
+
 /// Check of the outermost wheels of a rover at the ends of a route. Along a route the wheels stay within the
 /// half width that the map keeps free of hazards; at an end, those of the first and last axle stand up to
 /// hypot(wheelbase, track)/2 from the end.
-namespace talus::planner {
 
 /// Returns the poses at the start and the goal of a polyline, with the headings of its first and last leg;
 /// empty for a polyline without length.
