@@ -26,7 +26,6 @@
 #include <talus/cli/ground/windowed_ground.hpp>
 #include <talus/cli/route/provenance.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/cli/route/route_writer.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/common/input_file.hpp>
 #include <talus/maps/vector/place_reader.hpp>
@@ -68,7 +67,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
                       const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   PlanRequest request;
-  requireRouteFormat(options.output, map);
+  planner::requireRouteFormat(options.output, map);
   if (options.pairs.empty()) {
     request.start = maps::readPlace(options.start, map, "--start");
     request.goal = maps::readPlace(options.goals.front(), map, "--goal");
@@ -109,7 +108,8 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   const planner::RouteOrigin origin = originOf(ground, context);
   const auto document = routeGeoJson(route, ground.map.elevation(), origin);
   if (!options.output.empty() && !(options.corridor_percent > 0.0))
-    writeRoute(options.output, document, ground.map.elevation(), context);
+    planner::writeRoute(options.output, document, ground.map.elevation(),
+                        [&](std::string_view line) { context.warn(line); });
   if (options.html.empty() && options.png.empty()) return;
   const ProgressMonitor drawing = context.watch("draw");
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
@@ -455,7 +455,7 @@ int run(const PlanOptions& asked, Context& context) {
     readMission(options);
     if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
   }
-  if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
+  if (!context.force) checkFormat(options.output, options.pairs.empty() ? planner::kRouteFiles : "FILE.csv");
   requirePlaces(options);
   Planner planner = plannerOf(options, context);
   if (!options.whole_field && !(options.corridor_percent > 0.0) && !options.ground.is_cost &&

@@ -78,14 +78,8 @@ std::vector<std::pair<std::string, std::string>> provenanceOf(const ordered_json
 }
 
 planner::RouteOrigin originOf(const Ground& ground, const Context& context) {
-  planner::RouteOrigin origin{.files = ground.files,
-                              .seed = context.seed,
-                              .rover = ground.map.model().rover().name,
-                              .soils = {},
-                              .reading = ground.map.elevation().reading,
-                              .command = callText(context.argv)};
-  for (const costmap::GroundClass& one : ground.map.model().parts().classes)
-    origin.soils.push_back(one.soil.name);
+  planner::RouteOrigin origin = planner::originOf(ground.map, ground.files, context.seed);
+  origin.command = callText(context.argv);
   return origin;
 }
 

@@ -126,22 +126,13 @@ void readVertices(const Fields& fields, std::vector<RouteVertex>& vertices) {
   for (const RouteVertex& v : vertices)
     if (!std::isfinite(v.x_m) || !std::isfinite(v.y_m))
       fields.refuse("x_m, y_m", "contain values that are not numbers");
-  fields.fill("elevation_m", &RouteVertex::elevation_m, vertices);
-  fields.fill("heading_rad", &RouteVertex::heading_rad, vertices);
-  fields.fill("slope_along_rad", &RouteVertex::slope_along_rad, vertices);
-  fields.fill("slope_across_rad", &RouteVertex::slope_across_rad, vertices);
-  fields.fill("slip", &RouteVertex::slip, vertices);
-  // absent in routes of version 0.1.0
-  for (const auto& [field, member] : {std::pair{"slip_angle_rad", &RouteVertex::slip_angle_rad},
-                                      {"side_force_over_load", &RouteVertex::side_force_over_load},
-                                      {"stability_margin_rad", &RouteVertex::stability_margin_rad}})
-    if (fields.has(field)) fields.fill(field, member, vertices);
-  fields.fill("sinkage_m", &RouteVertex::sinkage_m, vertices);
-  fields.fill("torque_Nm", &RouteVertex::torque_Nm, vertices);
-  fields.fill("drawbar_pull_margin", &RouteVertex::drawbar_pull_margin, vertices);
-  fields.fill("energy_J", &RouteVertex::energy_J, vertices);
-  fields.fill("time_s", &RouteVertex::time_s, vertices);
-  fields.fill("immobilisation_risk", &RouteVertex::immobilisation_risk, vertices);
+  for (const auto& [column, member] : planner::kVertexColumns) {
+    // absent in routes of version 0.1.0
+    const bool later = member == &RouteVertex::slip_angle_rad ||
+                       member == &RouteVertex::side_force_over_load ||
+                       member == &RouteVertex::stability_margin_rad;
+    if (!later || fields.has(column)) fields.fill(column, member, vertices);
+  }
   const json& categories = fields.array("category");
   if (categories.size() != vertices.size()) fields.refuse("category", "differs in length from x_m");
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].category = categoryOf(fields, categories[i]);

@@ -1,22 +1,19 @@
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iomanip>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <pybind11/stl/filesystem.h>
-#include <sys/mman.h>
-#include <unistd.h>
+#include <ogr_spatialref.h>
 
 #include <talus/common/input_error.hpp>
-#include <talus/common/output_file.hpp>
 #include <talus/common/progress_monitor.hpp>
 #include <talus/costmap/ground/ground_class.hpp>
+#include <talus/costmap/surface/octomap_surface.hpp>
+#include <talus/maps/raster/gdal_dataset.hpp>
+#include <talus/maps/raster/spatial_reference.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/python_map.hpp>
 #include <talus/terramech/io/soil_library.hpp>
@@ -68,13 +65,28 @@ std::vector<costmap::CostLayer> costsOf(const py::dict& given, const maps::Grid&
   return layers;
 }
 
+void requireThreads(int threads) {
+  if (threads < 1) throw py::value_error("threads = " + std::to_string(threads) + ", must be >= 1");
+}
+
+std::optional<maps::Georeference> georeferenceOf(const std::string& crs, const maps::Grid& grid) {
+  if (crs.empty()) return std::nullopt;
+  const maps::GdalErrors errors;
+  OGRSpatialReference system;
+  if (system.SetFromUserInput(crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS) !=
+      OGRERR_NONE)
+    throw InputError({"crs '" + crs + "'", "is not known", "give an EPSG code (EPSG:32633) or WKT"});
+  return maps::georeferenceOn(maps::coordinateSystem(system, "crs '" + crs + "'"), grid);
+}
+
 Map built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
   const maps::Grid grid = gridOf(layers.heights, "heights",
                                  {.resolution_m = ground.resolution_m, .south_west = ground.south_west});
-  if (ground.threads < 1)
-    throw py::value_error("threads = " + std::to_string(ground.threads) + ", must be >= 1");
+  requireThreads(ground.threads);
   costmap::MapLayers made;
-  made.elevation = {.elevation_m = floatsOf(layers.heights, "heights", grid), .source = "heights"};
+  made.elevation = {.elevation_m = floatsOf(layers.heights, "heights", grid),
+                    .georeference = georeferenceOf(ground.crs, grid),
+                    .source = "heights"};
   made.classes = bytesOf(layers.classes, "classes", grid);
   if (made.classes.empty() && py::isinstance<py::dict>(ground.soils) &&
       ground.soils.cast<py::dict>().size() > 1)
@@ -88,63 +100,6 @@ Map built(const PythonMap::Layers& layers, const PythonMap::Ground& ground) {
   return Map({.layers = std::move(made),
               .ground = costmap::GroundModel(std::move(parts)),
               .options = {.threads = ground.threads}});
-}
-
-// Columns as a file in memory, so that rows are checked in the same way as rows of a telemetry file.
-class ColumnFile {
- public:
-  ColumnFile() : descriptor_(::memfd_create("columns", MFD_CLOEXEC)) {}
-  explicit ColumnFile(const py::dict& columns) : ColumnFile() {  // a throw runs the destructor
-    std::vector<py::array> arrays;
-    std::ofstream out(path());
-    out << std::setprecision(17);
-    for (const auto& [name, values] : columns) {
-      const std::string column = py::str(name);
-      if (!py::isinstance<py::array>(values) || values.cast<py::array>().ndim() != 1)
-        throw py::type_error("column '" + column + "' must be a numpy array of one dimension");
-      const auto array = values.cast<py::array>();
-      const char kind = array.dtype().kind();
-      if (kind != 'f' && kind != 'i' && kind != 'u')
-        throw py::type_error("column '" + column + "': dtype " + std::string(py::str(array.dtype())) +
-                             ", must be a float or whole number");
-      out << (arrays.empty() ? "" : ",") << '"' << column << '"';
-      arrays.push_back(py::array_t<double>(array));
-      if (arrays.back().size() != arrays.front().size())
-        throw py::value_error("column '" + column + "' has " + std::to_string(arrays.back().size()) +
-                              " values, must be " + std::to_string(arrays.front().size()) + " as the first");
-    }
-    for (py::ssize_t row = 0; !arrays.empty() && row < arrays.front().size(); ++row)
-      for (std::size_t k = 0; k < arrays.size(); ++k) {
-        out << (k == 0 ? '\n' : ',');
-        const double value = arrays[k].unchecked<double, 1>()(row);
-        if (!std::isnan(value)) out << value;  // NaN: not measured
-      }
-    out << '\n';
-    out.close();
-    if (!out) throw std::runtime_error("no memory for the columns");
-  }
-  ColumnFile(const ColumnFile&) = delete;
-  ColumnFile& operator=(const ColumnFile&) = delete;
-  ~ColumnFile() { ::close(descriptor_); }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
-
-terramech::Telemetry telemetryOf(const py::object& given) {
-  if (!py::isinstance<py::dict>(given)) return terramech::readTelemetry(given.cast<std::filesystem::path>());
-  const ColumnFile file(given.cast<py::dict>());
-  try {
-    terramech::Telemetry telemetry = terramech::readTelemetry(file.path());
-    telemetry.source = "columns";
-    return telemetry;
-  } catch (const InputError& error) {
-    std::string where = error.parts().where;
-    if (const auto at = where.find(file.path()); at != std::string::npos)
-      where.replace(at, file.path().size(), "columns");
-    throw InputError({where, error.parts().reason, error.parts().remedy});
-  }
 }
 
 }  // namespace
@@ -169,9 +124,14 @@ void PythonMap::patch(const Layers& layers, maps::Point south_west) {
 
 std::size_t PythonMap::learn(const py::object& given) {
   const auto lock = held(*session_);
-  const terramech::Telemetry telemetry = telemetryOf(given);
-  const py::gil_scoped_release released;
-  return session_->map.learnPart(telemetry);
+  std::size_t rows = 0;
+  withTable(given, [&](const std::string& path, const std::string& name) {
+    const py::gil_scoped_release released;
+    terramech::Telemetry telemetry = terramech::readTelemetry(path);
+    telemetry.source = name;
+    rows = session_->map.learnPart(telemetry);
+  });
+  return rows;
 }
 
 void PythonMap::settle() {
@@ -181,18 +141,33 @@ void PythonMap::settle() {
 }
 
 std::unique_ptr<PythonMap> PythonMap::read(const std::string& path, int threads) {
-  if (threads < 1) throw py::value_error("threads = " + std::to_string(threads) + ", must be >= 1");
+  requireThreads(threads);
+  const py::gil_scoped_release released;
+  const InputRecord record;
+  auto map = std::make_unique<PythonMap>(Map(readBuiltMap(path, {.threads = threads})));
+  map->files_ = filesRead();
+  for (InputFile& file : map->files_) file.role = file.path == path ? "map" : file.role;
+  const std::vector<InputFile>& before = map->map().elevation().files;
+  map->files_.insert(map->files_.end(), before.begin(), before.end());
+  return map;
+}
+
+std::unique_ptr<PythonMap> PythonMap::fromFiles(const SiteFiles& files, int threads) {
+  requireThreads(threads);
+  const std::string& path = files.elevation.path;
+  if (costmap::octomapType(path) == "TraversabilityTree")
+    throw InputError({path, "is a built map with its own rover and soils", "read it with Map.read()"});
+  std::vector<std::string> notes;
   std::unique_ptr<PythonMap> map;
   {
     const py::gil_scoped_release released;
-    map = std::make_unique<PythonMap>(Map::read(path, threads));
+    Site site = readSite(
+        files, {.threads = threads, .note = [&notes](std::string_view line) { notes.emplace_back(line); }});
+    std::vector<InputFile> read = site.layers.elevation.files;
+    map = std::make_unique<PythonMap>(Map(std::move(site)));
+    map->files_ = std::move(read);
   }
-  const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
-  const py::object digest = py::module_::import("hashlib").attr("file_digest")(file, "sha256");
-  file.attr("close")();
-  map->files_ = map->map().elevation().files;
-  map->files_.insert(map->files_.begin(), {path, "map", std::filesystem::file_size(path),
-                                           digest.attr("hexdigest")().cast<std::string>()});
+  warn(notes);
   return map;
 }
 
@@ -205,10 +180,11 @@ void PythonMap::save(const std::string& path) const {
 void PythonMap::writeRoute(const Route& route, const std::string& path) const {
   if (route.status != RouteStatus::Found)
     throw py::value_error("route: its status is " + std::string(name(route.status)) + ", must be found");
-  const auto document =
-      routeGeoJson(route, map().elevation(),
-                   {.files = files_, .seed = settings_.seed, .reading = map().elevation().reading});
-  writeFile(path, document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  std::vector<std::string> notes;
+  const auto document = routeGeoJson(route, map().elevation(), originOf(map(), files_, settings_.seed));
+  planner::writeRoute(path, document, map().elevation(),
+                      [&notes](std::string_view line) { notes.emplace_back(line); });
+  warn(notes);
 }
 
 Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& request,
@@ -225,6 +201,24 @@ Route PythonMap::plan(const PlannerSettings& settings, const PlanRequest& reques
       },
       progress);
   return route;
+}
+
+costmap::Explanation PythonMap::explain(maps::Point place, std::optional<double> heading_rad) const {
+  const auto lock = held(*session_);
+  return session_->map.explain(place, heading_rad);
+}
+
+Score PythonMap::score(const std::vector<maps::Point>& path, bool prove, int threads,
+                       const py::object& progress) const {
+  const auto lock = held(*session_);
+  Planner planner({.threads = threads});
+  Score score;
+  inBackground(
+      [&](const ProgressMonitor& watch) {
+        score = planner.score(map(), path, {.prove = prove, .watch = watch});
+      },
+      progress);
+  return score;
 }
 
 PythonMap PythonMap::moved(maps::Cell tiles) const {

@@ -10,6 +10,7 @@
 
 #include <talus/planner/c/session.hpp>
 #include <talus/planner/route/route_json.hpp>
+#include <talus/planner/site/site.hpp>
 
 namespace talus::planner {
 
@@ -29,12 +30,15 @@ class PythonMap {
     costmap::TravelPolicy policy{};  ///< safety policy and weights of the cost function
     double resolution_m = 1.0;       ///< side length of a cell, > 0
     maps::Point south_west{};        ///< south-western corner of the map
+    std::string crs{};               ///< EPSG code or WKT of a projected CRS; empty: local metres
     int threads = 1;                 ///< number of threads, >= 1
   };
   PythonMap(const Layers& layers, const Ground& ground);
   explicit PythonMap(Map map) : session_(std::make_shared<Session>(std::move(map))) {}
   /// Reads a map file; `threads` is the number of threads, >= 1.
   static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
+  /// Reads a site (talus::readSite()) and builds its map; `threads` is the number of threads, >= 1.
+  static std::unique_ptr<PythonMap> fromFiles(const SiteFiles& files, int threads);
 
   const costmap::TraversabilityMap& map() const noexcept { return session_->map.ground(); }
 
@@ -48,10 +52,15 @@ class PythonMap {
   void settle();
   /// Writes a map file.
   void save(const std::string& path) const;
-  /// Writes the route in the GeoJSON format of `talus plan`.
+  /// Writes the route as `talus plan -o` does, in the format that the ending of the path selects.
   void writeRoute(const Route& route, const std::string& path) const;
   /// Plans a route; `progress` may be None (see inBackground()).
   Route plan(const PlannerSettings& settings, const PlanRequest& request, const pybind11::object& progress);
+  /// Returns category and causes at a place (talus::Map::explain()).
+  costmap::Explanation explain(maps::Point place, std::optional<double> heading_rad) const;
+  /// Returns what a polyline costs (talus::Planner::score()); `progress` may be None.
+  Score score(const std::vector<maps::Point>& path, bool prove, int threads,
+              const pybind11::object& progress) const;
   /// Returns the map with its window moved by a number of tiles (64 x 64 cells) in x and y.
   PythonMap moved(maps::Cell tiles) const;
 

@@ -17,12 +17,6 @@ namespace {
 
 using Pair = std::pair<double, double>;
 
-terramech::Soil soilOf(const py::handle& given) {
-  if (py::isinstance<terramech::Soil>(given)) return given.cast<terramech::Soil>();
-  if (py::isinstance<py::str>(given)) return terramech::loadSoil(given.cast<std::string>());
-  throw py::type_error("a true soil must be a name or a talus.Soil");
-}
-
 SoilKnowledge beliefOf(const std::string& word) {
   std::string all;
   for (const SoilKnowledge belief : {SoilKnowledge::Geometry, SoilKnowledge::Prior, SoilKnowledge::OnLine,

@@ -21,7 +21,7 @@ namespace {
 using namespace terramech;
 
 struct Asked {
-  std::filesystem::path table;
+  py::object table;
   std::string base, rover;
   double significance = TraceOptions{}.significance;
   std::uint64_t seed = 1;
@@ -31,13 +31,17 @@ TableTrace trace(const Asked& asked, const py::object& progress) {
   if (!(asked.significance >= 1e-3 && asked.significance <= 0.5))
     throw py::value_error("significance = " + std::to_string(asked.significance) + ", must be 0.001 to 0.5");
   TableTrace found;
-  inBackground(
-      [&](const ProgressMonitor& watch) {
-        const TableTraceOptions how{.base = baseModel(asked.base, asked.rover),
-                                    .search = {.significance = asked.significance, .seed = asked.seed}};
-        found = traceTable(readTraceTable(asked.table), how, watch);
-      },
-      progress);
+  withTable(asked.table, [&](const std::string& path, const std::string& name) {
+    inBackground(
+        [&](const ProgressMonitor& watch) {
+          const TableTraceOptions how{.base = baseModel(asked.base, asked.rover),
+                                      .search = {.significance = asked.significance, .seed = asked.seed}};
+          Telemetry rows = readTraceTable(path);
+          rows.source = name;
+          found = traceTable(rows, how, watch);
+        },
+        progress);
+  });
   return found;
 }
 
@@ -146,11 +150,12 @@ void bindTrace(py::module_& module) {
   bindErrors(trace_class);
   module.def(
       "trace",
-      [](const std::filesystem::path& table, const std::string& base, const std::string& rover,
-         double significance, std::uint64_t seed, const py::object& progress) {
+      [](const py::object& table, const std::string& base, const std::string& rover, double significance,
+         std::uint64_t seed, const py::object& progress) {
         return trace({table, base, rover, significance, seed}, progress);
       },
-      "Effects that a wheel model lacks, from a telemetry CSV, as `talus trace`. base: a soil or model "
+      "Effects that a wheel model lacks, from a telemetry CSV or a dict of its columns, as `talus trace`. "
+      "base: a soil or model "
       "file,\n"
       "without it a soil is fitted; rover: supplies wheel dimensions missing from the file. The GIL is\n"
       "released, Ctrl-C ends it. progress: called with 0 to 1.",

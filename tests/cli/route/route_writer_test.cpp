@@ -5,7 +5,6 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/cli/route/route_writer.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
@@ -26,7 +25,8 @@ maps::ElevationMap mapOf(const maps::Ellipsoid& body) {
 
 std::string write(const Folder& folder, const std::string& name, const maps::ElevationMap& map) {
   Context context;
-  writeRoute(folder / name, routeGeoJson(exampleRoute(), map, {.files = {}, .seed = 7}), map, context);
+  planner::writeRoute(folder / name, routeGeoJson(exampleRoute(), map, {.files = {}, .seed = 7}), map,
+                      [&](std::string_view line) { context.warn(line); });
   return folder / name;
 }
 

@@ -1,6 +1,7 @@
 """The Python package: what it plans, that nothing is copied, what it refuses, threads and Ctrl-C."""
 
 import ast
+import base64
 import gc
 import hashlib
 import json
@@ -13,6 +14,9 @@ import subprocess
 import tempfile
 import threading
 import unittest
+import warnings
+import xml.etree.ElementTree
+import zlib
 
 import numpy as np
 
@@ -37,6 +41,24 @@ def wheels(x_m, y_m, slip=0.5, sinkage_m=0.1, count=5):
         "slope_rad": 0.0 * n,
         "heading_rad": 0.0 * n,
     }
+
+
+def run(*words, cwd=None):
+    """Return what the program prints as JSON."""
+    call = [os.environ["TALUS_PROGRAM"], *map(str, words), "--json", "--quiet"]
+    return json.loads(subprocess.run(call, capture_output=True, cwd=cwd).stdout)
+
+
+def table_of(path):
+    """Return the columns of a CSV: numbers where all fields are numbers or empty, else text."""
+    rows = [line.split(",") for line in pathlib.Path(path).read_text().splitlines()]
+    columns = {}
+    for name, *fields in zip(*rows):
+        try:
+            columns[name] = np.array([float(f) if f else math.nan for f in fields])
+        except ValueError:
+            columns[name] = np.array(fields)
+    return columns
 
 
 class Refusals(unittest.TestCase):
@@ -135,7 +157,6 @@ class MapTest(Refusals):
 
     def test_files_and_settling_are_those_of_the_program(self):
         """Property: a drive learned in two parts and settled is the map of `talus update`, and the route that of `talus plan`."""
-        program = os.environ["TALUS_PROGRAM"]
         hill = pathlib.Path(__file__).resolve().parents[3] / "examples" / "hill.asc"
         # Four wheels on alternating slopes; slip changes with slope, so the update can verify the sensors.
         moment, wheel = np.repeat(np.arange(80.0), 4), np.tile(np.arange(4.0), 80)
@@ -145,7 +166,6 @@ class MapTest(Refusals):
         columns.update(slip=slip, slope_rad=slope, heading_rad=0.0 * moment, sinkage_m=0.01 + 0.0 * moment, torque_Nm=3.65 * (0.2 + slope))
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            run = lambda *words: subprocess.run([program, *map(str, words), "--quiet"], check=True, stdout=subprocess.DEVNULL)
             run("costmap", hill, "--ignore-crs", "--resolution", 1, "--rover", "lunar_micro", "--soil", "lunar_nominal", "-o", folder / "map.ot")
             rows = [",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in zip(*columns.values())]
             (folder / "drive.csv").write_text("\n".join(rows) + "\n")
@@ -164,7 +184,9 @@ class MapTest(Refusals):
             driven.save(folder / "saved.ot")
             self.assertEqual((folder / "saved.ot").read_bytes(), (folder / "driven.ot").read_bytes())
             route = driven.plan((5.5, 15.5), (35.5, 15.5), prove=True)
-            driven.write_route(route, folder / "ours.geojson")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # local metres in GeoJSON
+                driven.write_route(route, folder / "ours.geojson")
             run("plan", hill, "--ignore-crs", "--resolution", 1, "--map", folder / "driven.ot", "--start", "5.5,15.5", "--goal", "35.5,15.5", "-o", folder / "its.geojson")
             ours, its = (json.loads((folder / f).read_text())["features"][0] for f in ("ours.geojson", "its.geojson"))
             self.assertEqual(ours["geometry"], its["geometry"])
@@ -175,7 +197,7 @@ class MapTest(Refusals):
             files = {file["role"]: file for file in ours["properties"]["inputs"]["files"]}
             self.assertEqual(files["map"], {"file": "driven.ot", "path": str(folder / "driven.ot"), "role": "map", "size": len(stored), "sha256": hashlib.sha256(stored).hexdigest()})
             self.assertEqual(files["elevation"]["file"], pathlib.Path(hill).name)
-            run("view", folder / "ours.geojson", "-o", folder / "ours.html")
+            subprocess.run([os.environ["TALUS_PROGRAM"], "view", folder / "ours.geojson", "-o", folder / "ours.html", "--quiet"], check=True)
 
     def test_files_that_cannot_be_are_one_line(self):
         self.refused(talus.InputError, "missing.ot", lambda: talus.Map.read("missing.ot"))
@@ -250,6 +272,12 @@ class MapTest(Refusals):
             (ValueError, "threads = 0", dict(threads=0)),
             (ValueError, "layer 'own'", dict(layers={"own": np.full((8, 8), -1.0)})),
             (ValueError, "layers['own']: shape", dict(layers={"own": np.zeros((2, 2))})),
+            (ValueError, "'allow_marginl' is not known; did you mean allow_marginal?", dict(thresholds={"allow_marginl": True})),
+            (TypeError, "allow_marginal must be True or False", dict(thresholds={"allow_marginal": 1})),
+            (TypeError, "time_weight_W must be a number", dict(thresholds={"time_weight_W": "1"})),
+            (ValueError, "slope_margin_rad = 3, must be in [0, 0.5]", dict(thresholds={"slope_margin_rad": 3})),
+            (talus.InputError, "crs 'EPSG:1': is not known; give an EPSG code", dict(crs="EPSG:1")),
+            (talus.InputError, "crs 'EPSG:4326': CRS 'WGS 84' is not projected", dict(crs="EPSG:4326")),
         ):
             self.refused(error, word, lambda: talus.Map(good, **{**how, **more}))
 
@@ -265,7 +293,8 @@ class MapTest(Refusals):
             (ValueError, "", lambda: ground.patch(patch, south_west=(0.1, 0.0))),
             (ValueError, "rocks: shape", lambda: ground.patch(patch, rocks=patch[:2], south_west=(0.0, 0.0))),
             (TypeError, "column 'slip' must be", lambda: ground.learn({**wheels(5.0, 5.0), "slip": [0.1] * 5})),
-            (TypeError, "column 'slip': dtype <U1", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.array(["a"] * 5)})),
+            (TypeError, "column 'slip': dtype bool", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.ones(5, bool)})),
+            (talus.InputError, "columns", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.array(["a"] * 5)})),
             (ValueError, "has 2 values, must be 5", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.zeros(2)})),
             (talus.InputError, "columns", lambda: ground.learn({**wheels(5.0, 5.0), "load_N": np.full(5, -1.0)})),
             (talus.InputError, "columns", lambda: ground.learn({"x_m": np.zeros(2)})),
@@ -274,6 +303,12 @@ class MapTest(Refusals):
             (ValueError, "shape (3,)", lambda: ground.dangers(np.zeros(3))),
             (ValueError, "is not finite", lambda: ground.dangers(np.full((2, 2), math.nan))),
             (ValueError, "leaves nothing", lambda: ground.moved(5, 0)),
+            (ValueError, "path: shape (3,)", lambda: ground.score(np.zeros(3))),
+            (ValueError, "the path has no point", lambda: ground.score(np.zeros((0, 2)))),
+            (talus.InputError, "the map spans x 0 to 30 m", lambda: ground.explain((99.0, 5.0))),
+            (TypeError, "place must be (x_m, y_m)", lambda: ground.explain(5.0)),
+            (talus.InputError, "place a,b: 'a' is not a number", lambda: ground.explain("a,b")),
+            (talus.InputError, "no.tif", lambda: talus.Map.from_files("no.tif")),
         ):
             self.refused(error, word, call)
         self.assertEqual(ground.version, version)
@@ -302,6 +337,116 @@ class MapTest(Refusals):
         # Closed form: the plane through the middles of the cells.
         plane = 0.02 * (route["x_m"] / 0.5 - 0.5) + 0.01 * (route["y_m"] / 0.5 - 0.5)
         np.testing.assert_allclose(route["elevation_m"], plane, atol=1e-6)
+
+
+class SiteTest(Refusals):
+    """What a generated site of the Moon gives here and in the program."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.at = pathlib.Path(cls.folder.name)
+        run("generate", "craters", "--size", 80, "--resolution", 1, "--seed", 7, "-o", "moon.tif", cwd=cls.at)
+        names = dict(soils="moon_soils.yaml", terrain="moon_classes.tif", rocks="moon_rocks.tif")
+        cls.words = ["--rover", "lunar_micro", *(w for name, file in names.items() for w in ("--" + name, cls.at / file))]
+        cls.files = {{"terrain": "classes"}.get(name, name): str(cls.at / file) for name, file in names.items()}
+        cls.ground = talus.Map.from_files(cls.at / "moon.tif", rover="lunar_micro", **cls.files)
+        cls.route = cls.ground.plan((15.0, 15.0), (65.0, 60.0), prove=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def said(self, subcommand, *more):
+        return run(subcommand, self.at / "moon.tif", *self.words, *more)
+
+    def test_files_make_the_map_of_the_program(self):
+        self.assertEqual({k: getattr(self.ground, k) for k in ("crs", "body")}, {k: run("info", self.at / "moon.tif")[k] for k in ("crs", "body")})
+        counts = np.bincount(self.ground.categories().ravel(), minlength=4)
+        named = dict(zip(("safe", "marginal", "dangerous", "unknown"), counts))
+        self.assertEqual(self.said("costmap", "-o", self.at / "m.ot")["categories"], named)
+        self.assertEqual(talus.Map.read(self.at / "m.ot").crs, self.ground.crs)
+        self.refused(talus.InputError, "read it with Map.read()", lambda: talus.Map.from_files(self.at / "m.ot"))
+        with self.assertWarnsRegex(UserWarning, "no --rover: using default rover lunar_micro"):
+            talus.Map.from_files(self.at / "moon.tif", soil="lunar_nominal", window="0,0,40,40")
+
+    def test_a_route_is_written_by_its_ending(self):
+        there = ("--start", "15,15", "--goal", "65,60")
+        said = self.said("plan", *there, "-o", self.at / "its.csv")
+        self.assertEqual((self.route.cost_J, self.route.gap), (said["cost"], said["gap"]))
+        self.ground.write_route(self.route, self.at / "ours.csv")
+        self.assertEqual((self.at / "ours.csv").read_text(), (self.at / "its.csv").read_text())
+        self.ground.write_route(self.route, self.at / "ours.gpkg")
+        self.assertTrue((self.at / "ours.gpkg").read_bytes().startswith(b"SQLite format 3"))
+        self.assertAlmostEqual(self.said("score", "--path", self.at / "ours.gpkg")["cost"], self.route.cost_J, delta=1e-6)  # sums in another order
+        with self.assertWarnsRegex(UserWarning, "longitudes and latitudes are of Moon"):
+            self.ground.write_route(self.route, self.at / "ours.geojson")
+        inputs = json.loads((self.at / "ours.geojson").read_text())["features"][0]["properties"]["inputs"]
+        self.assertEqual(inputs["rover"], "lunar_micro")
+        self.assertEqual([file["file"] for file in inputs["files"]][:2], ["moon.tif", "moon_classes.tif"])
+        self.refused(talus.InputError, "places of Earth", lambda: self.ground.write_route(self.route, self.at / "r.kml"))
+
+    def test_thresholds_are_those_of_the_program(self):
+        words = ("--start", "15,15", "--goal", "65,60", "--no-proof", "--time-weight", "7", "--no-marginal", "--slope-uncertainty-deg", "2")
+        chosen = dict(time_weight_W=7.0, allow_marginal=False, slope_margin_rad=math.radians(2))
+        ground = talus.Map.from_files(self.at / "moon.tif", rover="lunar_micro", thresholds=chosen, **self.files)
+        cost_J = ground.plan((15.0, 15.0), (65.0, 60.0)).cost_J
+        self.assertEqual(cost_J, self.said("plan", *words)["cost"])
+        self.assertGreater(cost_J, self.route.cost_J)
+        self.assertEqual({name: ground.thresholds[name] for name in chosen}, chosen)
+
+    def test_explain_and_score_are_those_of_the_program(self):
+        for more, words in (({}, ()), (dict(heading_rad=1.5), ("--heading", "1.5"))):
+            said = self.said("explain", "--at", "50,50", *words)
+            why = self.ground.explain((50.0, 50.0), **more)
+            for cause in why["causes"]:  # JSON has neither NaN nor inf
+                cause.update({k: None for k in ("value", "std") if not math.isfinite(cause[k])})
+            self.assertEqual(why, said)
+        self.assertEqual(repr(self.ground.explain("50,50")), repr(self.ground.explain((50.0, 50.0))))
+        path = np.array([[15.0, 15.0], [65.0, 60.0]])
+        (self.at / "path.csv").write_text("x_m,y_m\n15,15\n65,60\n")
+        score, said = self.ground.score(path, prove=True), self.said("score", "--path", self.at / "path.csv", "--prove")
+        self.assertEqual((score.status, score.energy_J, score.best.cost_J), (said["status"], said["energy_J"], said["best_cost"]))
+        self.assertEqual(score.violations, [(v["x_m"], v["y_m"], v["reason"]) for v in said["violations"]])
+        own = self.ground.score(np.column_stack([self.route["x_m"], self.route["y_m"]]))
+        self.assertEqual((own.status, own.violations, own.best), ("found", [], None))
+        self.assertAlmostEqual(own.cost_J, self.route.cost_J, delta=1e-9 * own.cost_J)
+
+    def test_notebooks_show_maps_and_routes(self):
+        page = self.ground._repr_html_()
+        png = base64.b64decode(re.search("base64,([^']+)'", page)[1])
+        pixels = np.frombuffer(zlib.decompress(png[png.index(b"IDAT") + 4 : -16]), np.uint8).reshape(80, 81)
+        np.testing.assert_array_equal(pixels[::-1, 1:], self.ground.categories())  # the first byte of a line is its filter
+        track = self.route._repr_html_()
+        self.assertIn(f"<td>{self.route.length_m:.5g}</td>", track)
+        line = xml.etree.ElementTree.fromstring(re.search("<svg.*</svg>", track)[0])[0].get("points").split()
+        drawn = np.array([point.split(",") for point in line], float)
+        x, y = (self.route[k][:: len(self.route) - 1] for k in ("x_m", "y_m"))
+        scale = 290 / max(np.ptp(self.route["x_m"]), np.ptp(self.route["y_m"]))  # Closed form: the track fills 290 units, north up
+        np.testing.assert_allclose(drawn[-1] - drawn[0], scale * np.array([np.diff(x)[0], -np.diff(y)[0]]), atol=0.11)
+        self.assertEqual((drawn.min(), drawn[:, 0].max() - drawn[:, 0].min()), (5.0, 290.0))
+        none = level().plan((5.0, 5.0), (900.0, 9.0))
+        self.assertIn("goal_invalid", none._repr_html_())
+        for html in (page, track):
+            self.assertNotIn("http", html)
+            self.assertLess(len(html), 20000)
+
+    def test_arrays_have_a_coordinate_system(self):
+        ground = level(crs="EPSG:32633", south_west=(500000.0, 5000000.0))
+        self.assertEqual((ground.crs, ground.body, level().crs, level().body), ("WGS 84 / UTM zone 33N", "Earth", "local", None))
+        route = ground.plan((500005.0, 5000010.0), (500025.0, 5000010.0))
+        ground.write_route(route, self.at / "earth.geojson")
+        places = json.loads((self.at / "earth.geojson").read_text())["features"][0]["geometry"]["coordinates"]
+        # Closed form: one metre east of the central meridian, 15 degrees, is 1/(0.9996 N cos(latitude)) rad.
+        latitude = math.radians(places[0][1])
+        normal_m = 6378137.0 / math.sqrt(1.0 - 0.00669437999014 * math.sin(latitude) ** 2)
+        self.assertAlmostEqual(places[0][0], 15.0 + math.degrees(5.0 / (0.9996 * normal_m * math.cos(latitude))), places=10)
+        again = ground.plan(f"{places[0][1]!r}d,{places[0][0]!r}d", f"{places[-1][1]!r}d,{places[-1][0]!r}d")
+        self.assertAlmostEqual(again.length_m, 20.0, places=4)
+
+    def test_the_version_is_that_of_the_program(self):
+        said = subprocess.run([os.environ["TALUS_PROGRAM"], "--version"], capture_output=True, text=True).stdout
+        self.assertIn(talus.__version__, said.split())
 
 
 class BackgroundTest(unittest.TestCase):
@@ -378,25 +523,36 @@ class TypesTest(unittest.TestCase):
         signature = function.__doc__.splitlines()[0].split(" -> ")[0]
         return [name for name in re.findall(r"(?:\(|, )(\w+): ", signature) if name != "self"]
 
+    def same_text(self, node, real):
+        """The stub has the text that help() prints."""
+        first, _, rest = (real.__doc__ or "").partition("\n")
+        text = " ".join((rest if " -> " in first else first + " " + rest).split())
+        self.assertEqual(" ".join((ast.get_docstring(node) or "").split()), text, node.name)
+        self.assertTrue(text or node.name == "__init__", node.name)
+
     def test_stubs_name_what_there_is(self):
         module = talus._talus
         stub = ast.parse((pathlib.Path(talus.__file__).parent / "_talus.pyi").read_text())
-        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef) and node.name[0] != "_"}
         functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
         self.assertEqual({*classes, *functions}, {name for name in dir(module) if not name.startswith("_")})
         for name, node in functions.items():
             self.assertEqual(self.parameters(node), self.documented(getattr(module, name)), name)
+            self.same_text(node, getattr(module, name))
         for name, node in classes.items():
             if name == "InputError":
                 continue
             members = {m.name for m in node.body if isinstance(m, ast.FunctionDef)}
             members |= {m.target.id for m in node.body if isinstance(m, ast.AnnAssign)}
-            there = {m for m in dir(getattr(module, name)) if not m.startswith("_")}
+            there = {m for m in vars(getattr(module, name)) if not m.startswith("_")}
+            self.same_text(node, getattr(module, name))
             self.assertEqual({m for m in members if not m.startswith("_")}, there, name)
             for method in node.body:
                 if isinstance(method, ast.FunctionDef) and not method.decorator_list and method.name != "__len__":
                     real = getattr(getattr(module, name), method.name)
-                    self.assertEqual(self.parameters(method), self.documented(real), f"{name}.{method.name}")
+                    if method.name != "_repr_html_":
+                        self.assertEqual(self.parameters(method), self.documented(real), f"{name}.{method.name}")
+                        self.same_text(method, real)
 
 
 class SoilTest(Refusals):
@@ -425,13 +581,30 @@ class SoilTest(Refusals):
                 lines.append(f"0.13,0.16,{load_N},{slip},{torque_Nm},{sinkage_m},{pull_N}")
             table.write_text("\n".join(lines) + "\n")
             found = talus.estimate(table, method="sojourner")
-            call = [os.environ["TALUS_PROGRAM"], "estimate", str(table), "--method", "sojourner", "--json"]
-            said = json.loads(subprocess.run(call, capture_output=True, check=True).stdout)
+            said = run("estimate", table, "--method", "sojourner")
+            same = talus.estimate(table_of(table), method="sojourner")
+        self.assertEqual((same.cohesion_Pa, same.friction_angle_rad), (found.cohesion_Pa, found.friction_angle_rad))
         for name in ("cohesion_Pa", "friction_angle_rad", "rows_used"):
             self.assertAlmostEqual(getattr(found, name), said[name], places=9)
         self.assertEqual(found.covariance.shape, (2, 2))
 
+    def test_forces_on_a_wheel_are_those_of_the_program(self):
+        call = ("--soil", "sand", "--rover", "mer", "--slip", "0.3")
+        for words, more in (((), {}), (("--load", "90", "--slip-angle", "0.2"), dict(load_N=90.0, slip_angle_rad=0.2))):
+            forces, said = talus.wheel("sand", "mer", slip=0.3, **more), run("wheel", *call, *words)
+            self.assertEqual(forces, {name: said[name] for name in forces})
+        self.assertEqual(talus.wheel(talus.Soil("sand"), talus.Rover("mer"), slip=0.3), talus.wheel("sand", "mer", slip=0.3))
+        for error, word, soil, rover, more in (
+            (ValueError, "slip = 2.0", "sand", "mer", dict(slip=2.0)),
+            (ValueError, "load_N = -1, must be > 0", "sand", "mer", dict(slip=0.1, load_N=-1.0)),
+            (talus.InputError, "did you mean sand?", "snad", "mer", dict(slip=0.1)),
+            (TypeError, "rover must be a name", "sand", 3, dict(slip=0.1)),
+        ):
+            self.refused(error, word, lambda: talus.wheel(soil, rover, **more))
+
     def test_what_cannot_be_estimated_is_one_line(self):
+        columns = {"load_N": np.ones(3), "slip": np.ones(3)}
+        self.refused(talus.InputError, "columns:1: no column torque_Nm", lambda: talus.estimate(columns, method="sojourner"))
         self.refused(talus.InputError, "missing.csv", lambda: talus.estimate("missing.csv", method="sojourner"))
         self.refused(talus.InputError, "method", lambda: talus.estimate("missing.csv", method="guess"))
 
@@ -452,30 +625,26 @@ class SoilTest(Refusals):
             subprocess.run([program, "wheel", "--cases", folder / "cases.csv", "-o", folder / "forces.csv", "--quiet"], check=True)
             rows = [line.split(",") for line in (folder / "forces.csv").read_text().splitlines()]
             at = {column: k for k, column in enumerate(rows[0])}
-            table = ["run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m,side_force_N"]
+            table = ["bin,run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m,side_force_N"]
             for i, row in enumerate(rows[1:]):
                 get = lambda column: float(row[at[column]])
                 off = [1.0 + 0.02 * math.sin(12.9 * i * i + phase) for phase in (1, 2, 3)]
                 pull_N = get("drawbar_pull_N") + get("load_N") * (off[2] - 1.0) - (6.0 if i % 4 == 2 else 0.0)
                 table.append(
-                    f"{i // 12},{i % 4},{get('load_N')},{get('slip')},{get('torque_Nm') * off[0]},"
+                    f"{'east' if i < 60 else 'west'},{i // 12},{i % 4},{get('load_N')},{get('slip')},{get('torque_Nm') * off[0]},"
                     f"{get('sinkage_m') * off[1]},{pull_N},0.1,0.1,"
                 )
             for load_N, sinkage_m, force_N in ((80, 0.02, 15), (90, 0.02, 20), (70, 0.02, -9), (80, 0.11, ""), (-1, 0.02, "")):
-                table.append(f"20,1,{load_N},0.3,2,{sinkage_m},9,0.1,0.1,{force_N}")
+                table.append(f"east,20,1,{load_N},0.3,2,{sinkage_m},9,0.1,0.1,{force_N}")
             path, base = folder / "runs.csv", folder / "base.yaml"
             path.write_text("\n".join(table) + "\n")
             base.write_text("{soil: sandy_loam, model: wong-reece}\n")
             shares = []
             found = talus.trace(path, base=str(base), progress=shares.append)
-            said = json.loads(
-                subprocess.run(
-                    [program, "trace", path, "--base", base, "--model-out", folder / "written.yaml", "--json", "--quiet"],
-                    capture_output=True,
-                    check=True,
-                ).stdout
-            )
+            said = run("trace", path, "--base", base, "--model-out", folder / "written.yaml")
             self.assertEqual(found.model_text(), (folder / "written.yaml").read_text())
+            arrays = talus.trace(table_of(path), base=str(base))
+            self.assertEqual(arrays.model_text(), found.model_text().replace(str(path), "columns"))
             (folder / "refined.yaml").write_text(found.model_text())
             call = [program, "predict", path, "--model", folder / "refined.yaml", "-o", folder / "predicted.csv", "--quiet"]
             subprocess.run(call, check=True)
