@@ -95,9 +95,8 @@ void bindSimulation(py::module_& module) {
                          .seed = seed},
                         beliefOf(belief), progress);
       },
-      "Drives over true soils that the map does not know; true_soils: class number to soil where it "
-      "differs,\n"
-      "patches: (x_m, y_m, radius_m, soil). The map itself learns nothing.",
+      R"(Drives over true soils that the map does not know; true_soils: class number to soil where it differs,
+patches: (x_m, y_m, radius_m, soil). The map itself learns nothing.)",
       py::arg("map"), py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("true_soils") = py::dict(),
       py::arg("patches") = std::vector<std::tuple<double, double, double, py::object>>{},
       py::arg("belief") = "online", py::arg("seed") = 1, py::arg("progress") = py::none());

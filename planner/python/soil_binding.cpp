@@ -3,7 +3,6 @@
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/arrays.hpp>
@@ -23,19 +22,17 @@ using terramech::Rover;
 using terramech::Soil;
 using terramech::SoilEstimate;
 
-struct Asked {
-  std::string method, shear_modulus, prior, rover, model;
-};
-
-SoilEstimate estimate(const py::object& table, const Asked& asked, const py::object& progress) {
+SoilEstimate estimate(const py::object& table, const std::string& method, const std::string& shear_modulus,
+                      const std::string& prior, const std::string& rover, const std::string& model,
+                      const py::object& progress) {
   SoilEstimate found;
   withTable(table, [&](const std::string& path, const std::string&) {
     const EstimateOptions options{.table = path,
-                                  .method = asked.method,
-                                  .shear_modulus = asked.shear_modulus,
-                                  .prior = asked.prior,
-                                  .rover = asked.rover,
-                                  .model = asked.model};
+                                  .method = method,
+                                  .shear_modulus = shear_modulus,
+                                  .prior = prior,
+                                  .rover = rover,
+                                  .model = model};
     inBackground([&](const ProgressMonitor& watch) { found = terramech::estimateSoil(options, watch); },
                  progress);
   });
@@ -132,23 +129,14 @@ void bindSoil(py::module_& module) {
       .def_readonly("rows_used", &SoilEstimate::rows_used)
       .def_property_readonly("rows_rejected", [](const SoilEstimate& e) { return e.rejected.size(); })
       .def_readonly("warnings", &SoilEstimate::warnings);
-  module.def(
-      "estimate",
-      [](const py::object& table, const std::string& method, const std::string& shear_modulus,
-         const std::string& prior, const std::string& rover, const std::string& model,
-         const py::object& progress) {
-        return estimate(table, {method, shear_modulus, prior, rover, model}, progress);
-      },
-      "Soil from a telemetry CSV or a dict of its columns as arrays, as `talus estimate`. Ctrl-C ends it.",
-      py::arg("table"), py::kw_only(), py::arg("method") = "wong-reece", py::arg("shear_modulus") = "",
-      py::arg("prior") = "", py::arg("rover") = "", py::arg("model") = "", py::arg("progress") = py::none());
-  module.def(
-      "wheel", &wheel,
-      "Sinkage_m, entry_angle_rad, torque_Nm, drawbar_pull_N and side_force_N of a wheel, as `talus wheel`. "
-      "load_N: that\n"
-      "of the rover on level ground where it is None.",
-      py::arg("soil"), py::arg("rover"), py::kw_only(), py::arg("slip"), py::arg("load_N") = py::none(),
-      py::arg("slip_angle_rad") = 0.0);
+  module.def("estimate", &estimate, py::arg("table"), py::kw_only(), py::arg("method") = "wong-reece",
+             py::arg("shear_modulus") = "", py::arg("prior") = "", py::arg("rover") = "",
+             py::arg("model") = "", py::arg("progress") = py::none(),
+             "Soil from a telemetry CSV or a dict of its columns, as `talus estimate`. Ctrl-C ends it.");
+  module.def("wheel", &wheel, py::arg("soil"), py::arg("rover"), py::kw_only(), py::arg("slip"),
+             py::arg("load_N") = py::none(), py::arg("slip_angle_rad") = 0.0,
+             R"(Sinkage, entry angle, torque, drawbar pull and side force of a wheel, as `talus wheel`.
+load_N: that of the rover on level ground where it is None.)");
   module.def("soils", &terramech::librarySoils, "Names of the built-in soils.");
   module.def("rovers", &terramech::libraryRovers, "Names of the built-in rovers.");
 }

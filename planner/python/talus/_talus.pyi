@@ -322,8 +322,7 @@ class Map:
         points of cells, which takes longer."""
     @staticmethod
     def read(path: _Path, *, threads: int = 1) -> Map:
-        """A map that `talus costmap`, `talus update` or save() wrote, with its rover, soils and what wheels
-        taught."""
+        """A map that `talus costmap`, `talus update` or save() wrote, with its rover, soils and evidence."""
     def save(self, path: _Path) -> None:
         """Writes the map for read() and `talus plan --map`: the whole file or none."""
     def score(
@@ -335,8 +334,7 @@ class Map:
         """Judges all rows learned since the map was made or read again, by what all of them say of the sensors:
         the map is then that of one file of these rows."""
     def write_route(self, route: Route, path: _Path) -> None:
-        """Writes a route that plan() found here, as `talus plan -o`: the ending selects .geojson, .gpkg, .gpx,
-        .kml or .csv."""
+        """Writes a route that plan() found here, as `talus plan -o`: .geojson, .gpkg, .gpx, .kml or .csv."""
     @property
     def body(self) -> Optional[str]:
         """Earth, Moon, Mars, ...; None without a coordinate reference system."""
@@ -399,7 +397,7 @@ def estimate(
     model: str = "",
     progress: _Progress = None,
 ) -> SoilEstimate:
-    """Soil from a telemetry CSV or a dict of its columns as arrays, as `talus estimate`. Ctrl-C ends it."""
+    """Soil from a telemetry CSV or a dict of its columns, as `talus estimate`. Ctrl-C ends it."""
 def heights_from_points(
     points: _Floats,
     shape: tuple[int, int],
@@ -448,5 +446,5 @@ def wheel(
     load_N: Optional[float] = None,
     slip_angle_rad: float = 0.0,
 ) -> _WheelForces:
-    """Sinkage_m, entry_angle_rad, torque_Nm, drawbar_pull_N and side_force_N of a wheel, as `talus wheel`. load_N:
-    that of the rover on level ground where it is None."""
+    """Sinkage, entry angle, torque, drawbar pull and side force of a wheel, as `talus wheel`. load_N: that of the
+    rover on level ground where it is None."""
