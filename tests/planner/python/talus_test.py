@@ -346,8 +346,9 @@ class SiteTest(Refusals):
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.at = pathlib.Path(cls.folder.name)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.at = pathlib.Path(folder.name)
         run("generate", "craters", "--size", 80, "--resolution", 1, "--seed", 7, "-o", "moon.tif", cwd=cls.at)
         names = dict(soils="moon_soils.yaml", terrain="moon_classes.tif", rocks="moon_rocks.tif")
         cls.words = ["--rover", "lunar_micro", *(w for name, file in names.items() for w in ("--" + name, cls.at / file))]
@@ -355,17 +356,12 @@ class SiteTest(Refusals):
         cls.ground = talus.Map.from_files(cls.at / "moon.tif", rover="lunar_micro", **cls.files)
         cls.route = cls.ground.plan((15.0, 15.0), (65.0, 60.0), prove=True)
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
     def said(self, subcommand, *more):
         return run(subcommand, self.at / "moon.tif", *self.words, *more)
 
     def test_files_make_the_map_of_the_program(self):
         self.assertEqual({k: getattr(self.ground, k) for k in ("crs", "body")}, {k: run("info", self.at / "moon.tif")[k] for k in ("crs", "body")})
-        counts = np.bincount(self.ground.categories().ravel(), minlength=4)
-        named = dict(zip(("safe", "marginal", "dangerous", "unknown"), counts))
+        named = dict(zip(("safe", "marginal", "dangerous", "unknown"), np.bincount(self.ground.categories().ravel(), minlength=4)))
         self.assertEqual(self.said("costmap", "-o", self.at / "m.ot")["categories"], named)
         self.assertEqual(talus.Map.read(self.at / "m.ot").crs, self.ground.crs)
         plain = talus.Map(self.ground.heights, resolution_m=1.0, rover="lunar_micro", soils="lunar_nominal").plan((15.0, 15.0), (65.0, 60.0))
@@ -433,8 +429,7 @@ class SiteTest(Refusals):
         scale = 290 / max(np.ptp(self.route["x_m"]), np.ptp(self.route["y_m"]))  # Closed form: the track fills 290 units, north up
         np.testing.assert_allclose(drawn[-1] - drawn[0], scale * np.array([np.diff(x)[0], -np.diff(y)[0]]), atol=0.11)
         self.assertEqual((drawn.min(), drawn[:, 0].max() - drawn[:, 0].min()), (5.0, 290.0))
-        none = level().plan((5.0, 5.0), (900.0, 9.0))
-        self.assertIn("goal_invalid", none._repr_html_())
+        self.assertIn("goal_invalid", level().plan((5.0, 5.0), (900.0, 9.0))._repr_html_())
         for html in (page, track):
             self.assertNotIn("http", html)
             self.assertLess(len(html), 20000)
