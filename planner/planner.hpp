@@ -138,6 +138,13 @@ class Map {
 using planner::Route;
 using planner::RouteVertex;
 
+/// What a given polyline costs, as a route with the planner "none". A polyline that may not be driven has the status
+/// NoRoute, an infinite cost, and energy and time of the cells with finite values.
+struct Score : Route {
+  std::vector<planner::Violation> violations{};  ///< places where it may not be driven, with the reason
+  std::optional<Route> best{};  ///< with PlanRequest::prove: the route of plan() between its ends
+};
+
 /// Planner of routes: one of Talus' own planners, or a planner from a shared library (a plugin), which runs in a
 /// child process. The search takes account of the chassis and the risk limit of the request. Each route is checked
 /// with planner::violations(), and each vertex has the elevation of the map. If there is no route, the result has the
@@ -173,6 +180,11 @@ class Planner {
   /// NoRoute is not a proof, because routes that the overview does not resolve are missed. Of the optional
   /// constraints only via points are supported.
   Route plan(planner::WindowedMap& map, const PlanRequest& request);
+
+  /// Returns what a polyline of at least one point costs on a map under the cost function of the planners. Of the
+  /// request, `chassis` (checked, too), `prove` (also plans between the ends) and `watch` are used.
+  Score score(const costmap::TraversabilityMap& map, const std::vector<maps::Point>& path,
+              PlanRequest request = {});
 
  private:
   struct State;

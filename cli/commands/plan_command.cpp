@@ -63,7 +63,7 @@ PlanRequest requestOf(const PlanOptions& options, const PlannerCapabilities& off
                       const Context& context) {
   const maps::ElevationMap& map = ground.map.elevation();
   PlanRequest request;
-  requireRouteFormat(options.output, map);
+  planner::requireRouteFormat(options.output, map);
   if (options.pairs.empty()) {
     request.start = maps::readPlace(options.start, map, "--start");
     request.goal = maps::readPlace(options.goals.front(), map, "--goal");
@@ -104,7 +104,8 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   const planner::RouteOrigin origin = originOf(ground, context);
   const auto document = routeGeoJson(route, ground.map.elevation(), origin);
   if (!options.output.empty() && !(options.corridor_percent > 0.0))
-    writeRoute(options.output, document, ground.map.elevation(), context);
+    planner::writeRoute(options.output, document, ground.map.elevation(),
+                        [&](std::string_view line) { context.warn(line); });
   if (options.html.empty() && options.png.empty()) return;
   const ProgressMonitor drawing = context.watch("draw");
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
@@ -450,7 +451,7 @@ int run(const PlanOptions& asked, Context& context) {
     readMission(options);
     if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
   }
-  if (!context.force) checkFormat(options.output, options.pairs.empty() ? kRouteFiles : "FILE.csv");
+  if (!context.force) checkFormat(options.output, options.pairs.empty() ? planner::kRouteFiles : "FILE.csv");
   requirePlaces(options);
   Planner planner = plannerOf(options, context);
   if (!options.whole_field && !(options.corridor_percent > 0.0) && !options.ground.is_cost &&

@@ -1,7 +1,6 @@
 // talus score DEM --path FILE: cost of a polyline under the planners' cost function.
-#include <chrono>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,9 +14,10 @@
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
-#include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/plan/named_planner.hpp>
+#include <talus/planner/planner.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/route_json.hpp>
 
@@ -40,32 +40,22 @@ nlohmann::ordered_json scoreJson(const std::vector<planner::Violation>& violatio
   return list;
 }
 
-// The best route between the ends of the polyline, with a proof.
-planner::Plan provenPlan(const planner::Segment& ends, const Ground& ground, const Context& context) {
-  planner::Problem problem{.map = ground.map.published(), .start = ends.from, .goal = ends.to};
-  problem.threads = context.workers();
-  problem.prove = true;
-  problem.watch = context.watch("prove");
-  return planner::NamedPlanner().plan(problem);
-}
-
-std::string betterText(const planner::Plan& best, double cost_J) {
-  if (best.status != planner::RouteStatus::Found) return fmt::format("best route  {}\n", best.reason);
-  return fmt::format("best route  {:.6g} J", best.cost_J) +
-         (std::isfinite(cost_J) ? fmt::format(", {:.1f} % less\n", 100.0 * (1.0 - best.cost_J / cost_J))
+std::string betterText(const Route& best, double cost_J) {
+  if (!best.found()) return fmt::format("best route  {}\n", best.reason);
+  return fmt::format("best route  {:.6g} J", best.cost) +
+         (std::isfinite(cost_J) ? fmt::format(", {:.1f} % less\n", 100.0 * (1.0 - best.cost / cost_J))
                                 : "\n");
 }
 
-std::string scoreText(const planner::Route& route, const std::vector<planner::Violation>& violations) {
-  const planner::RouteSummary& s = route;
-  std::string text =
-      fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
-      (std::isnan(s.time_s)
-           ? ""
-           : fmt::format("energy      {:.6g} J\ntime        {:.6g} s\n", s.energy_J, s.time_s)) +
-      fmt::format("length      {:.6g} m\n", s.length_m) + fmt::format("violations  {}\n", violations.size());
+std::string scoreText(const Score& s) {
+  std::string text = fmt::format("cost        {:.6g} J (lower bound {:.6g} J)\n", s.cost, s.lower_bound) +
+                     (std::isnan(s.time_s) ? ""
+                                           : fmt::format("energy      {:.6g} J\ntime        {:.6g} s\n",
+                                                         s.energy_J, s.time_s)) +
+                     fmt::format("length      {:.6g} m\n", s.length_m) +
+                     fmt::format("violations  {}\n", s.violations.size());
   std::string last;
-  for (const auto& v : violations) {
+  for (const auto& v : s.violations) {
     const std::string line = fmt::format("  {:.2f},{:.2f}: {}\n", v.place.x_m, v.place.y_m, v.reason);
     if (line != last) text += line;  // several pieces in one cell have the same place
     last = line;
@@ -90,18 +80,6 @@ void bind(CLI::App& command, ScoreOptions& options) {
   command.add_flag("--prove", options.prove,
                    "also plan between the ends: the proven bound, and the cost of the best route");
   groupOptions(command, "Path");
-}
-
-// Violations of the polyline: those of the map, and those of the chassis if a chassis is specified.
-std::vector<planner::Violation> violationsOf(const std::vector<maps::Point>& points, const std::string& kind,
-                                             const costmap::TraversabilityMap& map) {
-  auto all = planner::violations(*map.published(), points);
-  for (auto& violation : planner::violationsAtEnds(*map.published(), planner::endPoses(points),
-                                                   [&map](maps::Cell c) { return map.surface().hazards(c); }))
-    all.push_back(std::move(violation));
-  if (const auto chassis = chassisOf(kind, map))
-    for (auto& violation : chassis->violations(points)) all.push_back(std::move(violation));
-  return all;
 }
 
 void requirePath(const ScoreOptions& options) {
@@ -135,34 +113,25 @@ int run(const ScoreOptions& options, Context& context) {
   requirePath(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const auto map = ground.map.published();
-  planner::Plan plan;
-  plan.points = pointsOf(options, ground, context);
+  const auto points = pointsOf(options, ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const auto violations = violationsOf(plan.points, options.chassis, ground.map);
-  plan.status = violations.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
-  plan.cost_J = planner::MotionCost(map).along(plan.points);
-  if (!violations.empty()) plan.cost_J = INFINITY;
-  const planner::Segment ends{plan.points.front(), plan.points.back()};
-  std::optional<planner::Plan> best;
-  if (options.prove) best = provenPlan(ends, ground, context);
-  plan.lower_bound_J =
-      std::min(plan.cost_J,
-               best ? best->lower_bound_J : planner::LowerBound()(map, ends, 0.0, context.watch("bound")));
+  PlanRequest request{.prove = options.prove, .watch = context.watch(options.prove ? "prove" : "bound")};
+  if (auto chassis = chassisOf(options.chassis, ground.map))
+    request.chassis = std::make_shared<const planner::Chassis>(*std::move(chassis));
+  const Score score = Planner({.threads = context.workers()}).score(ground.map, points, request);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  const planner::Route route = annotated(plan, {.map = *map, .planner = "none"});
   if (context.json) {
-    auto json = summaryJson(route);
-    if (!violations.empty()) json["status"] = "infeasible";
-    json["violations"] = scoreJson(violations);
-    if (best)
-      json["best_cost"] = std::isfinite(best->cost_J) ? nlohmann::ordered_json(best->cost_J) : nullptr;
+    auto json = summaryJson(score);
+    if (!score.found()) json["status"] = "infeasible";
+    json["violations"] = scoreJson(score.violations);
+    if (score.best)
+      json["best_cost"] = score.best->found() ? nlohmann::ordered_json(score.best->cost) : nullptr;
     json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
     printJson(json);
   } else {
-    print(scoreText(route, violations) + (best ? betterText(*best, plan.cost_J) : ""));
+    print(scoreText(score) + (score.best ? betterText(*score.best, score.cost) : ""));
   }
-  return violations.empty() ? Exit::kDone : Exit::kNo;
+  return score.found() ? Exit::kDone : Exit::kNo;
 }
 
 }  // namespace

@@ -8,10 +8,9 @@
 #include <nettle/base64.h>
 
 #include <talus/cli/draw/canvas.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
-
-using terramech::Category;
 
 std::uint32_t pixel(Colour c) {
   const auto byte = [](double v) {
@@ -21,18 +20,8 @@ std::uint32_t pixel(Colour c) {
          byte(c.blue * c.alpha);
 }
 
-Colour colourOf(Category category) {
-  switch (category) {
-    case Category::Safe:
-      return rgb(0xF2FFF8);
-    case Category::Marginal:
-      return rgb(0xE58E10);
-    case Category::Dangerous:
-      return rgb(0x9E1020);
-    case Category::Unknown:
-      break;
-  }
-  return rgb(0x000000);
+Colour colourOf(terramech::Category category) {
+  return rgb(planner::categoryColour(category));
 }
 
 Colour seriesColour(std::size_t i) {

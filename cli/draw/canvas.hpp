@@ -34,9 +34,7 @@ constexpr Colour faded(Colour c, double alpha) {
   return c;
 }
 
-/// Returns the colour of a category: white with a trace of green, amber, dark red and black. Lightness
-/// decreases with danger in equal steps (99, 66, 33, 0 of CIE L*), so that the colours stay distinguishable
-/// for colour-blind readers, in grey print and under the shading of lit().
+/// Returns planner::categoryColour().
 Colour colourOf(terramech::Category category);
 
 /// The headings in which planners enter a cell.

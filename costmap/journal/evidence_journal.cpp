@@ -4,7 +4,7 @@
 #include <sqlite3.h>
 
 #include <talus/common/common.hpp>
-#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/costmap/journal/journal_database.hpp>
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <talus/costmap/costmap.hpp>
-#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>

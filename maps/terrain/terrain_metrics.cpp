@@ -7,7 +7,7 @@
 #include <string>
 
 #include <talus/common/parallel_for.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace talus::maps {
 

@@ -9,8 +9,8 @@
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/planner/check/annotation.hpp>
-#include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/polyline.hpp>

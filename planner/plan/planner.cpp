@@ -1,17 +1,22 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include <talus/costmap/costmap.hpp>
+#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/chassis_planner.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>
+#include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/problem.hpp>
 
 namespace talus {
@@ -182,6 +187,40 @@ Route Planner::plan(planner::WindowedMap& map, const PlanRequest& request) {
                                       .planner = name(),
                                       .kinematics = problem.kinematics,
                                       .watch = request.watch});
+}
+
+Score Planner::score(const costmap::TraversabilityMap& map, const std::vector<maps::Point>& path,
+                     PlanRequest request) {
+  if (path.empty()) throw std::invalid_argument("score: the path has no point");
+  const auto costs = map.published();
+  std::vector<planner::Violation> all = planner::violations(*costs, path, request.watch);
+  const auto add = [&all](const std::vector<planner::Violation>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  add(planner::violationsAtEnds(*costs, planner::endPoses(path),
+                                [&map](maps::Cell cell) { return map.surface().hazards(cell); }));
+  if (request.chassis) add(request.chassis->violations(path));
+  Plan plan;
+  plan.points = path;
+  plan.status = all.empty() ? planner::RouteStatus::Found : planner::RouteStatus::NoRoute;
+  if (all.empty()) plan.cost_J = planner::MotionCost(costs).along(path);
+  request.start = path.front();
+  request.goal = path.back();
+  request.chassis = nullptr;
+  std::optional<Route> best;
+  if (request.prove) best = this->plan(costs, request);
+  const double bound_J =
+      best ? best->lower_bound
+           : planner::LowerBound()(costs, {request.start, request.goal}, 0.0, request.watch);
+  plan.lower_bound_J = std::min(plan.cost_J, bound_J);
+  planner::AnnotationInput none{.map = *costs};
+  none.planner = "none";
+  none.watch = request.watch;
+  Score score;
+  static_cast<Route&>(score) = planner::annotated(plan, none);
+  score.violations = std::move(all);
+  score.best = std::move(best);
+  return score;
 }
 
 }  // namespace talus

@@ -1,10 +1,19 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <future>
 #include <optional>
 
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 
 namespace py = pybind11;
 
@@ -59,6 +68,60 @@ py::array_t<double> rowsOf(const py::object& given, const std::string& name, int
                           ")");
   if (!holds<double>(array) && !holds<float>(array)) wrongType(array, name, "float32 or float64");
   return py::array_t<double>(array);
+}
+
+// A column of a table as text: numbers with 17 digits, which restore a double, and nothing for NaN (not measured).
+std::vector<std::string> textsOf(const std::string& column, const py::handle& given) {
+  if (!py::isinstance<py::array>(given) || given.cast<py::array>().ndim() != 1)
+    throw py::type_error("column '" + column + "' must be a numpy array of one dimension");
+  const auto array = given.cast<py::array>();
+  const char kind = array.dtype().kind();
+  std::vector<std::string> texts;
+  if (kind == 'U') {
+    for (const py::handle text : array.attr("tolist")())
+      texts.push_back(terramech::csvField(text.cast<std::string>()));
+    return texts;
+  }
+  if (kind != 'f' && kind != 'i' && kind != 'u')
+    throw py::type_error("column '" + column + "': dtype " + std::string(py::str(array.dtype())) +
+                         ", must be a number or text");
+  const py::array_t<double> numbers(array);
+  for (py::ssize_t row = 0; row < numbers.size(); ++row) {
+    const double value = numbers.unchecked<1>()(row);
+    texts.push_back(std::isnan(value) ? "" : fmt::format("{:.17g}", value));
+  }
+  return texts;
+}
+
+// A file in memory.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("columns", MFD_CLOEXEC)) {}
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(descriptor_); }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+void writeColumns(const py::dict& columns, const std::string& path) {
+  std::vector<std::vector<std::string>> texts;
+  std::ofstream out(path);
+  for (const auto& [name, values] : columns) {
+    const std::string column = py::str(name);
+    texts.push_back(textsOf(column, values));
+    if (texts.back().size() != texts.front().size())
+      throw py::value_error("column '" + column + "' has " + std::to_string(texts.back().size()) +
+                            " values, must be " + std::to_string(texts.front().size()) + " as the first");
+    out << (texts.size() > 1 ? "," : "") << terramech::csvField(column);
+  }
+  for (std::size_t row = 0; !texts.empty() && row < texts.front().size(); ++row)
+    for (std::size_t k = 0; k < texts.size(); ++k) out << (k == 0 ? '\n' : ',') << texts[k][row];
+  out << '\n';
+  out.close();
+  if (!out) throw std::runtime_error("no memory for the columns");
 }
 
 }  // namespace
@@ -120,6 +183,33 @@ std::vector<maps::Point> pointsOf(const py::object& given, const std::string& na
       throw py::value_error(name + "[" + std::to_string(i) + "] is not finite");
   }
   return points;
+}
+
+void withTable(const py::object& given,
+               const std::function<void(const std::string&, const std::string&)>& work) {
+  if (!py::isinstance<py::dict>(given)) {
+    const std::string path = given.cast<std::filesystem::path>().string();
+    return work(path, path);
+  }
+  const MemoryFile file;
+  writeColumns(given.cast<py::dict>(), file.path());
+  const auto named = [&file](std::string text) {
+    if (const auto at = text.find(file.path()); at != std::string::npos)
+      text.replace(at, file.path().size(), "columns");
+    return text;
+  };
+  try {
+    work(file.path(), "columns");
+  } catch (const InputError& error) {
+    throw InputError({named(error.parts().where), named(error.parts().reason), error.parts().remedy});
+  } catch (const std::domain_error& error) {
+    throw std::domain_error(named(error.what()));
+  }
+}
+
+void warn(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines)
+    if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 void inBackground(const std::function<void(const ProgressMonitor&)>& work, const py::object& progress) {

@@ -60,6 +60,15 @@ pybind11::array viewOf(const maps::Raster<T>& raster, pybind11::handle owner) {
       {width * static_cast<pybind11::ssize_t>(sizeof(T)), static_cast<pybind11::ssize_t>(sizeof(T))}, owner);
 }
 
+/// Calls `work` with the path of a table and its name for people. `table` is a path, or a dict of columns: arrays of one
+/// dimension and equal length, of numbers (NaN: not measured) or text; its name is "columns", also in errors of `work`.
+/// Throws TypeError or ValueError for other columns.
+void withTable(const pybind11::object& table,
+               const std::function<void(const std::string& path, const std::string& name)>& work);
+
+/// Issues each line as a UserWarning of Python.
+void warn(const std::vector<std::string>& lines);
+
 /// Runs `work` in a separate thread without the GIL. Meanwhile the calling thread checks for Ctrl-C 20 times
 /// per second and calls `progress` (may be None) with the completed share of the work, [0, 1]. Ctrl-C or an
 /// exception of `progress` requests a stop of the work; the exception is rethrown after the work has ended.

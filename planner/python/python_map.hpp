@@ -1,64 +1,34 @@
 #pragma once
 
-#include <map>
 #include <memory>
-#include <string>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
 #include <talus/planner/c/session.hpp>
-#include <talus/planner/route/route_json.hpp>
 
 namespace talus::planner {
 
-/// Map class of the Python package, based on a session of the C interface. One thread at a time may use an
-/// object.
-class PythonMap {
- public:
-  /// Layers of the map as Python objects.
-  struct Layers {
-    pybind11::object heights, classes, rocks, keep_out;  ///< arrays of equal shape, or None
-    pybind11::dict costs;  ///< cost layers: name of the layer, and array of additional costs [J/m]
-  };
-  /// Rover, soils and placement of the map.
-  struct Ground {
-    terramech::Rover rover;
-    pybind11::object soils;          ///< name of a soil or a Soil; or dict from class number to name or Soil
-    costmap::TravelPolicy policy{};  ///< safety policy and weights of the cost function
-    double resolution_m = 1.0;       ///< side length of a cell, > 0
-    maps::Point south_west{};        ///< south-western corner of the map
-    int threads = 1;                 ///< number of threads, >= 1
-  };
-  PythonMap(const Layers& layers, const Ground& ground);
-  explicit PythonMap(Map map) : session_(std::make_shared<Session>(std::move(map))) {}
-  /// Reads a map file; `threads` is the number of threads, >= 1.
-  static std::unique_ptr<PythonMap> read(const std::string& path, int threads);
+/// Map of the Python package: a session of the C interface, the settings of its planner, and the files of which it was
+/// made. One thread at a time may use an object.
+struct PythonMap {
+  explicit PythonMap(Map built, std::vector<InputFile> from = {})
+      : session(std::make_shared<Session>(std::move(built))), files(std::move(from)) {}
 
-  const costmap::TraversabilityMap& map() const noexcept { return session_->map.ground(); }
+  const costmap::TraversabilityMap& map() const noexcept { return session->map.ground(); }
 
-  /// Updates the layers in a window with the south-western corner `south_west`; heights may be None.
-  void patch(const Layers& layers, maps::Point south_west);
-  /// Adds wheel telemetry to the map. `telemetry` contains columns or is the path of a file. Returns the
-  /// number of rows used.
-  std::size_t learn(const pybind11::object& telemetry);
-  /// Evaluates all telemetry rows again that were added since the map was created or read
-  /// (DriveIntake::settle()).
-  void settle();
-  /// Writes a map file.
-  void save(const std::string& path) const;
-  /// Writes the route in the GeoJSON format of `talus plan`.
-  void writeRoute(const Route& route, const std::string& path) const;
-  /// Plans a route; `progress` may be None (see inBackground()).
-  Route plan(const PlannerSettings& settings, const PlanRequest& request, const pybind11::object& progress);
-  /// Returns the map with its window moved by a number of tiles (64 x 64 cells) in x and y.
-  PythonMap moved(maps::Cell tiles) const;
+  /// Exclusive access for one call; does not wait, because the caller holds the GIL.
+  std::unique_lock<std::mutex> held() const {
+    std::unique_lock lock(session->work, std::try_to_lock);
+    if (!lock.owns_lock())
+      throw std::runtime_error("another thread works on this map; wait for it, or give each thread its own");
+    return lock;
+  }
 
- private:
-  std::shared_ptr<Session> session_;
-  PlannerSettings settings_{};
-  std::vector<InputFile> files_;  // files from which the map was read
+  std::shared_ptr<Session> session;
+  PlannerSettings settings{};
+  std::vector<InputFile> files;
 };
 
 }  // namespace talus::planner

@@ -1,36 +1,17 @@
-#include <array>
 #include <cstddef>
 #include <utility>
 
 #include <pybind11/stl.h>
 
+#include <talus/planner/planner.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/planner/route/route.hpp>
+#include <talus/planner/route/route_json.hpp>
 
 namespace py = pybind11;
 
 namespace talus::planner {
 namespace {
-
-constexpr std::pair<const char*, double RouteVertex::*> kColumns[] = {
-    {"x_m", &RouteVertex::x_m},
-    {"y_m", &RouteVertex::y_m},
-    {"elevation_m", &RouteVertex::elevation_m},
-    {"heading_rad", &RouteVertex::heading_rad},
-    {"slope_along_rad", &RouteVertex::slope_along_rad},
-    {"slope_across_rad", &RouteVertex::slope_across_rad},
-    {"slip", &RouteVertex::slip},
-    {"slip_angle_rad", &RouteVertex::slip_angle_rad},
-    {"side_force_over_load", &RouteVertex::side_force_over_load},
-    {"stability_margin_rad", &RouteVertex::stability_margin_rad},
-    {"sinkage_m", &RouteVertex::sinkage_m},
-    {"torque_Nm", &RouteVertex::torque_Nm},
-    {"drawbar_pull_margin", &RouteVertex::drawbar_pull_margin},
-    {"energy_J", &RouteVertex::energy_J},
-    {"time_s", &RouteVertex::time_s},
-    {"immobilisation_risk", &RouteVertex::immobilisation_risk},
-};
 
 const Route& routeOf(const py::object& self) {
   return self.cast<const Route&>();
@@ -39,7 +20,7 @@ const Route& routeOf(const py::object& self) {
 // View of one member of all vertices, with the size of a vertex as stride.
 py::array column(const py::object& self, const std::string& name) {
   const auto& vertices = routeOf(self).vertices;
-  for (const auto& [known, field] : kColumns)
+  for (const auto& [known, field] : kVertexColumns)
     if (name == known)
       return viewOf(vertices.empty() ? nullptr : &(vertices.front().*field),
                     {static_cast<py::ssize_t>(vertices.size())},
@@ -49,7 +30,7 @@ py::array column(const py::object& self, const std::string& name) {
 
 std::vector<std::string> columnNames() {
   std::vector<std::string> names;
-  for (const auto& [name, field] : kColumns) names.emplace_back(name);
+  for (const auto& [name, field] : kVertexColumns) names.emplace_back(name);
   return names;
 }
 
@@ -73,6 +54,7 @@ void bindRoute(py::module_& module) {
       .def_property_readonly("length_m", [](const Route& r) { return r.length_m; })
       .def_property_readonly("max_slip", [](const Route& r) { return r.max_slip; })
       .def_property_readonly("max_slope_rad", [](const Route& r) { return r.max_slope_rad; })
+      .def_property_readonly("gap", [](const Route& r) { return r.gap; })
       .def_property_readonly("planner", [](const Route& r) { return r.planner; })
       .def_property_readonly(
           "immobilisation_risk",
@@ -83,6 +65,25 @@ void bindRoute(py::module_& module) {
         return "<talus.Route " + std::string(name(r.status)) + ", " + std::to_string(r.vertices.size()) +
                " vertices>";
       });
+  py::class_<Score, Route>(module, "Score",
+                           "What a polyline costs: a route, and where and why it may not be driven.")
+      .def_property_readonly(
+          "status", [](const Score& s) { return std::string(s.violations.empty() ? "found" : "infeasible"); },
+          "found, or infeasible: its cost is then infinite")
+      .def_property_readonly(
+          "violations",
+          [](const Score& s) {
+            std::vector<std::tuple<double, double, std::string>> all;
+            for (const Violation& v : s.violations) all.emplace_back(v.place.x_m, v.place.y_m, v.reason);
+            return all;
+          },
+          "(x_m, y_m, reason) each")
+      .def_readonly("best", &Score::best, "With prove: the best route between the ends, else None.");
+  py::list categories;
+  for (const auto category : {terramech::Category::Safe, terramech::Category::Marginal,
+                              terramech::Category::Dangerous, terramech::Category::Unknown})
+    categories.append(py::make_tuple(terramech::name(category), categoryColour(category)));
+  module.attr("_CATEGORIES") = py::tuple(categories);
   route.attr("COLUMNS") = py::tuple(py::cast(columnNames()));
 }
 

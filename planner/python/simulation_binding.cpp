@@ -17,12 +17,6 @@ namespace {
 
 using Pair = std::pair<double, double>;
 
-terramech::Soil soilOf(const py::handle& given) {
-  if (py::isinstance<terramech::Soil>(given)) return given.cast<terramech::Soil>();
-  if (py::isinstance<py::str>(given)) return terramech::loadSoil(given.cast<std::string>());
-  throw py::type_error("a true soil must be a name or a talus.Soil");
-}
-
 SoilKnowledge beliefOf(const std::string& word) {
   std::string all;
   for (const SoilKnowledge belief : {SoilKnowledge::Geometry, SoilKnowledge::Prior, SoilKnowledge::OnLine,
@@ -101,9 +95,8 @@ void bindSimulation(py::module_& module) {
                          .seed = seed},
                         beliefOf(belief), progress);
       },
-      "Drives over true soils that the map does not know; true_soils: class number to soil where it "
-      "differs,\n"
-      "patches: (x_m, y_m, radius_m, soil). The map itself learns nothing.",
+      R"(Drives over true soils that the map does not know; true_soils: class number to soil where it differs,
+patches: (x_m, y_m, radius_m, soil). The map itself learns nothing.)",
       py::arg("map"), py::arg("start"), py::arg("goal"), py::kw_only(), py::arg("true_soils") = py::dict(),
       py::arg("patches") = std::vector<std::tuple<double, double, double, py::object>>{},
       py::arg("belief") = "online", py::arg("seed") = 1, py::arg("progress") = py::none());

@@ -1,11 +1,9 @@
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
@@ -20,24 +18,22 @@ namespace {
 
 using namespace terramech;
 
-struct Asked {
-  std::filesystem::path table;
-  std::string base, rover;
-  double significance = TraceOptions{}.significance;
-  std::uint64_t seed = 1;
-};
-
-TableTrace trace(const Asked& asked, const py::object& progress) {
-  if (!(asked.significance >= 1e-3 && asked.significance <= 0.5))
-    throw py::value_error("significance = " + std::to_string(asked.significance) + ", must be 0.001 to 0.5");
+TableTrace trace(const py::object& table, const std::string& base, const std::string& rover,
+                 double significance, std::uint64_t seed, const py::object& progress) {
+  if (!(significance >= 1e-3 && significance <= 0.5))
+    throw py::value_error("significance = " + std::to_string(significance) + ", must be 0.001 to 0.5");
   TableTrace found;
-  inBackground(
-      [&](const ProgressMonitor& watch) {
-        const TableTraceOptions how{.base = baseModel(asked.base, asked.rover),
-                                    .search = {.significance = asked.significance, .seed = asked.seed}};
-        found = traceTable(readTraceTable(asked.table), how, watch);
-      },
-      progress);
+  withTable(table, [&](const std::string& path, const std::string& name) {
+    inBackground(
+        [&](const ProgressMonitor& watch) {
+          const TableTraceOptions how{.base = baseModel(base, rover),
+                                      .search = {.significance = significance, .seed = seed}};
+          Telemetry rows = readTraceTable(path);
+          rows.source = name;
+          found = traceTable(rows, how, watch);
+        },
+        progress);
+  });
   return found;
 }
 
@@ -122,8 +118,8 @@ void bindTrace(py::module_& module) {
   bindEffect(module);
   py::class_<TableTrace> trace_class(
       module, "Trace",
-      "What a wheel model lacks. Errors are root mean squares by channel, as shares of load, of load times\n"
-      "radius (torque) or of radius (sinkage).");
+      R"(What a wheel model lacks. Errors are root mean squares by channel, as shares of load, of load times radius
+(torque) or of radius (sinkage).)");
   trace_class
       .def_property_readonly(
           "verdict", [](const TableTrace& t) { return std::string(name(t.answer.verdict)); },
@@ -145,18 +141,12 @@ void bindTrace(py::module_& module) {
       });
   bindErrors(trace_class);
   module.def(
-      "trace",
-      [](const std::filesystem::path& table, const std::string& base, const std::string& rover,
-         double significance, std::uint64_t seed, const py::object& progress) {
-        return trace({table, base, rover, significance, seed}, progress);
-      },
-      "Effects that a wheel model lacks, from a telemetry CSV, as `talus trace`. base: a soil or model "
-      "file,\n"
-      "without it a soil is fitted; rover: supplies wheel dimensions missing from the file. The GIL is\n"
-      "released, Ctrl-C ends it. progress: called with 0 to 1.",
-      py::arg("table"), py::kw_only(), py::arg("base") = "", py::arg("rover") = "",
+      "trace", &trace, py::arg("table"), py::kw_only(), py::arg("base") = "", py::arg("rover") = "",
       py::arg("significance") = TraceOptions{}.significance, py::arg("seed") = 1,
-      py::arg("progress") = py::none());
+      py::arg("progress") = py::none(),
+      R"(Effects that a wheel model lacks, from a telemetry CSV or a dict of its columns, as `talus trace`.
+base: a soil or model file, without it a soil is fitted; rover: supplies wheel dimensions missing from the file.
+The GIL is released, Ctrl-C ends it. progress: called with 0 to 1.)");
 }
 
 }  // namespace talus::planner

@@ -14,7 +14,7 @@
 #include <talus/maps/maps.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace {
 

@@ -131,7 +131,7 @@ TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
 const std::set<std::string>& toBeRewritten() {
   static const std::set<std::string> headers{
       "costmap/evidence/block_evidence.hpp",  "costmap/evidence/evidence_bricks.hpp",
-      "costmap/evidence/evidence_field.hpp",  "costmap/evidence/wheel_observation.hpp",
+      "costmap/evidence/evidence_field.hpp",  "costmap/evidence/observation_fault.hpp",
       "costmap/telemetry/drive_evidence.hpp",
   };
   return headers;

@@ -38,7 +38,8 @@ struct PublishedCase {
 std::vector<PublishedCase> publishedWheels(const std::string& name, const ProgressMonitor& watch);
 std::vector<PublishedCase> publishedRoutes(const std::string& name, const ProgressMonitor& watch);
 
-/// The file in the folder that an environment variable states; empty if there is none.
-std::string sharedFile(const char* variable, const std::string& file);
+/// The file in the folder that an environment variable states; if there is none, empty, and the remark of the case says
+/// what is needed.
+std::string sharedFile(const char* variable, const std::string& file, PublishedCase& made);
 
 }  // namespace talus::reproduce

@@ -108,7 +108,7 @@ PublishedCase lunarPlanner(const ProgressMonitor& watch) {
                               "the heights along the route and r = 0.004, the greatest of the map; theirs is "
                               "the least of 847 weights"};
   const std::string file =
-      sharedFile("TALUS_REAL_MAPS", "moon_aristarchus_imp_4m8_dem_slope_rockabundance.tif");
+      sharedFile("TALUS_REAL_MAPS", "moon_aristarchus_imp_4m8_dem_slope_rockabundance.tif", made_case);
   if (file.empty()) return made_case;
   const maps::ElevationMap map = maps::readElevation(file, {.band = 1});
   const double cell_m = map.grid().resolution_m;
@@ -249,7 +249,7 @@ PublishedCase planBench(const ProgressMonitor& watch) {
                               "\"no route\" is a success"};
   for (const char* name :
        {"moon_lola_npc_2km_5m.tif", "mars_gale_hirise_1m.tif", "mars_ctx_gale_square_20m.tif"}) {
-    const std::string file = sharedFile("TALUS_REAL_MAPS", name);
+    const std::string file = sharedFile("TALUS_REAL_MAPS", name, made_case);
     if (file.empty()) return made_case;
     const maps::ElevationMap map = maps::readElevation(file, {});
     const maps::Grid& grid = map.grid();
@@ -291,10 +291,12 @@ PublishedCase planBench(const ProgressMonitor& watch) {
 
 }  // namespace
 
-std::string sharedFile(const char* variable, const std::string& file) {
+std::string sharedFile(const char* variable, const std::string& file, PublishedCase& made) {
   const char* folder = std::getenv(variable);
   const std::string path = folder != nullptr ? (std::filesystem::path(folder) / file).string() : "";
-  return std::filesystem::exists(path) ? path : "";
+  if (std::filesystem::exists(path)) return path;
+  made.remark = fmt::format("not rebuilt: set {} to the folder of {}", variable, file);
+  return "";
 }
 
 std::vector<PublishedCase> publishedRoutes(const std::string& name, const ProgressMonitor& watch) {

@@ -109,7 +109,7 @@ PublishedCase heldOut(const std::string& name, const std::string& file, const st
       .remark = "rms error on the rows held out (" + request +
                 "), from the default soil; theirs: ridge regression on the columns and their squares "
                 "(golub_1979) of the same rows"};
-  const std::string path = sharedFile("TALUS_MEASURED_DATA", file);
+  const std::string path = sharedFile("TALUS_MEASURED_DATA", file, made);
   if (path.empty()) return made;
   const TraceInput input = traceInput(readTraceTable(path), baseModel("", ""), {});
   constexpr std::array kNames{"DP/W", "z/r", "T/(rW)", "F/W"};
@@ -133,7 +133,7 @@ PublishedCase slipAngles(const ProgressMonitor& watch) {
       .remark =
           "means of the rows at a slip of 0.7 to 0.8, which are held out of the trace, from the "
           "default soil; the scatter of one run is 0.03 to 0.05 in DP/W"};
-  const std::string path = sharedFile("TALUS_MEASURED_DATA", "cmu_testbed/runs.csv");
+  const std::string path = sharedFile("TALUS_MEASURED_DATA", "cmu_testbed/runs.csv", made);
   if (path.empty()) return made;
   const TraceInput input = traceInput(readTraceTable(path), baseModel("", ""), {});
   const auto left = leftOut(input.rows.trial, "slip=0.7..0.8", path);
@@ -164,7 +164,7 @@ PublishedCase cuadriga() {
       .remark =
           "error of the charge of a drive from the others, over its mean; theirs: all 16 drives by "
           "hand, ours: the 10 of the table by `talus trace --formula`"};
-  const std::string path = sharedFile("TALUS_MEASURED_DATA", "cuadriga_hill/drives.csv");
+  const std::string path = sharedFile("TALUS_MEASURED_DATA", "cuadriga_hill/drives.csv", made);
   if (path.empty()) return made;
   const FormulaTrace trace = traceFormula(readTelemetry(path), "charge_As = a*distance_m + b*height_m");
   made.lines.push_back({"distance and height [-]", 0.084, trace.base_held / trace.mean});

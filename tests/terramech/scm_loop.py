@@ -67,6 +67,8 @@ def loop(talus, what, seen, unseen):
 
 
 def main():
+    if len(sys.argv) < 2:
+        sys.exit("scm_loop.py DATA [TALUS]: DATA is missing, the folder of scm_loam_pass1.csv and the other tables")
     data = sys.argv[1]
     talus = sys.argv[2] if len(sys.argv) > 2 else "build/release/cli/talus"
     noisy = {name: rows_of(f"{data}/noisy/scm_loam_{name}.csv") for name in

@@ -146,7 +146,8 @@ maps::ElevationMap mapOf(const maps::Ellipsoid& body) {
 
 std::string write(const Folder& folder, const std::string& name, const maps::ElevationMap& map) {
   Context context;
-  writeRoute(folder / name, routeGeoJson(exampleRoute(), map, {.files = {}, .seed = 7}), map, context);
+  planner::writeRoute(folder / name, routeGeoJson(exampleRoute(), map, {.files = {}, .seed = 7}), map,
+                      [&](std::string_view line) { context.warn(line); });
   return folder / name;
 }
 

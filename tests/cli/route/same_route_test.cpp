@@ -1,8 +1,6 @@
-// The program and the C++, C and Python interfaces plan the same route for the same request.
+// The program and the C++ and C interfaces plan the same route for the same request; tests/planner/python compares
+// Python with the program.
 #include <cmath>
-#include <cstdlib>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,9 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <talus.h>
 
-#include <talus/costmap/costmap.hpp>
 #include <talus/planner/planner.hpp>
-#include <talus/terramech/terramech_io.hpp>
+#include <talus/planner/site/site.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"
@@ -79,18 +76,11 @@ class SameRoute : public ::testing::Test {
     return answer;
   }
 
-  std::shared_ptr<const costmap::CostGrid> map() const {
-    costmap::MapLayers layers;
-    layers.elevation.elevation_m = maps::Raster<float>(
-        {.width = kWidth, .height = kHeight, .resolution_m = 1.0, .south_west = {}}, heights());
-    const auto rover = terramech::loadRover(folder_ / "rover.yaml");
-    const auto prior = terramech::loadSoilPrior(folder_ / "soil.yaml");
-    return costmap::TraversabilityMap(
-               std::move(layers),
-               std::make_shared<const costmap::GroundModel>(costmap::GroundModel::Parts{
-                   .rover = rover, .classes = {costmap::groundClass(0, prior, rover)}, .policy = {}}),
-               {})
-        .published();
+  Answer byCpp() const {
+    SiteFiles files{
+        .elevation = folder_ / "bumpy.asc", .soil = folder_ / "soil.yaml", .rover = folder_ / "rover.yaml"};
+    files.elevation.read.resolution_m = 1.0;
+    return answerOf(Planner().plan(Map(readSite(files)), kThere));
   }
 
   static std::vector<float> heights() {
@@ -102,7 +92,6 @@ class SameRoute : public ::testing::Test {
   }
 
   static Answer byC();
-  Answer byPython() const;
 
   Folder folder_;
 };
@@ -150,38 +139,11 @@ Answer SameRoute::byC() {
   return answer;
 }
 
-Answer SameRoute::byPython() const {
-  std::string text;
-  for (const float h : heights()) text += fmt::format("{} ", h);
-  folder_.write("heights.txt", text);
-  folder_.write(
-      "plan.py",
-      fmt::format("import numpy, talus\n"
-                  "heights = numpy.loadtxt('heights.txt', numpy.float32).reshape({}, {})\n"
-                  "ground = talus.Map(heights, resolution_m=1.0, rover=talus.Rover('rover.yaml'), "
-                  "soils=talus.Soil('soil.yaml'))\n"
-                  "route = ground.plan(({}, {}), ({}, {}))\n"
-                  "with open('route.txt', 'w') as out:\n"
-                  "    print(repr(float(route.cost_J)), file=out)\n"
-                  "    for v in zip(route['x_m'], route['y_m'], route['elevation_m']):\n"
-                  "        print(*(repr(float(value)) for value in v), file=out)\n",
-                  kHeight, kWidth, kThere.start.x_m, kThere.start.y_m, kThere.goal.x_m, kThere.goal.y_m));
-  const std::string call = fmt::format("cd '{}' && PYTHONPATH='{}' '{}' plan.py", folder_.path().string(),
-                                       TALUS_PYTHONPATH, TALUS_PYTHON);
-  EXPECT_EQ(std::system(call.c_str()), 0);
-  std::istringstream in(fileContent(folder_ / "route.txt"));
-  Answer answer;
-  in >> answer.cost;
-  for (Vertex v{}; in >> v.x_m >> v.y_m >> v.elevation_m;) answer.vertices.push_back(v);
-  return answer;
-}
-
 TEST_F(SameRoute, EveryInterfaceYieldsTheSameRoute) {
-  const Answer route = answerOf(Planner().plan(map(), kThere));
+  const Answer route = byCpp();
   ASSERT_GT(route.vertices.size(), 20U);
   EXPECT_TRUE(std::isfinite(route.vertices.front().elevation_m));
-  std::vector<std::pair<std::string, Answer>> others{{"the program", byProgram()}, {"C", byC()}};
-  if (!std::string(TALUS_PYTHON).empty()) others.emplace_back("Python", byPython());
+  const std::vector<std::pair<std::string, Answer>> others{{"the program", byProgram()}, {"C", byC()}};
   for (const auto& [who, other] : others) {
     EXPECT_EQ(other.cost, route.cost) << who;
     EXPECT_EQ(other.vertices, route.vertices) << who;

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <random>
 
+#include <nlohmann/json.hpp>
+
 #include <talus/cli/soil/trace_report.hpp>
 
 namespace talus::cli {
@@ -22,6 +24,13 @@ TEST(ChannelReport, OnlyWholeRowsAreShownOverSlip) {
   EXPECT_EQ(plot.series[0].x, (std::vector{0.2, 0.4}));
   EXPECT_EQ(plot.series[0].y, (std::vector{0.3, 0.1}));
   EXPECT_EQ(plot.series[1].y, (std::vector{0.31, 0.12}));
+}
+
+TEST(ChannelReport, UnmeasuredChannelsAreOmitted) {
+  EXPECT_EQ(errorsJson({0.5, NAN, 0.25, NAN}).dump(),
+            R"({"drawbar_pull_over_load":0.5,"torque_over_load_radius":0.25})");
+  EXPECT_EQ(changeText({0.1, NAN, 0.03, NAN}, {0.05, NAN, 0.02, NAN}),
+            " drawbar_pull_over_load 0.1000 -> 0.0500 torque_over_load_radius 0.0300 -> 0.0200");
 }
 
 using testing::ElementsAre;

@@ -7,7 +7,7 @@
 #include <site_fixture.hpp>
 
 #include <talus/costmap/evidence/evidence.hpp>
-#include <talus/costmap/evidence/wheel_observation.hpp>
+#include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 

@@ -15,7 +15,7 @@
 #include <refused.hpp>
 
 #include <talus/maps/maps.hpp>
-#include <talus/maps/terrain/terrain_metrics.hpp>
+#include <talus/maps/terrain/plane_fit.hpp>
 
 namespace talus::maps {
 

@@ -1,6 +1,7 @@
 """The Python package: what it plans, that nothing is copied, what it refuses, threads and Ctrl-C."""
 
 import ast
+import base64
 import gc
 import hashlib
 import json
@@ -13,6 +14,10 @@ import subprocess
 import tempfile
 import threading
 import unittest
+import unittest.mock
+import warnings
+import xml.etree.ElementTree
+import zlib
 
 import numpy as np
 
@@ -39,6 +44,29 @@ def wheels(x_m, y_m, slip=0.5, sinkage_m=0.1, count=5):
     }
 
 
+def run(*words, cwd=None):
+    """Return what the program prints as JSON."""
+    call = [os.environ["TALUS_PROGRAM"], *map(str, words), "--json", "--quiet"]
+    return json.loads(subprocess.run(call, capture_output=True, cwd=cwd).stdout)
+
+
+def write_table(path, columns):
+    rows = [list(columns), *zip(*(np.asarray(values).tolist() for values in columns.values()))]
+    path.write_text("".join(",".join(map(str, row)) + "\n" for row in rows))
+
+
+def table_of(path):
+    """Return the columns of a CSV: numbers where all fields are numbers or empty, else text."""
+    rows = [line.split(",") for line in pathlib.Path(path).read_text().splitlines()]
+    columns = {}
+    for name, *fields in zip(*rows):
+        try:
+            columns[name] = np.array([float(f) if f else math.nan for f in fields])
+        except ValueError:
+            columns[name] = np.array(fields)
+    return columns
+
+
 class Refusals(unittest.TestCase):
     def refused(self, error, word, call):
         with self.assertRaises(error) as caught:
@@ -57,7 +85,6 @@ class MapTest(Refusals):
         self.assertEqual(route["x_m"][-1], 25.0)
         self.assertEqual(len(route), route["energy_J"].size)
         self.assertTrue(np.all(np.diff(route["energy_J"]) > 0))
-        self.assertEqual(set(route.COLUMNS) - {"x_m"}, set(route.COLUMNS[1:]))
 
     def test_nothing_is_copied(self):
         ground = level(classes=np.ones((60, 60), np.uint8), soils={1: "lunar_nominal"}, layers={"own": np.full((60, 60), 5.0)})
@@ -127,15 +154,12 @@ class MapTest(Refusals):
         self.assertEqual(level().learn(unmeasured), level().learn(wheels(10.25, 10.25)))
         with tempfile.TemporaryDirectory() as folder:
             table = pathlib.Path(folder) / "drive.csv"
-            columns = wheels(20.25, 20.25)
-            rows = [",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in zip(*columns.values())]
-            table.write_text("\n".join(rows) + "\n")
+            write_table(table, wheels(20.25, 20.25))
             ground.learn(table)
         self.assertLess(ground.beliefs()["pull_mean"][40, 40], before)
 
     def test_files_and_settling_are_those_of_the_program(self):
         """Property: a drive learned in two parts and settled is the map of `talus update`, and the route that of `talus plan`."""
-        program = os.environ["TALUS_PROGRAM"]
         hill = pathlib.Path(__file__).resolve().parents[3] / "examples" / "hill.asc"
         # Four wheels on alternating slopes; slip changes with slope, so the update can verify the sensors.
         moment, wheel = np.repeat(np.arange(80.0), 4), np.tile(np.arange(4.0), 80)
@@ -145,10 +169,8 @@ class MapTest(Refusals):
         columns.update(slip=slip, slope_rad=slope, heading_rad=0.0 * moment, sinkage_m=0.01 + 0.0 * moment, torque_Nm=3.65 * (0.2 + slope))
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            run = lambda *words: subprocess.run([program, *map(str, words), "--quiet"], check=True, stdout=subprocess.DEVNULL)
             run("costmap", hill, "--ignore-crs", "--resolution", 1, "--rover", "lunar_micro", "--soil", "lunar_nominal", "-o", folder / "map.ot")
-            rows = [",".join(columns)] + [",".join(repr(float(v)) for v in row) for row in zip(*columns.values())]
-            (folder / "drive.csv").write_text("\n".join(rows) + "\n")
+            write_table(folder / "drive.csv", columns)
             run("update", folder / "map.ot", folder / "drive.csv", "-o", folder / "driven.ot")
             parts = talus.Map.read(folder / "map.ot")
             untaught = parts.beliefs()["pull_mean"]
@@ -164,7 +186,9 @@ class MapTest(Refusals):
             driven.save(folder / "saved.ot")
             self.assertEqual((folder / "saved.ot").read_bytes(), (folder / "driven.ot").read_bytes())
             route = driven.plan((5.5, 15.5), (35.5, 15.5), prove=True)
-            driven.write_route(route, folder / "ours.geojson")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # local metres in GeoJSON
+                driven.write_route(route, folder / "ours.geojson")
             run("plan", hill, "--ignore-crs", "--resolution", 1, "--map", folder / "driven.ot", "--start", "5.5,15.5", "--goal", "35.5,15.5", "-o", folder / "its.geojson")
             ours, its = (json.loads((folder / f).read_text())["features"][0] for f in ("ours.geojson", "its.geojson"))
             self.assertEqual(ours["geometry"], its["geometry"])
@@ -175,7 +199,7 @@ class MapTest(Refusals):
             files = {file["role"]: file for file in ours["properties"]["inputs"]["files"]}
             self.assertEqual(files["map"], {"file": "driven.ot", "path": str(folder / "driven.ot"), "role": "map", "size": len(stored), "sha256": hashlib.sha256(stored).hexdigest()})
             self.assertEqual(files["elevation"]["file"], pathlib.Path(hill).name)
-            run("view", folder / "ours.geojson", "-o", folder / "ours.html")
+            subprocess.run([os.environ["TALUS_PROGRAM"], "view", folder / "ours.geojson", "-o", folder / "ours.html", "--quiet"], check=True)
 
     def test_files_that_cannot_be_are_one_line(self):
         self.refused(talus.InputError, "missing.ot", lambda: talus.Map.read("missing.ot"))
@@ -250,6 +274,12 @@ class MapTest(Refusals):
             (ValueError, "threads = 0", dict(threads=0)),
             (ValueError, "layer 'own'", dict(layers={"own": np.full((8, 8), -1.0)})),
             (ValueError, "layers['own']: shape", dict(layers={"own": np.zeros((2, 2))})),
+            (ValueError, "'allow_marginl' is not known; did you mean allow_marginal?", dict(thresholds={"allow_marginl": True})),
+            (TypeError, "allow_marginal must be True or False", dict(thresholds={"allow_marginal": 1})),
+            (TypeError, "time_weight_W must be a number", dict(thresholds={"time_weight_W": "1"})),
+            (ValueError, "slope_margin_rad = 3, must be in [0, 0.5]", dict(thresholds={"slope_margin_rad": 3})),
+            (talus.InputError, "crs 'EPSG:1': is not known; give an EPSG code", dict(crs="EPSG:1")),
+            (talus.InputError, "crs 'EPSG:4326': CRS 'WGS 84' is not projected", dict(crs="EPSG:4326")),
         ):
             self.refused(error, word, lambda: talus.Map(good, **{**how, **more}))
 
@@ -265,7 +295,8 @@ class MapTest(Refusals):
             (ValueError, "", lambda: ground.patch(patch, south_west=(0.1, 0.0))),
             (ValueError, "rocks: shape", lambda: ground.patch(patch, rocks=patch[:2], south_west=(0.0, 0.0))),
             (TypeError, "column 'slip' must be", lambda: ground.learn({**wheels(5.0, 5.0), "slip": [0.1] * 5})),
-            (TypeError, "column 'slip': dtype <U1", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.array(["a"] * 5)})),
+            (TypeError, "column 'slip': dtype bool", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.ones(5, bool)})),
+            (talus.InputError, "columns", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.array(["a"] * 5)})),
             (ValueError, "has 2 values, must be 5", lambda: ground.learn({**wheels(5.0, 5.0), "slip": np.zeros(2)})),
             (talus.InputError, "columns", lambda: ground.learn({**wheels(5.0, 5.0), "load_N": np.full(5, -1.0)})),
             (talus.InputError, "columns", lambda: ground.learn({"x_m": np.zeros(2)})),
@@ -274,6 +305,12 @@ class MapTest(Refusals):
             (ValueError, "shape (3,)", lambda: ground.dangers(np.zeros(3))),
             (ValueError, "is not finite", lambda: ground.dangers(np.full((2, 2), math.nan))),
             (ValueError, "leaves nothing", lambda: ground.moved(5, 0)),
+            (ValueError, "path: shape (3,)", lambda: ground.score(np.zeros(3))),
+            (ValueError, "the path has no point", lambda: ground.score(np.zeros((0, 2)))),
+            (talus.InputError, "the map spans x 0 to 30 m", lambda: ground.explain((99.0, 5.0))),
+            (TypeError, "place must be (x_m, y_m)", lambda: ground.explain(5.0)),
+            (talus.InputError, "place a,b: 'a' is not a number", lambda: ground.explain("a,b")),
+            (talus.InputError, "no.tif", lambda: talus.Map.from_files("no.tif")),
         ):
             self.refused(error, word, call)
         self.assertEqual(ground.version, version)
@@ -302,6 +339,113 @@ class MapTest(Refusals):
         # Closed form: the plane through the middles of the cells.
         plane = 0.02 * (route["x_m"] / 0.5 - 0.5) + 0.01 * (route["y_m"] / 0.5 - 0.5)
         np.testing.assert_allclose(route["elevation_m"], plane, atol=1e-6)
+
+
+class SiteTest(Refusals):
+    """What a generated site of the Moon gives here and in the program."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.at = pathlib.Path(folder.name)
+        run("generate", "craters", "--size", 80, "--resolution", 1, "--seed", 7, "-o", "moon.tif", cwd=cls.at)
+        names = dict(soils="moon_soils.yaml", terrain="moon_classes.tif", rocks="moon_rocks.tif")
+        cls.words = ["--rover", "lunar_micro", *(w for name, file in names.items() for w in ("--" + name, cls.at / file))]
+        cls.files = {{"terrain": "classes"}.get(name, name): str(cls.at / file) for name, file in names.items()}
+        cls.ground = talus.Map.from_files(cls.at / "moon.tif", rover="lunar_micro", **cls.files)
+        cls.route = cls.ground.plan((15.0, 15.0), (65.0, 60.0), prove=True)
+
+    def said(self, subcommand, *more):
+        return run(subcommand, self.at / "moon.tif", *self.words, *more)
+
+    def test_files_make_the_map_of_the_program(self):
+        self.assertEqual({k: getattr(self.ground, k) for k in ("crs", "body")}, {k: run("info", self.at / "moon.tif")[k] for k in ("crs", "body")})
+        named = dict(zip(("safe", "marginal", "dangerous", "unknown"), np.bincount(self.ground.categories().ravel(), minlength=4)))
+        self.assertEqual(self.said("costmap", "-o", self.at / "m.ot")["categories"], named)
+        self.assertEqual(talus.Map.read(self.at / "m.ot").crs, self.ground.crs)
+        plain = talus.Map(self.ground.heights, resolution_m=1.0, rover="lunar_micro", soils="lunar_nominal").plan((15.0, 15.0), (65.0, 60.0))
+        words = ("--rover", "lunar_micro", "--soil", "lunar_nominal", "--start", "15,15", "--goal", "65,60", "--no-proof")
+        self.assertEqual(plain.cost_J, run("plan", self.at / "moon.tif", *words, "-o", self.at / "plain.geojson")["cost"])
+        line = json.loads((self.at / "plain.geojson").read_text())["features"][0]["properties"]
+        for column in plain.COLUMNS:
+            np.testing.assert_array_equal(plain[column], np.array(line[column], float), err_msg=column)
+        self.refused(talus.InputError, "read it with Map.read()", lambda: talus.Map.from_files(self.at / "m.ot"))
+        with self.assertWarnsRegex(UserWarning, "no --rover: using default rover lunar_micro"):
+            talus.Map.from_files(self.at / "moon.tif", soil="lunar_nominal", window="0,0,40,40")
+
+    def test_a_route_is_written_by_its_ending(self):
+        there = ("--start", "15,15", "--goal", "65,60")
+        said = self.said("plan", *there, "-o", self.at / "its.csv")
+        self.assertEqual((self.route.cost_J, self.route.gap), (said["cost"], said["gap"]))
+        self.ground.write_route(self.route, self.at / "ours.csv")
+        self.assertEqual((self.at / "ours.csv").read_text(), (self.at / "its.csv").read_text())
+        self.ground.write_route(self.route, self.at / "ours.gpkg")
+        self.assertTrue((self.at / "ours.gpkg").read_bytes().startswith(b"SQLite format 3"))
+        self.assertAlmostEqual(self.said("score", "--path", self.at / "ours.gpkg")["cost"], self.route.cost_J, delta=1e-6)  # sums in another order
+        with self.assertWarnsRegex(UserWarning, "longitudes and latitudes are of Moon"):
+            self.ground.write_route(self.route, self.at / "ours.geojson")
+        inputs = json.loads((self.at / "ours.geojson").read_text())["features"][0]["properties"]["inputs"]
+        self.assertEqual(inputs["rover"], "lunar_micro")
+        self.assertEqual([file["file"] for file in inputs["files"]][:2], ["moon.tif", "moon_classes.tif"])
+        self.refused(talus.InputError, "places of Earth", lambda: self.ground.write_route(self.route, self.at / "r.kml"))
+
+    def test_thresholds_are_those_of_the_program(self):
+        words = ("--start", "15,15", "--goal", "65,60", "--no-proof", "--time-weight", "7", "--no-marginal", "--slope-uncertainty-deg", "2")
+        chosen = dict(time_weight_W=7.0, allow_marginal=False, slope_margin_rad=math.radians(2))
+        ground = talus.Map.from_files(self.at / "moon.tif", rover="lunar_micro", thresholds=chosen, **self.files)
+        cost_J = ground.plan((15.0, 15.0), (65.0, 60.0)).cost_J
+        self.assertEqual(cost_J, self.said("plan", *words)["cost"])
+        self.assertGreater(cost_J, self.route.cost_J)
+        self.assertEqual({name: ground.thresholds[name] for name in chosen}, chosen)
+
+    def test_explain_and_score_are_those_of_the_program(self):
+        for more, words in (({}, ()), (dict(heading_rad=1.5), ("--heading", "1.5"))):
+            said = self.said("explain", "--at", "50,50", *words)
+            why = self.ground.explain((50.0, 50.0), **more)
+            for cause in why["causes"]:  # JSON has neither NaN nor inf
+                cause.update({k: None for k in ("value", "std") if not math.isfinite(cause[k])})
+            self.assertEqual(why, said)
+        self.assertEqual(repr(self.ground.explain("50,50")), repr(self.ground.explain((50.0, 50.0))))
+        path = np.array([[15.0, 15.0], [65.0, 60.0]])
+        (self.at / "path.csv").write_text("x_m,y_m\n15,15\n65,60\n")
+        score, said = self.ground.score(path, prove=True), self.said("score", "--path", self.at / "path.csv", "--prove")
+        self.assertEqual((score.status, score.energy_J, score.best.cost_J), (said["status"], said["energy_J"], said["best_cost"]))
+        self.assertEqual(score.violations, [(v["x_m"], v["y_m"], v["reason"]) for v in said["violations"]])
+        own = self.ground.score(np.column_stack([self.route["x_m"], self.route["y_m"]]))
+        self.assertEqual((own.status, own.violations, own.best), ("found", [], None))
+        self.assertAlmostEqual(own.cost_J, self.route.cost_J, delta=1e-9 * own.cost_J)
+
+    def test_notebooks_show_maps_and_routes(self):
+        page = self.ground._repr_html_()
+        png = base64.b64decode(re.search("base64,([^']+)'", page)[1])
+        pixels = np.frombuffer(zlib.decompress(png[png.index(b"IDAT") + 4 : -16]), np.uint8).reshape(80, 81)
+        np.testing.assert_array_equal(pixels[::-1, 1:], self.ground.categories())  # the first byte of a line is its filter
+        track = self.route._repr_html_()
+        self.assertIn(f"<td>{self.route.length_m:.5g}</td>", track)
+        line = xml.etree.ElementTree.fromstring(re.search("<svg.*</svg>", track)[0])[0].get("points").split()
+        drawn = np.array([point.split(",") for point in line], float)
+        x, y = (self.route[k][:: len(self.route) - 1] for k in ("x_m", "y_m"))
+        scale = 290 / max(np.ptp(self.route["x_m"]), np.ptp(self.route["y_m"]))  # Closed form: the track fills 290 units, north up
+        np.testing.assert_allclose(drawn[-1] - drawn[0], scale * np.array([np.diff(x)[0], -np.diff(y)[0]]), atol=0.11)
+        self.assertEqual((drawn.min(), drawn[:, 0].max() - drawn[:, 0].min()), (5.0, 290.0))
+        self.assertIn("goal_invalid", level().plan((5.0, 5.0), (900.0, 9.0))._repr_html_())
+        for html in (page, track):
+            self.assertNotIn("http", html)
+            self.assertLess(len(html), 20000)
+
+    def test_arrays_have_a_coordinate_system(self):
+        ground = level(crs="EPSG:32633", south_west=(500000.0, 5000000.0))
+        self.assertEqual((ground.crs, ground.body, level().crs, level().body), ("WGS 84 / UTM zone 33N", "Earth", "local", None))
+        route = ground.plan((500005.0, 5000010.0), (500025.0, 5000010.0))
+        ground.write_route(route, self.at / "earth.geojson")
+        places = json.loads((self.at / "earth.geojson").read_text())["features"][0]["geometry"]["coordinates"]
+        # Closed form: one metre east of the central meridian, 15 degrees, is 1/(0.9996 N cos(latitude)) rad.
+        latitude = math.radians(places[0][1])
+        normal_m = 6378137.0 / math.sqrt(1.0 - 0.00669437999014 * math.sin(latitude) ** 2)
+        self.assertAlmostEqual(places[0][0], 15.0 + math.degrees(5.0 / (0.9996 * normal_m * math.cos(latitude))), places=10)
+        again = ground.plan(f"{places[0][1]!r}d,{places[0][0]!r}d", f"{places[-1][1]!r}d,{places[-1][0]!r}d")
+        self.assertAlmostEqual(again.length_m, 20.0, places=4)
 
 
 class BackgroundTest(unittest.TestCase):
@@ -378,25 +522,38 @@ class TypesTest(unittest.TestCase):
         signature = function.__doc__.splitlines()[0].split(" -> ")[0]
         return [name for name in re.findall(r"(?:\(|, )(\w+): ", signature) if name != "self"]
 
+    def same_text(self, node, real):
+        """The stub has the text that help() prints."""
+        first, _, rest = (real.__doc__ or "").partition("\n")
+        text = " ".join((rest if " -> " in first else first + " " + rest).split())
+        self.assertEqual(" ".join((ast.get_docstring(node) or "").split()), text, node.name)
+        self.assertTrue(text or node.name == "__init__", node.name)
+
     def test_stubs_name_what_there_is(self):
         module = talus._talus
         stub = ast.parse((pathlib.Path(talus.__file__).parent / "_talus.pyi").read_text())
-        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef) and node.name[0] != "_"}
         functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
         self.assertEqual({*classes, *functions}, {name for name in dir(module) if not name.startswith("_")})
+        said = subprocess.run([os.environ["TALUS_PROGRAM"], "--version"], capture_output=True, text=True).stdout
+        self.assertIn(module.__version__, said.split())
         for name, node in functions.items():
             self.assertEqual(self.parameters(node), self.documented(getattr(module, name)), name)
+            self.same_text(node, getattr(module, name))
         for name, node in classes.items():
             if name == "InputError":
                 continue
             members = {m.name for m in node.body if isinstance(m, ast.FunctionDef)}
             members |= {m.target.id for m in node.body if isinstance(m, ast.AnnAssign)}
-            there = {m for m in dir(getattr(module, name)) if not m.startswith("_")}
+            there = {m for m in vars(getattr(module, name)) if not m.startswith("_")}
+            self.same_text(node, getattr(module, name))
             self.assertEqual({m for m in members if not m.startswith("_")}, there, name)
             for method in node.body:
                 if isinstance(method, ast.FunctionDef) and not method.decorator_list and method.name != "__len__":
                     real = getattr(getattr(module, name), method.name)
-                    self.assertEqual(self.parameters(method), self.documented(real), f"{name}.{method.name}")
+                    if method.name != "_repr_html_":
+                        self.assertEqual(self.parameters(method), self.documented(real), f"{name}.{method.name}")
+                        self.same_text(method, real)
 
 
 class SoilTest(Refusals):
@@ -413,25 +570,35 @@ class SoilTest(Refusals):
     def test_an_estimate_is_that_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder:
             table = pathlib.Path(folder) / "runs.csv"
-            lines = ["wheel_radius_m,wheel_width_m,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N"]
-            for load_N, slip, torque_Nm, sinkage_m, pull_N in (
-                (30, 0.1, 1.0, 0.010, 4.0),
-                (30, 0.3, 1.8, 0.013, 8.0),
-                (60, 0.2, 2.7, 0.018, 10.0),
-                (60, 0.5, 4.2, 0.024, 15.0),
-                (90, 0.4, 5.6, 0.029, 18.0),
-                (90, 0.7, 6.8, 0.035, 22.0),
-            ):
-                lines.append(f"0.13,0.16,{load_N},{slip},{torque_Nm},{sinkage_m},{pull_N}")
-            table.write_text("\n".join(lines) + "\n")
+            columns = dict(wheel_radius_m=np.full(6, 0.13), wheel_width_m=np.full(6, 0.16), load_N=np.repeat([30.0, 60.0, 90.0], 2))
+            columns.update(slip=np.array([0.1, 0.3, 0.2, 0.5, 0.4, 0.7]), torque_Nm=np.array([1.0, 1.8, 2.7, 4.2, 5.6, 6.8]))
+            columns.update(sinkage_m=np.array([10, 13, 18, 24, 29, 35]) / 1000, drawbar_pull_N=np.array([4.0, 8.0, 10.0, 15.0, 18.0, 22.0]))
+            write_table(table, columns)
             found = talus.estimate(table, method="sojourner")
-            call = [os.environ["TALUS_PROGRAM"], "estimate", str(table), "--method", "sojourner", "--json"]
-            said = json.loads(subprocess.run(call, capture_output=True, check=True).stdout)
+            said = run("estimate", table, "--method", "sojourner")
+            same = talus.estimate(columns, method="sojourner")
+        self.assertEqual((same.cohesion_Pa, same.friction_angle_rad), (found.cohesion_Pa, found.friction_angle_rad))
         for name in ("cohesion_Pa", "friction_angle_rad", "rows_used"):
             self.assertAlmostEqual(getattr(found, name), said[name], places=9)
         self.assertEqual(found.covariance.shape, (2, 2))
 
+    def test_forces_on_a_wheel_are_those_of_the_program(self):
+        call = ("--soil", "sand", "--rover", "mer", "--slip", "0.3")
+        for words, more in (((), {}), (("--load", "90", "--slip-angle", "0.2"), dict(load_N=90.0, slip_angle_rad=0.2))):
+            forces, said = talus.wheel("sand", "mer", slip=0.3, **more), run("wheel", *call, *words)
+            self.assertEqual(forces, {name: said[name] for name in forces})
+        self.assertEqual(talus.wheel(talus.Soil("sand"), talus.Rover("mer"), slip=0.3), talus.wheel("sand", "mer", slip=0.3))
+        for error, word, soil, rover, more in (
+            (ValueError, "slip = 2.0", "sand", "mer", dict(slip=2.0)),
+            (ValueError, "load_N = -1, must be > 0", "sand", "mer", dict(slip=0.1, load_N=-1.0)),
+            (talus.InputError, "did you mean sand?", "snad", "mer", dict(slip=0.1)),
+            (TypeError, "rover must be a name", "sand", 3, dict(slip=0.1)),
+        ):
+            self.refused(error, word, lambda: talus.wheel(soil, rover, **more))
+
     def test_what_cannot_be_estimated_is_one_line(self):
+        columns = {"load_N": np.ones(3), "slip": np.ones(3)}
+        self.refused(talus.InputError, "columns:1: no column torque_Nm", lambda: talus.estimate(columns, method="sojourner"))
         self.refused(talus.InputError, "missing.csv", lambda: talus.estimate("missing.csv", method="sojourner"))
         self.refused(talus.InputError, "method", lambda: talus.estimate("missing.csv", method="guess"))
 
@@ -439,46 +606,33 @@ class SoilTest(Refusals):
         """Four wheels by the forward model, two percent off; wheel 2 pulls 6 N less than it should.
 
         Three rows have a side force and no slip angle, one is sunk to the axle, one has no load."""
-        program = os.environ["TALUS_PROGRAM"]
-        soil = talus.Soil("sandy_loam")
-        sinkage_modulus = soil.cohesive_modulus / 0.1 + soil.frictional_modulus
-        names = "cohesion_Pa friction_angle_rad sinkage_exponent sinkage_modulus shear_modulus_m c1 c2 wheel_radius_m wheel_width_m load_N slip"
-        strength = (soil.cohesion_Pa, soil.friction_angle_rad, soil.sinkage_exponent, sinkage_modulus, soil.shear_modulus_m)
-        cases = [(*strength, 0.43, 0.32, 0.1, 0.1, 60.0 + 8.0 * (i % 6), 0.1 + 0.05 * (i % 11)) for i in range(120)]
+        rover = talus.Rover("fido")
+        rover.wheel_radius_m, rover.wheel_width_m, rover.grouser_height_m, rover.grouser_count = 0.1, 0.1, 0.0, 0
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            lines = [",".join(names.split())] + [",".join(map(repr, case)) for case in cases]
-            (folder / "cases.csv").write_text("\n".join(lines) + "\n")
-            subprocess.run([program, "wheel", "--cases", folder / "cases.csv", "-o", folder / "forces.csv", "--quiet"], check=True)
-            rows = [line.split(",") for line in (folder / "forces.csv").read_text().splitlines()]
-            at = {column: k for k, column in enumerate(rows[0])}
-            table = ["run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m,side_force_N"]
-            for i, row in enumerate(rows[1:]):
-                get = lambda column: float(row[at[column]])
+            table = ["bin,run,wheel,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N,wheel_radius_m,wheel_width_m,side_force_N"]
+            for i in range(120):
+                load_N, slip = 60.0 + 8.0 * (i % 6), 0.1 + 0.05 * (i % 11)
+                forces = talus.wheel("sandy_loam", rover, slip=slip, load_N=load_N)
                 off = [1.0 + 0.02 * math.sin(12.9 * i * i + phase) for phase in (1, 2, 3)]
-                pull_N = get("drawbar_pull_N") + get("load_N") * (off[2] - 1.0) - (6.0 if i % 4 == 2 else 0.0)
+                pull_N = forces["drawbar_pull_N"] + load_N * (off[2] - 1.0) - (6.0 if i % 4 == 2 else 0.0)
                 table.append(
-                    f"{i // 12},{i % 4},{get('load_N')},{get('slip')},{get('torque_Nm') * off[0]},"
-                    f"{get('sinkage_m') * off[1]},{pull_N},0.1,0.1,"
+                    f"{'east' if i < 60 else 'west'},{i // 12},{i % 4},{load_N},{slip},{forces['torque_Nm'] * off[0]},"
+                    f"{forces['sinkage_m'] * off[1]},{pull_N},0.1,0.1,"
                 )
             for load_N, sinkage_m, force_N in ((80, 0.02, 15), (90, 0.02, 20), (70, 0.02, -9), (80, 0.11, ""), (-1, 0.02, "")):
-                table.append(f"20,1,{load_N},0.3,2,{sinkage_m},9,0.1,0.1,{force_N}")
+                table.append(f"east,20,1,{load_N},0.3,2,{sinkage_m},9,0.1,0.1,{force_N}")
             path, base = folder / "runs.csv", folder / "base.yaml"
             path.write_text("\n".join(table) + "\n")
             base.write_text("{soil: sandy_loam, model: wong-reece}\n")
             shares = []
             found = talus.trace(path, base=str(base), progress=shares.append)
-            said = json.loads(
-                subprocess.run(
-                    [program, "trace", path, "--base", base, "--model-out", folder / "written.yaml", "--json", "--quiet"],
-                    capture_output=True,
-                    check=True,
-                ).stdout
-            )
+            said = run("trace", path, "--base", base, "--model-out", folder / "written.yaml")
             self.assertEqual(found.model_text(), (folder / "written.yaml").read_text())
+            arrays = talus.trace(table_of(path), base=str(base))
+            self.assertEqual(arrays.model_text(), found.model_text().replace(str(path), "columns"))
             (folder / "refined.yaml").write_text(found.model_text())
-            call = [program, "predict", path, "--model", folder / "refined.yaml", "-o", folder / "predicted.csv", "--quiet"]
-            subprocess.run(call, check=True)
+            self.assertEqual(run("predict", path, "--model", folder / "refined.yaml", "-o", folder / "predicted.csv")["rows_refused"], 1)
         self.assertEqual(found.verdict, said["verdict"])
         self.assertEqual((found.rows_used, found.rows_rejected, found.beyond_axle), (120, 4, 1))
         self.assertEqual(
@@ -500,22 +654,13 @@ class SoilTest(Refusals):
         self.assertTrue(all(0.0 <= share <= 1.0 for share in shares))
 
     def test_ctrl_c_ends_a_trace(self):
-        with tempfile.TemporaryDirectory() as name:
-            path = pathlib.Path(name) / "runs.csv"
-            rng = np.random.default_rng(1)
-            lines = ["wheel_radius_m,wheel_width_m,load_N,slip,torque_Nm,sinkage_m,drawbar_pull_N"]
-            for _ in range(2000):
-                slip, load_N = rng.uniform(0.1, 0.8), rng.uniform(30.0, 90.0)
-                lines.append(
-                    f"0.13,0.16,{load_N},{slip},{load_N * 0.13 * (0.3 + 0.3 * slip)},{0.01 + 0.03 * slip},{load_N * (0.1 + 0.2 * slip)}"
-                )
-            path.write_text("\n".join(lines) + "\n")
+        rng, n = np.random.default_rng(1), np.ones(2000)
+        slip, load_N = rng.uniform(0.1, 0.8, 2000), rng.uniform(30.0, 90.0, 2000)
+        columns = dict(wheel_radius_m=0.13 * n, wheel_width_m=0.16 * n, load_N=load_N, slip=slip, sinkage_m=0.01 + 0.03 * slip)
+        columns.update(torque_Nm=load_N * 0.13 * (0.3 + 0.3 * slip), drawbar_pull_N=load_N * (0.1 + 0.2 * slip))
 
-            def interrupt(share):
-                raise KeyboardInterrupt
-
-            with self.assertRaises(KeyboardInterrupt):
-                talus.trace(path, progress=interrupt)
+        with self.assertRaises(KeyboardInterrupt):
+            talus.trace(columns, progress=unittest.mock.Mock(side_effect=KeyboardInterrupt))
 
     def test_what_cannot_be_traced_is_one_line(self):
         self.refused(talus.InputError, "missing.csv", lambda: talus.trace("missing.csv"))

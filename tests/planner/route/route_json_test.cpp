@@ -32,13 +32,17 @@ constexpr const char* kArrays[] = {"x_m",
 // bit.
 TEST(RouteJson, DocumentedFieldsArePresentWithOneValuePerVertex) {
   const Route route = exampleRoute();
-  const auto document = nlohmann::json::parse(routeGeoJson(route, exampleMap(), {.seed = 7}).dump());
+  const auto document = nlohmann::json::parse(
+      routeGeoJson(route, exampleMap(), {.files = {{.path = "x/dem.tif", .sha256 = "ba78"}}, .seed = 7})
+          .dump());
   const auto& feature = document["features"][0];
   const auto& properties = feature["properties"];
   for (const char* key : kArrays) EXPECT_EQ(properties[key].size(), route.vertices.size()) << key;
   for (const char* key : kSummary) EXPECT_TRUE(properties["summary"].contains(key)) << key;
   EXPECT_EQ(document["crs"], "local");  // the map has none
   EXPECT_EQ(properties["inputs"]["seed"], 7);
+  EXPECT_EQ(properties["inputs"]["files"][0]["file"], "dem.tif");
+  EXPECT_EQ(properties["inputs"]["files"][0]["sha256"], "ba78");
   EXPECT_EQ(feature["geometry"]["type"], "LineString");
   for (std::size_t i = 0; i < route.vertices.size(); ++i) {
     EXPECT_EQ(properties["x_m"][i].get<double>(), route.vertices[i].x_m);
@@ -60,14 +64,6 @@ TEST(RouteJson, ZeroLengthRouteIsALineAndUnknownValuesAreNull) {
   EXPECT_EQ(line[0], line[1]);
   EXPECT_EQ(line[0].size(), 2U);
   EXPECT_TRUE(document["features"][0]["properties"]["slip"][0].is_null());
-}
-
-TEST(RouteJson, InputsAreListedWithTheirDigest) {
-  const auto document =
-      routeGeoJson(exampleRoute(), exampleMap(), {.files = {{.path = "dem.tif", .sha256 = "ba7816bf"}}});
-  const auto& file = document["features"][0]["properties"]["inputs"]["files"][0];
-  EXPECT_EQ(file["file"], "dem.tif");
-  EXPECT_EQ(file["sha256"], "ba7816bf");
 }
 
 // Property: fields for controllers exist for drives only.

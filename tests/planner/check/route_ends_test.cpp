@@ -12,8 +12,8 @@
 #include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/planner/check/annotation.hpp>
-#include <talus/planner/check/cell_judge.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
@@ -21,7 +21,7 @@
 
 namespace talus::planner {
 
-namespace cell_judge_test {
+namespace route_ends_test {
 
 using Kind = CellJudgement::Kind;
 
@@ -202,6 +202,6 @@ TEST(RouteEnds, EndsOfADriveIncludeItsTurnsInPlaceThere) {
   EXPECT_GT(ends[4].place.x_m, 2.0);
 }
 
-}  // namespace cell_judge_test
+}  // namespace route_ends_test
 
 }  // namespace talus::planner

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <talus/costmap/surface/surface.hpp>
-#include <talus/planner/check/cell_judge.hpp>
+#include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/route/heading_set.hpp>
 
 namespace talus::planner {
