@@ -34,6 +34,7 @@ struct ReadOptions {
   /// Number of cells per side, >= 1, whose mean becomes one cell. Overviews (coarser copies) of a file are not
   /// read.
   int overview = 1;
+  bool frame_only = false;  ///< true: grid and georeference alone; the elevations are not read, and are 0
   /// Maximum number of cells; larger maps are rejected (the default takes 1.6 GB as float).
   std::uint64_t max_cells = 400'000'000;
 };

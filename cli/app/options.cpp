@@ -11,7 +11,7 @@
 
 #include <talus/cli/app/options.hpp>
 #include <talus/common/common.hpp>
-#include <talus/common/plausible.hpp>
+#include <talus/common/limits.hpp>
 
 namespace talus::cli {
 

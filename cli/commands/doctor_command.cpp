@@ -12,7 +12,7 @@
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/planner/route/problem.hpp>
 #include <talus/terramech/io/terramech_io.hpp>

@@ -14,8 +14,8 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/plan_options.hpp>
-#include <talus/cli/ground/truth_file.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
 #include <talus/common/common.hpp>

@@ -11,7 +11,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>

@@ -29,7 +29,7 @@
 #include <talus/maps/vector/vector_writer.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_risk.hpp>
-#include <talus/planner/plan/risk_planner.hpp>
+#include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/terramech/io/csv_reader.hpp>

@@ -29,7 +29,7 @@
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/commands/program.hpp>
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
 
 namespace talus::cli {

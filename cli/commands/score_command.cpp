@@ -8,7 +8,6 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/cli/ground/path_reader.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>

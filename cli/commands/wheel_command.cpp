@@ -9,7 +9,6 @@
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/cli/soil/wheel_case_table.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <talus/costmap/costmap.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/route/route_json.hpp>
@@ -98,5 +99,15 @@ Ground readOverview(const GroundOptions& options, const Context& context);
 /// Returns the ground at full resolution as a map that is read window by window. `overview` is the result of
 /// readOverview(). @throws InputError
 planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overview, const Context& context);
+
+}  // namespace talus::cli
+namespace talus::cli {
+
+/// Returns a polyline in map coordinates [m] from a file: the first line of a vector file, or a CSV table
+/// whose columns x_m and y_m (also x and y, easting and northing: map metres) or lat and lon (degrees of the map's
+/// georeference, WGS 84 on Earth) are named in any case. The polyline has at least one point. A route file of `talus plan` gives the
+/// exact values of its properties x_m, y_m. Coordinates of such a file that differ from these properties by
+/// more than a tenth of a cell were edited and are rejected. @throws InputError
+std::vector<maps::Point> readPath(const std::string& path, const maps::ElevationMap& map);
 
 }  // namespace talus::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/planner/simulation/simulation.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
@@ -76,5 +77,11 @@ struct MissionDraft {
 /// Returns the text of a mission file with all keys that the reader accepts. Keys without a value in the
 /// draft are comments with their meaning.
 std::string missionText(const MissionDraft& draft);
+
+/// Description of the format of TRUTH.yaml (true soils of a simulation) for the help.
+extern const char* const kTruthFormat;
+
+/// Returns the content of a truth file. Throws InputError with file, line and field.
+planner::Truth readTruth(const std::string& path);
 
 }  // namespace talus::cli

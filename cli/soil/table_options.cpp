@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <set>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,13 +13,17 @@
 
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/options.hpp>
+#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
+#include <talus/common/parallel_for.hpp>
+#include <talus/terramech/contact/wong_reece_batch.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
+
 namespace {
 
 using terramech::MappedColumn;
@@ -115,6 +123,215 @@ nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& r
   auto all = nlohmann::ordered_json::array();
   for (const auto& row : rows) all.push_back({{"line", row.line}, {"reason", row.reason}});
   return all;
+}
+
+namespace {
+
+using terramech::CsvReader;
+using terramech::CsvRow;
+using terramech::WheelCase;
+using terramech::WheelForces;
+
+struct InputColumn {
+  const char* name;
+  double WheelCase::*field;
+  bool optional = false;
+};
+
+constexpr InputColumn kInputs[] = {{"cohesion_Pa", &WheelCase::cohesion_Pa},
+                                   {"friction_angle_rad", &WheelCase::friction_angle_rad},
+                                   {"sinkage_exponent", &WheelCase::sinkage_exponent},
+                                   {"sinkage_modulus", &WheelCase::sinkage_modulus},
+                                   {"shear_modulus_m", &WheelCase::shear_modulus_m},
+                                   {"c1", &WheelCase::c1, true},
+                                   {"c2", &WheelCase::c2, true},
+                                   {"wheel_radius_m", &WheelCase::wheel_radius_m},
+                                   {"wheel_width_m", &WheelCase::wheel_width_m},
+                                   {"load_N", &WheelCase::load_N},
+                                   {"slip", &WheelCase::slip},
+                                   {"slip_angle_rad", &WheelCase::slip_angle_rad, true},
+                                   {"density_kg_m3", &WheelCase::density_kg_m3, true},
+                                   {"gravity_m_s2", &WheelCase::gravity_m_s2, true},
+                                   {"digging_exponent", &WheelCase::digging_exponent, true},
+                                   {"side_bulldozing", &WheelCase::side_bulldozing, true},
+                                   {"slip_sinkage_exponent", &WheelCase::slip_sinkage_exponent, true}};
+
+constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N",
+                                    "side_force_N"};
+
+constexpr double WheelForces::*kResultFields[] = {&WheelForces::sinkage_m, &WheelForces::entry_angle_rad,
+                                                  &WheelForces::torque_Nm, &WheelForces::drawbar_pull_N,
+                                                  &WheelForces::side_force_N};
+
+// Weight of a thousand tonnes: larger loads indicate wrong units, and the equilibrium search takes long to
+// fail.
+constexpr double kHeaviest_N = 1e7;
+
+bool isResult(const std::string& name) {
+  return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
+}
+
+/// Returns the column index of each input; empty for a missing optional input.
+std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const std::string& path) {
+  terramech::checkColumnUnits(reader.header(), wheelCaseColumns(), path);
+  std::vector<std::optional<std::size_t>> at;
+  std::string missing;
+  for (const InputColumn& input : kInputs) {
+    const auto found = std::find(reader.header().begin(), reader.header().end(), input.name);
+    at.emplace_back();
+    if (found != reader.header().end())
+      at.back() = static_cast<std::size_t>(found - reader.header().begin());
+    else if (!input.optional)
+      missing += (missing.empty() ? "" : ", ") + std::string(input.name);
+  }
+  if (missing.empty()) return at;
+  throw InputError({.where = path + ":1",
+                    .reason = "no column " + missing,
+                    .remedy = "add it to the header row, in SI units"});
+}
+
+/// A row and its case; `fault` is the reason if the row contains no valid case.
+struct Entry {
+  CsvRow row;
+  WheelCase wheel_case;
+  std::string fault;
+};
+
+Entry entryOf(CsvRow row, const std::vector<std::optional<std::size_t>>& at) {
+  Entry entry{std::move(row), {}, {}};
+  entry.fault = entry.row.fault;
+  for (std::size_t k = 0; k < at.size() && entry.fault.empty(); ++k) {
+    if (!at[k]) continue;
+    const std::string& field = entry.row.fields[*at[k]];
+    if (!terramech::parseNumber(field, entry.wheel_case.*kInputs[k].field))
+      entry.fault = fmt::format("{} = '{}', must be a number", kInputs[k].name, field);
+    else if (std::isfinite(entry.wheel_case.*kInputs[k].field) &&
+             !plausible(entry.wheel_case.*kInputs[k].field))
+      entry.fault = fmt::format("{} = {}, {}", kInputs[k].name, field, kPlausible);
+    else if (kInputs[k].field == &WheelCase::load_N && entry.wheel_case.load_N > kHeaviest_N)
+      entry.fault = fmt::format("load_N = {}, must be at most {:g}", field, kHeaviest_N);
+  }
+  return entry;
+}
+
+std::string reasonOf(const WheelCase& wheel_case) {
+  try {
+    static_cast<void>(terramech::equilibrium(wheel_case));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "has no equilibrium";
+}
+
+/// Returns true if the table has a slip angle column; side forces are written only then.
+bool hasSlipAngle(const std::vector<std::string>& header) {
+  return std::find(header.begin(), header.end(), "slip_angle_rad") != header.end();
+}
+
+class Writer {
+ public:
+  Writer(const std::filesystem::path& path, const std::vector<std::string>& header)
+      : file_(path), header_(header), results_(std::size(kResults) - (hasSlipAngle(header) ? 0 : 1)) {
+    writeKept(header);
+    for (std::size_t k = 0; k < results_; ++k) out_ << ',' << kResults[k];
+    out_ << '\n';
+  }
+
+  void write(const Entry& entry, const WheelForces* forces) {
+    writeKept(entry.row.fields);
+    for (std::size_t k = 0; k < results_; ++k) {
+      out_ << ',';
+      if (forces) out_ << fmt::format("{}", forces->*kResultFields[k]);
+    }
+    out_ << '\n';
+  }
+
+  void commit() { file_.commit(); }
+
+ private:
+  void writeKept(const std::vector<std::string>& fields) {
+    bool first = true;
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (isResult(header_[k])) continue;
+      if (!first) out_ << ',';
+      first = false;
+      if (k < fields.size()) out_ << terramech::csvField(fields[k]);
+    }
+  }
+
+  OutputFile file_;
+  std::vector<std::string> header_;
+  std::size_t results_;
+  std::ostream& out_ = file_.stream();
+};
+
+std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) {
+  std::vector<WheelCase> cases;
+  cases.reserve(entries.size());
+  for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
+  std::vector<WheelForces> forces(cases.size());
+  // Blocks of a multiple of four cases: the SIMD lane of a case, and thus its result, is independent of the
+  // number of threads.
+  constexpr std::size_t kBlock = 256;
+  parallelFor((cases.size() + kBlock - 1) / kBlock, threads, [&](std::size_t k) {
+    const std::size_t first = k * kBlock, count = std::min(kBlock, cases.size() - first);
+    const auto part = [&](auto& all) { return std::span(all).subspan(first, count); };
+    terramech::equilibria(part(cases), part(forces));
+  });
+  return forces;
+}
+
+void writeBlock(const std::vector<Entry>& entries, const std::vector<WheelForces>& forces, Writer& writer,
+                WheelCaseTable& table) {
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    std::string fault = entries[k].fault;
+    if (fault.empty() && std::isnan(forces[k].sinkage_m)) fault = reasonOf(entries[k].wheel_case);
+    writer.write(entries[k], fault.empty() ? &forces[k] : nullptr);
+    if (fault.empty())
+      ++table.solved;
+    else
+      table.refused.push_back({entries[k].row.line, fault});
+  }
+}
+
+void checkSolved(const WheelCaseTable& table, const std::string& path) {
+  if (table.solved > 0) return;
+  if (table.refused.empty())
+    throw InputError({.where = path, .reason = "no rows after the header", .remedy = "add rows"});
+  throw InputError({.where = path + ":" + std::to_string(table.refused.front().line),
+                    .reason = "no row can be solved; first reason: " + table.refused.front().reason,
+                    .remedy = "correct the rows"});
+}
+
+}  // namespace
+
+std::vector<std::string> wheelCaseColumns() {
+  std::vector<std::string> names;
+  for (const InputColumn& input : kInputs) names.emplace_back(input.name);
+  return names;
+}
+
+WheelCaseTable solveWheelTable(const terramech::TableFile& input, const std::filesystem::path& output,
+                               int threads, const ProgressMonitor& watch) {
+  constexpr std::size_t kBlock = 16384;
+  CsvReader reader{input};
+  const auto at = positions(reader, input.path);
+  Writer writer{output, reader.header()};
+  WheelCaseTable table;
+  table.replaced = std::any_of(reader.header().begin(), reader.header().end(), isResult);
+  std::vector<Entry> entries;
+  for (bool more = true; more;) {
+    CsvRow row;
+    while (entries.size() < kBlock && (more = reader.next(row)))
+      entries.push_back(entryOf(std::move(row), at));
+    writeBlock(entries, solved(entries, threads), writer, table);
+    entries.clear();
+    if (watch.stopped()) throw std::runtime_error("cancelled");
+    watch.report(reader.fraction());
+  }
+  checkSolved(table, input.path);
+  writer.commit();
+  return table;
 }
 
 }  // namespace talus::cli

@@ -70,6 +70,7 @@ enum class Refusal : std::uint8_t {
   Sinkage,    ///< the wheels sink so deep that the belly touches the ground
   Category,   ///< the policy does not allow the category of the ground at this slope
   Tips,       ///< the rover tips: the centre of mass is beyond the line between wheel contacts
+  Stated,     ///< no cost, or an infinite cost, is stated for the gradient
 };
 
 /// Returns the reason as text, e.g. "required drawbar pull above the available drawbar pull".
@@ -316,6 +317,7 @@ class TravelCost {
   struct Limits {
     double max_along = 0.36;   ///< greatest gradient along the heading, tan(max pitch)
     double max_across = 0.36;  ///< greatest gradient across the heading, tan(max roll)
+    bool stated = false;       ///< true: the costs and both gradients are stated, without rover and soil
     /// Geometry for the tipping limit; null: the rover never tips.
     std::shared_ptr<const terramech::RoverStance> stance{};
     /// Dimensions of the rover in the map plane; zeros: not known.

@@ -1,9 +1,6 @@
-#include <algorithm>
 #include <stdexcept>
 
-#include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/cost/learned_cells.hpp>
-#include <talus/costmap/cost/turn_price.hpp>
 
 namespace talus::costmap {
 

@@ -258,7 +258,7 @@ std::shared_ptr<const TravelStates> statedStates(
                         .time_s_per_m = unknown,
                         .risk_per_m = unknown,
                         .pull_margin = unknown,
-                        .refusal = std::isfinite(cost) ? Refusal::None : Refusal::Pull,
+                        .refusal = std::isfinite(cost) ? Refusal::None : Refusal::Stated,
                         .class_index = class_index};
       if (row > 0) {
         const TravelState& before = states[states.size() - TravelCurve::kBins];

@@ -8,13 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/costmap/cost/turn_price.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 #include <talus/terramech/numerics/functions.hpp>
-#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::costmap {
 namespace {
@@ -214,8 +213,11 @@ TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
 TravelCost::Limits GroundModel::limits() const {
   const terramech::Rover& rover = parts_.rover;
   if (const auto& stated = parts_.stated)
-    return {
-        .max_along = stated->max_along, .max_across = stated->max_across, .stance = nullptr, .outline = {}};
+    return {.max_along = stated->max_along,
+            .max_across = stated->max_across,
+            .stated = true,
+            .stance = nullptr,
+            .outline = {}};
   const bool tips = rover.centre_of_mass_height_m > 0.0;
   return {.max_along = std::tan(rover.max_pitch_rad),
           .max_across = std::tan(rover.max_roll_rad),

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 
 namespace talus::costmap {

@@ -12,7 +12,7 @@
 #include <gdal_priv.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
@@ -346,11 +346,15 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options) 
   const Selection chosen = select(path, options, map.notes);
   const auto& [file, band, from, box, grid] = chosen;
   refuseSize(grid, options, path);
+  map.georeference = from.georeference;
+  if (options.frame_only) {
+    map.elevation_m = Raster<float>(grid, 0.0F);
+    return map;
+  }
   HeightReader reader(chosen, path, options);
   std::vector<float> values =
       from.resampling.empty() ? asStored(chosen, reader, options) : resampled(chosen, reader, options, path);
   map.elevation_m = from.north_up ? northUp(grid, std::move(values)) : Raster<float>(grid, std::move(values));
-  map.georeference = from.georeference;
   map.reading = reader.heights.reading();
   map.notes.insert(map.notes.end(), reader.heights.notes.begin(), reader.heights.notes.end());
   if (!options.keep_holes) fillHoles(map.elevation_m, map.notes);

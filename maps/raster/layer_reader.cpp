@@ -15,7 +15,7 @@
 #include <ogr_spatialref.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/maps/grid/cover.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/maps/maps_io.hpp>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <talus/common/common.hpp>
-#include <talus/common/plausible.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/maps/maps.hpp>
 
 namespace talus::maps {

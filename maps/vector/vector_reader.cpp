@@ -20,8 +20,7 @@
 #include <ogrsf_frmts.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
-#include <talus/common/plausible.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/maps/grid/cover.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/maps/maps_io.hpp>

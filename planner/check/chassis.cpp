@@ -5,7 +5,7 @@
 
 #include <talus/maps/maps.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 
 namespace talus::planner {
 

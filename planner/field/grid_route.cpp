@@ -91,10 +91,11 @@ std::optional<Cell> nearest(const maps::Grid& grid, Point place, Wanted wanted) 
 }
 
 // Description of the hazard in a cell; empty if the cell has no hazard of its own.
-const char* inWords(costmap::Hazard found) noexcept {
+const char* inWords(costmap::Hazard found, bool stated) noexcept {
   using costmap::Hazard;
   if (has(found, Hazard::KeepOut)) return "a keep-out area, or where a layer refuses";
-  if (has(found, Hazard::Obstacle)) return "a terrain class declared impassable";
+  if (has(found, Hazard::Obstacle))
+    return stated ? "an infinite cost" : "a terrain class declared impassable";
   if (has(found, Hazard::Rocks)) return "rocks";
   if (has(found, Hazard::Step)) return "a step higher than the wheels climb";
   if (has(found, Hazard::Slope)) return "ground steeper than the rover may stand";
@@ -103,14 +104,16 @@ const char* inWords(costmap::Hazard found) noexcept {
 }
 
 // Reason for the clearance in a cell: the nearest cell with a hazard, or the map border if nearer.
-std::string clearOf(const maps::Grid& grid, Cell cell, const HazardsOf& hazards) {
+std::string clearOf(const costmap::CostGrid& map, Cell cell, const HazardsOf& hazards) {
+  const maps::Grid& grid = map.grid();
+  const bool stated = map.cost().limits().stated;
   const int to_rim =
       std::min({cell.column, cell.row, grid.width - 1 - cell.column, grid.height - 1 - cell.row}) + 1;
   const auto near = nearest(grid, grid.centre(cell), [&](Cell c) {
     return std::max(std::abs(c.column - cell.column), std::abs(c.row - cell.row)) <= to_rim &&
-           *inWords(hazards(c)) != '\0';
+           *inWords(hazards(c), stated) != '\0';
   });
-  return near ? inWords(hazards(*near)) : "the rim of the map";
+  return near ? inWords(hazards(*near), stated) : "the rim of the map";
 }
 
 std::string whyInvalid(const costmap::CostGrid& map, Point place, const HazardsOf& hazards) {
@@ -120,8 +123,8 @@ std::string whyInvalid(const costmap::CostGrid& map, Point place, const HazardsO
   if (curve == costmap::CellCode::kUnknown) return "lies on an unobserved cell";
   if (curve != costmap::CellCode::kBlocked) return "lies on a dangerous cell: no heading is allowed there";
   if (!hazards) return "lies on a blocked cell";
-  const std::string found = inWords(hazards(*cell));
-  return found.empty() ? "lies on a blocked cell, too near to " + clearOf(map.grid(), *cell, hazards)
+  const std::string found = inWords(hazards(*cell), map.cost().limits().stated);
+  return found.empty() ? "lies on a blocked cell, too near to " + clearOf(map, *cell, hazards)
                        : "lies on a blocked cell: " + found;
 }
 

@@ -12,7 +12,6 @@
 #include <talus/planner/check/route_ends.hpp>
 #include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/plugin/plugin_planner.hpp>

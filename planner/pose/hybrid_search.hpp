@@ -11,7 +11,7 @@
 #include <talus/common/common.hpp>
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/route/heading_set.hpp>
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

@@ -13,7 +13,7 @@
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/route/stop_check.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::planner {
 namespace {

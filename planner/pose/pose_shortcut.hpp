@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
 namespace talus::planner {

@@ -439,7 +439,9 @@ std::string text(Point p) {
   return buffer;
 }
 
-const char* remedy(Hazard hazard) noexcept {
+const char* remedy(Hazard hazard, bool stated) noexcept {
+  if (stated && hazard == Hazard::Obstacle)
+    return "cells of infinite cost close every way: choose another goal";
   switch (hazard) {
     case Hazard::KeepOut:
       return "keep-out areas, or cells that a layer refuses, and their clearance close every way: reduce "
@@ -460,7 +462,15 @@ const char* remedy(Hazard hazard) noexcept {
   }
 }
 
-const char* remedy(Constraint constraint) noexcept {
+bool ofSlope(Constraint constraint) noexcept {
+  return constraint == Constraint::Pitch || constraint == Constraint::Roll ||
+         constraint == Constraint::Slope || constraint == Constraint::Soil;
+}
+
+const char* remedy(Constraint constraint, bool stated) noexcept {
+  if (stated && ofSlope(constraint))
+    return "gradients without a finite stated cost close every way: state their costs, or choose another "
+           "goal";
   switch (constraint) {
     case Constraint::Pitch:
       return "the pitch limit closes every way: raise max_pitch_rad, or choose another goal";
@@ -482,7 +492,8 @@ const char* remedy(Constraint constraint) noexcept {
   return "";
 }
 
-const char* what(Hazard hazard) noexcept {
+const char* what(Hazard hazard, bool stated) noexcept {
+  if (stated && hazard == Hazard::Obstacle) return "cells of infinite cost";
   switch (hazard) {
     case Hazard::KeepOut:
       return "keep-out areas";
@@ -497,7 +508,8 @@ const char* what(Hazard hazard) noexcept {
   }
 }
 
-const char* what(Constraint constraint) noexcept {
+const char* what(Constraint constraint, bool stated) noexcept {
+  if (stated && ofSlope(constraint)) return "gradients without a finite stated cost";
   constexpr const char* kWhat[] = {"the pitch limit",   "the roll limit",     "soil",  "hazards",
                                    "unobserved ground", "the rim of the map", "slopes"};
   return kWhat[static_cast<std::size_t>(constraint)];
@@ -535,6 +547,7 @@ Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headin
 
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop) {
+  found.stated = map.cost().limits().stated;
   if (stop() || map.grid().size() > kTriedCells) return;
   const LiftedGround ground(map, hazards, slopesAcross(map, {found.last, found.first}));
   const auto opensWithout = [&](Constraint constraint, Hazard kinds = LiftedGround::kSolid,
@@ -584,12 +597,14 @@ std::string text(const Obstruction& obstruction, const Segment& places) {
                      ", whatever the headings: " + std::to_string(obstruction.cells_from_start) +
                      " cells are reachable from the start, " + std::to_string(obstruction.cells_to_goal) +
                      " lead to the goal; " + where;
+  const bool stated = obstruction.stated;
   if (obstruction.also)
-    return line + "; " + (obstruction.hazard ? what(*obstruction.hazard) : what(*obstruction.lifting)) +
-           " and " + what(*obstruction.also) +
+    return line + "; " +
+           (obstruction.hazard ? what(*obstruction.hazard, stated) : what(*obstruction.lifting, stated)) +
+           " and " + what(*obstruction.also, stated) +
            " close every way together, neither alone: change both, or choose another goal";
-  if (obstruction.hazard) return line + "; " + remedy(*obstruction.hazard);
-  if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting);
+  if (obstruction.hazard) return line + "; " + remedy(*obstruction.hazard, stated);
+  if (obstruction.lifting) return line + "; " + remedy(*obstruction.lifting, stated);
   return line + (obstruction.tried ? "; more than two constraints close every way: choose another goal"
                                    : "; choose another goal");
 }

@@ -6,11 +6,11 @@
 
 #include <ompl/base/spaces/ReedsSheppStateSpace.h>
 
-#include <talus/costmap/cost/turn_price.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::planner {
 

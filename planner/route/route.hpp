@@ -145,7 +145,8 @@ struct Obstruction {
   maps::Point last{};
   /// Centre of the cell of cells_to_goal that is closest to the cells of cells_from_start.
   maps::Point first{};
-  bool tried = false;  ///< true if the search was repeated with single constraints removed
+  bool tried = false;   ///< true if the search was repeated with single constraints removed
+  bool stated = false;  ///< true: pitch, roll, slope and soil are gradients without a finite stated cost
   /// First constraint whose removal opens a route; empty if the removal of no single constraint opens a
   /// route.
   std::optional<Constraint> lifting{};

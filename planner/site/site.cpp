@@ -14,14 +14,14 @@
 #include <fmt/format.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/raster_frame.hpp>
-#include <talus/planner/plugin/layer_plugin.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/site/site.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
@@ -182,6 +182,7 @@ maps::ElevationMap costsOf(const ElevationFile& file, const SiteReading& reading
   if (file.read.vertical_scale)
     throw InputError({"--vertical-scale", "does not apply to costs", "remove it"});
   if (!file.path.ends_with(".yaml")) {
+    raster.read.frame_only = true;
     maps::ElevationMap map = readMap(raster, reading);
     // a cell has the greatest cost of all pixels that it overlaps, and no data if one of them has none
     map.elevation_m = maps::readAddedJoules({file.path, file.read.band}, map).J_per_m;

@@ -3,12 +3,11 @@
 #include <stdexcept>
 #include <string>
 
-#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
-#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 

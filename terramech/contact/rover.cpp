@@ -3,7 +3,7 @@
 
 #include <talus/terramech/contact/load_transfer.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

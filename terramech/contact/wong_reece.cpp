@@ -6,8 +6,8 @@
 
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/numerics/gauss_legendre.hpp>
-#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 

@@ -9,7 +9,6 @@
 #include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/numerics/functions.hpp>
-#include <talus/terramech/numerics/range.hpp>
 
 namespace talus::terramech {
 

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <sstream>
 
+#include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/common/plausible.hpp>
 #include <talus/terramech/io/model_fit_fields.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <talus/terramech/estimate/model_pull.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
-#include <talus/terramech/estimate/strength_prior.hpp>
 
 /// Converts the option --prior of the program to the priors of each estimation method.
 namespace talus::terramech {

@@ -15,8 +15,7 @@
 #include <fmt/format.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
-#include <talus/common/plausible.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/terramech_io.hpp>
 

@@ -10,8 +10,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <talus/common/common.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/common/plausible.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 

@@ -12,7 +12,7 @@
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

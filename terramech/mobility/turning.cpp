@@ -7,7 +7,7 @@
 
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/mobility/turning.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include <talus/terramech/numerics/functions.hpp>
-#include <talus/terramech/numerics/range.hpp>
 #include <talus/terramech/strength/bevameter.hpp>
 
 namespace talus::terramech {

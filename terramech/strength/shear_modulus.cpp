@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>

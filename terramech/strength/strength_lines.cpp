@@ -2,9 +2,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
-#include <talus/terramech/numerics/range.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {

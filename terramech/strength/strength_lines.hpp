@@ -108,7 +108,7 @@ StressPair sojournerPair(const Wheel& wheel, const WheelSample& sample);
 /// Linear-offset method of the thesis for cohesion c and friction angle phi: triangular stresses along the
 /// rim plus a shear offset tau_offset = c B at the bottom of the wheel (thesis section 2.2). A and B are the
 /// fractions of the shear strength that are mobilised at the stress peak and at the bottom
-/// (linear_stress.hpp).
+/// (LinearStressMoments).
 
 /// Coefficients of the equation M1 c tan(phi) + c + M3 tan(phi) = M4 of one sample (thesis Eqs. 2.9, 2.10; M2
 /// = 1).
@@ -139,7 +139,7 @@ struct ShearSoil {
 };
 
 /// Returns the stresses that carry the load W and torque T of a sample for a known cohesion c (thesis Eqs.
-/// 2.2, 2.3 corrected, 2.6). h = theta_1/2, P and Q are those of linear_stress.hpp:
+/// 2.2, 2.3 corrected, 2.6). h = theta_1/2, P and Q are those of the linear stress law:
 ///     tau_offset = c B
 ///     T = r^2 b theta_1 (tau_m/2 + tau_offset/4)
 ///     W = r b (sigma_m P/h + tau_m Q/h + tau_offset (1 - sin(h)/h))

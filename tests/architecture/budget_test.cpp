@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 705},    {"terramech", 21760}, {"maps", 6709},     {"costmap", 12545},
-                           {"planner", 23651}, {"cli", 13818},       {"examples", 1580}, {"tests", 58004}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 21696}, {"maps", 6713},     {"costmap", 12485},
+                           {"planner", 23585}, {"cli", 13746},       {"examples", 1580}, {"tests", 57868}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -8,7 +8,7 @@
 #include <site_map.hpp>
 
 #include <talus/common/checksum.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 

@@ -9,7 +9,7 @@
 #include <yaml-cpp/exceptions.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 
 namespace talus::fuzz {
 

@@ -11,7 +11,6 @@
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_risk.hpp>
 #include <talus/planner/plan/named_planner.hpp>
-#include <talus/planner/plan/risk_planner.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 

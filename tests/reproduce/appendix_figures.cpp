@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/contact/linear_stress.hpp>
+#include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>

@@ -8,7 +8,6 @@
 #include <thesis_runs.hpp>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>

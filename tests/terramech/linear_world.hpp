@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include <talus/terramech/contact/linear_stress.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 

@@ -101,6 +101,36 @@ TEST(CostCurveFile, ErrorsAreOneLineWithTheirExitCode) {
   refuse(good, "belong together", {"--terrain", "plane.asc"});
 }
 
+// A ramp steeper than any stated gradient, and a wall of infinite cost beside cells of a great one: the reasons
+// name costs, not a rover.
+TEST(CostCurveFile, ReasonsAndLimitsAreThoseOfCosts) {
+  const Folder folder;
+  const std::string head = "ncols 20\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  std::string ramp = head, wall = head;
+  for (int row = 0; row < 10; ++row)
+    for (int column = 0; column < 20; ++column) {
+      ramp += fmt::format("{} ", 1.2 * std::clamp(column - 8, 0, 4));
+      wall += column == 10 ? "inf " : "500000 ";
+    }
+  folder.write("ramp.asc", ramp);
+  folder.write("wall.asc", wall);
+  folder.write("curve.csv",
+               "gradient_along,gradient_across,cost_per_m\n-0.5,0,1\n0.5,0,1\n-0.5,0.4,3\n0.5,0.4,3\n");
+  const auto plan = [&](Words words, const char* goal) {
+    for (const char* word : {"--resolution", "1", "--start", "2.5,5.5", "--goal", goal})
+      words.emplace_back(word);
+    return runTalus(words, folder.path());
+  };
+  EXPECT_THAT(plan({"plan", "ramp.asc", "--cost-curve", "curve.csv"}, "17.5,5.5").err,
+              HasSubstr("gradients without a finite stated cost close every way"));
+  EXPECT_THAT(plan({"plan", "--cost", "wall.asc"}, "17.5,5.5").err,
+              HasSubstr("cells of infinite cost close every way"));
+  EXPECT_THAT(plan({"plan", "--cost", "wall.asc"}, "10.5,5.5").err,
+              HasSubstr("lies on a blocked cell: an infinite cost"));
+  EXPECT_NEAR(json::parse(plan({"plan", "--cost", "wall.asc", "--json"}, "7.5,5.5").out)["cost"], 5.0 * 5e5,
+              1.0);
+}
+
 // A wall with a gap at its end, in a Nav2 map and as costs a metre: the shortest way turns at the wall's corner.
 TEST(CostRaster, CostsAMetreAndNav2MapsAreGroundOfTheirOwn) {
   const Folder folder;

@@ -5,7 +5,7 @@
 #include <refused.hpp>
 
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/ground/path_reader.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/vector/vector_reader.hpp>

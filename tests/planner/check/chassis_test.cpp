@@ -9,7 +9,7 @@
 #include <talus/common/common.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/planner/check/route_check.hpp>
-#include <talus/planner/route/pose_path.hpp>
+#include <talus/planner/route/problem.hpp>
 
 #include "drawn_map.hpp"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <talus/cli/soil/wheel_case_table.hpp>
+#include <talus/cli/soil/table_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
@@ -9,7 +9,8 @@
 #include "run_program.hpp"
 
 namespace talus::cli {
-namespace wheel_case_table_test {
+
+namespace table_options_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -137,5 +138,6 @@ TEST(WheelCaseTable, ExcessiveLoadsAreRejected) {
   EXPECT_THAT(table.refused[0].reason, HasSubstr("load_N = 1e12, must be at most 1e+07"));
 }
 
-}  // namespace wheel_case_table_test
+}  // namespace table_options_test
+
 }  // namespace talus::cli

@@ -7,9 +7,10 @@
 #include <unistd.h>
 
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 
 namespace talus {
+
 namespace {
 
 std::atomic<std::uint64_t> budget_bytes = 0;

@@ -1,8 +1,8 @@
 #include <talus/common/common.hpp>
-#include <talus/common/memory_budget.hpp>
+#include <talus/common/limits.hpp>
 
 namespace talus {
-namespace memory_budget_test {
+namespace limits_test {
 
 TEST(MemoryBudget, RequestAboveTheBudgetIsRejectedWithItsSize) {
   setMemoryBudget(std::uint64_t{2} << 30U);
@@ -23,5 +23,5 @@ TEST(MemoryBudget, DefaultBudgetRejectsExcessiveRequests) {
   EXPECT_THROW(requireMemory(1e15, "no machine has this"), InputError);
 }
 
-}  // namespace memory_budget_test
+}  // namespace limits_test
 }  // namespace talus
