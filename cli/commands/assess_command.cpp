@@ -10,7 +10,7 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
 #include <talus/terramech/calibration/tables/assessment.hpp>
-#include <talus/terramech/calibration/tables/table_applicability.hpp>
+#include <talus/terramech/calibration/trace/model_validity.hpp>
 #include <talus/terramech/estimate/pull_formula.hpp>
 
 namespace talus::cli {

@@ -12,9 +12,9 @@
 #include <talus/cli/soil/channel_report.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/constants.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/tables/estimate_soil.hpp>
-#include <talus/terramech/calibration/tables/table_applicability.hpp>
+#include <talus/terramech/calibration/trace/model_validity.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
 
 namespace talus::cli {

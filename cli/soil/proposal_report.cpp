@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/soil/proposal_report.hpp>
-#include <talus/terramech/calibration/table/answer_columns.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {

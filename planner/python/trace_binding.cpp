@@ -10,7 +10,7 @@
 #include <talus/common/progress_monitor.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace py = pybind11;

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/fit/candidate.hpp>
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>

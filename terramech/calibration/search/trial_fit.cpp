@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/numerics/median.hpp>

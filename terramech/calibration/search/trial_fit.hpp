@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/noise/input_calibration.hpp>
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include <talus/terramech/calibration/table/answer_columns.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/io/column_units.hpp>

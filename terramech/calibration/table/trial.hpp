@@ -1,13 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include <talus/terramech/effects/channel_reading.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
+#include <talus/terramech/io/model_file.hpp>
 
+/// Table of wheel telemetry together with the wheel model for its rows.
 namespace talus::terramech {
 
 /// Trial: the measured rows of a telemetry table, prepared for residual tracing (search for the effects that
@@ -107,5 +113,32 @@ Trial asMeasured(Trial trial);
 /// [-]. If the trial has moments, DP/W of the first row of a moment is the sum of the wheels' pulls over the
 /// sum of their loads. `solved` caches contact solutions between calls and may be empty initially.
 Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, SolvedContacts& solved);
+
+/// Telemetry columns of the quantities that a wheel model predicts (answers), in the order of Channel.
+inline constexpr std::array<const char*, kChannels> kAnswers{"drawbar_pull_N", "sinkage_m", "torque_Nm",
+                                                             "side_force_N"};
+
+/// Returns true if a column is one of kAnswers.
+inline bool isAnswer(std::string_view column) {
+  return std::find(kAnswers.begin(), kAnswers.end(), column) != kAnswers.end();
+}
+
+/// Reads the model from a soil or model file and sets its wheel to that of a rover (library name or file).
+/// With an empty `file` the model is unknownSoil(); with an empty `rover` the wheel of the model is kept.
+/// Throws the exceptions of loadModel() and loadRover().
+ModelFile baseModel(const std::string& file, const std::string& rover);
+
+/// Wheel model, and the rows of a table to which the model applies.
+struct ModelRows {
+  RefinedModel model;  ///< the given model, with slip_along_travel set if slipIsAlongTravel() of the rows
+  Trial trial;         ///< rows to which the model applies
+  Trial beyond_axle;   ///< rows with sinkage z >= wheel radius r (beyondAxle())
+  /// Rejected rows of the table, including rows with a side force but no slip angle.
+  std::vector<RejectedRow> rejected;
+};
+
+/// Selects the rows of a table for a model. Throws the exceptions of leaveOutWithoutSlipAngle() and
+/// makeTrial().
+ModelRows modelRows(Telemetry table, const RefinedModel& model);
 
 }  // namespace talus::terramech

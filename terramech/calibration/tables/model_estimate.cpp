@@ -1,18 +1,22 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
-#include <talus/terramech/calibration/tables/no_soil.hpp>
-#include <talus/terramech/calibration/tables/soil_groups.hpp>
-#include <talus/terramech/calibration/verdict/model_soil.hpp>
+#include <talus/terramech/calibration/verdict/verdict.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
+#include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
@@ -216,7 +220,7 @@ OddColumn oddColumn(const RefinedModel& model, const Trial& trial, const ModelSo
     const ModelSoil rest = soilUnder(model, without, how);
     if (!(rest.misfit < odd.misfit) || !soilOf(rest).implausible().empty()) continue;
     const bool by_slope = channel == Channel::DrawbarPull && !trial.moment.empty();
-    odd = {.column = by_slope ? "slope_rad" : columnOf(channel),
+    odd = {.column = by_slope ? "slope_rad" : kAnswers[static_cast<std::size_t>(k)],
            .misfit = rest.misfit,
            .contradicted = channels > 2 && leavesUnexplained(answerOf(model, trial, rest), channel)};
   }
@@ -288,6 +292,257 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
     estimate.warnings.push_back(
         fmt::format("{} rows with sinkage at or above the axle were excluded", beyond_axle.rows()));
   return estimate;
+}
+
+namespace {
+
+constexpr double kLeft = 0.5;  // unexplained share of the root mean square of a channel's readings
+
+// Residual of one channel relative to its readings; 0 if the residual is small compared to load or radius;
+// infinite if all readings are 0 and the predictions are not.
+double leftOf(const SoilAnswer& answer, int channel) {
+  double readings = 0.0, residuals = 0.0;
+  int rows = 0;
+  for (Eigen::Index row = 0; row < answer.measured.rows(); ++row) {
+    const double y = answer.measured(row, channel), f = answer.predicted(row, channel);
+    if (!std::isfinite(y) || !std::isfinite(f)) continue;
+    readings += y * y;
+    residuals += (y - f) * (y - f);
+    ++rows;
+  }
+  return residuals > kCoarse * kCoarse * rows ? std::sqrt(residuals / readings) : 0.0;
+}
+
+}  // namespace
+
+UnexplainedColumn unexplained(const SoilAnswer& answer) {
+  UnexplainedColumn worst{.column = "", .left = kLeft};
+  for (int channel = 0; channel < kChannels; ++channel)
+    if (const double left = leftOf(answer, channel); left > worst.left)
+      worst = {.column = kAnswers[static_cast<std::size_t>(channel)], .left = left};
+  return worst;
+}
+
+bool leavesUnexplained(const SoilAnswer& answer, Channel channel) {
+  return leftOf(answer, static_cast<int>(channel)) > kLeft;
+}
+
+std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer) {
+  const bool poor = answer.misfit > kMisfit;
+  std::string why;
+  if (const UnexplainedColumn worst = unexplained(answer); poor && !worst.column.empty())
+    why = std::isfinite(worst.left)
+              ? fmt::format("the nearest leaves {:.0f} % of {}", 100.0 * worst.left, worst.column)
+              : fmt::format("the nearest has a {} that reads 0", worst.column);
+  else if (!estimate.implausible().empty())
+    why = fmt::format("the nearest has a cohesion of {:.3g} kPa and a friction angle of {:.0f} deg",
+                      1e-3 * estimate.cohesion_Pa, estimate.friction_angle_rad / kDegree);
+  else
+    return {};
+  return (poor ? fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): ", answer.misfit)
+               : std::string("no soil is like that of the rows: ")) +
+         why;
+}
+
+namespace {
+
+constexpr double kLarge = 0.5;   // mean deviation of a group, in standard deviations of one reading
+constexpr double kChance = 5.0;  // threshold of excess(), in standard deviations of chi-squared
+
+struct Group {
+  double rows = 0.0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of whitened residuals (W, T)
+
+  double departure() const { return sum.norm() / rows; }
+  double chiSquared() const { return sum.squaredNorm() / rows; }
+};
+
+std::vector<Eigen::Vector2d> residuals(const WheelRows& rows, const SoilPosterior& p,
+                                       const ReadingErrors& noise) {
+  SoilClass soil;
+  const ContactSoil& m = p.mean;
+  soil.parameters = {Marginal::fixed(m.cohesion_Pa), Marginal::fixed(m.friction_angle_rad),
+                     Marginal::fixed(m.sinkage_exponent), Marginal::fixed(m.sinkage_modulus),
+                     Marginal::fixed(m.shear_modulus_m)};
+  soil.c1 = m.c1;
+  soil.c2 = m.c2;
+  const SoilObjective objective(soil, {.noise = noise, .outlier_share = 0.0});
+  std::vector<Eigen::Vector2d> all;
+  for (const WheelReading& r : rows.readings())
+    all.push_back(objective.misfit(SoilVector::Zero(), r).residual);
+  return all;
+}
+
+// Excess of a column's chi-squared over its expected value, in standard deviations; 0 if no group deviates by
+// more than kLarge.
+double excess(const std::map<std::string, Group>& groups) {
+  double sum = 0.0, largest = 0.0;
+  for (const auto& [name, group] : groups) {
+    sum += group.chiSquared();
+    if (group.rows > 1.0) largest = std::max(largest, group.departure());
+  }
+  const double expected = 2.0 * static_cast<double>(groups.size());
+  return largest > kLarge ? (sum - expected) / std::sqrt(2.0 * expected) : 0.0;
+}
+
+}  // namespace
+
+std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& posterior,
+                               const ReadingErrors& noise) {
+  const std::vector<Eigen::Vector2d> residual = residuals(rows, posterior, noise);
+  const std::string* worst = nullptr;
+  std::map<std::string, Group> worst_groups;
+  double most = kChance;
+  for (const Telemetry::Words& column : rows.words) {
+    std::map<std::string, Group> groups;
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+      Group& group = groups[column.values[k]];
+      group.rows += 1.0;
+      group.sum += residual[k];
+    }
+    if (groups.size() < 2 || 2 * groups.size() > residual.size()) continue;
+    if (const double beyond = excess(groups); beyond > most)
+      most = beyond, worst = &column.name, worst_groups = groups;
+  }
+  if (worst == nullptr) return {};
+  const auto& [name, group] = *std::ranges::max_element(
+      worst_groups, {}, [](const auto& entry) { return entry.second.chiSquared(); });
+  return fmt::format(
+      "one soil does not fit all values of {0}: mean residual {2:.1f} sigma at {0} = {1}; split the file by "
+      "{0}",
+      *worst, name, group.departure());
+}
+
+namespace {
+
+constexpr double kUndeterminedShare = 0.9;  // greatest posterior over prior std of a determined parameter
+
+int indexOf(const std::string& name) {
+  const auto& all = soilParameters();
+  return static_cast<int>(std::ranges::find_if(all, [&](const SoilParameter& p) { return p.name == name; }) -
+                          all.begin());
+}
+
+SensorNoise noiseOf(const RefinedModel& model, double relative) {
+  SensorNoise noise = model.noise;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    if (noise.absolute[c] == 0.0 && noise.relative[c] == 0.0) noise.relative[c] = relative;
+  if (noise.slip_absolute == 0.0 && noise.slip_relative == 0.0) noise.slip_relative = relative;
+  if (noise.load_relative == 0.0) noise.load_relative = relative;
+  return noise;
+}
+
+/// Plan of a fit with only the soil parameters free.
+FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
+  FitPlan plan = options.prior ? fitPlan(*options.prior, false) : fitPlan(model, true);
+  const int shear = options.shear_modulus_m ? indexOf("shear_modulus_m") : -1;
+  std::erase_if(plan.free, [&](const FittedParameter& p) { return p.effect >= 0 || p.index == shear; });
+  plan.iterations = 40;
+  return plan;
+}
+
+/// State of the fit: the model, and the noise at its current predictions.
+class SoilModelFit {
+ public:
+  SoilModelFit(const Trial& trial, const FitPlan& plan, double noise)
+      : trial_(trial), plan_(plan), noise_(noise) {
+    // Slip and load of each row are fitted from their readings alone.
+    const auto rows = static_cast<std::size_t>(trial_.rows());
+    for (std::size_t row = 0; row < rows; ++row) slips_.push_back(trial_.slip[row]);
+  }
+
+  Fit from(RefinedModel model) {
+    model.noise = noiseOf(model, noise_);
+    for (Eigen::Index row = 0; row < trial_.rows(); ++row) {
+      const double slip = slips_[static_cast<std::size_t>(row)];
+      trial_.slip_variance[row] = std::pow(model.noise.slipStd(slip), 2);
+      trial_.load_variance[row] = std::pow(model.noise.load_relative, 2);
+    }
+    Fit fit{.model = model};
+    for (int round = 0; round < 3; ++round) {
+      white_ = whiteningBy(fit.model);
+      fit = fitModel(fit.model, trial_, white_, plan_, solved_);
+    }
+    return fit;
+  }
+
+  /// Covariance of the free parameters, in the order of the plan.
+  Eigen::MatrixXd covariance(const RefinedModel& fitted) {
+    return parameterCovariance(fitted, trial_, whiteningBy(fitted), plan_, solved_);
+  }
+
+  /// Degrees of freedom: readings minus free parameters, at least 1.
+  double freedom() const {
+    const auto readings = static_cast<double>(trial_.measured.array().isFinite().count());
+    return std::max(1.0, readings - static_cast<double>(plan_.free.size()));
+  }
+
+ private:
+  Whitening whiteningBy(const RefinedModel& model) {
+    const Eigen::MatrixXd level = predictRows(model, trial_, solved_);
+    return whitening(trial_, level, inputSlopes(model, trial_, solved_), model.noise);
+  }
+
+  Trial trial_;
+  const FitPlan& plan_;
+  double noise_;
+  std::vector<double> slips_;
+  Whitening white_;
+  SolvedContacts solved_;
+};
+
+RefinedModel withSoil(const RefinedModel& model, const Soil& soil, const ModelSoilOptions& options) {
+  RefinedModel other = model;
+  other.soil = soil;
+  if (options.shear_modulus_m) other.soil.shear_modulus_m = *options.shear_modulus_m;
+  return other;
+}
+
+/// Covariance of cohesion c and tan phi (phi: friction angle) from that of the fitted parameters; zero for
+/// parameters that are not fitted.
+Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& covariance, const Soil& soil) {
+  const double by_phi = 1.0 + std::pow(std::tan(soil.friction_angle_rad), 2);
+  const std::array<int, 2> index{indexOf("cohesion_Pa"), indexOf("friction_angle_rad")};
+  const std::array<double, 2> slope{1.0, by_phi};
+  Eigen::Matrix2d strength = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < plan.free.size(); ++i)
+    for (std::size_t j = 0; j < plan.free.size(); ++j)
+      for (std::size_t a = 0; a < 2; ++a)
+        for (std::size_t b = 0; b < 2; ++b)
+          if (plan.free[i].index == index[a] && plan.free[j].index == index[b])
+            strength(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+                slope[a] * slope[b] * covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return strength;
+}
+
+}  // namespace
+
+ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options) {
+  const FitPlan plan = planOf(model, options);
+  SoilModelFit search{trial, plan, options.noise};
+  const Soil& afresh = options.prior ? options.prior->soil : unknownSoil().model.soil;
+  Fit best = search.from(withSoil(model, afresh, options));
+  // With a prior, the soil of the model is not a start value, because the prior may fix parameters.
+  if (!options.prior) {
+    const Fit own = search.from(withSoil(model, model.soil, options));
+    if (own.cost() < best.cost()) best = own;
+  }
+  const Eigen::MatrixXd covariance = search.covariance(best.model);
+  ModelSoil found{.soil = best.model.soil,
+                  .strength_covariance = strengthCovariance(plan, covariance, best.model.soil),
+                  .misfit = best.chi2 / search.freedom()};
+  best.model.fitted = plan.free;
+  for (const std::string& name : soilAtBounds(best.model))
+    found.unseen.push_back(name + ": ended at the limit of its range");
+  for (std::size_t k = 0; k < plan.free.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    const double prior = plan.soil_prior.at(plan.free[k].index).std;
+    if (std::sqrt(std::max(0.0, covariance(at, at))) > kUndeterminedShare * prior)
+      found.unseen.push_back(
+          std::string(soilParameters()[static_cast<std::size_t>(plan.free[k].index)].name) +
+          ": the posterior is almost as wide as the prior");
+  }
+  return found;
 }
 
 }  // namespace talus::terramech

@@ -6,7 +6,7 @@
 #include <Eigen/SVD>
 
 #include <talus/common/input_error.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
+#include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 
 namespace talus::terramech {

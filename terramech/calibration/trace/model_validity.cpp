@@ -1,10 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <vector>
 
 #include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/search/trial_fit.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/io/telemetry_reader.hpp>
+#include <talus/terramech/numerics/median.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -28,12 +35,6 @@ bool moves(const Estimate& scatter, int channel, double noise_floor) {
   const bool ratio =
       channel == static_cast<int>(Channel::Sinkage) || channel == static_cast<int>(Channel::Torque);
   return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.value));
-}
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 double medianClosureError(const Trial& trial) {
@@ -108,6 +109,114 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
                        " of the load (median) from the value that torque and sinkage imply for a rigid wheel "
                        "on any soil: no cohesion and friction angle explain it"};
   return {};
+}
+
+namespace {
+
+/// A trial whose measured channels are multiplied by factors, because they are ratios to load and radius.
+struct ScaledTrial {
+  Trial trial;
+  std::array<double, kChannels> factor{1.0, 1.0, 1.0, 1.0};
+};
+
+ScaledTrial scaled(const Trial& trial, const std::string& column, double scale) {
+  ScaledTrial out{trial};
+  const auto set = [&](std::initializer_list<Channel> channels, double factor) {
+    for (const Channel c : channels) {
+      out.factor[static_cast<std::size_t>(c)] = factor;
+      out.trial.measured.col(static_cast<Eigen::Index>(c)) *= factor;
+    }
+  };
+  if (column == "load_N") {
+    for (double& load : out.trial.load_N) load *= scale;
+    for (WheelState& s : out.trial.states) s.load_N *= scale;
+    set({Channel::DrawbarPull, Channel::Torque, Channel::SideForce}, 1.0 / scale);
+  } else if (column == "wheel_radius_m") {
+    for (WheelState& s : out.trial.states) s.wheel.radius_m *= scale;
+    set({Channel::Sinkage, Channel::Torque}, 1.0 / scale);
+  } else {
+    set({column == "torque_Nm" ? Channel::Torque : Channel::DrawbarPull}, scale);
+  }
+  return out;
+}
+
+/// Logarithm of the density of the readings in the units of the file, for a model that is fitted to `rows`.
+double logDensity(const RefinedModel& model, const ScaledTrial& rows, const TraceOptions& options) {
+  const TrialFit fit{model, rows.trial, options.fit_soil, [](double) { return true; }};
+  double sum = fit.scoreOf(fit.model());
+  for (int row = 0; row < rows.trial.rows(); ++row)
+    for (int c = 0; c < kChannels; ++c)
+      if (std::isfinite(rows.trial.measured(row, c)))  // (T58)
+        sum += std::log(fit.rows().whitening().factor[static_cast<std::size_t>(row)](c, c) *
+                        rows.factor[static_cast<std::size_t>(c)]);
+  return sum;
+}
+
+}  // namespace
+
+std::string ScaledColumn::text() const {
+  std::ostringstream out;
+  out.precision(4);
+  out << column << " looks like " << reason << ": scale " << scale << " (log-likelihood gain " << gain << ')';
+  return out.str();
+}
+
+std::optional<ScaledColumn> likelyScale(const TraceResult& result, const RefinedModel& present,
+                                        const TraceOptions& options) {
+  const Trial as_read = asMeasured(result.trial);
+  if (!as_read.moment.empty()) return std::nullopt;
+  std::optional<ScaledColumn> best;
+  const double now = logDensity(present, {as_read}, options);
+  for (ScaledColumn one : {ScaledColumn{"load_N", 9.81, "kilograms"},
+                           {"load_N", 0.5, "the load of two wheels"},
+                           {"drawbar_pull_N", 9.81, "kilogram-force"},
+                           {"drawbar_pull_N", 0.5, "the pull of two wheels"},
+                           {"torque_Nm", 9.81, "kilogram-force times metres"},
+                           {"torque_Nm", 0.5, "the torque of two wheels"},
+                           {"wheel_radius_m", 0.5, "the diameter"}}) {
+    if ((one.column == "torque_Nm" && !as_read.has(Channel::Torque)) ||
+        (one.column == "drawbar_pull_N" && !as_read.has(Channel::DrawbarPull)))
+      continue;
+    one.gain = logDensity(result.base, scaled(as_read, one.column, one.scale), options) - now;
+    if (one.gain > std::max(result.threshold, best ? best->gain : 0.0)) best = one;
+  }
+  return best;
+}
+
+namespace {
+
+constexpr int kFewest = 20, kMost = 400;
+
+/// Evenly spaced rows of a trial, at most kMost.
+Trial evenRows(const Trial& trial) {
+  const int step = (trial.rows() + kMost - 1) / kMost;
+  if (step < 2) return trial;
+  std::vector<char> some;
+  for (int row = 0; row < trial.rows(); ++row) some.push_back(row % step == 0);
+  return subset(trial, some);
+}
+
+}  // namespace
+
+Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
+                                 const ProgressMonitor& watch) {
+  const ModelFile file = baseModel(base, rover);
+  const Telemetry telemetry = readTelemetry(table, {});
+  const bool wheel =
+      file.model.wheel || (telemetry.find("wheel_radius_m") && telemetry.find("wheel_width_m"));
+  if (!wheel || !telemetry.find("load_N") || !telemetry.find("slip")) return {};
+  if (!telemetry.find("sinkage_m") && !telemetry.find("torque_Nm") && !telemetry.find("drawbar_pull_N"))
+    return {};
+  const ModelRows rows = modelRows(telemetry, file.model);
+  const Trial trial = evenRows(rows.trial);
+  if (trial.rows() < kFewest) return {};
+  TraceOptions options{.max_effects = 0};
+  options.fit_soil = !file.soil_given;
+  const Applicability plain = applicability(traceResiduals(rows.model, trial, options), options);
+  if (plain.applies || watch.stopped()) return plain;
+  options.max_effects = TraceOptions{}.max_effects;
+  const Applicability traced = applicability(traceResiduals(rows.model, trial, options, watch), options);
+  return watch.stopped() ? Applicability{} : traced;
 }
 
 }  // namespace talus::terramech

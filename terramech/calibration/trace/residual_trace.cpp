@@ -7,12 +7,10 @@
 #include <string>
 
 #include <talus/common/input_error.hpp>
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration/fit/candidate.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
-#include <talus/terramech/calibration/search/column_screening.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/mobility/rut.hpp>

@@ -4,7 +4,7 @@
 
 #include <talus/common/progress_monitor.hpp>
 #include <talus/terramech/calibration/search/trace_result.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration/table/trial.hpp>
 
 /// Residual tracing: finds the effects that a wheel model lacks from measured rows, and adds them to the
 /// model.

@@ -1,5 +1,5 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/search/scale_hypotheses.hpp>
+#include <talus/terramech/calibration/trace/model_validity.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/trace_table.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>

@@ -1,12 +1,19 @@
 #include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
 
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
+#include <talus/terramech/contact/wong_reece.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
 #include "calibration/wheel_table.hpp"
+#include "made_rows.hpp"
+#include "requirement.hpp"
 
 namespace talus::terramech {
+
 namespace model_estimate_test {
 
 using testing::HasSubstr;
@@ -158,5 +165,209 @@ TEST(PosteriorEstimate, ImplausibleTorqueIsRejectedNamingTheColumn) {
 }
 
 }  // namespace posterior_estimate_test
+
+namespace no_soil_test {
+
+using testing::HasSubstr;
+
+constexpr double kNone = RunningSoil::kNan;
+
+// Two rows with measured pull and side force.
+SoilAnswer answer(double side, double predicted_side, double misfit) {
+  SoilAnswer a{.measured = Eigen::MatrixXd::Constant(2, kChannels, kNone),
+               .predicted = Eigen::MatrixXd::Constant(2, kChannels, 0.2),
+               .misfit = misfit};
+  a.measured.col(static_cast<int>(Channel::DrawbarPull)).setConstant(0.21);
+  a.measured.col(static_cast<int>(Channel::SideForce)).setConstant(side);
+  a.predicted.col(static_cast<int>(Channel::SideForce)).setConstant(predicted_side);
+  return a;
+}
+
+SoilEstimate sand() {
+  SoilEstimate e;
+  e.cohesion_Pa = 500.0;
+  e.friction_angle_rad = 0.55;
+  e.tan_friction = 0.613;
+  e.covariance = Eigen::Vector2d(1e4, 1e-4).asDiagonal();
+  return e;
+}
+
+// Closed form: with constant columns the unexplained share is |y - f| / |y|.
+TEST(NoSoil, ColumnWithMoreThanHalfUnexplainedIsNamed) {
+  const UnexplainedColumn worst = unexplained(answer(1.0, 0.4, 10.0));
+  EXPECT_EQ(worst.column, "side_force_N");
+  EXPECT_NEAR(worst.left, 0.6, 1e-12);
+  EXPECT_EQ(unexplained(answer(1.0, 0.6, 10.0)).column, "");
+  EXPECT_EQ(unexplained(answer(0.09, 0.0, 10.0)).column, "") << "little of the load";
+}
+
+TEST(NoSoil, ZeroReadingWithNonZeroPredictionIsUnexplained) {
+  EXPECT_TRUE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::SideForce));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.09, 10.0), Channel::SideForce));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::DrawbarPull));
+  EXPECT_FALSE(leavesUnexplained(answer(0.0, 0.3, 10.0), Channel::Torque)) << "not measured";
+  EXPECT_THAT(noSoilExplains(sand(), answer(0.0, 0.3, 10.0)), HasSubstr("has a side_force_N that reads 0"));
+}
+
+TEST(NoSoil, ReasonIsGivenOnlyForLargeMisfit) {
+  EXPECT_THAT(noSoilExplains(sand(), answer(1.0, 0.4, 10.0)), HasSubstr("leaves 60 % of side_force_N"));
+  EXPECT_EQ(noSoilExplains(sand(), answer(1.0, 0.4, 2.9)), "") << "within the stated noise";
+  EXPECT_EQ(noSoilExplains(sand(), answer(1.0, 0.9, 10.0)), "") << "a warning does";
+}
+
+TEST(NoSoil, ImplausibleFrictionAngleIsRejectedAtAnyMisfit) {
+  SoilEstimate steel = sand();
+  steel.friction_angle_rad = 1.2;
+  steel.tan_friction = 2.57;
+  EXPECT_THAT(noSoilExplains(steel, answer(1.0, 0.9, 10.0)), HasSubstr("a friction angle of 69 deg"));
+  EXPECT_THAT(noSoilExplains(steel, answer(1.0, 0.9, 1.0)), HasSubstr("a friction angle of 69 deg"))
+      << "however near it comes";
+}
+
+}  // namespace no_soil_test
+
+namespace soil_groups_test {
+
+using testing::HasSubstr;
+
+// Thirty rows in three groups of the column "box", and a column "run" without effect. The torque readings of
+// box B are higher by `share`; each torque has an error of 5 %.
+WheelRows rowsOf(double share) {
+  WheelRows rows;
+  rows.words = {{"run", {}}, {"box", {}}};
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> error(1.0, 0.05);
+  for (int k = 0; k < 30; ++k) {
+    const WheelOperation at = madeOperation(k % 12);
+    const WheelForces f = equilibrium(kMadeSoil, kMadeWheel, at);
+    const double more = k % 3 == 1 ? 1.0 + share : 1.0;
+    rows.samples.push_back({at.load_N, f.torque_Nm * more * error(random), f.sinkage_m, at.slip});
+    rows.wheels.push_back(kMadeWheel);
+    rows.words[0].values.push_back(k < 15 ? "one" : "two");
+    rows.words[1].values.push_back(std::string(1, static_cast<char>('A' + k % 3)));
+  }
+  return rows;
+}
+
+SoilPosterior truth() {
+  SoilPosterior p;
+  p.mean.cohesion_Pa = kMadeSoil.cohesion_Pa;
+  p.mean.friction_angle_rad = kMadeSoil.friction_angle_rad;
+  p.mean.sinkage_exponent = kMadeSoil.sinkage_exponent;
+  p.mean.sinkage_modulus = kMadeSoil.frictional_modulus;
+  p.mean.shear_modulus_m = kMadeSoil.shear_modulus_m;
+  p.mean.c1 = kMadeSoil.c1;
+  p.mean.c2 = kMadeSoil.c2;
+  return p;
+}
+
+TEST(SoilGroups, RowsOfOneSoilShowNoGroupDisagreement) {
+  EXPECT_EQ(groupsThatDisagree(rowsOf(0.0), truth(), ReadingErrors::relative(0.05)), "");
+}
+
+TEST(SoilGroups, DisagreeingColumnAndGroupAreNamed) {
+  const std::string said = groupsThatDisagree(rowsOf(0.4), truth(), ReadingErrors::relative(0.05));
+  EXPECT_THAT(said, HasSubstr("all values of box"));
+  EXPECT_THAT(said, HasSubstr("box = B"));
+}
+
+TEST(SoilGroups, ColumnWithOneRowPerGroupIsIgnored) {
+  WheelRows rows = rowsOf(0.4);
+  rows.words = {{"note", {}}};
+  for (int k = 0; k < 30; ++k) rows.words[0].values.push_back(std::to_string(k));
+  EXPECT_EQ(groupsThatDisagree(rows, truth(), ReadingErrors::relative(0.05)), "");
+}
+
+}  // namespace soil_groups_test
+
+namespace model_soil_test {
+
+RefinedModel digging() {
+  RefinedModel model;
+  model.soil = {.name = "sand",
+                .cohesion_Pa = 900.0,
+                .friction_angle_rad = 0.52,
+                .sinkage_exponent = 1.05,
+                .cohesive_modulus = 0.0,
+                .frictional_modulus = 1.4e6,
+                .shear_modulus_m = 0.015};
+  model.wheel = Wheel{.radius_m = 0.1, .width_m = 0.1};
+  model.effects = {
+      {.name = "slip_sinkage_ding", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {0.5}},
+      {.name = "bulldozing", .covariate = "sinkage_m", .channel = Channel::DrawbarPull, .parameters = {2.0}}};
+  return model;
+}
+
+/// Forty rows predicted by the model, each reading with a normal error of 2 %.
+Trial drive(const RefinedModel& model) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> error(1.0, 0.02);
+  MadeRows rows(wheelColumns());
+  for (int k = 0; k < 40; ++k) {
+    WheelState s{.wheel = *model.wheel, .load_N = 50.0 + 2.0 * k, .slip = 0.05 + 0.02 * ((k * 7) % 40)};
+    const Reading r = predict(model, s);
+    rows.add({s.load_N, s.slip, r.torque_Nm * error(random), r.sinkage_m * error(random),
+              r.drawbar_pull_N + 0.02 * s.load_N * (error(random) - 1.0) / 0.02, 0.1, 0.1});
+  }
+  return makeTrial(rows.telemetry(), model);
+}
+
+/// The model as stored in a file after tracing on another ground.
+RefinedModel elsewhere(RefinedModel model) {
+  model.soil = {.name = "other",
+                .cohesion_Pa = 200.0,
+                .friction_angle_rad = 0.65,
+                .sinkage_exponent = 0.8,
+                .cohesive_modulus = 0.0,
+                .frictional_modulus = 4e5,
+                .shear_modulus_m = 0.025};
+  return model;
+}
+
+TEST(ModelSoil, SoilIsRecoveredOnlyWithTheActiveEffects) {
+  const RefinedModel truth = digging();
+  const Trial trial = drive(truth);
+  const ModelSoil with = soilUnder(elsewhere(truth), trial, {.noise = 0.02});
+  // Property: the soil of the rows is found within three standard deviations.
+  EXPECT_NEAR(with.soil.cohesion_Pa, 900.0, 3.0 * std::sqrt(with.strength_covariance(0, 0)));
+  EXPECT_NEAR(std::tan(with.soil.friction_angle_rad), std::tan(0.52),
+              3.0 * std::sqrt(with.strength_covariance(1, 1)));
+  EXPECT_LT(std::sqrt(with.strength_covariance(1, 1)), 0.05);
+  EXPECT_LT(with.misfit, 2.0);
+  RefinedModel bare = elsewhere(truth);
+  bare.effects.clear();
+  const ModelSoil without = soilUnder(bare, trial, {.noise = 0.02});
+  // Property: a soil without the effects does not explain the rows.
+  EXPECT_GT(without.misfit, 3.0 * with.misfit);
+}
+
+TEST(ModelSoil, StatedShearModulusIsKept) {
+  const ModelSoil found = soilUnder(digging(), drive(digging()), {.shear_modulus_m = 0.02, .noise = 0.02});
+  EXPECT_EQ(found.soil.shear_modulus_m, 0.02);
+}
+
+TEST(ModelSoil, ParameterAtItsRangeLimitIsReported) {
+  RefinedModel truth = digging();
+  truth.effects.clear();
+  EXPECT_THAT(soilUnder(truth, drive(truth), {.noise = 0.02}).unseen,
+              testing::Not(testing::Contains(testing::HasSubstr("limit of its range"))));
+  truth.soil.sinkage_exponent = 4.5;
+  truth.soil.frictional_modulus = 2e11;
+  const ModelSoil found = soilUnder(elsewhere(truth), drive(truth), {.noise = 0.02});
+  EXPECT_THAT(found.unseen, testing::Contains("sinkage_exponent: ended at the limit of its range"));
+}
+
+TEST(ModelSoil, ParametersFixedByThePriorAreKept) {
+  RefinedModel prior = digging();
+  prior.soil.cohesion_Pa = 500.0;
+  prior.soil_prior_mean = {{"friction_angle_rad", 0.5}};
+  prior.soil_prior_std = {{"friction_angle_rad", 0.1}};
+  const ModelSoil found = soilUnder(digging(), drive(digging()), {.prior = prior, .noise = 0.02});
+  EXPECT_EQ(found.soil.cohesion_Pa, 500.0);
+  EXPECT_EQ(found.strength_covariance(0, 0), 0.0);
+  EXPECT_GT(found.strength_covariance(1, 1), 0.0);
+}
+
+}  // namespace model_soil_test
 
 }  // namespace talus::terramech
