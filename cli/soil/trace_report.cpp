@@ -212,27 +212,9 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
 namespace {
 
 ordered_json schemeJson(const HeldOut& held) {
-  ordered_json out{{"scheme", held.scheme},
-                   {"base_rmse", errorsJson(held.base_rmse)},
-                   {"refined_rmse", errorsJson(held.refined_rmse)}};
-  for (const GroupErrors& g : held.groups)
-    out["groups"].push_back({{"column", g.column},
-                             {"value", g.value},
-                             {"rows", g.rows},
-                             {"base_rmse", errorsJson(g.base_rmse)},
-                             {"refined_rmse", errorsJson(g.refined_rmse)}});
-  return out;
-}
-
-std::string groupLines(const TableTrace& trace, const HeldOut& held) {
-  std::string out;
-  for (const GroupErrors& g : held.groups) {
-    out += fmt::format("  {} = {}, {} rows\n", g.column, g.value, g.rows);
-    for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); trace.result.trial.has(c))
-        out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
-  }
-  return out;
+  return {{"scheme", held.scheme},
+          {"base_rmse", errorsJson(held.base_rmse)},
+          {"refined_rmse", errorsJson(held.refined_rmse)}};
 }
 
 ordered_json heldOutJson(const TableTrace& trace) {
@@ -248,8 +230,7 @@ ordered_json heldOutJson(const TableTrace& trace) {
                     {"rows", end.rows},
                     {"distance", end.distance},
                     {"base_rmse", errorsJson(end.base_rmse)},
-                    {"refined_rmse", errorsJson(end.refined_rmse)},
-                    {"extrapolates", end.law}});
+                    {"refined_rmse", errorsJson(end.refined_rmse)}});
   out["end_levels"] = ends;
   return out;
 }
@@ -374,7 +355,6 @@ std::string traceText(const TableTrace& trace) {
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
                          held.refined_rmse[k], r.noise_floor[k]);
     }
-    out += groupLines(trace, held);
   }
   out += endLines(r);
   if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';

@@ -246,7 +246,7 @@ std::array<double, kChannels> noiseFloor(const Trial& trial, const Eigen::Matrix
       const auto k = static_cast<int>(c);
       if (!std::isfinite(trial.measured(row, k))) continue;
       const double slip = noise.slipStd(trial.slip[static_cast<std::size_t>(row)]);
-      // (T53)
+      // (T50)
       sum += std::pow(noise.absolute[c] / trial.denominator(row, static_cast<Channel>(k)), 2) +
              std::pow(noise.relative[c] * level(row, k), 2) + std::pow(slip * slopes.by_slip(row, k), 2) +
              std::pow(noise.load_relative * slopes.by_load(row, k), 2);

@@ -74,8 +74,6 @@ struct TracedEffect {
   /// Other causes that the rows cannot distinguish from the effect, best first. In place of the effect, each
   /// has a gain of at least that of the effect minus closeGain().
   std::vector<Explanation> equal;
-  /// Curves of the same covariate for the residual that remains after the effect.
-  std::vector<Effect> correction;
 };
 
 /// Alternative cause, with the model that contains this cause.
@@ -90,24 +88,9 @@ struct RivalCause {
 struct EndLevel {
   std::string column;     ///< name of the column
   bool high = false;      ///< true: the rows with the greatest values; false: with the least
-  double edge = 0.0;      ///< outermost value of the column in the other rows
-  double distance = 0.0;  ///< root mean square distance of the held-out rows from `edge`
+  double distance = 0.0;  ///< root mean square distance of the held-out rows from the other rows
   int rows = 0;           ///< number of held-out rows
   /// Errors of the base and of the refined model on these rows.
-  ChannelErrors base_rmse{}, refined_rmse{};
-  /// True if the formula of an effect of this column predicted the rows better than the effect at its value
-  /// at `edge`.
-  bool law = false;
-  /// For each effect of the refined model, the distance from `edge` up to which its formula is confirmed.
-  /// This is the distance of the farthest held-out row, or 0 if the formula is not confirmed or if the effect
-  /// depends on another column.
-  std::vector<double> reach{};
-};
-
-/// Errors on the rows of one group of a text column, for a model fitted to all groups.
-struct GroupErrors {
-  std::string column, value;  ///< text column, and text of the group
-  int rows = 0;               ///< number of rows of the group
   ChannelErrors base_rmse{}, refined_rmse{};
 };
 
@@ -117,8 +100,6 @@ struct HeldOut {
   std::string scheme;            ///< kind of rows that are held out together
   ChannelErrors base_rmse{};     ///< errors of the base model; a fitted soil is refitted
   ChannelErrors refined_rmse{};  ///< errors of the refined model
-  /// Errors by group, for each text column with an effect on a single group.
-  std::vector<GroupErrors> groups;
 };
 
 /// Errors on the rows of a large table that the search did not use.

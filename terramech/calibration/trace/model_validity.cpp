@@ -146,7 +146,7 @@ double logDensity(const RefinedModel& model, const ScaledTrial& rows, const Trac
   double sum = fit.scoreOf(fit.model());
   for (int row = 0; row < rows.trial.rows(); ++row)
     for (int c = 0; c < kChannels; ++c)
-      if (std::isfinite(rows.trial.measured(row, c)))  // (T58)
+      if (std::isfinite(rows.trial.measured(row, c)))  // (T55)
         sum += std::log(fit.rows().whitening().factor[static_cast<std::size_t>(row)](c, c) *
                         rows.factor[static_cast<std::size_t>(c)]);
   return sum;

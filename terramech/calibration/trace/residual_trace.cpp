@@ -216,10 +216,9 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.held_out = holdOut(result, options, foldsOf(result.trial));
   findRivals(path, in_place, result, go_on);
   result.ends = endLevels(result, options, watch);
-  boundEffects(result.refined, result.trial, result.ends);
+  result.refined = withinRows(result.refined, result.trial);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   return result;
 }

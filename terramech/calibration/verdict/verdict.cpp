@@ -22,7 +22,7 @@ double excess(const ChannelErrors& rmse, const TraceResult& result, const Channe
   const double variance = rmse[channel] * rmse[channel];
   const auto count = static_cast<double>(
       result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
-  // (T54)
+  // (T51)
   return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
 }
 
@@ -108,7 +108,7 @@ Answer answerOf(const TraceResult& result) {
   for (const std::string& name : soilAtBounds(result.refined)) answer.at_bound.push_back("soil " + name);
   answer.strained = result.strained;
   answer.unstated = unstatedSensors(result.trial, result.refined.stated);
-  const bool reached = answer.rest < kExplainedFloors * answer.floor,  // (T55)
+  const bool reached = answer.rest < kExplainedFloors * answer.floor,  // (T52)
       promised = !result.last_promises.empty() && result.last_promises.front().gain > result.threshold;
   if (result.strained.empty() && !result.effects.empty() && reached && answer.at_bound.empty())
     answer.verdict = Verdict::Explained;
@@ -120,7 +120,7 @@ Answer answerOf(const TraceResult& result) {
   if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
   const bool open = answer.verdict == Verdict::Unexplained;
-  // (T56)
+  // (T53)
   if (open && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
     answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
     answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
@@ -200,7 +200,7 @@ RefinedModel forPrediction(const TraceResult& result) {
     for (int row = 0; row < result.trial.rows(); ++row)
       unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();
     double& absolute = model.noise.absolute[static_cast<std::size_t>(c)];
-    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T57)
+    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T54)
   }
   return model;
 }
