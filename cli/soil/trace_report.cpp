@@ -51,15 +51,10 @@ ordered_json rivalJson(const Explanation& e) {
 }
 
 ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
-  ordered_json by_channel = ordered_json::object();
-  for (Channel c : kAllChannels)
-    if (trace.result.trial.has(c))
-      by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
   ordered_json rivals = ordered_json::array();
   for (const Explanation& e : effect.equal) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
           {"gain", effect.chosen.gain},
-          {"chi2_gain_by_channel", by_channel},
           {"alternatives", rivals},
           {"confounded_with", confounded(trace.result.trial, effect.chosen.candidate.covariate())},
           {"to_tell_apart", separatingMeasurement(trace.result.trial, effect)}};

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 22052}, {"maps", 7249},     {"costmap", 13045},
-                           {"planner", 24048}, {"cli", 14479},       {"examples", 1580}, {"tests", 59097}};
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 21769}, {"maps", 7249},     {"costmap", 13045},
+                           {"planner", 24048}, {"cli", 14479},       {"examples", 1580}, {"tests", 58970}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

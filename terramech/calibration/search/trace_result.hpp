@@ -45,7 +45,6 @@ struct Explanation {
   /// Returns the gain without the candidate's prior.
   double evidence() const { return gain - candidate.logPrior(); }
   double chi2_gain = 0.0;  ///< twice the increase of the log-likelihood on the fitted rows [-]
-  std::array<double, kChannels> by_channel{};  ///< reduction of chi-squared in each channel [-]
 };
 
 /// Promise: a candidate before its fit, with its linearised gain.

@@ -105,7 +105,6 @@ Explanation TraceSearch::fitted(const Candidate& candidate) const {
 }
 
 Explanation TraceSearch::fitted(const Candidate& candidate, double before) const {
-  const CalibratedRows& rows = fit_.rows();
   SolvedContacts solved = fit_.solved();
   const Fit found = fit_.fit(withCandidate(model(), candidate),
                              candidate.parts.size() > 2   ? 30
@@ -117,12 +116,7 @@ Explanation TraceSearch::fitted(const Candidate& candidate, double before) const
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
     e.candidate.parts[k] = found.model.effects[model().effects.size() + k];
   e.chi2_gain = chi2() - found.chi2 - found.prior_chi2;
-  const Eigen::MatrixXd left = rows.trial().measured - predictRows(found.model, rows.trial(), solved);
   e.gain = fit_.scoreOf(found.model) - before + candidate.logPrior();  // (T35)
-  const Eigen::VectorXd was = rows.whitening().marginal(rows.residual()),
-                        is = rows.whitening().marginal(left);
-  for (Eigen::Index i = 0; i < was.size(); ++i)
-    e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   return e;
 }
 
@@ -192,7 +186,7 @@ void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::Matr
   std::size_t at = given_effects_;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     TracedEffect& effect = effects[k];
-    if (units_[k].parts == 1) effect.channel = fit_.strongest(at);
+    effect.channel = fit_.strongest(at, units_[k].parts);
     for (Effect& part : effect.chosen.candidate.parts) part = model().effects[at++];
     effect.parameter_std.clear();
     for (std::size_t j = 0; j < model().fitted.size(); ++j) {
@@ -221,13 +215,6 @@ void TraceSearch::finish(TraceResult& result) {
 }
 
 namespace {
-
-constexpr std::size_t kRivals = 3;
-
-/// Key of a cause: name, column and group of the candidate.
-std::string causeOf(const Candidate& c) {
-  return c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value;
-}
 
 /// Returns true if two effects are the same cause: the same column, and curves or forms of one family. Drifts
 /// of one column are the same cause if they differ in their time course only.
@@ -258,53 +245,33 @@ bool isOther(const Candidate& other, const std::vector<Effect>& own) {
   });
 }
 
-std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation> ranked,
-                             const std::string& in_place_of) {
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
-  std::vector<RivalCause> rivals;
-  std::set<std::string> seen;
-  for (Explanation& e : ranked) {
-    if (rivals.size() == kRivals || e.gain <= 0.0) break;
-    if (!seen.insert(causeOf(e.candidate)).second) continue;
-    RefinedModel model = search.modelWith(e.candidate);
-    // Skips curves that are constant over their column.
-    if (search.dependsOn(model, e.candidate.covariate()))
-      rivals.push_back({in_place_of, e, std::move(model)});
-  }
-  return rivals;
-}
-
 }  // namespace
 
 Replacements replacementsOf(const TraceSearch& search, std::size_t k) {
-  Replacements in{search, {}, {}};
+  Replacements in{search, {}};
   in.without.leaveOut(k);
-  in.promises = in.without.screen(0).promises;
-  in.ranked = in.without.fitBest(in.promises);
+  in.ranked = in.without.fitBest(in.without.screen(0).promises);
   return in;
 }
 
-std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own) {
-  constexpr std::size_t kFits = 6;
-  // At most one curve per column, and each named form once.
-  const auto kindOf = [](const Candidate& c) { return c.empirical() ? c.covariate() : causeOf(c); };
-  std::set<std::string> tried;
-  std::vector<Explanation> ranked;
-  for (const Explanation& e : in.ranked)
-    if ((e.candidate.parts.size() == 1 || e.candidate.empirical()) && isOther(e.candidate, own) &&
-        tried.insert(kindOf(e.candidate)).second)
-      ranked.push_back(e);
-  for (const Promise& p : in.promises) {
-    if (tried.size() >= kFits || p.gain <= 0.0) break;
-    if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
-    if (tried.insert(kindOf(p.candidate)).second) ranked.push_back(in.without.fitted(p.candidate));
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked,
+                                 const std::vector<Effect>& own) {
+  constexpr std::size_t kRivals = 3;
+  std::vector<RivalCause> rivals;
+  std::set<std::string> seen;
+  for (const Explanation& e : ranked) {
+    const Candidate& c = e.candidate;
+    if (rivals.size() == kRivals || e.gain <= 0.0) break;
+    const bool together = c.parts.size() > 1 && !c.empirical();
+    if (!own.empty() && (together || !isOther(c, own))) continue;
+    if (!seen.insert(c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value).second)
+      continue;
+    RefinedModel model = search.modelWith(c);
+    // Skips curves that are constant over their column.
+    if (search.dependsOn(model, c.covariate()))
+      rivals.push_back({own.empty() ? "" : own.front().name, e, std::move(model)});
   }
-  return best(in.without, std::move(ranked), own.front().name);
-}
-
-std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked) {
-  return best(search, ranked, "");
+  return rivals;
 }
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {

@@ -103,7 +103,6 @@ class TraceSearch {
 /// Explanations in the place of an accepted candidate.
 struct Replacements {
   TraceSearch without;              ///< search without the accepted candidate
-  std::vector<Promise> promises;    ///< all candidates, best first
   std::vector<Explanation> ranked;  ///< the most promising candidates, fitted, best gain first
 };
 
@@ -111,14 +110,11 @@ struct Replacements {
 /// TraceSearch::gainOf(k).
 Replacements replacementsOf(const TraceSearch& search, std::size_t k);
 
-/// Returns alternative causes for an accepted candidate with the effects `own`: the best form and the best
-/// curve of each other column, and other forms of the candidate's own column. Returns at most three causes of
-/// different columns or forms, best first.
-std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own);
-
-/// Returns alternative causes from `ranked` for a model without accepted candidates: at most three, of
-/// different columns or forms.
-std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked);
+/// Returns alternative causes from `ranked` in the place of an accepted candidate with the effects `own`, or in
+/// addition to the model if `own` is empty. Returns at most three causes of different columns or forms, best
+/// first.
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked,
+                                 const std::vector<Effect>& own);
 
 /// Marks a random sample of at most `most` rows. The rows, in order of runs and of the file, are divided into
 /// `most` equal stretches, and one row of each stretch is drawn. Every run thereby keeps its share, and

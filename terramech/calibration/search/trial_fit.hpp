@@ -109,9 +109,9 @@ class TrialFit {
   /// fitted once more before. Returns the covariance.
   Eigen::MatrixXd finish(bool again);
 
-  /// Returns the channel in which the removal of an effect changes the predictions most, relative to the
-  /// noise.
-  Channel strongest(std::size_t effect) const;
+  /// Returns the channel in which the removal of `count` effects from `effect` on changes the predictions most,
+  /// relative to the noise.
+  Channel strongest(std::size_t effect, std::size_t count) const;
 
   /// Returns noiseFloor() of the model for the given sensor noise, at slip and load as measured.
   std::array<double, kChannels> noiseFloor(const SensorNoise& noise);

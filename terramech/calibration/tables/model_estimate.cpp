@@ -1,22 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <stdexcept>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 
-#include <talus/common/constants.hpp>
 #include <talus/common/input_error.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/tables/model_estimate.hpp>
 #include <talus/terramech/calibration/verdict/verdict.hpp>
-#include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/estimate/soil_filter.hpp>
-#include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_priors.hpp>
 #include <talus/terramech/io/telemetry_reader.hpp>
@@ -65,46 +58,21 @@ SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const So
   return last;
 }
 
-// Sinkage and torque of the rows, measured and predicted for the posterior mean.
-SoilAnswer answerOf(const WheelRows& rows, const SoilPosterior& posterior) {
-  RefinedModel model;
-  const ContactSoil& m = posterior.mean;
-  model.soil = {.cohesion_Pa = m.cohesion_Pa,
-                .friction_angle_rad = m.friction_angle_rad,
-                .sinkage_exponent = m.sinkage_exponent,
-                .cohesive_modulus = 0.0,
-                .frictional_modulus = m.sinkage_modulus,
-                .shear_modulus_m = m.shear_modulus_m,
-                .c1 = m.c1,
-                .c2 = m.c2};
-  const auto count = static_cast<Eigen::Index>(rows.samples.size());
-  SoilAnswer answer{.measured = Eigen::MatrixXd::Constant(count, kChannels, RunningSoil::kNan),
-                    .predicted = Eigen::MatrixXd::Constant(count, kChannels, RunningSoil::kNan),
-                    .misfit = posterior.misfit};
-  for (Eigen::Index row = 0; row < count; ++row) {
-    const WheelSample& s = rows.samples[static_cast<std::size_t>(row)];
-    const Wheel& wheel = rows.wheels[static_cast<std::size_t>(row)];
-    const Reading read{
-        .load_N = s.load_N, .radius_m = wheel.radius_m, .sinkage_m = s.sinkage_m, .torque_Nm = s.torque_Nm};
-    const Reading predicted_reading = predict(model, {.wheel = wheel, .load_N = s.load_N, .slip = s.slip});
-    for (const Channel channel : {Channel::Sinkage, Channel::Torque}) {
-      answer.measured(row, static_cast<int>(channel)) = read.scaled(channel);
-      answer.predicted(row, static_cast<int>(channel)) = predicted_reading.scaled(channel);
-    }
-  }
-  return answer;
-}
+// Mean square of the whitened residuals above which the estimate has a warning.
+constexpr double kMisfit = 3.0;
+
+// Error over load or radius that is acceptable for a rigid-wheel model.
+constexpr double kCoarse = 0.1;
 
 // Adds warnings about assumptions of the posterior that the rows contradict.
-void warnUncertain(const WheelRows& rows, const SoilPosterior& posterior, const std::string& groups,
+void warnUncertain(const WheelRows& rows, const SoilPosterior& posterior,
                    std::vector<std::string>& warnings) {
   if (posterior.misfit > kMisfit) {
-    warnings.push_back(
-        fmt::format("no soil of the prior explains the readings (misfit {:.1f}, 1 expected); widen --prior "
-                    "or increase --noise",
-                    posterior.misfit));
+    warnings.push_back(fmt::format(
+        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); trace these rows, "
+        "widen --prior, or increase --noise",
+        posterior.misfit));
   }
-  if (!groups.empty()) warnings.push_back(groups);
   const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
   if (narrow->width_m < wide->width_m) {
     warnings.push_back(
@@ -132,14 +100,9 @@ SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMon
                                          : fitSoil(rows.readings(), prior, fit);
   if (watch.stopped()) return estimate;
   take(*estimate.posterior, estimate);
-  // If groupsThatDisagree() names a column, the table contains several soils, each of which may be valid.
-  const std::string groups = groupsThatDisagree(rows, *estimate.posterior, fit.noise);
-  if (const std::string why = noSoilExplains(estimate, answerOf(rows, *estimate.posterior));
-      groups.empty() && !why.empty())
-    throw std::domain_error(
-        fmt::format("{}: {}; check unit, sign and sensor of torque_Nm and sinkage_m, or widen --prior",
-                    options.table.path, why));
-  warnUncertain(rows, *estimate.posterior, groups, estimate.warnings);
+  if (const std::string why = estimate.implausible(); !why.empty())
+    throw std::domain_error(fmt::format("{}: {}; trace these rows", options.table.path, why));
+  warnUncertain(rows, *estimate.posterior, estimate.warnings);
   for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
   return estimate;
 }
@@ -179,14 +142,6 @@ ModelSoilOptions howOf(const EstimateOptions& options) {
   return how;
 }
 
-SoilAnswer answerOf(const RefinedModel& model, const Trial& trial, const ModelSoil& found) {
-  RefinedModel fitted = model;
-  fitted.soil = found.soil;
-  SolvedContacts solved;
-  return {
-      .measured = trial.measured, .predicted = predictRows(fitted, trial, solved), .misfit = found.misfit};
-}
-
 SoilEstimate soilOf(const ModelSoil& found) {
   SoilEstimate estimate;
   estimate.cohesion_Pa = found.soil.cohesion_Pa;
@@ -201,56 +156,41 @@ SoilEstimate soilOf(const ModelSoil& found) {
   return estimate;
 }
 
-// Channel without which a soil fits best, if any.
-struct OddColumn {
-  std::string column;         // empty: no column
-  double misfit = kMisfit;    // misfit of the other channels
-  bool contradicted = false;  // the soil from at least two other channels does not explain this channel
-};
-
-OddColumn oddColumn(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
-  OddColumn odd;
-  int channels = 0;
-  for (int k = 0; k < kChannels; ++k) channels += trial.has(static_cast<Channel>(k)) ? 1 : 0;
+// Names the column without which a soil explains the rows best, if any does.
+std::string remedyFor(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
+  std::string remedy = "trace these rows, or increase --noise";
+  double least = kMisfit;
   for (int k = 0; k < kChannels; ++k) {
     const auto channel = static_cast<Channel>(k);
-    if (!trial.has(channel) || channels < 2) continue;
     Trial without = trial;
-    without.measured.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+    without.measured.col(k).setConstant(RunningSoil::kNan);
+    if (!trial.has(channel) || !without.measured.array().isFinite().any()) continue;
     const ModelSoil rest = soilUnder(model, without, how);
-    if (!(rest.misfit < odd.misfit) || !soilOf(rest).implausible().empty()) continue;
+    if (!(rest.misfit < least) || !soilOf(rest).implausible().empty()) continue;
+    least = rest.misfit;
     const bool by_slope = channel == Channel::DrawbarPull && !trial.moment.empty();
-    odd = {.column = by_slope ? "slope_rad" : kAnswers[static_cast<std::size_t>(k)],
-           .misfit = rest.misfit,
-           .contradicted = channels > 2 && leavesUnexplained(answerOf(model, trial, rest), channel)};
+    remedy = fmt::format("check unit, sign and sensor of column {}, without which the misfit is {:.1f}",
+                         by_slope ? "slope_rad" : kAnswers[static_cast<std::size_t>(k)], least);
   }
-  return odd;
+  return remedy;
 }
 
-std::string remedyFor(const OddColumn& odd) {
-  if (odd.column.empty()) return "no single column is at fault; trace these rows, or increase --noise";
-  return fmt::format("check unit, sign and sensor of column {}, without which the misfit is {:.1f}",
-                     odd.column, odd.misfit);
-}
-
-// Throws if no soil explains the rows, and warns if the fit is poor. A large misfit may be a model error if
-// no single column causes the misfit, or if the other columns predict that column approximately.
-void judgeFit(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
-              const ModelSoil& found, SoilEstimate& estimate) {
-  const bool poor = found.misfit > kMisfit;
-  if (!poor && estimate.implausible().empty()) return;
-  const std::string effects = options.model.empty() ? "" : "with the effects of " + options.model + " ";
-  const OddColumn odd = oddColumn(model, trial, howOf(options));
-  std::string why = noSoilExplains(estimate, answerOf(model, trial, found));
-  if (why.empty() && odd.contradicted)
-    why =
-        fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): {} contradicts the other columns",
-                    found.misfit, odd.column);
+// Throws if the soil is implausible, or if it leaves more than half of a channel's readings and a tenth of load
+// or radius unexplained (root mean squares; ours). Fits to measured sand do not exceed these limits.
+void refuseUnexplained(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
+                       const ModelSoil& found) {
+  RefinedModel fitted = model;
+  fitted.soil = found.soil;
+  const ChannelErrors left = rmseOf(fitted, trial),
+                      readings = rmseOf(Eigen::MatrixXd::Zero(trial.rows(), kChannels), trial);
+  std::string why = soilOf(found).implausible();
+  for (std::size_t c = 0; found.misfit > kMisfit && c < kChannels; ++c)
+    if (left[c] > std::max(kCoarse, 0.5 * readings[c]))
+      why = fmt::format("the nearest leaves {:.0f} % of {}", 100.0 * left[c] / readings[c], kAnswers[c]);
   if (!why.empty())
-    throw std::domain_error(fmt::format("{}: {}{}; {}", options.table.path, effects, why, remedyFor(odd)));
-  estimate.warnings.push_back(fmt::format(
-      "{}no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
-      effects, found.misfit));
+    throw std::domain_error(fmt::format("{}: no soil explains the rows (misfit {:.1f}, 1 expected): {}; {}",
+                                        options.table.path, found.misfit, why,
+                                        remedyFor(model, trial, howOf(options))));
 }
 
 }  // namespace
@@ -287,130 +227,15 @@ SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor
   std::ranges::stable_sort(estimate.rejected, {}, &RejectedRow::line);
   estimate.rows_used = static_cast<std::size_t>(trial.rows());
   for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
-  judgeFit(options, model, trial, found, estimate);
+  refuseUnexplained(options, model, trial, found);
+  if (found.misfit > kMisfit)
+    estimate.warnings.push_back(fmt::format(
+        "no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
+        found.misfit));
   if (beyond_axle.rows() > 0)
     estimate.warnings.push_back(
         fmt::format("{} rows with sinkage at or above the axle were excluded", beyond_axle.rows()));
   return estimate;
-}
-
-namespace {
-
-constexpr double kLeft = 0.5;  // unexplained share of the root mean square of a channel's readings
-
-// Residual of one channel relative to its readings; 0 if the residual is small compared to load or radius;
-// infinite if all readings are 0 and the predictions are not.
-double leftOf(const SoilAnswer& answer, int channel) {
-  double readings = 0.0, residuals = 0.0;
-  int rows = 0;
-  for (Eigen::Index row = 0; row < answer.measured.rows(); ++row) {
-    const double y = answer.measured(row, channel), f = answer.predicted(row, channel);
-    if (!std::isfinite(y) || !std::isfinite(f)) continue;
-    readings += y * y;
-    residuals += (y - f) * (y - f);
-    ++rows;
-  }
-  return residuals > kCoarse * kCoarse * rows ? std::sqrt(residuals / readings) : 0.0;
-}
-
-}  // namespace
-
-UnexplainedColumn unexplained(const SoilAnswer& answer) {
-  UnexplainedColumn worst{.column = "", .left = kLeft};
-  for (int channel = 0; channel < kChannels; ++channel)
-    if (const double left = leftOf(answer, channel); left > worst.left)
-      worst = {.column = kAnswers[static_cast<std::size_t>(channel)], .left = left};
-  return worst;
-}
-
-bool leavesUnexplained(const SoilAnswer& answer, Channel channel) {
-  return leftOf(answer, static_cast<int>(channel)) > kLeft;
-}
-
-std::string noSoilExplains(const SoilEstimate& estimate, const SoilAnswer& answer) {
-  const bool poor = answer.misfit > kMisfit;
-  std::string why;
-  if (const UnexplainedColumn worst = unexplained(answer); poor && !worst.column.empty())
-    why = std::isfinite(worst.left)
-              ? fmt::format("the nearest leaves {:.0f} % of {}", 100.0 * worst.left, worst.column)
-              : fmt::format("the nearest has a {} that reads 0", worst.column);
-  else if (!estimate.implausible().empty())
-    why = fmt::format("the nearest has a cohesion of {:.3g} kPa and a friction angle of {:.0f} deg",
-                      1e-3 * estimate.cohesion_Pa, estimate.friction_angle_rad / kDegree);
-  else
-    return {};
-  return (poor ? fmt::format("no soil explains the rows (misfit {:.1f}, 1 expected): ", answer.misfit)
-               : std::string("no soil is like that of the rows: ")) +
-         why;
-}
-
-namespace {
-
-constexpr double kLarge = 0.5;   // mean deviation of a group, in standard deviations of one reading
-constexpr double kChance = 5.0;  // threshold of excess(), in standard deviations of chi-squared
-
-struct Group {
-  double rows = 0.0;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of whitened residuals (W, T)
-
-  double departure() const { return sum.norm() / rows; }
-  double chiSquared() const { return sum.squaredNorm() / rows; }
-};
-
-std::vector<Eigen::Vector2d> residuals(const WheelRows& rows, const SoilPosterior& p,
-                                       const ReadingErrors& noise) {
-  SoilClass soil;
-  const ContactSoil& m = p.mean;
-  soil.parameters = {Marginal::fixed(m.cohesion_Pa), Marginal::fixed(m.friction_angle_rad),
-                     Marginal::fixed(m.sinkage_exponent), Marginal::fixed(m.sinkage_modulus),
-                     Marginal::fixed(m.shear_modulus_m)};
-  soil.c1 = m.c1;
-  soil.c2 = m.c2;
-  const SoilObjective objective(soil, {.noise = noise, .outlier_share = 0.0});
-  std::vector<Eigen::Vector2d> all;
-  for (const WheelReading& r : rows.readings())
-    all.push_back(objective.misfit(SoilVector::Zero(), r).residual);
-  return all;
-}
-
-// Excess of a column's chi-squared over its expected value, in standard deviations; 0 if no group deviates by
-// more than kLarge.
-double excess(const std::map<std::string, Group>& groups) {
-  double sum = 0.0, largest = 0.0;
-  for (const auto& [name, group] : groups) {
-    sum += group.chiSquared();
-    if (group.rows > 1.0) largest = std::max(largest, group.departure());
-  }
-  const double expected = 2.0 * static_cast<double>(groups.size());
-  return largest > kLarge ? (sum - expected) / std::sqrt(2.0 * expected) : 0.0;
-}
-
-}  // namespace
-
-std::string groupsThatDisagree(const WheelRows& rows, const SoilPosterior& posterior,
-                               const ReadingErrors& noise) {
-  const std::vector<Eigen::Vector2d> residual = residuals(rows, posterior, noise);
-  const std::string* worst = nullptr;
-  std::map<std::string, Group> worst_groups;
-  double most = kChance;
-  for (const Telemetry::Words& column : rows.words) {
-    std::map<std::string, Group> groups;
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-      Group& group = groups[column.values[k]];
-      group.rows += 1.0;
-      group.sum += residual[k];
-    }
-    if (groups.size() < 2 || 2 * groups.size() > residual.size()) continue;
-    if (const double beyond = excess(groups); beyond > most)
-      most = beyond, worst = &column.name, worst_groups = groups;
-  }
-  if (worst == nullptr) return {};
-  const auto& [name, group] = *std::ranges::max_element(
-      worst_groups, {}, [](const auto& entry) { return entry.second.chiSquared(); });
-  return fmt::format(
-      "one soil does not fit all values of {0}: mean residual {2:.1f} sigma at {0} = {1}; split the file by "
-      "{0}",
-      *worst, name, group.departure());
 }
 
 namespace {

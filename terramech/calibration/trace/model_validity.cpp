@@ -58,6 +58,17 @@ std::string number(double value) {
   return text;
 }
 
+/// Returns which median reading no wheel on soil can have; empty if none.
+std::string impossible(const Trial& trial) {
+  for (const auto& [channel, most] :
+       {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
+    if (const double median = medianReading(trial, channel); median > most)
+      return std::string("the median of ") + name(channel) + " is " + number(median) +
+             ", more than a wheel reaches on soil (" + number(most) +
+             "): check the units of the readings and of the wheel";
+  return "";
+}
+
 }  // namespace
 
 std::vector<double> closureErrors(const Trial& trial) {
@@ -73,14 +84,7 @@ std::vector<double> closureErrors(const Trial& trial) {
 }
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
-  for (const auto& [channel, most] :
-       {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
-    if (const double median = medianReading(result.trial, channel); median > most)
-      return {false,
-              std::string("the median of ") + name(channel) + " is " + number(median) +
-                  ", more than a wheel reaches on soil (" + number(most) +
-                  "): check the units of the readings and of the wheel",
-              false};
+  if (const std::string reason = impossible(result.trial); !reason.empty()) return {false, reason, false};
   TraceResult physics = result;
   physics.scope = {};
   physics.refined = withoutSensors(result.refined);
@@ -209,6 +213,7 @@ Applicability tableApplicability(const TableFile& table, const std::string& base
     return {};
   const ModelRows rows = modelRows(telemetry, file.model);
   const Trial trial = evenRows(rows.trial);
+  if (const std::string reason = impossible(trial); !reason.empty()) return {false, reason, false};
   if (trial.rows() < kFewest) return {};
   TraceOptions options{.max_effects = 0};
   options.fit_soil = !file.soil_given;

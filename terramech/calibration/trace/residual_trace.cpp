@@ -18,15 +18,6 @@
 namespace talus::terramech {
 namespace {
 
-Channel strongest(const Explanation& e) {
-  const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
-  return static_cast<Channel>(most - e.by_channel.begin());
-}
-
-TracedEffect traced(const Explanation& chosen) {
-  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}};
-}
-
 /// State of the search: accepted effects, in the order of acceptance. Its objective is the score of the model
 /// plus the logarithms of the candidates' priors, less the threshold for each accepted candidate.
 struct Path {
@@ -52,11 +43,11 @@ struct Path {
 /// Accepts an explanation. Forms that were found together become one effect each.
 void take(Path& path, const Explanation& chosen) {
   path.search.accept(chosen.candidate);
-  if (chosen.candidate.empirical()) return path.effects.push_back(traced(chosen));
+  if (chosen.candidate.empirical()) return path.effects.push_back({.chosen = chosen});
   for (const Effect& part : chosen.candidate.parts) {
     Explanation one = chosen;
     one.candidate = formOf(part);
-    path.effects.push_back(traced(one));
+    path.effects.push_back({.chosen = one});
   }
 }
 
@@ -138,12 +129,12 @@ void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
     effect.chosen.gain = path.search.gainOver(in.without, k);
     effect.p_value = path.noise.pValue(effect.chosen.gain);
     const double least = effect.chosen.evidence() - path.close;
-    for (RivalCause& rival : rivalsOf(in, path.search.parts(k))) {
+    for (RivalCause& rival : rivalsOf(in.without, in.ranked, path.search.parts(k))) {
       if (rival.explanation.evidence() >= least) effect.equal.push_back(rival.explanation);  // (T46)
       result.rivals.push_back(std::move(rival));
     }
   }
-  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
+  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected, {});
 }
 
 /// Prior information on a rover's own drive. The pull follows from the slope and has the error of an

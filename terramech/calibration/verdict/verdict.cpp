@@ -46,22 +46,6 @@ void setChannel(Answer& answer, const TraceResult& result, const ChannelErrors& 
   }
 }
 
-std::size_t valuesOf(const Trial& trial, const std::string& column) {
-  std::set<double> values;
-  for (const WheelState& s : trial.states)
-    if (const double v = s.covariate(column); std::isfinite(v)) values.insert(v);
-  return values.size();
-}
-
-bool isFixedByRun(const Trial& trial, const std::string& column) {
-  std::set<std::pair<int, double>> pairs;
-  std::set<int> runs(trial.run.begin(), trial.run.end());
-  for (std::size_t row = 0; row < trial.states.size(); ++row)
-    if (const double v = trial.states[row].covariate(column); std::isfinite(v))
-      pairs.insert({trial.run[row], v});
-  return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
-}
-
 /// True if each unit with a shared error is a run.
 bool unitsAreRuns(const TraceResult& result) {
   const std::vector<int>&unit = result.shared.unit, &run = result.trial.run;
@@ -74,17 +58,10 @@ std::string unrecorded(const Answer& answer) {
   return "rows that record what else changed from " + answer.unit + " to " + answer.unit;
 }
 
-std::string furtherRows(const TraceResult& result, const Answer& answer) {
-  if (answer.column.empty()) return unrecorded(answer);
-  if (isFixedByRun(result.trial, answer.column))
-    return "further runs at other values of " + answer.column + ", now " +
-           std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
-  const double times = answer.gain > 0.0 ? result.threshold / answer.gain : 0.0;
-  std::string rows = "rows over a wider range of " + answer.column + ", the other columns the same";
-  // A gain increases in proportion to the number of rows.
-  if (times > 1.0 && times < 20.0)
-    rows += ", or about " + std::to_string(static_cast<int>(std::ceil(times))) + " times as many";
-  return rows;
+std::string furtherRows(const Answer& answer) {
+  return answer.column.empty()
+             ? unrecorded(answer)
+             : "rows over a wider range of " + answer.column + ", the other columns the same";
 }
 
 }  // namespace
@@ -132,7 +109,7 @@ Answer answerOf(const TraceResult& result) {
     answer.gain = p.gain;
     break;
   }
-  if (open && answer.measure.empty()) answer.measure = furtherRows(result, answer);
+  if (open && answer.measure.empty()) answer.measure = furtherRows(answer);
   return answer;
 }
 
