@@ -14,7 +14,7 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 724},    {"terramech", 21769}, {"maps", 7249},     {"costmap", 13045},
+const Budget kBudgets[] = {{"common", 724},    {"terramech", 21703}, {"maps", 7249},     {"costmap", 13045},
                            {"planner", 24048}, {"cli", 14479},       {"examples", 1580}, {"tests", 58970}};
 
 // A change of this many lines or more below the budget lowers it.

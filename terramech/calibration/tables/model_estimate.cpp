@@ -266,63 +266,6 @@ FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
   return plan;
 }
 
-/// State of the fit: the model, and the noise at its current predictions.
-class SoilModelFit {
- public:
-  SoilModelFit(const Trial& trial, const FitPlan& plan, double noise)
-      : trial_(trial), plan_(plan), noise_(noise) {
-    // Slip and load of each row are fitted from their readings alone.
-    const auto rows = static_cast<std::size_t>(trial_.rows());
-    for (std::size_t row = 0; row < rows; ++row) slips_.push_back(trial_.slip[row]);
-  }
-
-  Fit from(RefinedModel model) {
-    model.noise = noiseOf(model, noise_);
-    for (Eigen::Index row = 0; row < trial_.rows(); ++row) {
-      const double slip = slips_[static_cast<std::size_t>(row)];
-      trial_.slip_variance[row] = std::pow(model.noise.slipStd(slip), 2);
-      trial_.load_variance[row] = std::pow(model.noise.load_relative, 2);
-    }
-    Fit fit{.model = model};
-    for (int round = 0; round < 3; ++round) {
-      white_ = whiteningBy(fit.model);
-      fit = fitModel(fit.model, trial_, white_, plan_, solved_);
-    }
-    return fit;
-  }
-
-  /// Covariance of the free parameters, in the order of the plan.
-  Eigen::MatrixXd covariance(const RefinedModel& fitted) {
-    return parameterCovariance(fitted, trial_, whiteningBy(fitted), plan_, solved_);
-  }
-
-  /// Degrees of freedom: readings minus free parameters, at least 1.
-  double freedom() const {
-    const auto readings = static_cast<double>(trial_.measured.array().isFinite().count());
-    return std::max(1.0, readings - static_cast<double>(plan_.free.size()));
-  }
-
- private:
-  Whitening whiteningBy(const RefinedModel& model) {
-    const Eigen::MatrixXd level = predictRows(model, trial_, solved_);
-    return whitening(trial_, level, inputSlopes(model, trial_, solved_), model.noise);
-  }
-
-  Trial trial_;
-  const FitPlan& plan_;
-  double noise_;
-  std::vector<double> slips_;
-  Whitening white_;
-  SolvedContacts solved_;
-};
-
-RefinedModel withSoil(const RefinedModel& model, const Soil& soil, const ModelSoilOptions& options) {
-  RefinedModel other = model;
-  other.soil = soil;
-  if (options.shear_modulus_m) other.soil.shear_modulus_m = *options.shear_modulus_m;
-  return other;
-}
-
 /// Covariance of cohesion c and tan phi (phi: friction angle) from that of the fitted parameters; zero for
 /// parameters that are not fitted.
 Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& covariance, const Soil& soil) {
@@ -344,18 +287,38 @@ Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& c
 
 ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options) {
   const FitPlan plan = planOf(model, options);
-  SoilModelFit search{trial, plan, options.noise};
-  const Soil& afresh = options.prior ? options.prior->soil : unknownSoil().model.soil;
-  Fit best = search.from(withSoil(model, afresh, options));
+  RefinedModel start = model;
+  start.noise = noiseOf(model, options.noise);
+  // Slip and load of each row are fitted from their readings alone.
+  Trial rows = trial;
+  for (Eigen::Index row = 0; row < rows.rows(); ++row)
+    rows.slip_variance[row] = std::pow(start.noise.slipStd(trial.slip[static_cast<std::size_t>(row)]), 2);
+  rows.load_variance.setConstant(std::pow(start.noise.load_relative, 2));
+  SolvedContacts solved;
+  const auto whiteningBy = [&](const RefinedModel& at) {
+    const Eigen::MatrixXd level = predictRows(at, rows, solved);
+    return whitening(rows, level, inputSlopes(at, rows, solved), at.noise);
+  };
+  const auto fittedFrom = [&](const Soil& soil) {
+    Fit fit{.model = start};
+    fit.model.soil = soil;
+    if (options.shear_modulus_m) fit.model.soil.shear_modulus_m = *options.shear_modulus_m;
+    for (int round = 0; round < 3; ++round) {
+      const Whitening white = whiteningBy(fit.model);
+      fit = fitModel(fit.model, rows, white, plan, solved);
+    }
+    return fit;
+  };
+  Fit best = fittedFrom(options.prior ? options.prior->soil : unknownSoil().model.soil);
   // With a prior, the soil of the model is not a start value, because the prior may fix parameters.
-  if (!options.prior) {
-    const Fit own = search.from(withSoil(model, model.soil, options));
-    if (own.cost() < best.cost()) best = own;
-  }
-  const Eigen::MatrixXd covariance = search.covariance(best.model);
+  if (!options.prior)
+    if (const Fit own = fittedFrom(model.soil); own.cost() < best.cost()) best = own;
+  const Eigen::MatrixXd covariance =
+      parameterCovariance(best.model, rows, whiteningBy(best.model), plan, solved);
+  const auto readings = static_cast<double>(trial.measured.array().isFinite().count());
   ModelSoil found{.soil = best.model.soil,
                   .strength_covariance = strengthCovariance(plan, covariance, best.model.soil),
-                  .misfit = best.chi2 / search.freedom()};
+                  .misfit = best.chi2 / std::max(1.0, readings - static_cast<double>(plan.free.size()))};
   best.model.fitted = plan.free;
   for (const std::string& name : soilAtBounds(best.model))
     found.unseen.push_back(name + ": ended at the limit of its range");

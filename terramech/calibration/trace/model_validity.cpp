@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <sstream>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <talus/terramech/calibration/held_out/held_out.hpp>
+#include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/calibration/trace/model_validity.hpp>
@@ -53,9 +54,7 @@ double medianReading(const Trial& trial, Channel channel) {
 }
 
 std::string number(double value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
+  return fmt::format("{:.2f}", value);
 }
 
 /// Returns which median reading no wheel on soil can have; empty if none.
@@ -159,10 +158,8 @@ double logDensity(const RefinedModel& model, const ScaledTrial& rows, const Trac
 }  // namespace
 
 std::string ScaledColumn::text() const {
-  std::ostringstream out;
-  out.precision(4);
-  out << column << " looks like " << reason << ": scale " << scale << " (log-likelihood gain " << gain << ')';
-  return out.str();
+  return fmt::format("{} looks like {}: scale {:.4g} (log-likelihood gain {:.4g})", column, reason, scale,
+                     gain);
 }
 
 std::optional<ScaledColumn> likelyScale(const TraceResult& result, const RefinedModel& present,
@@ -187,23 +184,9 @@ std::optional<ScaledColumn> likelyScale(const TraceResult& result, const Refined
   return best;
 }
 
-namespace {
-
-constexpr int kFewest = 20, kMost = 400;
-
-/// Evenly spaced rows of a trial, at most kMost.
-Trial evenRows(const Trial& trial) {
-  const int step = (trial.rows() + kMost - 1) / kMost;
-  if (step < 2) return trial;
-  std::vector<char> some;
-  for (int row = 0; row < trial.rows(); ++row) some.push_back(row % step == 0);
-  return subset(trial, some);
-}
-
-}  // namespace
-
 Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
                                  const ProgressMonitor& watch) {
+  constexpr int kFewest = 20, kMost = 400;
   const ModelFile file = baseModel(base, rover);
   const Telemetry telemetry = readTelemetry(table, {});
   const bool wheel =
@@ -212,7 +195,7 @@ Applicability tableApplicability(const TableFile& table, const std::string& base
   if (!telemetry.find("sinkage_m") && !telemetry.find("torque_Nm") && !telemetry.find("drawbar_pull_N"))
     return {};
   const ModelRows rows = modelRows(telemetry, file.model);
-  const Trial trial = evenRows(rows.trial);
+  const Trial trial = subset(rows.trial, rowSample(rows.trial, kMost, 1));
   if (const std::string reason = impossible(trial); !reason.empty()) return {false, reason, false};
   if (trial.rows() < kFewest) return {};
   TraceOptions options{.max_effects = 0};
