@@ -9,8 +9,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/tables/assessment.hpp>
-#include <talus/terramech/calibration/tables/table_applicability.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
 
 namespace talus::cli {

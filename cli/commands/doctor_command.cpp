@@ -15,7 +15,7 @@
 #include <talus/common/limits.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/planner/route/problem.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

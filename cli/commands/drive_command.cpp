@@ -21,7 +21,7 @@
 #include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/simulation/simulation.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

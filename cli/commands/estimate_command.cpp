@@ -12,10 +12,8 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
-#include <talus/terramech/calibration/tables/estimate_soil.hpp>
-#include <talus/terramech/calibration/tables/table_applicability.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/calibration.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

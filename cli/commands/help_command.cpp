@@ -9,7 +9,7 @@
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

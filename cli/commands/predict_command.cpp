@@ -7,7 +7,7 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

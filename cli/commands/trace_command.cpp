@@ -10,12 +10,12 @@
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/common/common.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
-#include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/calibration/trace/run_proposal.hpp>
-#include <talus/terramech/calibration/trace/trace_table.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

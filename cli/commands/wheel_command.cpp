@@ -12,7 +12,7 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace {

@@ -26,8 +26,8 @@
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 

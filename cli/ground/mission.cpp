@@ -11,7 +11,7 @@
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <talus/terramech/calibration/verdict/verdict.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace talus::cli {
 

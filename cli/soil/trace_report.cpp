@@ -8,7 +8,7 @@
 
 #include <talus/cli/soil/trace_answer.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/terramech/calibration/table/answer_columns.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
@@ -265,15 +265,10 @@ ordered_json rivalJson(const Explanation& e) {
 }
 
 ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
-  ordered_json by_channel = ordered_json::object();
-  for (Channel c : kAllChannels)
-    if (trace.result.trial.has(c))
-      by_channel[name(c)] = effect.chosen.by_channel[static_cast<std::size_t>(c)];
   ordered_json rivals = ordered_json::array();
   for (const Explanation& e : effect.equal) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
           {"gain", effect.chosen.gain},
-          {"chi2_gain_by_channel", by_channel},
           {"alternatives", rivals},
           {"confounded_with", confounded(trace.result.trial, effect.chosen.candidate.covariate())},
           {"to_tell_apart", separatingMeasurement(trace.result.trial, effect)}};
@@ -426,27 +421,9 @@ std::string separatingMeasurement(const Trial& trial, const TracedEffect& effect
 namespace {
 
 ordered_json schemeJson(const HeldOut& held) {
-  ordered_json out{{"scheme", held.scheme},
-                   {"base_rmse", errorsJson(held.base_rmse)},
-                   {"refined_rmse", errorsJson(held.refined_rmse)}};
-  for (const GroupErrors& g : held.groups)
-    out["groups"].push_back({{"column", g.column},
-                             {"value", g.value},
-                             {"rows", g.rows},
-                             {"base_rmse", errorsJson(g.base_rmse)},
-                             {"refined_rmse", errorsJson(g.refined_rmse)}});
-  return out;
-}
-
-std::string groupLines(const TableTrace& trace, const HeldOut& held) {
-  std::string out;
-  for (const GroupErrors& g : held.groups) {
-    out += fmt::format("  {} = {}, {} rows\n", g.column, g.value, g.rows);
-    for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); trace.result.trial.has(c))
-        out += fmt::format("  {:26s} {:10.4f} {:10.4f}\n", name(c), g.base_rmse[k], g.refined_rmse[k]);
-  }
-  return out;
+  return {{"scheme", held.scheme},
+          {"base_rmse", errorsJson(held.base_rmse)},
+          {"refined_rmse", errorsJson(held.refined_rmse)}};
 }
 
 ordered_json heldOutJson(const TableTrace& trace) {
@@ -462,8 +439,7 @@ ordered_json heldOutJson(const TableTrace& trace) {
                     {"rows", end.rows},
                     {"distance", end.distance},
                     {"base_rmse", errorsJson(end.base_rmse)},
-                    {"refined_rmse", errorsJson(end.refined_rmse)},
-                    {"extrapolates", end.law}});
+                    {"refined_rmse", errorsJson(end.refined_rmse)}});
   out["end_levels"] = ends;
   return out;
 }
@@ -588,7 +564,6 @@ std::string traceText(const TableTrace& trace) {
       out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
                          held.refined_rmse[k], r.noise_floor[k]);
     }
-    out += groupLines(trace, held);
   }
   out += endLines(r);
   if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';

@@ -8,10 +8,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <talus/cli/draw/plot.hpp>
-#include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/calibration/trace/run_proposal.hpp>
-#include <talus/terramech/calibration/trace/trace_table.hpp>
 
 namespace talus::cli {
 

@@ -20,7 +20,7 @@
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/route/route.hpp>
 #include <talus/planner/simulation/simulation.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 

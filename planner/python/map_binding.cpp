@@ -28,7 +28,7 @@
 #include <talus/planner/python/python_map.hpp>
 #include <talus/planner/route/route_json.hpp>
 #include <talus/planner/site/site.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace py = pybind11;
 using namespace pybind11::literals;

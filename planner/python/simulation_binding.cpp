@@ -8,7 +8,7 @@
 #include <talus/planner/python/bindings.hpp>
 #include <talus/planner/python/python_map.hpp>
 #include <talus/planner/simulation/simulation.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace py = pybind11;
 

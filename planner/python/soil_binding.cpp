@@ -7,9 +7,9 @@
 #include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/terramech/calibration/tables/estimate_soil.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace py = pybind11;
 

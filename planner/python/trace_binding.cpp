@@ -8,8 +8,7 @@
 #include <talus/common/common.hpp>
 #include <talus/planner/python/arrays.hpp>
 #include <talus/planner/python/bindings.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
-#include <talus/terramech/calibration/trace/trace_table.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace py = pybind11;
 

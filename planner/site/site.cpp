@@ -24,9 +24,9 @@
 #include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/site/site.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus {
 

@@ -17,7 +17,7 @@
 #include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

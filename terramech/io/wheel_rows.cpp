@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 21696}, {"maps", 6713},     {"costmap", 12485},
-                           {"planner", 23585}, {"cli", 13746},       {"examples", 1580}, {"tests", 57868}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 20758}, {"maps", 6713},     {"costmap", 12485},
+                           {"planner", 23584}, {"cli", 13717},       {"examples", 1580}, {"tests", 57547}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -11,7 +11,7 @@
 
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace {
 

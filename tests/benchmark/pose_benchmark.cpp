@@ -14,7 +14,7 @@
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/maps/sites/site_generator.hpp>
 #include <talus/planner/pose/hybrid_search.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"

@@ -1,7 +1,7 @@
 #include <functional>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "targets.hpp"
 

@@ -10,9 +10,9 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::reproduce {
 namespace {

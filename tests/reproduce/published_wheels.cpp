@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <talus/common/common.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
-#include <talus/terramech/calibration/trace/trace_table.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "published.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Cholesky>
 
-#include <talus/terramech/calibration/noise/folds.hpp>
-#include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 
 namespace talus::terramech {

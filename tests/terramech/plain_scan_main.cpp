@@ -1,7 +1,7 @@
 // Applies the plain scan to a table: plain_scan T.csv BASE.yaml. Prints one column a line.
 #include <cstdio>
 
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "plain_scan.hpp"
 

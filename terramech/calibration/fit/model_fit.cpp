@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
 
 namespace talus::terramech {
 namespace {

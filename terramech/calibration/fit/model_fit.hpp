@@ -8,11 +8,10 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace talus::terramech {
 

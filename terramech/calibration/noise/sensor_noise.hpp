@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
 
 namespace talus::terramech {
 
@@ -59,5 +59,15 @@ std::vector<std::string> allButSlip(const Trial& trial);
 /// `level` contains a model's predictions, rows x kChannels.
 std::array<double, kChannels> noiseFloor(const Trial& trial, const Eigen::MatrixXd& level,
                                          const InputSlopes& slopes, const SensorNoise& noise);
+
+/// Returns knots at quantiles of the distinct finite values of x: at most `most` knots, fewer for few values.
+std::vector<double> quantileKnots(const Eigen::VectorXd& x, int most);
+
+/// Returns the basis of natural cubic splines in terms of their values at the knots, rows x knots. Each row
+/// sums to 1; a row is zero where x is NaN.
+Eigen::MatrixXd splineBasis(const Eigen::VectorXd& x, const std::vector<double>& knots);
+
+/// Returns an orthonormal basis of the columns; directions of relative length below 1e-8 are dropped.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 
 }  // namespace talus::terramech

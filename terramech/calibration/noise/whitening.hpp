@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace talus::terramech {
 

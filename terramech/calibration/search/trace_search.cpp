@@ -2,13 +2,13 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <random>
 #include <set>
 #include <string>
 #include <string_view>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/search/trace_result.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 
 namespace talus::terramech {
@@ -104,7 +104,6 @@ Explanation TraceSearch::fitted(const Candidate& candidate) const {
 }
 
 Explanation TraceSearch::fitted(const Candidate& candidate, double before) const {
-  const CalibratedRows& rows = fit_.rows();
   SolvedContacts solved = fit_.solved();
   const Fit found = fit_.fit(withCandidate(model(), candidate),
                              candidate.parts.size() > 2   ? 30
@@ -116,12 +115,7 @@ Explanation TraceSearch::fitted(const Candidate& candidate, double before) const
   for (std::size_t k = 0; k < candidate.parts.size(); ++k)
     e.candidate.parts[k] = found.model.effects[model().effects.size() + k];
   e.chi2_gain = chi2() - found.chi2 - found.prior_chi2;
-  const Eigen::MatrixXd left = rows.trial().measured - predictRows(found.model, rows.trial(), solved);
   e.gain = fit_.scoreOf(found.model) - before + candidate.logPrior();  // (T35)
-  const Eigen::VectorXd was = rows.whitening().marginal(rows.residual()),
-                        is = rows.whitening().marginal(left);
-  for (Eigen::Index i = 0; i < was.size(); ++i)
-    e.by_channel[static_cast<std::size_t>(i % kChannels)] += was[i] * was[i] - is[i] * is[i];
   return e;
 }
 
@@ -191,7 +185,7 @@ void TraceSearch::describe(std::vector<TracedEffect>& effects, const Eigen::Matr
   std::size_t at = given_effects_;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     TracedEffect& effect = effects[k];
-    if (units_[k].parts == 1) effect.channel = fit_.strongest(at);
+    effect.channel = fit_.strongest(at, units_[k].parts);
     for (Effect& part : effect.chosen.candidate.parts) part = model().effects[at++];
     effect.parameter_std.clear();
     for (std::size_t j = 0; j < model().fitted.size(); ++j) {
@@ -220,13 +214,6 @@ void TraceSearch::finish(TraceResult& result) {
 }
 
 namespace {
-
-constexpr std::size_t kRivals = 3;
-
-/// Key of a cause: name, column and group of the candidate.
-std::string causeOf(const Candidate& c) {
-  return c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value;
-}
 
 /// Returns true if two effects are the same cause: the same column, and curves or forms of one family. Drifts
 /// of one column are the same cause if they differ in their time course only.
@@ -257,53 +244,33 @@ bool isOther(const Candidate& other, const std::vector<Effect>& own) {
   });
 }
 
-std::vector<RivalCause> best(const TraceSearch& search, std::vector<Explanation> ranked,
-                             const std::string& in_place_of) {
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Explanation& a, const Explanation& b) { return a.gain > b.gain; });
-  std::vector<RivalCause> rivals;
-  std::set<std::string> seen;
-  for (Explanation& e : ranked) {
-    if (rivals.size() == kRivals || e.gain <= 0.0) break;
-    if (!seen.insert(causeOf(e.candidate)).second) continue;
-    RefinedModel model = search.modelWith(e.candidate);
-    // Skips curves that are constant over their column.
-    if (search.dependsOn(model, e.candidate.covariate()))
-      rivals.push_back({in_place_of, e, std::move(model)});
-  }
-  return rivals;
-}
-
 }  // namespace
 
 Replacements replacementsOf(const TraceSearch& search, std::size_t k) {
-  Replacements in{search, {}, {}};
+  Replacements in{search, {}};
   in.without.leaveOut(k);
-  in.promises = in.without.screen(0).promises;
-  in.ranked = in.without.fitBest(in.promises);
+  in.ranked = in.without.fitBest(in.without.screen(0).promises);
   return in;
 }
 
-std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own) {
-  constexpr std::size_t kFits = 6;
-  // At most one curve per column, and each named form once.
-  const auto kindOf = [](const Candidate& c) { return c.empirical() ? c.covariate() : causeOf(c); };
-  std::set<std::string> tried;
-  std::vector<Explanation> ranked;
-  for (const Explanation& e : in.ranked)
-    if ((e.candidate.parts.size() == 1 || e.candidate.empirical()) && isOther(e.candidate, own) &&
-        tried.insert(kindOf(e.candidate)).second)
-      ranked.push_back(e);
-  for (const Promise& p : in.promises) {
-    if (tried.size() >= kFits || p.gain <= 0.0) break;
-    if ((p.candidate.parts.size() > 1 && !p.candidate.empirical()) || !isOther(p.candidate, own)) continue;
-    if (tried.insert(kindOf(p.candidate)).second) ranked.push_back(in.without.fitted(p.candidate));
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked,
+                                 const std::vector<Effect>& own) {
+  constexpr std::size_t kRivals = 3;
+  std::vector<RivalCause> rivals;
+  std::set<std::string> seen;
+  for (const Explanation& e : ranked) {
+    const Candidate& c = e.candidate;
+    if (rivals.size() == kRivals || e.gain <= 0.0) break;
+    const bool together = c.parts.size() > 1 && !c.empirical();
+    if (!own.empty() && (together || !isOther(c, own))) continue;
+    if (!seen.insert(c.parts.front().name + '|' + c.covariate() + '|' + c.parts.front().only_value).second)
+      continue;
+    RefinedModel model = search.modelWith(c);
+    // Skips curves that are constant over their column.
+    if (search.dependsOn(model, c.covariate()))
+      rivals.push_back({own.empty() ? "" : own.front().name, e, std::move(model)});
   }
-  return best(in.without, std::move(ranked), own.front().name);
-}
-
-std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked) {
-  return best(search, ranked, "");
+  return rivals;
 }
 
 ChannelErrors rmseOf(const RefinedModel& model, const Trial& trial) {
@@ -322,6 +289,104 @@ ChannelErrors rmseOf(const Eigen::MatrixXd& predicted, const Trial& trial) {
     errors[static_cast<std::size_t>(c)] = count ? std::sqrt(sum / count) : std::nan("");
   }
   return errors;
+}
+
+namespace {
+
+/// Rows in order of runs, the rows of a moment together.
+std::vector<std::vector<std::size_t>> unitsInOrder(const Trial& trial) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(trial.rows()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const bool drive = !trial.moment.empty();
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (trial.run[a] != trial.run[b]) return trial.run[a] < trial.run[b];
+    return drive && trial.moment[a] < trial.moment[b];
+  });
+  std::vector<std::vector<std::size_t>> units;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    if (k > 0 && drive && trial.moment[order[k]] == trial.moment[order[k - 1]])
+      units.back().push_back(order[k]);
+    else
+      units.push_back({order[k]});
+  return units;
+}
+
+std::vector<std::string> ownColumns(const Trial& trial) {
+  std::vector<std::string> own;
+  std::copy_if(trial.covariates.begin(), trial.covariates.end(), std::back_inserter(own), isOwnColumn);
+  own.insert(own.end(), trial.groupings.begin(), trial.groupings.end());
+  return own;
+}
+
+/// The greatest gain of the coarse candidates of each column.
+std::vector<double> gainsOf(const RefinedModel& base, const Trial& trial, const std::vector<std::string>& own,
+                            const TraceOptions& options, const std::function<bool(double)>& go_on) {
+  std::vector<Candidate> candidates;
+  std::vector<std::size_t> column;
+  for (std::size_t k = 0; k < own.size(); ++k)
+    for (Candidate& c : coarseCandidates(trial, own[k])) {
+      candidates.push_back(std::move(c));
+      column.push_back(k);
+    }
+  Trial without = trial;  // trial without the screened columns
+  std::erase_if(without.covariates, isOwnColumn);
+  without.groupings.clear();
+  const std::vector<double> each = TraceSearch{base, without, options, go_on}.gainsOf(candidates);
+  std::vector<double> gain(own.size(), 0.0);
+  for (std::size_t k = 0; k < each.size(); ++k) gain[column[k]] = std::max(gain[column[k]], each[k]);
+  return gain;
+}
+
+bool isIn(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+std::vector<char> rowSample(const Trial& trial, int most, std::uint64_t seed) {
+  const auto rows = static_cast<std::size_t>(trial.rows());
+  if (trial.rows() <= most) return std::vector<char>(rows, 1);
+  const auto units = unitsInOrder(trial);
+  const double stretch = static_cast<double>(rows) / most;
+  std::mt19937_64 random(seed);
+  std::vector<char> keep(rows, 0);
+  for (std::size_t k = 0;; ++k) {
+    const auto first = static_cast<std::size_t>(static_cast<double>(k) * stretch),
+               last = std::min(units.size(), static_cast<std::size_t>(static_cast<double>(k + 1) * stretch));
+    if (first >= last) break;
+    for (const std::size_t row : units[first + random() % (last - first)]) keep[row] = 1;
+  }
+  return keep;
+}
+
+Trial screenColumns(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                    const std::function<bool(double)>& go_on) {
+  const std::vector<std::string> own = ownColumns(trial);
+  const auto most = static_cast<std::size_t>(options.most_columns);
+  if (own.size() <= most) return trial;
+  const std::vector<double> gain = gainsOf(base, trial, own, options, go_on);
+  std::vector<std::size_t> order(own.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
+  std::sort(order.begin() + static_cast<long>(most), order.end());
+  Trial screened = trial;
+  const double by_chance = std::log(static_cast<double>(own.size()) / options.significance);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::string& column = own[order[k]];
+    if (k >= most)
+      screened.dropped.push_back(column);
+    else if (gain[order[k]] <= by_chance)  // (T40)
+      screened.chance.push_back(column);
+  }
+  const auto isDropped = [&](const std::string& name) { return isIn(screened.dropped, name); };
+  std::erase_if(screened.covariates, isDropped);
+  std::erase_if(screened.groupings, isDropped);
+  for (WheelState& s : screened.states) {
+    std::erase_if(s.extra, [&](const auto& value) { return isDropped(value.first); });
+    std::erase_if(s.group, [&](const auto& label) { return isDropped(label.first); });
+  }
+  return screened;
 }
 
 }  // namespace talus::terramech

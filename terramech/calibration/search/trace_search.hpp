@@ -1,14 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 
+/// Reduces a large table to a size that a search for effects can process in bounded time.
 namespace talus::terramech {
 
 /// Search of traceResiduals(). The search compares candidates (possible additions to a wheel model) and adds
@@ -101,7 +103,6 @@ class TraceSearch {
 /// Explanations in the place of an accepted candidate.
 struct Replacements {
   TraceSearch without;              ///< search without the accepted candidate
-  std::vector<Promise> promises;    ///< all candidates, best first
   std::vector<Explanation> ranked;  ///< the most promising candidates, fitted, best gain first
 };
 
@@ -109,13 +110,25 @@ struct Replacements {
 /// TraceSearch::gainOf(k).
 Replacements replacementsOf(const TraceSearch& search, std::size_t k);
 
-/// Returns alternative causes for an accepted candidate with the effects `own`: the best form and the best
-/// curve of each other column, and other forms of the candidate's own column. Returns at most three causes of
-/// different columns or forms, best first.
-std::vector<RivalCause> rivalsOf(const Replacements& in, const std::vector<Effect>& own);
+/// Returns alternative causes from `ranked` in the place of an accepted candidate with the effects `own`, or in
+/// addition to the model if `own` is empty. Returns at most three causes of different columns or forms, best
+/// first.
+std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked,
+                                 const std::vector<Effect>& own);
 
-/// Returns alternative causes from `ranked` for a model without accepted candidates: at most three, of
-/// different columns or forms.
-std::vector<RivalCause> rivalsOf(const TraceSearch& search, const std::vector<Explanation>& ranked);
+/// Marks a random sample of at most `most` rows. The rows, in order of runs and of the file, are divided into
+/// `most` equal stretches, and one row of each stretch is drawn. Every run thereby keeps its share, and
+/// periods of the experiment are not aliased. For a rover's own drive, whole moments (rows of all wheels at
+/// one time) are drawn.
+std::vector<char> rowSample(const Trial& trial, int most, std::uint64_t seed);
+
+/// Returns the trial with at most options.most_columns additional columns (columns unknown to Talus), numeric
+/// and text together, in the order of the table. The kept columns are those with the greatest gain of
+/// coarseCandidates() on the residuals of `base`. The other columns are listed in Trial::dropped and removed
+/// from the states. Kept columns with a gain up to ln(columns / significance) are listed in Trial::chance,
+/// because noise reaches this gain in some column with a probability of at most `significance`. `go_on`
+/// receives the completed share; a return value of false ends the screening.
+Trial screenColumns(const RefinedModel& base, const Trial& trial, const TraceOptions& options,
+                    const std::function<bool(double)>& go_on);
 
 }  // namespace talus::terramech

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/numerics/functions.hpp>
@@ -235,9 +235,10 @@ Eigen::MatrixXd TrialFit::finish(bool again) {
   return covariance;
 }
 
-Channel TrialFit::strongest(std::size_t effect) const {
+Channel TrialFit::strongest(std::size_t effect, std::size_t count) const {
   RefinedModel without = model_;
-  without.effects.erase(without.effects.begin() + static_cast<long>(effect));
+  const auto first = without.effects.begin() + static_cast<long>(effect);
+  without.effects.erase(first, first + static_cast<long>(count));
   SolvedContacts solved = solved_;
   const Trial& trial = rows_.trial();
   const Eigen::VectorXd moved = rows_.whitening().marginal(

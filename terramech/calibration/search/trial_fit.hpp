@@ -7,12 +7,11 @@
 
 #include <Eigen/Core>
 
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
 #include <talus/terramech/calibration/noise/input_calibration.hpp>
 #include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/noise/whitening.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/effects/refined_model.hpp>
 
 namespace talus::terramech {
@@ -110,9 +109,9 @@ class TrialFit {
   /// fitted once more before. Returns the covariance.
   Eigen::MatrixXd finish(bool again);
 
-  /// Returns the channel in which the removal of an effect changes the predictions most, relative to the
-  /// noise.
-  Channel strongest(std::size_t effect) const;
+  /// Returns the channel in which the removal of `count` effects from `effect` on changes the predictions most,
+  /// relative to the noise.
+  Channel strongest(std::size_t effect, std::size_t count) const;
 
   /// Returns noiseFloor() of the model for the given sensor noise, at slip and load as measured.
   std::array<double, kChannels> noiseFloor(const SensorNoise& noise);

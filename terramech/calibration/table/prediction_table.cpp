@@ -3,9 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include <talus/terramech/calibration/table/answer_columns.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::terramech {

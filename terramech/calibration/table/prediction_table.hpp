@@ -7,7 +7,7 @@
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 

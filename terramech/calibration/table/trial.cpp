@@ -3,10 +3,12 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/table/answer_columns.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -360,6 +362,26 @@ Eigen::MatrixXd predictRows(const RefinedModel& model, const Trial& trial, Solve
   }
   if (!trial.moment.empty()) pullTogether(trial, out);
   return out;
+}
+
+ModelFile baseModel(const std::string& file, const std::string& rover) {
+  ModelFile base = file.empty() ? unknownSoil() : loadModel(file);
+  if (!rover.empty()) base.model.takeRover(loadRover(rover));
+  return base;
+}
+
+ModelRows modelRows(Telemetry table, const RefinedModel& model) {
+  leaveOutWithoutSlipAngle(table);
+  const Trial all = makeTrial(table, model);
+  const std::vector<char> sunk = beyondAxle(all);
+  std::vector<char> above;
+  for (const char row : sunk) above.push_back(!row);
+  ModelRows rows{.model = model,
+                 .trial = subset(all, above),
+                 .beyond_axle = subset(all, sunk),
+                 .rejected = std::move(table.rejected)};
+  rows.model.slip_along_travel |= slipIsAlongTravel(rows.trial.states);
+  return rows;
 }
 
 }  // namespace talus::terramech

@@ -1,12 +1,11 @@
 #include <cmath>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/table/trial.hpp>
-#include <talus/terramech/calibration/tables/assessment.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {

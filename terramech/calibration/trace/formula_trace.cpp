@@ -256,7 +256,7 @@ class FormulaSearch {
       const MatrixXd explained =
           (direction.transpose() * left).cwiseAbs2() * squares.cwiseInverse().asDiagonal();
       const MatrixXd gain = 0.5 * (freedom - 1.0) * std::log1p(g) -
-                            0.5 * freedom * (g * (1.0 - explained.array()).max(0.0)).log1p();  // (T63)
+                            0.5 * freedom * (g * (1.0 - explained.array()).max(0.0)).log1p();  // (T60)
       if (own[0] > alone[0]) ratio = kRatios[k];
       alone = alone.cwiseMax(own);
       with = with.cwiseMax(gain.rowwise() + own);

@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/terramech/calibration/search/trace_result.hpp>
-#include <talus/terramech/calibration/verdict/verdict.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/estimate/telemetry.hpp>
 
 namespace talus::terramech {

@@ -6,7 +6,7 @@
 #include <Eigen/SVD>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
+#include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 
 namespace talus::terramech {
@@ -168,28 +168,16 @@ Eigen::VectorXd ridge(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   return weights;
 }
 
-double rms(const std::vector<double>& errors) {
-  double sum = 0.0;
-  for (double e : errors) sum += e * e;
-  return errors.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
 ChannelErrors regressionErrors(const Trial& seen, const Trial& unseen) {
   const Eigen::MatrixXd x = features(seen, seen), at = features(unseen, seen);
-  ChannelErrors errors{};
+  Eigen::MatrixXd predicted = Eigen::MatrixXd::Constant(unseen.rows(), kChannels, std::nan(""));
   for (int c = 0; c < kChannels; ++c) {
     std::vector<Eigen::Index> there;
     for (Eigen::Index row = 0; row < x.rows(); ++row)
       if (std::isfinite(seen.measured(row, c))) there.push_back(row);
-    std::vector<double> left;
-    if (!there.empty()) {
-      const Eigen::VectorXd predicted = at * ridge(x(there, Eigen::all), seen.measured(there, c));
-      for (int row = 0; row < unseen.rows(); ++row)
-        if (std::isfinite(unseen.measured(row, c))) left.push_back(unseen.measured(row, c) - predicted[row]);
-    }
-    errors[static_cast<std::size_t>(c)] = rms(left);
+    if (!there.empty()) predicted.col(c) = at * ridge(x(there, Eigen::all), seen.measured(there, c));
   }
-  return errors;
+  return rmseOf(predicted, unseen);
 }
 
 }  // namespace

@@ -1,10 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/trace/model_validity.hpp>
+#include <talus/terramech/calibration/search/trace_search.hpp>
+#include <talus/terramech/calibration/search/trial_fit.hpp>
+#include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -30,12 +37,6 @@ bool moves(const Estimate& scatter, int channel, double noise_floor) {
   return scatter.std > 2.0 * noise_floor || (ratio && scatter.std > kLoudest * std::abs(scatter.value));
 }
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 double medianClosureError(const Trial& trial) {
   std::vector<double> errors;
   for (double e : closureErrors(trial))
@@ -52,9 +53,18 @@ double medianReading(const Trial& trial, Channel channel) {
 }
 
 std::string number(double value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
+  return fmt::format("{:.2f}", value);
+}
+
+/// Returns which median reading no wheel on soil can have; empty if none.
+std::string impossible(const Trial& trial) {
+  for (const auto& [channel, most] :
+       {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
+    if (const double median = medianReading(trial, channel); median > most)
+      return std::string("the median of ") + name(channel) + " is " + number(median) +
+             ", more than a wheel reaches on soil (" + number(most) +
+             "): check the units of the readings and of the wheel";
+  return "";
 }
 
 }  // namespace
@@ -72,14 +82,7 @@ std::vector<double> closureErrors(const Trial& trial) {
 }
 
 Applicability applicability(const TraceResult& result, const TraceOptions& options) {
-  for (const auto& [channel, most] :
-       {std::pair{Channel::DrawbarPull, kMostPull}, {Channel::Torque, kMostTorque}})
-    if (const double median = medianReading(result.trial, channel); median > most)
-      return {false,
-              std::string("the median of ") + name(channel) + " is " + number(median) +
-                  ", more than a wheel reaches on soil (" + number(most) +
-                  "): check the units of the readings and of the wheel",
-              false};
+  if (const std::string reason = impossible(result.trial); !reason.empty()) return {false, reason, false};
   TraceResult physics = result;
   physics.scope = {};
   physics.refined = withoutSensors(result.refined);
@@ -108,6 +111,99 @@ Applicability applicability(const TraceResult& result, const TraceOptions& optio
                        " of the load (median) from the value that torque and sinkage imply for a rigid wheel "
                        "on any soil: no cohesion and friction angle explain it"};
   return {};
+}
+
+namespace {
+
+/// A trial whose measured channels are multiplied by factors, because they are ratios to load and radius.
+struct ScaledTrial {
+  Trial trial;
+  std::array<double, kChannels> factor{1.0, 1.0, 1.0, 1.0};
+};
+
+ScaledTrial scaled(const Trial& trial, const std::string& column, double scale) {
+  ScaledTrial out{trial};
+  const auto set = [&](std::initializer_list<Channel> channels, double factor) {
+    for (const Channel c : channels) {
+      out.factor[static_cast<std::size_t>(c)] = factor;
+      out.trial.measured.col(static_cast<Eigen::Index>(c)) *= factor;
+    }
+  };
+  if (column == "load_N") {
+    for (double& load : out.trial.load_N) load *= scale;
+    for (WheelState& s : out.trial.states) s.load_N *= scale;
+    set({Channel::DrawbarPull, Channel::Torque, Channel::SideForce}, 1.0 / scale);
+  } else if (column == "wheel_radius_m") {
+    for (WheelState& s : out.trial.states) s.wheel.radius_m *= scale;
+    set({Channel::Sinkage, Channel::Torque}, 1.0 / scale);
+  } else {
+    set({column == "torque_Nm" ? Channel::Torque : Channel::DrawbarPull}, scale);
+  }
+  return out;
+}
+
+/// Logarithm of the density of the readings in the units of the file, for a model that is fitted to `rows`.
+double logDensity(const RefinedModel& model, const ScaledTrial& rows, const TraceOptions& options) {
+  const TrialFit fit{model, rows.trial, options.fit_soil, [](double) { return true; }};
+  double sum = fit.scoreOf(fit.model());
+  for (int row = 0; row < rows.trial.rows(); ++row)
+    for (int c = 0; c < kChannels; ++c)
+      if (std::isfinite(rows.trial.measured(row, c)))  // (T55)
+        sum += std::log(fit.rows().whitening().factor[static_cast<std::size_t>(row)](c, c) *
+                        rows.factor[static_cast<std::size_t>(c)]);
+  return sum;
+}
+
+}  // namespace
+
+std::string ScaledColumn::text() const {
+  return fmt::format("{} looks like {}: scale {:.4g} (log-likelihood gain {:.4g})", column, reason, scale,
+                     gain);
+}
+
+std::optional<ScaledColumn> likelyScale(const TraceResult& result, const RefinedModel& present,
+                                        const TraceOptions& options) {
+  const Trial as_read = asMeasured(result.trial);
+  if (!as_read.moment.empty()) return std::nullopt;
+  std::optional<ScaledColumn> best;
+  const double now = logDensity(present, {as_read}, options);
+  for (ScaledColumn one : {ScaledColumn{"load_N", 9.81, "kilograms"},
+                           {"load_N", 0.5, "the load of two wheels"},
+                           {"drawbar_pull_N", 9.81, "kilogram-force"},
+                           {"drawbar_pull_N", 0.5, "the pull of two wheels"},
+                           {"torque_Nm", 9.81, "kilogram-force times metres"},
+                           {"torque_Nm", 0.5, "the torque of two wheels"},
+                           {"wheel_radius_m", 0.5, "the diameter"}}) {
+    if ((one.column == "torque_Nm" && !as_read.has(Channel::Torque)) ||
+        (one.column == "drawbar_pull_N" && !as_read.has(Channel::DrawbarPull)))
+      continue;
+    one.gain = logDensity(result.base, scaled(as_read, one.column, one.scale), options) - now;
+    if (one.gain > std::max(result.threshold, best ? best->gain : 0.0)) best = one;
+  }
+  return best;
+}
+
+Applicability tableApplicability(const TableFile& table, const std::string& base, const std::string& rover,
+                                 const ProgressMonitor& watch) {
+  constexpr int kFewest = 20, kMost = 400;
+  const ModelFile file = baseModel(base, rover);
+  const Telemetry telemetry = readTelemetry(table, {});
+  const bool wheel =
+      file.model.wheel || (telemetry.find("wheel_radius_m") && telemetry.find("wheel_width_m"));
+  if (!wheel || !telemetry.find("load_N") || !telemetry.find("slip")) return {};
+  if (!telemetry.find("sinkage_m") && !telemetry.find("torque_Nm") && !telemetry.find("drawbar_pull_N"))
+    return {};
+  const ModelRows rows = modelRows(telemetry, file.model);
+  const Trial trial = subset(rows.trial, rowSample(rows.trial, kMost, 1));
+  if (const std::string reason = impossible(trial); !reason.empty()) return {false, reason, false};
+  if (trial.rows() < kFewest) return {};
+  TraceOptions options{.max_effects = 0};
+  options.fit_soil = !file.soil_given;
+  const Applicability plain = applicability(traceResiduals(rows.model, trial, options), options);
+  if (plain.applies || watch.stopped()) return plain;
+  options.max_effects = TraceOptions{}.max_effects;
+  const Applicability traced = applicability(traceResiduals(rows.model, trial, options, watch), options);
+  return watch.stopped() ? Applicability{} : traced;
 }
 
 }  // namespace talus::terramech

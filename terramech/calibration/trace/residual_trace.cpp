@@ -6,28 +6,55 @@
 #include <set>
 #include <string>
 
-#include <talus/common/common.hpp>
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
-#include <talus/terramech/calibration/noise/folds.hpp>
-#include <talus/terramech/calibration/search/column_screening.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/search/trace_search.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
+
+Telemetry readTraceTable(const TableFile& file) {
+  Telemetry table = readTelemetry(file, {.required = {"load_N", "slip"}});
+  leaveOutWithoutSlipAngle(table);
+  return table;
+}
+
+TableTrace traceTable(const Telemetry& table, const TableTraceOptions& options,
+                      const ProgressMonitor& watch) {
+  const TraceInput input = traceInput(table, options.base, options.search);
+  const ModelRows& rows = input.rows;
+  TableTrace trace{.source = table.source,
+                   .rejected = rows.rejected,
+                   .result = traceResiduals(rows.model, rows.trial, input.options, watch)};
+  if (watch.stopped()) return trace;
+  trace.held_out = holdOutLevels(trace.result, input.options);
+  trace.held_out.insert(trace.held_out.begin(), trace.result.held_out);
+  trace.answer = answerOf(trace.result);
+  trace.applies = applicability(trace.result, input.options);
+  // No effect makes readings possible that no wheel on soil has.
+  const TraceResult& r = trace.result;
+  if (trace.answer.verdict == Verdict::Unexplained || !trace.applies.applies)
+    if (const auto scale = likelyScale(r, trace.applies.possible ? r.refined : r.base, input.options))
+      trace.applies = {.applies = false, .reason = scale->text()};
+  if (!trace.applies.applies) {
+    trace.answer.verdict = Verdict::Unexplained;
+    trace.answer.inapplicable = trace.applies.reason;
+  }
+  trace.beyond_axle = rows.beyond_axle.rows();
+  if (trace.beyond_axle > 0) trace.beyond_axle_rmse = rmseOf(trace.result.refined, rows.beyond_axle);
+  return trace;
+}
+
+std::string TableTrace::modelText() const {
+  return terramech::modelText(forPrediction(result), result.scope);
+}
+
 namespace {
-
-Channel strongest(const Explanation& e) {
-  const auto most = std::max_element(e.by_channel.begin(), e.by_channel.end());
-  return static_cast<Channel>(most - e.by_channel.begin());
-}
-
-TracedEffect traced(const Explanation& chosen) {
-  return {.chosen = chosen, .channel = strongest(chosen), .parameter_std = {}};
-}
 
 /// State of the search: accepted effects, in the order of acceptance. Its objective is the score of the model
 /// plus the logarithms of the candidates' priors, less the threshold for each accepted candidate.
@@ -54,11 +81,11 @@ struct Path {
 /// Accepts an explanation. Forms that were found together become one effect each.
 void take(Path& path, const Explanation& chosen) {
   path.search.accept(chosen.candidate);
-  if (chosen.candidate.empirical()) return path.effects.push_back(traced(chosen));
+  if (chosen.candidate.empirical()) return path.effects.push_back({.chosen = chosen});
   for (const Effect& part : chosen.candidate.parts) {
     Explanation one = chosen;
     one.candidate = formOf(part);
-    path.effects.push_back(traced(one));
+    path.effects.push_back({.chosen = one});
   }
 }
 
@@ -140,16 +167,16 @@ void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
     effect.chosen.gain = path.search.gainOver(in.without, k);
     effect.p_value = path.noise.pValue(effect.chosen.gain);
     const double least = effect.chosen.evidence() - path.close;
-    for (RivalCause& rival : rivalsOf(in, path.search.parts(k))) {
+    for (RivalCause& rival : rivalsOf(in.without, in.ranked, path.search.parts(k))) {
       if (rival.explanation.evidence() >= least) effect.equal.push_back(rival.explanation);  // (T46)
       result.rivals.push_back(std::move(rival));
     }
   }
-  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected);
+  if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected, {});
 }
 
 /// Prior information on a rover's own drive. The pull follows from the slope and has the error of an
-/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (wheel_forces_table.hpp),
+/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (rut.hpp),
 /// whose stiffness is fitted.
 RefinedModel asDriven(RefinedModel model, const Trial& trial) {
   constexpr double kSlopeError_rad = 0.005;
@@ -218,10 +245,9 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
   result.held_out = holdOut(result, options, foldsOf(result.trial));
   findRivals(path, in_place, result, go_on);
   result.ends = endLevels(result, options, watch);
-  boundEffects(result.refined, result.trial, result.ends);
+  result.refined = withinRows(result.refined, result.trial);
   result.scope = scopeOf(result);
   keepConfirmed(result.held_out, result.scope);
-  keepConfirmed(result.ends, result.noise_floor);
   result.refined_rmse = rmseOf(predictInScope(result, asMeasured(result.trial)), result.trial);
   return result;
 }

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/search/trace_result.hpp>
-#include <talus/terramech/calibration/table/model_rows.hpp>
+#include <talus/terramech/calibration.hpp>
+
+namespace talus::terramech {
 
 /// Residual tracing: finds the effects that a wheel model lacks from measured rows, and adds them to the
 /// model.
-namespace talus::terramech {
 
 /// Returns true if the first of the ranked explanations (fitted candidate effects) is accepted, i.e. if its
 /// gain exceeds `threshold`.

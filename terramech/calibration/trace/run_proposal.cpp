@@ -56,7 +56,7 @@ class CauseOnRows {
     const auto n = static_cast<Eigen::Index>(readings.size());
     JointPrediction joint{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
     const Eigen::MatrixXd j = by_parameter_(readings, Eigen::all);
-    joint.covariance = j * parameters_ * j.transpose();  // (T59)
+    joint.covariance = j * parameters_ * j.transpose();  // (T56)
     for (Eigen::Index a = 0; a < n; ++a) {
       const Eigen::Index reading = readings[static_cast<std::size_t>(a)];
       joint.mean[a] = level_(reading / kChannels, reading % kChannels);
@@ -238,7 +238,7 @@ double distance(const JointPrediction& a, const JointPrediction& b) {
   const auto logDeterminant = [](const Eigen::LDLT<Eigen::MatrixXd>& of) {
     return of.vectorD().array().max(1e-300).log().sum();
   };
-  // (T60)
+  // (T57)
   return 0.125 * apart.dot(middle.solve(apart)) +
          0.5 * (logDeterminant(middle) -
                 0.5 * (logDeterminant(a.covariance.ldlt()) + logDeterminant(b.covariance.ldlt())));
@@ -320,7 +320,7 @@ class RunChoice {
     double least = apart[0] + own[0], sum = 0.0;
     for (std::size_t pair = 1; pair < apart.size(); ++pair) least = std::min(least, apart[pair] + own[pair]);
     for (std::size_t pair = 0; pair < apart.size(); ++pair) sum += std::exp(least - apart[pair] - own[pair]);
-    return std::log(sum) - least;  // (T61)
+    return std::log(sum) - least;  // (T58)
   }
 
   std::vector<RunPrediction> predictions(int first_row, int rows) const {
@@ -384,7 +384,7 @@ std::vector<CauseScore> scoreCauses(const TraceResult& result, const Trial& meas
   }
   double most = scores.front().log_likelihood, sum = 0.0;
   for (const CauseScore& s : scores) most = std::max(most, s.log_likelihood);
-  for (CauseScore& s : scores) sum += s.probability = std::exp(s.log_likelihood - most);  // (T62)
+  for (CauseScore& s : scores) sum += s.probability = std::exp(s.log_likelihood - most);  // (T59)
   for (CauseScore& s : scores) s.probability /= sum;
   return scores;
 }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration.hpp>
 
 /// Design of the next experiment. The proposed runs are those for which the predictions of the possible
 /// causes of a residual differ most. Measured runs then score the causes.

@@ -3,8 +3,8 @@
 #include <limits>
 #include <set>
 
+#include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
-#include <talus/terramech/calibration/verdict/verdict.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
@@ -22,7 +22,7 @@ double excess(const ChannelErrors& rmse, const TraceResult& result, const Channe
   const double variance = rmse[channel] * rmse[channel];
   const auto count = static_cast<double>(
       result.trial.measured.col(static_cast<Eigen::Index>(channel)).array().isFinite().count());
-  // (T54)
+  // (T51)
   return variance > floor * (1.0 + 3.0 * std::sqrt(2.0 / std::max(count, 1.0))) ? variance - floor : 0.0;
 }
 
@@ -46,22 +46,6 @@ void setChannel(Answer& answer, const TraceResult& result, const ChannelErrors& 
   }
 }
 
-std::size_t valuesOf(const Trial& trial, const std::string& column) {
-  std::set<double> values;
-  for (const WheelState& s : trial.states)
-    if (const double v = s.covariate(column); std::isfinite(v)) values.insert(v);
-  return values.size();
-}
-
-bool isFixedByRun(const Trial& trial, const std::string& column) {
-  std::set<std::pair<int, double>> pairs;
-  std::set<int> runs(trial.run.begin(), trial.run.end());
-  for (std::size_t row = 0; row < trial.states.size(); ++row)
-    if (const double v = trial.states[row].covariate(column); std::isfinite(v))
-      pairs.insert({trial.run[row], v});
-  return 2 * runs.size() <= trial.states.size() && pairs.size() <= runs.size();
-}
-
 /// True if each unit with a shared error is a run.
 bool unitsAreRuns(const TraceResult& result) {
   const std::vector<int>&unit = result.shared.unit, &run = result.trial.run;
@@ -74,17 +58,10 @@ std::string unrecorded(const Answer& answer) {
   return "rows that record what else changed from " + answer.unit + " to " + answer.unit;
 }
 
-std::string furtherRows(const TraceResult& result, const Answer& answer) {
-  if (answer.column.empty()) return unrecorded(answer);
-  if (isFixedByRun(result.trial, answer.column))
-    return "further runs at other values of " + answer.column + ", now " +
-           std::to_string(valuesOf(result.trial, answer.column)) + ", the other columns the same";
-  const double times = answer.gain > 0.0 ? result.threshold / answer.gain : 0.0;
-  std::string rows = "rows over a wider range of " + answer.column + ", the other columns the same";
-  // A gain increases in proportion to the number of rows.
-  if (times > 1.0 && times < 20.0)
-    rows += ", or about " + std::to_string(static_cast<int>(std::ceil(times))) + " times as many";
-  return rows;
+std::string furtherRows(const Answer& answer) {
+  return answer.column.empty()
+             ? unrecorded(answer)
+             : "rows over a wider range of " + answer.column + ", the other columns the same";
 }
 
 }  // namespace
@@ -108,7 +85,7 @@ Answer answerOf(const TraceResult& result) {
   for (const std::string& name : soilAtBounds(result.refined)) answer.at_bound.push_back("soil " + name);
   answer.strained = result.strained;
   answer.unstated = unstatedSensors(result.trial, result.refined.stated);
-  const bool reached = answer.rest < kExplainedFloors * answer.floor,  // (T55)
+  const bool reached = answer.rest < kExplainedFloors * answer.floor,  // (T52)
       promised = !result.last_promises.empty() && result.last_promises.front().gain > result.threshold;
   if (result.strained.empty() && !result.effects.empty() && reached && answer.at_bound.empty())
     answer.verdict = Verdict::Explained;
@@ -120,7 +97,7 @@ Answer answerOf(const TraceResult& result) {
   if (!result.shared.unit.empty() && !unitsAreRuns(result)) answer.unit = "stretch of time";
   const auto c = static_cast<int>(answer.channel);
   const bool open = answer.verdict == Verdict::Unexplained;
-  // (T56)
+  // (T53)
   if (open && 2.0 * result.shared.soilVariance(c) > squared(answer.rest) - squared(answer.floor)) {
     answer.strength_scatter = std::sqrt(result.shared.run(kChannels, kChannels));
     answer.stiffness_scatter = std::sqrt(result.shared.run(kChannels + 1, kChannels + 1));
@@ -132,7 +109,7 @@ Answer answerOf(const TraceResult& result) {
     answer.gain = p.gain;
     break;
   }
-  if (open && answer.measure.empty()) answer.measure = furtherRows(result, answer);
+  if (open && answer.measure.empty()) answer.measure = furtherRows(answer);
   return answer;
 }
 
@@ -200,7 +177,7 @@ RefinedModel forPrediction(const TraceResult& result) {
     for (int row = 0; row < result.trial.rows(); ++row)
       unit += std::pow(result.trial.denominator(row, static_cast<Channel>(c)), 2) / result.trial.rows();
     double& absolute = model.noise.absolute[static_cast<std::size_t>(c)];
-    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T57)
+    absolute = std::sqrt(absolute * absolute + shared * unit);  // (T54)
   }
   return model;
 }

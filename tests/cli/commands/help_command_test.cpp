@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/file_formats.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "run_program.hpp"
 

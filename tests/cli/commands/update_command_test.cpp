@@ -14,7 +14,7 @@
 
 #include <talus/costmap/journal/evidence_journal.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "bad_input.hpp"
 

@@ -1,6 +1,6 @@
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "run_program.hpp"
 

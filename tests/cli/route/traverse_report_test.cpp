@@ -5,7 +5,7 @@
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/route/traverse_report.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "run_program.hpp"
 

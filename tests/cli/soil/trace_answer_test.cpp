@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/cli/soil/trace_answer.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
 namespace trace_answer_test {

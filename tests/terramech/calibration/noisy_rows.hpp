@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration.hpp>
 
 #include "made_rows.hpp"
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include <talus/terramech/calibration/table/trial.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace talus::terramech {
 

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace model_file_test {

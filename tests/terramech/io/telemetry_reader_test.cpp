@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "requirement.hpp"
 #include "temporary_file.hpp"

@@ -3,8 +3,8 @@
 #include <string>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 #include "temporary_file.hpp"
 

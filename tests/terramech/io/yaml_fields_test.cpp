@@ -5,8 +5,8 @@
 
 #include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 

@@ -1,10 +1,17 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
 #include <talus/terramech/calibration/held_out/held_out.hpp>
-#include <talus/terramech/calibration/held_out/model_scope.hpp>
 
 #include "calibration/traced_world.hpp"
 #include "made_rows.hpp"
+#include "temporary_file.hpp"
 
 namespace talus::terramech {
+
 namespace held_out_test {
 
 TEST(HeldOut, HeldOutErrorIsReducedOnHiddenLibraryEffect) {
@@ -65,19 +72,6 @@ TEST(HeldOut, ReportedErrorIsThatOfPredictions) {
   }
 }
 
-TEST(SquaredErrors, AreRootMeanSquaresByChannelWithoutNaN) {
-  // Closed form: residuals 3 and 4 have the mean square 12.5; a channel without values has NaN.
-  Eigen::MatrixXd residual = Eigen::MatrixXd::Constant(2, kChannels, std::nan(""));
-  residual(0, 0) = 3.0;
-  residual(1, 0) = 4.0;
-  residual(1, 2) = -2.0;
-  SquaredErrors errors;
-  errors.add(residual);
-  EXPECT_DOUBLE_EQ(errors.rmse()[0], std::sqrt(12.5));
-  EXPECT_TRUE(std::isnan(errors.rmse()[1]));
-  EXPECT_DOUBLE_EQ(errors.rmse()[2], 2.0);
-}
-
 TEST(RefittedBase, KeepsRunOffsetsOutOfTheSoilFit) {
   // Property: pull offsets of runs do not change the soil if modelled as shared errors; as errors of single
   // rows they change the soil.
@@ -98,11 +92,164 @@ TEST(RefittedBase, KeepsRunOffsetsOutOfTheSoilFit) {
   const std::vector<char> all(80, 1);
   TraceOptions options;
   options.fit_soil = true;
-  const double sinkage = rmseAsMeasured(refittedBase(result, options, all), result.trial)[1];
+  const double sinkage = rmseOf(refittedBase(result, options, all), result.trial)[1];
   EXPECT_LT(sinkage, 0.01);
   result.base_shared = {};
-  EXPECT_GT(rmseAsMeasured(refittedBase(result, options, all), result.trial)[1], 3.0 * sinkage);
+  EXPECT_GT(rmseOf(refittedBase(result, options, all), result.trial)[1], 3.0 * sinkage);
 }
 
 }  // namespace held_out_test
+
+namespace model_scope_test {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Rows at slips from 0 to 0.3, with a refined model that has slip sinkage and a base that has not.
+TraceResult resultOf() {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(5);
+  for (int k = 0; k < 40; ++k)
+    rows.add(wheelRow(madeSand(), 60.0 + 10.0 * (k % 3), 0.1 * (k % 4), 0.0, random));
+  TraceResult result;
+  result.base.soil = result.refined.soil = madeSand();
+  result.refined.effects = {
+      {.name = "slip_sinkage_linear", .covariate = "slip", .channel = Channel::Sinkage, .parameters = {1.0}}};
+  result.trial = makeTrial(rows.telemetry(), result.base);
+  result.noise_floor = {0.01, 0.01, 0.01, kNan};
+  result.held_out.base_rmse = {0.05, 0.05, 0.05, kNan};
+  result.held_out.refined_rmse = {0.02, 0.02, 0.06, kNan};
+  return result;
+}
+
+WheelState stateAt(double slip) {
+  return {.wheel = {.radius_m = 0.1, .width_m = 0.1}, .load_N = 60.0, .slip = slip};
+}
+
+TEST(ModelScope, ChannelWithALargerHeldOutErrorThanTheBaseIsThatOfTheBase) {
+  TraceResult result = resultOf();
+  result.scope = scopeOf(result);
+  EXPECT_EQ(result.scope.share(stateAt(0.9), 0), 1.0);
+  EXPECT_EQ(result.scope.share(stateAt(0.1), 2), 0.0);  // torque: 0.06, the base 0.05
+  keepConfirmed(result.held_out, result.scope);
+  EXPECT_EQ(result.held_out.refined_rmse[0], 0.02);
+  EXPECT_EQ(result.held_out.refined_rmse[2], 0.05);
+}
+
+TEST(ModelScope, ModelWithoutEffectsHasFullShareAndNoBase) {
+  TraceResult result = resultOf();
+  result.refined.effects.clear();
+  result.scope = scopeOf(result);
+  EXPECT_FALSE(result.scope.base);
+  EXPECT_EQ(result.scope.share(stateAt(0.9), 0), 1.0);
+}
+
+TEST(ModelScope, PredictionsMixTheModelsAndScopeRoundTrips) {
+  TraceResult result = resultOf();
+  result.scope = scopeOf(result);
+  const test::TemporaryFile file{modelText(result.refined, result.scope)};
+  const ModelFile back = loadModel(file.path());
+  ASSERT_TRUE(back.scope.base);
+  EXPECT_EQ(modelText(back.model, back.scope), modelText(result.refined, result.scope));
+  SolvedContacts solved, other;
+  const Eigen::MatrixXd base = predictRows(result.base, result.trial, solved),
+                        refined = predictRows(result.refined, result.trial, other);
+  const Eigen::MatrixXd mixed = predictInScope(result, result.trial);
+  // Property: the sinkage is that of the refined model, the torque that of the base. Row 3 has slip 0.3.
+  EXPECT_NEAR(mixed(3, 1), refined(3, 1), 1e-12);
+  EXPECT_NEAR(mixed(3, 2), base(3, 2), 1e-12);
+  EXPECT_GT(std::abs(base(3, 2) - refined(3, 2)), 0.001);
+}
+
+/// Rows predicted by `truth` at these slips and loads, three of each, and a result whose refined model is
+/// `truth`.
+TraceResult endResult(const RefinedModel& base, const RefinedModel& truth, const std::vector<double>& slips) {
+  std::vector<std::string> columns = wheelColumns();
+  columns.emplace_back("grouser_height_m");
+  MadeRows rows(columns);
+  for (const double slip : slips)
+    for (const double load_N : {60.0, 80.0, 100.0})
+      for (const double height_m : {0.0, 0.01}) {
+        const WheelState s{.wheel = {.radius_m = 0.1, .width_m = 0.1, .grouser_height_m = height_m},
+                           .load_N = load_N,
+                           .slip = slip};
+        const Reading r = predict(truth, s);
+        rows.add({load_N, slip, r.torque_Nm, r.sinkage_m, r.drawbar_pull_N, 0.1, 0.1, height_m});
+      }
+  TraceResult result;
+  result.base = base;
+  result.refined = truth;
+  result.base.noise.absolute = result.refined.noise.absolute = {0.5, 2e-4, 0.05, 1.0};
+  result.trial = makeTrial(rows.telemetry(), base);
+  result.noise_floor = {0.01, 0.002, 0.01, 0.01};
+  return result;
+}
+
+RefinedModel sand(std::vector<Effect> effects = {}) {
+  RefinedModel model;
+  model.soil = madeSand();
+  model.effects = std::move(effects);
+  return model;
+}
+
+/// An effect of slip sinkage with the parameter a.
+Effect digging(const char* name, double a) {
+  return {.name = name, .covariate = "slip", .channel = Channel::Sinkage, .parameters = {a}};
+}
+
+TEST(EndLevels, OutermostLevelIsPredictedFromTheOthers) {
+  const TraceResult result =
+      endResult(sand(), sand({digging("slip_sinkage_linear", 1.0)}), {0.1, 0.2, 0.3, 0.4, 0.5});
+  const auto ends = endLevels(result, {});
+  const auto high =
+      std::ranges::find_if(ends, [](const EndLevel& e) { return e.column == "slip" && e.high; });
+  ASSERT_NE(high, ends.end());
+  EXPECT_EQ(high->rows, 6);
+  EXPECT_NEAR(high->distance, 0.1, 1e-12);
+  // Property: 1 + a i at i = 0.4, where the other rows end, leaves a fifth of the effect at i = 0.5.
+  EXPECT_LT(high->refined_rmse[1], 0.25 * high->base_rmse[1]);  // the rows have no noise
+}
+
+TEST(EndLevels, EffectIsConstantOutsideTheRowsAlsoInItsFile) {
+  const auto with = [](double a) { return sand({digging("slip_sinkage_reece", a)}); };
+  const TraceResult result = endResult(sand(), with(0.5), {-0.4, -0.2, 0.0, 0.2});
+  const RefinedModel model = withinRows(result.refined, result.trial);
+  EXPECT_EQ(model.effects[0].knots, (std::vector<double>{-0.4, 0.2}));
+  const WheelState beyond{
+      .wheel = {.radius_m = 0.1, .width_m = 0.1, .grouser_height_m = 0.01}, .load_N = 80.0, .slip = 0.9};
+  // Closed form: a h i/(1-i) is constant beyond i = 0.2, as with a = 0.5 (0.2/0.8) / (0.9/0.1) at i = 0.9.
+  EXPECT_NEAR(predict(model, beyond).sinkage_m, predict(with(0.5 * 0.25 / 9.0), beyond).sinkage_m, 1e-9);
+  const test::TemporaryFile file{modelText(model)};
+  EXPECT_EQ(predict(loadModel(file.path()).model, beyond).sinkage_m, predict(model, beyond).sinkage_m);
+}
+
+TEST(EndLevels, StdGrowsByHeldOutErrorAboveNoiseFloorPerDistance) {
+  TraceResult result = endResult(sand(), sand(), {0.1, 0.2, 0.3});
+  EndLevel end{.column = "slip", .high = true, .distance = 0.2, .rows = 4};
+  end.base_rmse = end.refined_rmse = {0.05, 0.001, NAN, NAN};
+  const auto ranges = trainedRanges(result.trial, {end}, {0.03, 0.002, NAN, NAN});
+  const auto slip =
+      std::find_if(ranges.begin(), ranges.end(), [](const auto& r) { return r.column == "slip"; });
+  ASSERT_NE(slip, ranges.end());
+  EXPECT_NEAR(slip->above[0], 0.04 / 0.2, 1e-12);  // Closed form: sqrt(0.05^2 - 0.03^2) over the distance
+  EXPECT_EQ(slip->above[1], 0.0);
+  EXPECT_EQ(slip->below[0], 0.0);
+  // Closed form: each end has the weight of its rows, also a farther end without excess: 4 (0.05^2 - 0.03^2)
+  // / (4 0.2^2 + 12 0.4^2).
+  EndLevel half{.column = "slip", .high = true, .distance = 0.4, .rows = 12};
+  half.base_rmse = half.refined_rmse = {0.03, 0.002, NAN, NAN};
+  EXPECT_NEAR(trainedRanges(result.trial, {end, half},
+                            {0.03, 0.002, NAN, NAN})[static_cast<std::size_t>(slip - ranges.begin())]
+                  .above[0],
+              std::sqrt(4.0 * 0.0016 / (4.0 * 0.04 + 12.0 * 0.16)), 1e-12);
+  EXPECT_EQ(slip->low, 0.1);
+  EXPECT_EQ(slip->high, 0.3);
+}
+
+TEST(EndLevels, TwoLevelsYieldNoEndLevels) {
+  const auto ends = endLevels(endResult(sand(), sand(), {0.1, 0.3}), {});
+  EXPECT_TRUE(std::none_of(ends.begin(), ends.end(), [](const EndLevel& e) { return e.column == "slip"; }));
+}
+
+}  // namespace model_scope_test
+
 }  // namespace talus::terramech

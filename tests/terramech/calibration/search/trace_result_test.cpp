@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/terramech/calibration/search/trace_result.hpp>
+#include <talus/terramech/calibration.hpp>
 
 #include "made_rows.hpp"
 

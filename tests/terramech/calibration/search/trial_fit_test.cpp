@@ -50,7 +50,7 @@ TEST(TrialFit, StrongestChannelIsThatOfTheFaultySensor) {
   model.effects.push_back(
       {.name = "torque_offset", .covariate = "load_N", .channel = Channel::Torque, .parameters = {0.5}});
   const TrialFit fit(model, noisyTrial(sand(), 0.02), false, always);
-  EXPECT_EQ(fit.strongest(0), Channel::Torque);
+  EXPECT_EQ(fit.strongest(0, 1), Channel::Torque);
 }
 
 }  // namespace trial_fit_test

@@ -4,7 +4,7 @@
 #include <refused.hpp>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/tables/assessment.hpp>
+#include <talus/terramech/calibration.hpp>
 
 #include "calibration/wheel_table.hpp"
 

@@ -2,9 +2,13 @@
 #include <numbers>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/calibration/tables/soil_estimate.hpp>
+#include <talus/terramech/calibration.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
+
+#include "calibration/wheel_table.hpp"
 
 namespace talus::terramech {
+
 namespace soil_estimate_test {
 
 using testing::HasSubstr;
@@ -69,5 +73,110 @@ TEST(SoilEstimate, ImplausibleIsBeyondTwoStandardDeviationsOfPlausibleBounds) {
   EXPECT_THAT(said(-201.0, -0.21), testing::StartsWith("a cohesion and a friction angle"));
 }
 
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(EstimateSoil, ExactRowsRecoverTheSoil) {
+  const WheelTable table;
+  const SoilEstimate found =
+      estimateSoil({.table = table.path(), .method = "wong-reece", .noise = 0.005}, {});
+  EXPECT_EQ(found.rows_used, 12U);
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 150.0);
+  EXPECT_NEAR(found.friction_angle_rad, kMadeSoil.friction_angle_rad, 0.02);
+}
+
+// Rows of the synthetic soil at slip angles to both sides, with or without the side force, multiplied by
+// `times`.
+std::string angledRows(bool side_force, double times = 1.0) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",slip_angle_rad" + (side_force ? ",side_force_N" : "") + "\n";
+  for (int k = 0; k < 24; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 100.0 + 10.0 * (k % 5),
+                       .slip = 0.05 + 0.02 * k,
+                       .slip_angle_rad = 0.2 * (k % 4 - 1)};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(s.slip_angle_rad);
+    text += (side_force ? "," + std::to_string(times * r.side_force_N) : "") + "\n";
+  }
+  return text;
+}
+
+TEST(EstimateSoil, SideForcesAreFittedWithTheFullModel) {
+  const test::TemporaryFile with{angledRows(true)}, without{angledRows(false)};
+  const SoilEstimate found = estimateSoil({.table = with.path(), .method = "wong-reece", .noise = 0.01}, {});
+  EXPECT_EQ(found.rows_used, 24U);
+  EXPECT_NEAR(found.cohesion_Pa, kMadeSoil.cohesion_Pa, 3.0 * std::sqrt(found.covariance(0, 0)));
+  EXPECT_NEAR(found.tan_friction, std::tan(0.45), 3.0 * std::sqrt(found.covariance(1, 1)));
+  EXPECT_LT(std::sqrt(found.covariance(1, 1)), 0.05);
+  // Without side forces, or with a linear method, only the six rows of straight wheels are used.
+  EXPECT_EQ(estimateSoil({.table = without.path(), .method = "wong-reece", .noise = 0.01}, {}).rows_used, 6U);
+  EXPECT_EQ(estimateSoil({.table = with.path(), .method = "linear-offset"}, {}).rejected.size(), 18U);
+  EXPECT_THAT([&] { estimateSoil({.table = with.path(), .method = "wong-reece", .recursive = true}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("side forces, which are fitted all at once")));
+}
+
+// Property: side forces in a wrong unit, which no soil can explain, are rejected with the name of the column.
+TEST(EstimateSoil, SideForcesInWrongUnitsAreRejectedNamingTheColumn) {
+  for (const double times : {100.0, 1000.0}) {
+    const test::TemporaryFile table{angledRows(true, times)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil explains the rows"),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << times;
+  }
+}
+
+// Rows of the synthetic soil at one slip angle, with pull and with the given side force over load.
+std::string heldRows(double slip_angle_rad, double side_over_load) {
+  RefinedModel model;
+  model.soil = kMadeSoil;
+  std::string text = kWheelHead + ",drawbar_pull_N,slip_angle_rad,side_force_N\n";
+  for (int k = 0; k < 20; ++k) {
+    const WheelState s{.wheel = kMadeWheel,
+                       .load_N = 90.0 + 10.0 * (k % 5),
+                       .slip = 0.1 + 0.025 * k,
+                       .slip_angle_rad = slip_angle_rad};
+    const Reading r = predict(model, s);
+    text += wheelLine({s.load_N, r.torque_Nm, r.sinkage_m, s.slip}, kMadeWheel) + "," +
+            std::to_string(r.drawbar_pull_N) + "," + std::to_string(slip_angle_rad) + "," +
+            std::to_string(side_over_load * s.load_N) + "\n";
+  }
+  return text;
+}
+
+// Property: a side force of a straight wheel, no side force at a slip angle, and a side force of the wrong
+// sign or size are rejected with the name of the column, also for a small misfit.
+TEST(EstimateSoil, ContradictorySideForceIsRejectedNamingTheColumn) {
+  for (const auto& [angle, side] : {std::pair{0.0, 0.5}, {0.3, 0.0}, {0.3, 0.5}, {0.3, -1.5}}) {
+    const test::TemporaryFile table{heldRows(angle, side)};
+    EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-reece"}, {}); },
+                ThrowsMessage<std::domain_error>(testing::AllOf(
+                    HasSubstr(table.path() + ": no soil "),
+                    HasSubstr("check unit, sign and sensor of column side_force_N, without which"))))
+        << angle << ' ' << side;
+  }
+}
+
+// Property: a small sensor offset of the side force of straight wheels does not change the soil.
+TEST(EstimateSoil, SmallSideForceOfStraightWheelsIsIgnored) {
+  const test::TemporaryFile none{heldRows(0.0, 0.0)}, little{heldRows(0.0, 0.05)};
+  EXPECT_EQ(estimateSoil({.table = none.path(), .method = "wong-reece"}, {}).cohesion_Pa,
+            estimateSoil({.table = little.path(), .method = "wong-reece"}, {}).cohesion_Pa);
+}
+
+TEST(EstimateSoil, UnknownMethodAndModulusNamesAreRejected) {
+  const WheelTable table;
+  EXPECT_THAT([&] { estimateSoil({.table = table.path(), .method = "wong-rece"}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("'wong-rece': is unknown; there are bevameter")));
+  EXPECT_THAT(
+      [&] { estimateSoil({.table = table.path(), .method = "iagnemma", .shear_modulus = "jointly"}, {}); },
+      ThrowsMessage<InputError>(HasSubstr("'jointly': is unknown")));
+}
+
 }  // namespace soil_estimate_test
+
 }  // namespace talus::terramech

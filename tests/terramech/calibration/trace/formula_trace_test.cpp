@@ -6,7 +6,7 @@
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
-#include <talus/terramech/io/terramech_io.hpp>
+#include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace formula_trace_test {

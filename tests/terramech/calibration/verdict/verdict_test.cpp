@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <talus/terramech/calibration/verdict/verdict.hpp>
+#include <talus/terramech/calibration.hpp>
 
 namespace talus::terramech {
 namespace verdict_test {
@@ -91,11 +91,7 @@ TEST(Verdict, UnexplainedResidualNamesChannelColumnAndNextMeasurement) {
   EXPECT_EQ(a.channel, Channel::DrawbarPull);
   EXPECT_EQ(a.rest, 0.0345);
   EXPECT_EQ(a.column, "slip");
-  EXPECT_EQ(a.measure,
-            "rows over a wider range of slip, the other columns the same, or about 3 times as many");
-  result.last_promises[0].candidate.parts[0].covariate = "pass_index";
-  EXPECT_EQ(answerOf(result).measure,
-            "further runs at other values of pass_index, now 3, the other columns the same");
+  EXPECT_EQ(a.measure, "rows over a wider range of slip, the other columns the same");
 }
 
 TEST(Verdict, SoilFarFromItsPriorIsReported) {

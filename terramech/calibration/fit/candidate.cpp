@@ -3,8 +3,8 @@
 #include <numbers>
 #include <set>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
-#include <talus/terramech/calibration/noise/spline_basis.hpp>
+#include <talus/terramech/calibration.hpp>
+#include <talus/terramech/calibration/noise/sensor_noise.hpp>
 
 namespace talus::terramech {
 namespace {

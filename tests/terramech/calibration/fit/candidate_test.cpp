@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include <talus/terramech/calibration/fit/effect_candidates.hpp>
+#include <talus/terramech/calibration.hpp>
 
 #include "made_rows.hpp"
 

@@ -6,8 +6,9 @@
 #include <talus/terramech/estimate/model_pull.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
 
-/// Converts the option --prior of the program to the priors of each estimation method.
 namespace talus::terramech {
+
+/// Converts the option --prior of the program to the priors of each estimation method.
 
 /// Loads the soils that the option selects: one soil of the library, or all soils of a file. Returns an empty
 /// vector for an empty option. Throws InputError.
