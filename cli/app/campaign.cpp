@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -11,7 +12,9 @@
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/common/common.hpp>
+#include <talus/common/output_file.hpp>
 #include <talus/common/parallel_for.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 
 #ifdef TALUS_MPI
 #include <boost/mpi/communicator.hpp>
@@ -91,6 +94,41 @@ std::vector<std::size_t> Part::of(std::size_t count) const {
   std::vector<std::size_t> jobs;
   for (std::size_t i = index_; i < count; i += parts_) jobs.push_back(i);
   return jobs;
+}
+
+bool makeFolder(const std::string& folder) {
+  std::error_code error;
+  const bool made = std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError({folder, "cannot be created: " + error.message(), "name another folder with -o"});
+  const OutputFile can_be_written(std::filesystem::path(folder) / "table.txt");
+  return made;
+}
+
+JobResults Part::joined(const std::string& folder, const std::string& hash, const JobResults& own) const {
+  std::string rows = "job,hash,result\n";
+  for (const auto& [job, text] : own) {
+    rows += fmt::format("{},{},", job, hash);
+    for (const char c : text) rows += fmt::format("{:02x}", static_cast<unsigned char>(c));
+    rows += "\n";
+  }
+  writeFile(std::filesystem::path(folder) / fmt::format("part_{}_of_{}.csv", index_ + 1, parts_), rows);
+  JobResults results;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.path().filename().string().starts_with("part_")) continue;
+    terramech::CsvReader reader(entry.path().string());
+    for (terramech::CsvRow row; reader.next(row);) {
+      double job = 0.0;
+      if (!row.fault.empty() || row.fields.size() != 3 || !terramech::parseNumber(row.fields[0], job) ||
+          row.fields[1] != hash)
+        throw InputError({fmt::format("{}:{}", entry.path().string(), row.line),
+                          "is not of these jobs and their options", "name another folder with -o"});
+      std::string& text = results[static_cast<std::size_t>(job)];
+      for (std::size_t i = 0; i + 1 < row.fields[2].size(); i += 2)
+        text += static_cast<char>(std::stoi(row.fields[2].substr(i, 2), nullptr, 16));
+    }
+  }
+  return results;
 }
 
 #ifdef TALUS_MPI

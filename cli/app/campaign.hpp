@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct JobOutcome {
   std::string text;      ///< result of the job, or reason of its failure
 };
 
+/// Results by job; a missing job is of another part, or was stopped.
+using JobResults = std::map<std::size_t, std::string>;
+
 /// Part K of N of a list of jobs, for array jobs of a queue: the jobs k with k modulo N = K - 1.
 class Part {
  public:
@@ -24,13 +28,18 @@ class Part {
   explicit Part(const std::string& text);
   /// Returns the indices of the part's jobs of `count`.
   std::vector<std::size_t> of(std::size_t count) const;
-  std::string fileName() const {
-    return "part_" + std::to_string(index_ + 1) + "_of_" + std::to_string(parts_) + ".csv";
-  }
+  /// Writes the results of the part to its file in a folder, in rows of job, `hash` and result (hexadecimal digits), and
+  /// returns those of all parts there. The hash is that of the jobs and their inputs. @throws InputError for
+  /// a row with another hash
+  JobResults joined(const std::string& folder, const std::string& hash, const JobResults& own) const;
 
  private:
   std::size_t index_ = 0, parts_ = 1;
 };
+
+/// Creates a folder for results before the jobs run, so that an unusable path is reported immediately. Returns true if
+/// it did not exist. @throws InputError
+bool makeFolder(const std::string& folder);
 
 /// Runs independent jobs: one after another, several at a time, or distributed over the ranks (processes) of
 /// an MPI run, if mpirun started the program and the program was built with Boost.MPI. Job i runs on rank i

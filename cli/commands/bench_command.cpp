@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
-#include <map>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -19,7 +18,6 @@
 #include <talus/common/common.hpp>
 #include <talus/planner/bench/benchmark.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
-#include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
 namespace {
@@ -87,17 +85,6 @@ std::string fileName(std::string name) {
   return name;
 }
 
-// Creates the folder before the runs, so that an unusable path is reported immediately, and after the suite
-// is read, so that an invalid suite creates no folder. Returns true if the folder did not exist.
-bool makeFolder(const std::string& folder) {
-  std::error_code error;
-  const bool made = std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError({folder, "cannot be created: " + error.message(), "name another folder with -o"});
-  const OutputFile can_be_written(std::filesystem::path(folder) / "table.txt");
-  return made;
-}
-
 // The runs of a name given twice would enter the statistics twice.
 void refuseTwice(const std::string& what, std::vector<std::string> names) {
   std::ranges::sort(names);
@@ -121,10 +108,7 @@ void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& pl
   writeFile(folder / "index.html", asPage(plan, runs));
 }
 
-// Results by job; missing jobs are of another part, or were stopped.
-using Results = std::map<std::size_t, std::string>;
-
-std::vector<planner::BenchmarkRun> runsOf(const planner::BenchmarkPlan& plan, const Results& results) {
+std::vector<planner::BenchmarkRun> runsOf(const planner::BenchmarkPlan& plan, const JobResults& results) {
   const auto jobs = planner::jobsOf(plan);
   std::vector<planner::BenchmarkRun> runs;
   for (const auto& [job, text] : results) runs.push_back(planner::benchmarkRun(jobs[job], text));
@@ -132,8 +116,8 @@ std::vector<planner::BenchmarkRun> runsOf(const planner::BenchmarkPlan& plan, co
 }
 
 // Runs the jobs of a part. After a requested stop, only the results completed before are returned.
-Results resultsOf(const planner::BenchmarkPlan& plan, const Part& part, const Campaign& campaign,
-                  const Context& context) {
+JobResults resultsOf(const planner::BenchmarkPlan& plan, const Part& part, const Campaign& campaign,
+                     const Context& context) {
   const auto jobs = planner::jobsOf(plan);
   const std::vector<std::size_t> own = part.of(jobs.size());
   context.answerStop();
@@ -141,40 +125,9 @@ Results resultsOf(const planner::BenchmarkPlan& plan, const Part& part, const Ca
       campaign.leads() ? context.watch("bench") : ProgressMonitor{.progress = {}, .stop = context.stop};
   const auto outcomes = campaign.run(
       own.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[own[i]], watch); }, watch);
-  Results results;
+  JobResults results;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
     if (!outcomes[i].stopped) results[own[i]] = outcomes[i].failed ? std::string() : outcomes[i].text;
-  return results;
-}
-
-// Rows of the parts: job, hash of suite, planners, seeds and time limit, and the result as hexadecimal digits.
-std::string rowsOf(const Results& results, const std::string& hash) {
-  std::string rows = "job,hash,result\n";
-  for (const auto& [job, text] : results) {
-    rows += fmt::format("{},{},", job, hash);
-    for (const char c : text) rows += fmt::format("{:02x}", static_cast<unsigned char>(c));
-    rows += "\n";
-  }
-  return rows;
-}
-
-// Results of all parts in the folder.
-Results partsIn(const std::string& folder, const std::string& hash) {
-  Results results;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.path().filename().string().starts_with("part_")) continue;
-    terramech::CsvReader reader(entry.path().string());
-    for (terramech::CsvRow row; reader.next(row);) {
-      double job = 0.0;
-      if (!row.fault.empty() || row.fields.size() != 3 || !terramech::parseNumber(row.fields[0], job) ||
-          row.fields[1] != hash)
-        throw InputError({fmt::format("{}:{}", entry.path().string(), row.line),
-                          "is not of this suite and its options", "name another folder with -o"});
-      std::string& text = results[static_cast<std::size_t>(job)];
-      for (std::size_t i = 0; i + 1 < row.fields[2].size(); i += 2)
-        text += static_cast<char>(std::stoi(row.fields[2].substr(i, 2), nullptr, 16));
-    }
-  }
   return results;
 }
 
@@ -225,12 +178,10 @@ int run(const BenchOptions& options, Context& context) {
   plan.time_limit_s = options.time_limit_s;
   plan.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
   const Part part(options.part);
-  Results results = resultsOf(plan, part, campaign, context);
+  JobResults results = resultsOf(plan, part, campaign, context);
   if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
   if (!options.part.empty() && !context.stop.stop_requested()) {
-    const std::string hash = hashOf(plan, context);
-    writeFile(std::filesystem::path(options.folder) / part.fileName(), rowsOf(results, hash));
-    results = partsIn(options.folder, hash);
+    results = part.joined(options.folder, hashOf(plan, context), results);
     const std::size_t all = planner::jobsOf(plan).size();
     if (results.size() < all) {
       print(fmt::format("part {}: {} of {} runs are in {}\n", options.part, results.size(), all,

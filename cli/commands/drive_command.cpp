@@ -18,6 +18,7 @@
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
+#include <talus/common/checksum.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/simulation/simulation.hpp>
@@ -31,7 +32,7 @@ using planner::SoilKnowledge;
 
 struct DriveCommandOptions {
   GroundOptions ground;
-  std::string truth, start, goal, html, telemetry, plugin;
+  std::string truth, start, goal, html, telemetry, plugin, part, folder = "drive";
   std::string belief = "online";
   std::size_t worlds = 1;
   double time_limit_s = 0.0;  ///< limit per plan of a plugin; 0: no limit
@@ -99,6 +100,10 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
                       "number of random worlds; --threads run at a time, or one per rank under mpirun")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
+  auto* part = command.add_option("--part", options.part,
+                                  "simulate part K of N of the worlds alone, and keep its results in the "
+                                  "folder; the call that finds the last part there prints the rates");
+  part->type_name("K/N")->needs(worlds);
   addPluginOption(command, options.plugin);
   addPluginTime(command, options.time_limit_s);
   bindSensors(command, options);
@@ -110,6 +115,10 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
             "simulated wheel telemetry to write, for `talus update`")
       ->type_name("T.csv")
       ->excludes(worlds);
+  command.add_option("-o,--output", options.folder, "folder for the results of the parts")
+      ->type_name("FOLDER")
+      ->capture_default_str()
+      ->needs(part);
   groupOptions(command, "Output");
 }
 
@@ -118,18 +127,41 @@ struct Campaigning {
   const planner::SimulationSite& site;
   const Campaign& campaign;
   const Context& context;
+  std::string hash;  ///< of the call and of the files that it reads
 };
 
-SimulatedWorlds simulated(const Campaigning& on, const std::vector<SoilKnowledge>& beliefs,
-                          std::size_t worlds) {
+std::string hashOf(const Ground& ground, const std::string& truth, const Context& context) {
+  std::string text = callText(context.argv);
+  for (const InputFile& file : ground.files) text += file.sha256;
+  text += sha256OfFile(truth);
+  Checksum sum;
+  sum.add(text.data(), text.size());
+  return fmt::format("{:016x}", sum.value());
+}
+
+// The worlds of all parts; empty while parts are missing.
+std::optional<SimulatedWorlds> simulated(const Campaigning& on, const std::vector<SoilKnowledge>& beliefs,
+                                         const DriveCommandOptions& options) {
+  const Part part(options.part);
+  if (!options.part.empty() && on.campaign.leads()) makeFolder(options.folder);
   on.context.answerStop();
   const ProgressMonitor watch = on.context.watch("simulating");
   const ProgressMonitor inside{.progress = {}, .stop = watch.stop};
-  const WorldCount count{
-      .beliefs = beliefs.size(), .worlds = worlds, .workers = static_cast<std::size_t>(on.context.workers())};
-  SimulatedWorlds driven = simulatedWorlds(
-      count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, on.campaign,
-      watch);
+  const WorldCount count{.beliefs = beliefs.size(),
+                         .worlds = options.worlds,
+                         .workers = static_cast<std::size_t>(on.context.workers())};
+  JobResults jobs = worldJobs(
+      count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, part,
+      on.campaign, watch);
+  if (!options.part.empty() && on.campaign.leads() && !on.context.stop.stop_requested()) {
+    jobs = part.joined(options.folder, on.hash, jobs);
+    if (const std::size_t all = count.beliefs * count.worlds; jobs.size() < all) {
+      print(fmt::format("part {}: {} of {} simulations are in {}\n", options.part, jobs.size(), all,
+                        options.folder));
+      return std::nullopt;
+    }
+  }
+  SimulatedWorlds driven = simulatedWorlds(count, jobs);
   for (const auto& failure : driven.failures)
     on.context.warn(fmt::format("world {} failed and is excluded: {}", failure.world, failure.reason));
   return driven;
@@ -153,15 +185,16 @@ int show(const Results& results, const SimulatedWorlds& driven, const Campaignin
 }
 
 int runAll(const Campaigning& on, const DriveCommandOptions& options) {
-  const SimulatedWorlds driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options.worlds);
+  const auto driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options);
+  if (!driven) return Exit::kDone;
   BeliefResults results;
-  std::copy(driven.results.begin(), driven.results.end(), results.begin());
-  return show(results, driven, on);
+  std::copy(driven->results.begin(), driven->results.end(), results.begin());
+  return show(results, *driven, on);
 }
 
 int runMany(const Campaigning& on, const DriveCommandOptions& options) {
-  const SimulatedWorlds driven = simulated(on, {*findBelief(options.belief)}, options.worlds);
-  return show(driven.results[0], driven, on);
+  const auto driven = simulated(on, {*findBelief(options.belief)}, options);
+  return driven ? show(driven->results[0], *driven, on) : Exit::kDone;
 }
 
 int runOne(const planner::SimulationSite& site, const DriveCommandOptions& options, const Context& context,
@@ -226,7 +259,7 @@ int run(const DriveCommandOptions& options, Context& context) {
                    .seed = context.seed,
                    .sensors = sensorsOf(options),
                    .planner = plugin ? byPlugin : std::function<planner::Plan(const planner::Problem&)>()});
-  const Campaigning on{site, campaign, context};
+  const Campaigning on{site, campaign, context, hashOf(ground, options.truth, context)};
   if (options.belief == "all") return runAll(on, options);
   if (options.worlds > 1) return runMany(on, options);
   return campaign.leads() ? runOne(site, options, context, ground) : Exit::kDone;

@@ -41,8 +41,8 @@ bool decidesNothing(std::string_view word) {
 }
 
 bool namesOutput(std::string_view word) {
-  constexpr std::array<std::string_view, 6> kOptions{"-o",    "--output",  "--html",
-                                                     "--png", "--threads", "--telemetry"};
+  constexpr std::array<std::string_view, 7> kOptions{"-o",        "--output",    "--html", "--png",
+                                                     "--threads", "--telemetry", "--part"};
   return std::find(kOptions.begin(), kOptions.end(), word) != kOptions.end();
 }
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/app/campaign.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/common.hpp>
 #include <talus/planner/route/route_json.hpp>
@@ -71,10 +72,13 @@ struct WorldCount {
   std::size_t workers = 1;
 };
 
-/// Simulates all worlds under all beliefs, distributed over the ranks of the campaign; results do not depend
+/// Simulates the worlds of a part under all beliefs, distributed over the ranks of the campaign; results do not depend
 /// on the number of ranks. An exception fails only its world. Returns an empty result on ranks other than 0.
-SimulatedWorlds simulatedWorlds(const WorldCount& count, const World& world, const Campaign& campaign,
-                                const ProgressMonitor& watch);
+JobResults worldJobs(const WorldCount& count, const World& world, const Part& part, const Campaign& campaign,
+                     const ProgressMonitor& watch);
+
+/// Returns the simulations of worldJobs(); worlds without a result are omitted.
+SimulatedWorlds simulatedWorlds(const WorldCount& count, const JobResults& jobs);
 
 /// Writes the wheel telemetry of a traverse simulation as CSV, which `talus update` can read. @throws
 /// InputError if the file cannot be written

@@ -63,7 +63,7 @@ TEST(BenchCommand, PartsGiveTheComparisonOfTheWhole) {
   EXPECT_THAT(bench({parts, "--part", "3/3"}).out, HasSubstr("2 of 6 runs"));
   EXPECT_THAT(bench({parts, "--part", "1/3"}).out, HasSubstr("4 of 6 runs"));
   EXPECT_EQ(lasting(bench({parts, "--part", "2/3"}).out), lasting(bench({folder / "whole"}).out));
-  EXPECT_THAT(bench({parts, "--part", "1/3", "--seed", "9"}).err, HasSubstr("is not of this suite"));
+  EXPECT_THAT(bench({parts, "--part", "1/3", "--seed", "9"}).err, HasSubstr("is not of these jobs"));
   EXPECT_EQ(bench({parts, "--part", "4/3"}).code, 2);
 }
 

@@ -87,7 +87,7 @@ TEST(DriveCommand, UndeclaredPatchImmobilisesWithoutUpdatesOnly) {
   EXPECT_GT(online["length_m"].get<double>(), told["length_m"].get<double>());
 }
 
-TEST(DriveCommand, RatesAreIndependentOfThreadCount) {
+TEST(DriveCommand, RatesAreIndependentOfThreadsAndParts) {
   const Folder folder;
   const char* const random = "random: {spread: 0.1, patches: 6, patch_radius_m: 2}\n";
   const auto words = drive(folder, random, {"--worlds", "6", "--seed", "11", "--json"});
@@ -97,6 +97,13 @@ TEST(DriveCommand, RatesAreIndependentOfThreadCount) {
   const Ran one = runTalus(alone, folder.path()), two = runTalus(both, folder.path());
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_EQ(one.out, two.out);
+  const auto part = [&](const char* which) {
+    auto call = words;
+    call.insert(call.end(), {"-o", "parts", "--part", which});
+    return runTalus(call, folder.path());
+  };
+  EXPECT_EQ(part("2/2").out, "part 2/2: 3 of 6 simulations are in parts\n");
+  EXPECT_EQ(part("1/2").out, one.out);
   const json out = json::parse(one.out);
   EXPECT_EQ(out["worlds"], 6);
   double sum = 0.0;

@@ -73,8 +73,8 @@ planner::WorldResult numbered(std::size_t b, std::size_t i) {
 TEST(DriveWorlds, ResultsAreInOrderForAnyWorkerCount) {
   const Campaign campaign;
   for (const std::size_t workers : {1U, 3U}) {
-    const SimulatedWorlds driven =
-        simulatedWorlds({.beliefs = 2, .worlds = 7, .workers = workers}, numbered, campaign, {});
+    const WorldCount count{.beliefs = 2, .worlds = 7, .workers = workers};
+    const SimulatedWorlds driven = simulatedWorlds(count, worldJobs(count, numbered, Part(""), campaign, {}));
     ASSERT_EQ(driven.results.size(), 2U);
     EXPECT_TRUE(driven.failures.empty());
     for (std::size_t b = 0; b < 2; ++b) {
@@ -98,8 +98,8 @@ TEST(DriveWorlds, FailedWorldIsReportedAndExcludedUnderEveryBelief) {
     if (b == 1 && i == 2) throw std::domain_error("no such ground");
     return numbered(b, i);
   };
-  const SimulatedWorlds driven =
-      simulatedWorlds({.beliefs = 2, .worlds = 4, .workers = 2}, world, campaign, {});
+  const WorldCount count{.beliefs = 2, .worlds = 4, .workers = 2};
+  const SimulatedWorlds driven = simulatedWorlds(count, worldJobs(count, world, Part(""), campaign, {}));
   ASSERT_EQ(driven.failures.size(), 1U);
   EXPECT_EQ(driven.failures[0].world, 2U);
   EXPECT_EQ(driven.failures[0].reason, "no such ground");
