@@ -2,15 +2,151 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
+#include <gtest/gtest.h>
+#include <refused.hpp>
 #include <site_fixture.hpp>
 
 #include <talus/costmap/cost/cost_model.hpp>
+#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/maps/maps.hpp>
 #include <talus/terramech/mobility/turning.hpp>
 
 namespace talus::costmap {
 namespace travel_cost_test {
+
+CostGrid plain(int side) {
+  const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
+  return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
+                   std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
+}
+
+TEST(CostGrid, RevisionChangesOnlyItsRange) {
+  const CostGrid before = plain(200);
+  const maps::CellBox range{{60, 60}, {70, 66}};
+  const CostGrid after =
+      revised(before, {.ranges = {range},
+                       .code = [](maps::Cell, CellCode code) { return code.withCurve(CellCode::kBlocked); },
+                       .cost = [&] { return before.content().cost; }});
+  EXPECT_EQ(after.version(), before.version() + 1);
+  for (int row = 0; row < 200; ++row)
+    for (int column = 0; column < 200; ++column) {
+      const bool inside = column >= 60 && column <= 70 && row >= 60 && row <= 66;
+      ASSERT_EQ(after.at({column, row}).curve(), inside ? CellCode::kBlocked : 0) << column << ' ' << row;
+      ASSERT_EQ(before.at({column, row}).curve(), 0);
+    }
+}
+
+TEST(CostGrid, ElevationMatchesTheSourceRaster) {
+  maps::Raster<float> heights(plain(150).grid());
+  for (int row = 0; row < 150; ++row)
+    for (int column = 0; column < 150; ++column)
+      heights[{column, row}] = static_cast<float>((7 * column + 3 * row) % 11);
+  CostGrid::Content content = plain(150).content();
+  EXPECT_FALSE(CostGrid(content).elevation_m({1.0, 1.0})) << "not known";
+  content.elevation_m = tiled(heights);
+  const CostGrid grid(content);
+  for (const maps::Point p :
+       {maps::Point{0.1, 0.1}, {63.9, 64.2}, {64.0, 127.7}, {149.9, 149.9}, {31.4, 15.9}})
+    EXPECT_EQ(grid.elevation_m(p), maps::elevationAt(heights, p)) << p.x_m << ' ' << p.y_m;
+  EXPECT_FALSE(grid.elevation_m({150.5, 1.0}));
+  content.elevation_m = HeightTable(1, grid.content().elevation_m[0]);
+  EXPECT_THROW(CostGrid{content}, std::invalid_argument);
+}
+
+// Property: after any sequence of shared tiles is set in several tables, each table equals a plain list.
+TEST(TileTable, CopiesAreIndependent) {
+  const auto tileOf = [](std::uint8_t curve) {
+    auto tile = std::make_shared<CostTile>();
+    tile->cells.fill(CellCode({.curve = curve}));
+    return TileTable::Shared(std::move(tile));
+  };
+  std::vector<std::vector<TileTable::Shared>> plain{std::vector<TileTable::Shared>(150, tileOf(0))};
+  std::vector<TileTable> tables{TileTable(plain[0])};
+  std::mt19937 random(5);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t from = random() % tables.size(), at = random() % 150;
+    TileTable next = tables[from];
+    std::vector<TileTable::Shared> same = plain[from];
+    same[at] = tileOf(static_cast<std::uint8_t>(i + 1));
+    next.set(at, same[at]);
+    tables.push_back(std::move(next));
+    plain.push_back(std::move(same));
+  }
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    ASSERT_EQ(tables[t].size(), 150U);
+    for (std::size_t i = 0; i < 150; ++i) {
+      ASSERT_EQ(tables[t][i], plain[t][i]);
+      ASSERT_EQ(&tables[t].tile(i), plain[t][i].get());
+    }
+  }
+}
+
+CostGrid oneGround(double doubt = 1.0) {
+  const auto model = testGround();
+  const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
+  GroundBelief belief = model->prior(0);
+  belief.pull.std *= doubt;
+  return flattened(
+      maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
+      std::make_shared<TravelCost>(model->limits(), std::vector<GroundCost>{model->ground(0, belief)}));
+}
+
+TEST(CostWeights, CostIsTheWeightedSumOfEnergyTimeAndRisk) {
+  const CostGrid map = oneGround(0.0);  // without failed attempts, which the cost includes
+  const auto other = reweighted(map, {.energy = 2.0, .time_W = 3.0, .risk_J = 5e6});
+  for (const double gradient : {-0.1, 0.0, 0.05}) {
+    const CellCode cell({gradient, 0.0, 0});
+    const TravelState state = map.cost().detail(cell, {1.0, 0.0});
+    ASSERT_EQ(state.refusal, Refusal::None);
+    const double expected = 2.0 * static_cast<double>(state.energy_J_per_m) +
+                            3.0 * static_cast<double>(state.time_s_per_m) +
+                            5e6 * static_cast<double>(state.risk_per_m);
+    // Closed form. Tolerance: the table stores floats.
+    EXPECT_NEAR(other->cost().costPerMetre(cell, {1.0, 0.0}), expected, 1e-6 * expected);
+  }
+}
+
+TEST(CostWeights, ReweightingKeepsInfeasibilityAndSharesTiles) {
+  const CostGrid map = oneGround();
+  const auto other = reweighted(map, {.energy = 0.0, .time_W = 0.0, .risk_J = 0.0});
+  for (double gradient = -0.9; gradient < 0.9; gradient += 0.01) {
+    const CellCode cell({gradient, 0.0, 0});
+    EXPECT_EQ(std::isinf(other->cost().costPerMetre(cell, {1.0, 0.0})),
+              std::isinf(map.cost().costPerMetre(cell, {1.0, 0.0})));
+  }
+  EXPECT_EQ(other->content().tiles[0], map.content().tiles[0]);
+}
+
+TEST(CostWeights, NegativeWeightsAndMapsWithoutStatesAreRejected) {
+  EXPECT_REFUSED(reweighted(oneGround(), {.energy = -1.0}), std::invalid_argument,
+                 "energy, time_W and risk_J must be >= 0");
+  EXPECT_REFUSED(reweighted(oneGround(), {.risk_J = std::nan("")}), std::invalid_argument,
+                 "energy, time_W and risk_J must be >= 0");
+  const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
+  const CostGrid bare =
+      flattened(maps::Raster<CellCode>(grid),
+                std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
+  EXPECT_REFUSED(reweighted(bare, {}), std::domain_error, "holds no energy, time and risk to weigh");
+}
+
+TEST(LearnedCells, CellsAreStoredAndChangesReported) {
+  LearnedCells cells({.width = 200, .height = 100, .resolution_m = 1.0, .south_west = {}});
+  EXPECT_EQ((cells[{199, 99}]), 0U);
+  EXPECT_FALSE(cells.set({70, 5}, 0)) << "it was that before";
+  EXPECT_TRUE(cells.boxes().empty());
+  EXPECT_TRUE(cells.set({70, 5}, 7));
+  EXPECT_FALSE(cells.set({70, 5}, 7));
+  EXPECT_TRUE(cells.set({75, 9}, 8));
+  EXPECT_EQ((cells[{70, 5}]), 7U);
+  EXPECT_EQ((cells[{71, 5}]), 0U);
+  ASSERT_EQ(cells.boxes().size(), 1U);
+  EXPECT_EQ(cells.boxes()[0].first, (maps::Cell{70, 5}));
+  EXPECT_EQ(cells.boxes()[0].last, (maps::Cell{75, 9}));
+}
 
 // A curve whose cost in each bin is the number of the bin, so that a cost identifies the bin.
 TravelCurve numbered() {

@@ -8,9 +8,9 @@
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/mobility/category.hpp>
+#include <talus/terramech/mobility/traversability_plane.hpp>
 
 namespace talus::terramech {
-
 namespace category_test {
 
 const CategoryThresholds kLimits{.dp_low = 0.125,
@@ -102,13 +102,10 @@ TEST(Category, InvalidThresholdsAreRejected) {
   EXPECT_NO_THROW(validate(kLimits));
 }
 
-}  // namespace category_test
-
-namespace category_probability_test {
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const CategoryThresholds kLimits{.dp_low = 0.17, .dp_high = 0.36, .z_threshold = 0.5, .z_critical = 0.75};
+const CategoryThresholds kSpreadLimits{
+    .dp_low = 0.17, .dp_high = 0.36, .z_threshold = 0.5, .z_critical = 0.75};
 
 TEST(CategoryProbability, QuadrantsFollowSheppardsFormula) {
   for (const double rho : {-0.99, -0.5, 0.0, 0.3, 0.9, 0.999}) {
@@ -121,8 +118,9 @@ TEST(CategoryProbability, ZeroUncertaintyYieldsTheCategoryWithProbabilityOne) {
   for (const double dp : {0.1, 0.17, 0.3, 0.36, 0.5})
     for (const double z : {0.2, 0.5, 0.6, 0.75, 0.8}) {
       const WheelCondition condition{.drawbar_pull_over_load = dp, .sinkage_over_radius = z};
-      const auto p = categoryProbability({.mean = condition}, kLimits);
-      EXPECT_DOUBLE_EQ(p[static_cast<std::size_t>(categorise(condition, kLimits))], 1.0) << dp << " " << z;
+      const auto p = categoryProbability({.mean = condition}, kSpreadLimits);
+      EXPECT_DOUBLE_EQ(p[static_cast<std::size_t>(categorise(condition, kSpreadLimits))], 1.0)
+          << dp << " " << z;
     }
 }
 
@@ -131,7 +129,7 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
                                  .drawbar_pull_over_load_std = 0.08,
                                  .sinkage_over_radius_std = 0.12,
                                  .correlation = -0.6};
-  const auto p = categoryProbability(belief, kLimits);
+  const auto p = categoryProbability(belief, kSpreadLimits);
   std::mt19937_64 random{5};
   std::normal_distribution<double> normal;
   constexpr int kDraws = 200000;
@@ -139,7 +137,7 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
   for (int k = 0; k < kDraws; ++k) {
     const double a = normal(random), b = -0.6 * a + 0.8 * normal(random);
     const auto category = categorise(
-        {.drawbar_pull_over_load = 0.32 + 0.08 * a, .sinkage_over_radius = 0.45 + 0.12 * b}, kLimits);
+        {.drawbar_pull_over_load = 0.32 + 0.08 * a, .sinkage_over_radius = 0.45 + 0.12 * b}, kSpreadLimits);
     counted[static_cast<std::size_t>(category)] += 1.0 / kDraws;
   }
   for (std::size_t k = 0; k < 3; ++k)
@@ -150,31 +148,70 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
 TEST(CategoryProbability, OneExactValueKeepsTheUncertaintyOfTheOther) {
   const ConditionEstimate belief{.mean = {.drawbar_pull_over_load = 0.36, .sinkage_over_radius = 0.2},
                                  .drawbar_pull_over_load_std = 0.05};
-  EXPECT_NEAR(categoryProbability(belief, kLimits)[0], 0.5, 1e-9);  // Closed form: the mean is on the edge.
+  EXPECT_NEAR(categoryProbability(belief, kSpreadLimits)[0], 0.5,
+              1e-9);  // Closed form: the mean is on the edge.
 }
 
 TEST(CategoryProbability, TorqueAndSteeringLimitsAreIncluded) {
-  CategoryThresholds limits = kLimits;
+  CategoryThresholds limits = kSpreadLimits;
   limits.steering_slip = 0.6;
   const ConditionEstimate belief{
       .mean = {.drawbar_pull_over_load = 0.5, .sinkage_over_radius = 0.2, .slip = 0.7},
       .drawbar_pull_over_load_std = 0.05,
       .sinkage_over_radius_std = 0.05};
   EXPECT_NEAR(categoryProbability(belief, limits)[2], 1.0, 1e-12);
-  EXPECT_GT(categoryProbability(belief, kLimits)[0], 0.99);
+  EXPECT_GT(categoryProbability(belief, kSpreadLimits)[0], 0.99);
 }
 
 TEST(CategoryProbability, InvalidInputsAreRejected) {
   ConditionEstimate belief;
   belief.drawbar_pull_over_load_std = -0.1;
-  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+  EXPECT_REFUSED(categoryProbability(belief, kSpreadLimits), std::invalid_argument,
                  "drawbar_pull_over_load_std = -0.1, must be >= 0");
   belief = {};
   belief.mean.sinkage_over_radius = std::nan("");
-  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+  EXPECT_REFUSED(categoryProbability(belief, kSpreadLimits), std::invalid_argument,
                  "sinkage_over_radius = nan, must be finite");
 }
 
-}  // namespace category_probability_test
+double eq321(double torque, double sinkage) {
+  return torque - sinkage - 0.1;
+}
 
+const CategoryThresholds kFig312{.dp_low = std::tan(0.17453292519943295),
+                                 .dp_high = std::tan(0.17453292519943295),
+                                 .z_threshold = 0.5,
+                                 .z_critical = 0.5};
+
+TEST(TraversabilityPlane, CategoriesMatchThesisFigure312) {
+  const TraversabilityPlane plane = traversabilityPlane(eq321, kFig312, {.columns = 40, .rows = 20});
+  for (int row = 0; row < plane.rows; ++row)
+    for (int column = 0; column < plane.columns; ++column) {
+      // Printed in: thesis Fig. 3.12, one line of DP/W = tan 10 deg and one of z/r = 0.5.
+      const bool pulls = plane.torqueAt(column) - plane.sinkageAt(row) - 0.1 > kFig312.dp_high;
+      const bool shallow = plane.sinkageAt(row) < 0.5;
+      EXPECT_EQ(plane.at(column, row), pulls && shallow ? Category::Safe : Category::Dangerous);
+    }
+}
+
+TEST(TraversabilityPlane, ThesisExampleSoilsAreDangerousByEquation321) {
+  // Printed in: thesis 3.5, pairs (0.1, 0.2) "dangerous" and (0.3, 0.4) "safe". Eq. 3.21 gives -0.2 for both;
+  // the second pair cannot be reproduced.
+  for (const auto& [torque, sinkage] : {std::pair{0.1, 0.2}, {0.3, 0.4}})
+    EXPECT_EQ(categorise({.drawbar_pull_over_load = eq321(torque, sinkage), .sinkage_over_radius = sinkage},
+                         kFig312),
+              Category::Dangerous);
+}
+
+TEST(TraversabilityPlane, FindsTheBoundaryBetweenCategories) {
+  EXPECT_NEAR(torqueForPull(eq321, 0.2, 0.3, 1.0), 0.6, 1e-12);  // Closed form.
+  EXPECT_TRUE(std::isnan(torqueForPull(eq321, 0.9, 0.3, 1.0)));
+}
+
+TEST(TraversabilityPlane, EmptyPlaneIsRejected) {
+  EXPECT_REFUSED(traversabilityPlane(eq321, kFig312, {.columns = 0}), std::invalid_argument,
+                 "columns = 0, must be in [1, 10000]");
+}
+
+}  // namespace category_test
 }  // namespace talus::terramech
