@@ -1,5 +1,9 @@
 #include "public_headers.hpp"
 
+#include <map>
+#include <regex>
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "source_files.hpp"
@@ -30,6 +34,50 @@ TEST(PublicHeaders, StateUnitsWhereTheyHaveNumbers) {
   }
   EXPECT_GT(with_numbers, 20);
   EXPECT_GE(with_units, 0.8 * with_numbers);
+}
+
+// Examples and installed consumers include umbrella headers only, as a program that embeds Talus does.
+
+TEST(Architecture, ExamplesAndConsumersIncludeEntryHeadersOnly) {
+  const std::set<std::string> entries{"talus.hpp",
+                                      "terramech/terramech.hpp",
+                                      "terramech/terramech_io.hpp",
+                                      "terramech/calibration.hpp",
+                                      "maps/maps.hpp",
+                                      "maps/maps_io.hpp",
+                                      "costmap/costmap.hpp",
+                                      "planner/planner.hpp",
+                                      "planner/plugin/plugin_export.hpp",  // for plugins
+                                      "planner/simulation/simulation.hpp"};
+  const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
+  int seen = 0;
+  for (const std::string folder : {"examples", "tests/install"})
+    for (const auto& file : files(folder, {".cpp"})) {
+      const std::string source = text(file);
+      for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i, ++seen)
+        EXPECT_TRUE(entries.contains((*i)[1])) << file << " includes <talus/" << (*i)[1] << ">";
+    }
+  EXPECT_GE(seen, 6);
+}
+
+// Headers have an order in which each includes only headers before it.
+TEST(Architecture, HeadersIncludeWithoutCycles) {
+  const std::regex include(R"(#include <talus/([a-z_0-9/]+\.hpp)>)");
+  std::map<std::string, std::set<std::string>> left;
+  for (const std::string module : {"common", "terramech", "maps", "costmap", "planner", "cli"})
+    for (const auto& file : files(module, {".hpp"})) {
+      const std::string source = text(file);
+      auto& below = left[file.lexically_relative(TALUS_SOURCE_DIR).generic_string()];
+      for (std::sregex_iterator i(source.begin(), source.end(), include), end; i != end; ++i)
+        below.insert((*i)[1]);
+    }
+  ASSERT_GT(left.size(), 100U);
+  for (bool found = true; found;) {
+    found = std::erase_if(left, [](const auto& header) { return header.second.empty(); }) > 0;
+    for (auto& [header, below] : left)
+      std::erase_if(below, [&](const std::string& other) { return !left.contains(other); });
+  }
+  for (const auto& [header, below] : left) ADD_FAILURE() << header << " is in a cycle of includes";
 }
 
 }  // namespace public_headers_test

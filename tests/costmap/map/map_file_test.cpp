@@ -1,134 +1,24 @@
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
 #include <sstream>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include <octomap/AbstractOcTree.h>
-#include <site_fixture.hpp>
 #include <site_map.hpp>
 
 #include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
-#include <talus/costmap/map/map_file.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
-
 namespace map_file_test {
-
-using testing::HasSubstr;
-
-MapText example() {
-  MapText text;
-  text.grid = {.width = 7, .height = 9, .resolution_m = 0.1, .south_west = {-1.0 / 3.0, 1e-300}};
-  text.source = "a \\n map\nof two lines\\";
-  text.footprint_radius_m = 0.45;
-  text.ground = testGround()->parts();
-  text.ground.rover.steering = terramech::Steering::Ackermann;
-  text.ground.policy.allow_unknown = true;
-  text.ground.classes[0].soil.digging_exponent = 0.1;
-  text.ground.classes[0].soil.slip_sinkage_exponent = 0.3;
-  text.ground.classes[0].soil.side_bulldozing = 0.0;
-  text.ground.classes[1].effects = {{.name = "empirical",
-                                     .covariate = "slip",
-                                     .channel = terramech::Channel::Torque,
-                                     .parameters = {0.1, -0.2},
-                                     .knots = {0.0, 0.7},
-                                     .only_column = "wheel",
-                                     .only_value = "front\nleft"}};
-  return text;
-}
-
-std::string replaced(std::string lines, const std::string& old, const std::string& by) {
-  const std::size_t at = lines.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return lines.replace(at, old.size(), by);
-}
-
-TEST(MapText, RoundTripIsExact) {
-  const MapText back = parsed(written(example()), "m");
-  EXPECT_EQ(back.grid, example().grid);
-  EXPECT_EQ(back.source, example().source);
-  EXPECT_FALSE(back.coordinate_system);
-  EXPECT_EQ(back.ground.rover.name, "test rover");
-  EXPECT_EQ(back.ground.rover.steering, terramech::Steering::Ackermann);
-  EXPECT_TRUE(back.ground.policy.allow_unknown);
-  ASSERT_EQ(back.ground.classes.size(), 2U);
-  EXPECT_EQ(back.ground.classes[0].soil.digging_exponent, 0.1);
-  EXPECT_EQ(back.ground.classes[0].soil.slip_sinkage_exponent, 0.3);
-  EXPECT_EQ(back.ground.classes[0].soil.side_bulldozing, 0.0);
-  EXPECT_EQ(back.ground.classes[1].effects[0].knots, (std::vector<double>{0.0, 0.7}));
-  EXPECT_EQ(back.ground.classes[1].effects[0].parameters, (std::vector<double>{0.1, -0.2}));
-  EXPECT_EQ(back.ground.classes[1].effects[0].channel, terramech::Channel::Torque);
-  EXPECT_EQ(back.ground.classes[1].effects[0].only_value, "front\nleft");
-  EXPECT_EQ(written(back), written(example()));
-}
-
-// Property: the centre of mass is stored; a centred mass would underestimate tipping.
-TEST(MapText, CentreOfMassRoundTrips) {
-  MapText text = example();
-  text.ground.rover.centre_of_mass_ahead_m = 0.07;
-  text.ground.rover.centre_of_mass_left_m = -0.03;
-  const std::string lines = written(text);
-  const terramech::Rover back = parsed(lines, "m").ground.rover;
-  EXPECT_EQ(back.centre_of_mass_ahead_m, 0.07);
-  EXPECT_EQ(back.centre_of_mass_left_m, -0.03);
-  // A map without the two lines has a rover with a centred mass.
-  const std::string older = replaced(lines, "rover.centre_of_mass_left_m -0.03\n", "");
-  EXPECT_EQ(parsed(older, "m").ground.rover.centre_of_mass_left_m, 0.0);
-}
-
-// Property: every field of the coordinate system is stored; on Mars, a planetocentric latitude read as
-// planetographic has an error of up to 20 km.
-TEST(MapText, CoordinateSystemRoundTripsCompletely) {
-  for (const bool planetocentric : {false, true}) {
-    MapText text = example();
-    text.coordinate_system = {.name = "Mars / Ocentric",
-                              .ellipsoid = maps::kMars,
-                              .projection = {.method = maps::ProjectionMethod::LambertConformalConic,
-                                             .latitude_of_origin_rad = 0.1,
-                                             .central_meridian_rad = 0.2,
-                                             .standard_parallel_1_rad = 0.3,
-                                             .standard_parallel_2_rad = 0.4,
-                                             .scale = 0.9996,
-                                             .false_easting_m = 5e5,
-                                             .false_northing_m = -1e7},
-                              .planetocentric = planetocentric,
-                              .wkt = "PROJCRS[\"a\",\n  b]"};
-    const auto back = parsed(written(text), "m").coordinate_system;
-    ASSERT_TRUE(back);
-    EXPECT_EQ(back->name, "Mars / Ocentric");
-    EXPECT_EQ(back->ellipsoid, maps::kMars);
-    EXPECT_EQ(back->planetocentric, planetocentric);
-    EXPECT_EQ(back->wkt, text.coordinate_system->wkt);
-    const maps::Point a = maps::Georeference(*back).forward({0.35, 0.25});
-    EXPECT_EQ(a, maps::Georeference(*text.coordinate_system).forward({0.35, 0.25}));
-  }
-}
-
-TEST(MapText, MissingUnknownAndNonNumericLinesAreRejected) {
-  const std::string lines = written(example());
-  const auto refusal = [&](const std::string& text) {
-    try {
-      parsed(text, "map.ot");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
-  EXPECT_EQ(refusal(lines), "accepted");
-  EXPECT_THAT(refusal(replaced(lines, "grid.width 7\n", "")), HasSubstr("map.ot: damaged"));
-  EXPECT_THAT(refusal(replaced(lines, "grid.width 7\n", "")), HasSubstr("'grid.width' is missing"));
-  EXPECT_THAT(refusal(lines + "grid.depth 3\n"), HasSubstr("'grid.depth' is unknown"));
-  EXPECT_THAT(refusal(lines + "grid\n"), HasSubstr("line 'grid' has no value"));
-  for (const char* bad : {"seven", "7 cells", "7.5", "", "99999999999"})
-    EXPECT_THAT(refusal(replaced(lines, "grid.width 7\n", "grid.width " + std::string(bad) + "\n")),
-                HasSubstr("'grid.width' is not a number"))
-        << bad;
-  EXPECT_THAT(refusal(replaced(lines, "footprint_radius_m 0.45\n", "footprint_radius_m 1e999\n")),
-              HasSubstr("'footprint_radius_m' is not a number"));
-  EXPECT_THAT(refusal(replaced(lines, "classes 2\n", "classes 255\n")), HasSubstr("255 classes"));
-  EXPECT_THAT(refusal(replaced(lines, "effects 1\n", "effects 100000\n")), HasSubstr("is 100000"));
-}
 
 TEST(MapTree, TreeContainsEveryCellAtItsHeight) {
   const TraversabilityMap map =
@@ -295,6 +185,240 @@ TEST(MapFile, InaccessiblePathsAreRejected) {
   EXPECT_THROW(writeMap(site(), "/nonexistent/map.ot"), InputError);
 }
 
-}  // namespace map_file_test
+// Incremental against full publication, over random drives, patches, refusals and moves.
 
+using maps::Cell;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+struct Case {
+  unsigned seed = 1;
+  double resolution_m = 0.5;
+  int rounds = 12, most_readings = 12;
+  bool one_class = false;     // no class raster
+  double pull_spread = 0.15;  // standard deviation of the readings' pull
+  bool costs = false;         // true if a cost layer is added
+  bool runs_out = false;      // true if the cost curves run out
+  bool forgets = false;       // true if some evidence is removed again
+  TravelPolicy policy{};
+};
+
+class Sequence {
+ public:
+  explicit Sequence(const Case& how) : how_(how), random_(how.seed) {
+    map_.emplace(layers(), testGround(how.policy), TraversabilityMap::Options{});
+  }
+
+  void run();
+  int compared() const { return compared_; }
+  int drivable() const { return drivable_; }
+  int forgotten() const { return forgotten_; }
+
+ private:
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
+  }
+  int whole(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<unsigned>(high - low + 1));
+  }
+  float height(Cell c) { return static_cast<float>(0.3 * std::sin(0.2 * c.column) * std::cos(0.15 * c.row)); }
+  std::uint8_t classAt(Cell c) const { return (c.column / 13 + c.row / 11) % 3 == 0 ? 2 : 1; }
+  MapLayers layers();
+  maps::Point anywhere();
+  WheelObservation reading(const maps::Point& place);
+  void drive();
+  void patch();
+  bool isBetterThanBelieved(Cell cell) const;
+  void publishedIsAtOnce();
+
+  Case how_;
+  std::mt19937 random_;
+  std::optional<TraversabilityMap> map_;
+  std::vector<SavedBlock> counted_;
+  int compared_ = 0, drivable_ = 0, forgotten_ = 0;
+};
+
+MapLayers Sequence::layers() {
+  const maps::Grid grid{
+      .width = 72, .height = 66, .resolution_m = how_.resolution_m, .south_west = {10.0, -7.0}};
+  MapLayers layers;
+  layers.elevation.elevation_m = maps::Raster<float>(grid);
+  if (!how_.one_class) layers.classes = maps::Raster<std::uint8_t>(grid, 1);
+  if (how_.costs) layers.costs = {{"own", maps::Raster<float>(grid, 0.0F), 5.0F}};
+  forEachCell(allOf(grid), [&](Cell c) {
+    layers.elevation.elevation_m[c] = height(c);
+    if (!how_.one_class) layers.classes[c] = uniform(0.0, 1.0) < 0.004 ? 255 : classAt(c);
+    if (how_.costs && c.column % 9 < 4)
+      layers.costs[0].added_J_per_m[c] = static_cast<float>(10 * (c.column % 9));
+  });
+  return layers;
+}
+
+maps::Point Sequence::anywhere() {
+  const maps::Grid& grid = map_->grid();
+  return {grid.south_west.x_m + uniform(0.0, grid.width * grid.resolution_m),
+          grid.south_west.y_m + uniform(0.0, grid.height * grid.resolution_m)};
+}
+
+// Random observation: verified, suspected, with a shared error, with bounds or sinkage, and with a random
+// position uncertainty.
+WheelObservation Sequence::reading(const maps::Point& place) {
+  WheelObservation seen{.time_s = 1.0, .place = place};
+  seen.pull = {0.22 + uniform(-how_.pull_spread, how_.pull_spread), uniform(0.0, 1.0) < 0.8 ? 0.04 : 0.12};
+  seen.sinkage = {uniform(0.05, 0.4), 0.05};
+  seen.trust = static_cast<Trust>(whole(0, 2));
+  seen.sinkage_verified = uniform(0.0, 1.0) < 0.7;
+  if (uniform(0.0, 1.0) < 0.3) seen.shared_std = uniform(0.0, 0.1);
+  if (uniform(0.0, 1.0) < 0.15) seen.pose_std_m = uniform(0.0, 4.0);
+  if (uniform(0.0, 1.0) < 0.1) seen.here.most_pull = uniform(-0.2, 0.2);
+  if (uniform(0.0, 1.0) < 0.1) seen.here.least_sinkage = uniform(0.3, 1.0);
+  return seen;
+}
+
+void Sequence::drive() {
+  if (how_.forgets && whole(0, 2) == 0)
+    for (const SavedBlock& heard : std::exchange(counted_, {})) {
+      map_->forget(heard);
+      ++forgotten_;
+    }
+  maps::Point at = anywhere();
+  for (int k = whole(1, how_.most_readings); k > 0; --k) {
+    const WheelObservation seen = reading(at);
+    if (const auto heard = map_->evidence().readingsOf(seen); heard && how_.forgets && whole(0, 1) == 0)
+      counted_.push_back(*heard);
+    map_->learn(seen);
+    at = {at.x_m + uniform(-0.5, 1.5), at.y_m + uniform(-0.5, 1.0)};
+  }
+}
+
+// Changes classes and heights; holes remain.
+void Sequence::patch() {
+  const maps::Grid& grid = map_->grid();
+  const Cell first{whole(0, grid.width - 1), whole(0, grid.height - 1)};
+  maps::Grid part = grid;
+  part.width = whole(1, std::min(24, grid.width - first.column));
+  part.height = whole(1, std::min(24, grid.height - first.row));
+  part.south_west = {grid.south_west.x_m + first.column * grid.resolution_m,
+                     grid.south_west.y_m + first.row * grid.resolution_m};
+  SurfacePatch seen;
+  seen.elevation_m = maps::Raster<float>(part, kNaN);
+  if (!map_->surface().classes().empty()) seen.classes = maps::Raster<std::uint8_t>(part, 255);
+  const int by = whole(0, 20);
+  forEachCell(allOf(part), [&](Cell c) {
+    const Cell there{first.column + c.column, first.row + c.row};
+    seen.elevation_m[c] = height(there);
+    if (!seen.classes.empty()) seen.classes[c] = classAt({there.column + by, there.row});
+  });
+  map_->patch(seen);
+}
+
+// True if a cell is published as stronger, or with less sinkage, than its estimate. Tolerance: a millionth of
+// a rounding step.
+bool Sequence::isBetterThanBelieved(Cell cell) const {
+  constexpr double kRounded = 1e-6, kTail = 6.0;
+  const auto known = map_->ground(cell), published = map_->costs().ground(cell);
+  if (!known || !published) return false;
+  const auto low = [](const Estimate& e) { return e.value - kTail * e.std; };
+  return published->pull.value > known->pull.value + kRounded ||
+         low(published->pull) > low(known->pull) + kRounded ||
+         published->sinkage.value < known->sinkage.value - kRounded;
+}
+
+// Compares with moved({0, 0}), which builds the map from the same layers, evidence and refused places.
+void Sequence::publishedIsAtOnce() {
+  const TraversabilityMap at_once = map_->moved({0, 0});
+  const auto a = map_->published(), b = at_once.published();
+  int different = 0, cheaper = 0, better = 0;
+  forEachCell(allOf(map_->grid()), [&](Cell c) {
+    const CellCode mine = a->at(c), its = b->at(c);
+    different += mine.stepsX() != its.stepsX() || mine.stepsY() != its.stepsY();
+    for (int k = 0; k < 16; ++k) {
+      const Direction heading{std::cos(k * std::numbers::pi / 8.0), std::sin(k * std::numbers::pi / 8.0)};
+      const float x = a->cost().costPerMetre(mine, heading), y = b->cost().costPerMetre(its, heading);
+      different += std::bit_cast<std::uint32_t>(x) != std::bit_cast<std::uint32_t>(y);
+      cheaper += x < y;
+      drivable_ += std::isfinite(x);
+    }
+    if ((c.column + 5 * c.row + compared_) % 23 == 0) better += isBetterThanBelieved(c);
+    different += a->cost().detail(mine, {1.0, 0.0}).category != b->cost().detail(its, {1.0, 0.0}).category;
+  });
+  ++compared_;
+  ASSERT_EQ(better, 0) << "seed " << how_.seed << ", comparison " << compared_;
+  ASSERT_EQ(cheaper, 0) << "seed " << how_.seed << ", comparison " << compared_;
+  if (!how_.runs_out) {
+    ASSERT_EQ(different, 0) << "seed " << how_.seed << ", comparison " << compared_;
+  }
+}
+
+void Sequence::run() {
+  for (int round = 0; round < how_.rounds && !testing::Test::HasFatalFailure(); ++round) {
+    const int what = whole(0, 9);
+    if (what == 0) map_->refuse(anywhere(), uniform(0.3, 1.5));
+    if (what == 1) {
+      map_.emplace(map_->moved({whole(-1, 1), 0}));
+      counted_.clear();
+    }
+    if (what < 9) drive();
+    if (what == 2 || what == 9)
+      patch();
+    else
+      map_->publish();
+    publishedIsAtOnce();
+  }
+}
+
+void runAll(Case how, unsigned seeds) {
+  int drivable = 0;
+  for (const unsigned first = how.seed; how.seed < first + seeds; ++how.seed) {
+    Sequence sequence(how);
+    sequence.run();
+    EXPECT_EQ(sequence.compared(), how.rounds);
+    drivable += sequence.drivable();
+  }
+  EXPECT_GT(drivable, 10000);
+}
+
+// Property: incremental equals full publication if some of the evidence is removed again.
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithForgottenReadings) {
+  int forgotten = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Sequence sequence({.seed = seed, .one_class = seed == 4, .forgets = true});
+    sequence.run();
+    if (testing::Test::HasFatalFailure()) return;
+    forgotten += sequence.forgotten();
+  }
+  EXPECT_GT(forgotten, 20);
+}
+
+// Property: after any evidence, patches, refusals and moves, in pieces of any size, the costs are
+// bit-identical to those of the whole map published at once.
+TEST(PublishOrder, IncrementalEqualsFullPublication) {
+  runAll({.seed = 1, .rounds = 20}, 3);
+}
+
+TEST(PublishOrder, IncrementalEqualsFullPublicationForSingleReadings) {
+  runAll({.seed = 11, .rounds = 40, .most_readings = 1}, 2);
+}
+
+// Case with more places than one Gaussian process uses, and blocks of several cells.
+TEST(PublishOrder, IncrementalEqualsFullPublicationForDenseEvidence) {
+  runAll({.seed = 21, .resolution_m = 0.25, .rounds = 12, .most_readings = 80, .pull_spread = 0.05}, 2);
+}
+
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithoutClassRaster) {
+  runAll({.seed = 31, .resolution_m = 1.0, .rounds = 25, .one_class = true}, 2);
+}
+
+TEST(PublishOrder, IncrementalEqualsFullPublicationWithUnknownAllowed) {
+  runAll({.seed = 41, .rounds = 8, .policy = {.allow_unknown = true, .pose_error_m = 0.0}}, 2);
+}
+
+// Property: if the curves run out, no cost of incremental publication is lower than that of full
+// publication.
+TEST(PublishOrder, IncrementalCostIsNotLowerOnCurveOverflow) {
+  runAll({.seed = 51, .rounds = 10, .most_readings = 40, .pull_spread = 0.5, .costs = true, .runs_out = true},
+         1);
+}
+
+}  // namespace map_file_test
 }  // namespace talus::costmap

@@ -16,7 +16,6 @@
 #include <talus/costmap/surface/surface_shape.hpp>
 
 namespace talus::costmap {
-
 namespace traversability_map_test {
 
 using maps::Cell;
@@ -440,5 +439,4 @@ TEST(TraversabilityMap, ConcurrentReadersObserveConsistentVersionsInOrder) {
 }
 
 }  // namespace traversability_map_test
-
 }  // namespace talus::costmap

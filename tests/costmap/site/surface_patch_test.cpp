@@ -511,8 +511,9 @@ TEST(SurfacePatch, EvidenceFromBeforeThePatchIsRetained) {
     for (int row = 0; row < kMap.height; ++row)
       for (int column = 0; column < kMap.width; ++column) {
         const maps::Cell cell{column, row};
-        ASSERT_EQ(patched.ground(cell)->pull.value, begun.ground(cell)->pull.value) << seed;
-        ASSERT_EQ(patched.ground(cell)->sinkage.value, begun.ground(cell)->sinkage.value) << seed;
+        const GroundBelief now = *patched.ground(cell), expected = *begun.ground(cell);
+        ASSERT_EQ(now.pull.value, expected.pull.value) << seed;
+        ASSERT_EQ(now.sinkage.value, expected.sinkage.value) << seed;
         ASSERT_EQ(patched.costs().category(cell), begun.costs().category(cell)) << seed;
         const auto a = patched.published(), b = begun.published();
         for (const Direction heading : {Direction{1.0, 0.0}, {0.6, -0.8}, {0.0, 1.0}})

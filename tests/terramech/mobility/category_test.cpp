@@ -10,7 +10,6 @@
 #include <talus/terramech/mobility/category.hpp>
 
 namespace talus::terramech {
-
 namespace category_test {
 
 const CategoryThresholds kLimits{.dp_low = 0.125,
@@ -102,13 +101,10 @@ TEST(Category, InvalidThresholdsAreRejected) {
   EXPECT_NO_THROW(validate(kLimits));
 }
 
-}  // namespace category_test
-
-namespace category_probability_test {
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const CategoryThresholds kLimits{.dp_low = 0.17, .dp_high = 0.36, .z_threshold = 0.5, .z_critical = 0.75};
+const CategoryThresholds kSpreadLimits{
+    .dp_low = 0.17, .dp_high = 0.36, .z_threshold = 0.5, .z_critical = 0.75};
 
 TEST(CategoryProbability, QuadrantsFollowSheppardsFormula) {
   for (const double rho : {-0.99, -0.5, 0.0, 0.3, 0.9, 0.999}) {
@@ -121,8 +117,9 @@ TEST(CategoryProbability, ZeroUncertaintyYieldsTheCategoryWithProbabilityOne) {
   for (const double dp : {0.1, 0.17, 0.3, 0.36, 0.5})
     for (const double z : {0.2, 0.5, 0.6, 0.75, 0.8}) {
       const WheelCondition condition{.drawbar_pull_over_load = dp, .sinkage_over_radius = z};
-      const auto p = categoryProbability({.mean = condition}, kLimits);
-      EXPECT_DOUBLE_EQ(p[static_cast<std::size_t>(categorise(condition, kLimits))], 1.0) << dp << " " << z;
+      const auto p = categoryProbability({.mean = condition}, kSpreadLimits);
+      EXPECT_DOUBLE_EQ(p[static_cast<std::size_t>(categorise(condition, kSpreadLimits))], 1.0)
+          << dp << " " << z;
     }
 }
 
@@ -131,7 +128,7 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
                                  .drawbar_pull_over_load_std = 0.08,
                                  .sinkage_over_radius_std = 0.12,
                                  .correlation = -0.6};
-  const auto p = categoryProbability(belief, kLimits);
+  const auto p = categoryProbability(belief, kSpreadLimits);
   std::mt19937_64 random{5};
   std::normal_distribution<double> normal;
   constexpr int kDraws = 200000;
@@ -139,7 +136,7 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
   for (int k = 0; k < kDraws; ++k) {
     const double a = normal(random), b = -0.6 * a + 0.8 * normal(random);
     const auto category = categorise(
-        {.drawbar_pull_over_load = 0.32 + 0.08 * a, .sinkage_over_radius = 0.45 + 0.12 * b}, kLimits);
+        {.drawbar_pull_over_load = 0.32 + 0.08 * a, .sinkage_over_radius = 0.45 + 0.12 * b}, kSpreadLimits);
     counted[static_cast<std::size_t>(category)] += 1.0 / kDraws;
   }
   for (std::size_t k = 0; k < 3; ++k)
@@ -150,33 +147,31 @@ TEST(CategoryProbability, MatchesMonteCarlo) {
 TEST(CategoryProbability, OneExactValueKeepsTheUncertaintyOfTheOther) {
   const ConditionEstimate belief{.mean = {.drawbar_pull_over_load = 0.36, .sinkage_over_radius = 0.2},
                                  .drawbar_pull_over_load_std = 0.05};
-  EXPECT_NEAR(categoryProbability(belief, kLimits)[0], 0.5, 1e-9);  // Closed form: the mean is on the edge.
+  EXPECT_NEAR(categoryProbability(belief, kSpreadLimits)[0], 0.5,
+              1e-9);  // Closed form: the mean is on the edge.
 }
 
 TEST(CategoryProbability, TorqueAndSteeringLimitsAreIncluded) {
-  CategoryThresholds limits = kLimits;
+  CategoryThresholds limits = kSpreadLimits;
   limits.steering_slip = 0.6;
   const ConditionEstimate belief{
       .mean = {.drawbar_pull_over_load = 0.5, .sinkage_over_radius = 0.2, .slip = 0.7},
       .drawbar_pull_over_load_std = 0.05,
       .sinkage_over_radius_std = 0.05};
   EXPECT_NEAR(categoryProbability(belief, limits)[2], 1.0, 1e-12);
-  EXPECT_GT(categoryProbability(belief, kLimits)[0], 0.99);
+  EXPECT_GT(categoryProbability(belief, kSpreadLimits)[0], 0.99);
 }
 
 TEST(CategoryProbability, InvalidInputsAreRejected) {
   ConditionEstimate belief;
   belief.drawbar_pull_over_load_std = -0.1;
-  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+  EXPECT_REFUSED(categoryProbability(belief, kSpreadLimits), std::invalid_argument,
                  "drawbar_pull_over_load_std = -0.1, must be >= 0");
   belief = {};
   belief.mean.sinkage_over_radius = std::nan("");
-  EXPECT_REFUSED(categoryProbability(belief, kLimits), std::invalid_argument,
+  EXPECT_REFUSED(categoryProbability(belief, kSpreadLimits), std::invalid_argument,
                  "sinkage_over_radius = nan, must be finite");
 }
-
-}  // namespace category_probability_test
-namespace category_test {
 
 double eq321(double torque, double sinkage) {
   return torque - sinkage - 0.1;
@@ -218,5 +213,4 @@ TEST(TraversabilityPlane, EmptyPlaneIsRejected) {
 }
 
 }  // namespace category_test
-
 }  // namespace talus::terramech

@@ -3,16 +3,205 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include <gtest/gtest.h>
 #include <refused.hpp>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/effects/refined_model.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+#include <talus/terramech/mobility/turning.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::terramech {
-
 namespace slope_equilibrium_test {
+
+Rover fourWheels(Steering steering) {
+  Rover rover{.name = "cart",
+              .mass_kg = 100.0,
+              .gravity_m_s2 = 2.0,
+              .wheel_count = 4,
+              .wheelbase_m = 1.2,
+              .track_m = 0.9,
+              .clearance_m = 0.2,
+              .max_torque_Nm = 10.0,
+              .max_speed_mps = 0.5,
+              .steering = steering};
+  rover.wheel.radius_m = 0.1;
+  rover.wheel.width_m = 0.1;
+  return rover;
+}
+
+TEST(Turning, SkidSteeringEnergyIsLateralFrictionWork) {
+  const TurnEfforts efforts =
+      turnEfforts(fourWheels(Steering::Skid), {.lateral_resistance = 0.5, .rolling_J_per_m = 40.0});
+  // Closed form: 4 wheels of 50 N, each 0.6 m from the centre, at a lateral force over load of 0.5.
+  EXPECT_DOUBLE_EQ(efforts.on_arc.energy_J, 0.5 * 4 * 50.0 * 0.6);
+  // Closed form: in place, the rows at 0.45 m from the centre also roll in opposite directions.
+  EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 60.0 + 40.0 * 0.45);
+}
+
+TEST(Turning, AllWheelSteeringRollsAboutTheCentre) {
+  const TurnEfforts efforts = turnEfforts(fourWheels(Steering::AllWheel), {.rolling_J_per_m = 40.0});
+  EXPECT_DOUBLE_EQ(efforts.in_place.energy_J,
+                   30.0);  // Closed form: half the diagonal of 1.2 by 0.9 m is 0.75 m.
+  EXPECT_DOUBLE_EQ(efforts.on_arc.energy_J, 0.0);
+  // Closed form: the two middle wheels of six roll half the track.
+  Rover six = fourWheels(Steering::AllWheel);
+  six.wheel_count = 6;
+  EXPECT_DOUBLE_EQ(turnEfforts(six, {.rolling_J_per_m = 40.0}).in_place.energy_J,
+                   40.0 * (2.0 * 0.75 + 0.45) / 3.0);
+}
+
+TEST(Turning, TurnTimeIsLimitedByTheFastestWheel) {
+  auto rover = fourWheels(Steering::AllWheel);
+  rover.hotel_power_W = 10.0;
+  const TurnEfforts efforts = turnEfforts(rover, {});
+  // Closed form: on an arc the outer row rolls 0.45 m more per radian at 0.5 m/s; in place every wheel rolls
+  // 0.75 m.
+  EXPECT_DOUBLE_EQ(efforts.on_arc.time_s, 0.9);
+  EXPECT_DOUBLE_EQ(efforts.in_place.time_s, 1.5);
+  EXPECT_DOUBLE_EQ(efforts.in_place.energy_J, 15.0);
+}
+
+TEST(Turning, BulldozingForceMatchesPassiveEarthPressure) {
+  const auto rover = fourWheels(Steering::Skid);
+  Soil sand;
+  sand.friction_angle_rad = std::numbers::pi / 6;  // K_p = tan^2(60 deg) = 3
+  sand.density_kg_m3 = 1500.0;
+  // Closed form: z = 2 cm of a wheel of 10 cm: chord 2 sqrt(0.004 - 0.0004) = 0.12 m.
+  EXPECT_NEAR(bulldozing_N(sand, rover, 0.02), 0.5 * 1500.0 * 2.0 * 0.0004 * 3.0 * 0.12, 1e-12);
+  sand.cohesion_Pa = 1000.0;
+  EXPECT_NEAR(bulldozing_N(sand, rover, 0.02), 0.216 + 2.0 * 1000.0 * 0.02 * std::sqrt(3.0) * 0.12, 1e-9);
+  EXPECT_DOUBLE_EQ(bulldozing_N(sand, rover, 0.0), 0.0);
+  // Property: the energy of turning increases with the bulldozing force.
+  EXPECT_GT(turnEfforts(rover, {.bulldozing_N = 5.0}).on_arc.energy_J,
+            turnEfforts(rover, {}).on_arc.energy_J);
+}
+
+Soil sand() {
+  return {.name = "sand",
+          .cohesion_Pa = 500.0,
+          .friction_angle_rad = 0.56,
+          .sinkage_exponent = 0.9,
+          .frictional_modulus = 1.7e6,
+          .shear_modulus_m = 0.02};
+}
+
+TEST(SteeringLimit, SideForceEqualsTheDemandAtTheLimit) {
+  const SteeringDemand demand{.load_N = 80.0};
+  const double limit = steeringSlipLimit(sand(), Wheel{}, demand);
+  ASSERT_GT(limit, 0.0);
+  ASSERT_LT(limit, 1.0);
+  WheelContact contact = contactOf(sand(), Wheel{});
+  contact.load_N = 80.0;
+  contact.slip = limit;
+  contact.slip_angle_rad = demand.slip_angle_rad;
+  EXPECT_NEAR(std::abs(solveContact(contact).side_force_N) / 80.0, 0.1, 1e-6);  // Closed form: the root.
+}
+
+TEST(SteeringLimit, DecreasesWithDemandAndIncreasesWithSlipAngle) {
+  const auto limit = [](double demand, double angle) {
+    return steeringSlipLimit(sand(), Wheel{},
+                             {.load_N = 80.0, .slip_angle_rad = angle, .side_force_over_load = demand});
+  };
+  EXPECT_GT(limit(0.05, 0.26), limit(0.1, 0.26));  // Property: monotone in the side force.
+  EXPECT_GT(limit(0.1, 0.4), limit(0.1, 0.26));
+  EXPECT_EQ(limit(5.0, 0.26), 0.0);
+}
+
+TEST(SteeringLimit, InvalidDemandIsRejected) {
+  EXPECT_REFUSED(steeringSlipLimit(sand(), Wheel{}, {.load_N = -1.0}), std::invalid_argument,
+                 "load_N = -1, must be > 0");
+}
+
+Rover rover(int wheels = 4) {
+  return {.name = "box",
+          .mass_kg = 40.0,
+          .wheel_count = wheels,
+          .wheel = {},
+          .wheelbase_m = 0.8,
+          .track_m = 0.6,
+          .clearance_m = 0.2,
+          .centre_of_mass_height_m = 0.3,
+          .max_torque_Nm = 20.0};
+}
+
+TEST(RoverStance, PitchAndRollTransferLoad) {
+  const RoverStance stance{rover()};
+  const auto n = stance.shares({0.2, 0.1});
+  // Closed form: load transfer h/L tan(pitch) and h/T tan(roll), half at each wheel.
+  const double back = 0.3 / 0.8 * 0.2 / 2.0, right = 0.3 / 0.6 * 0.1 / 2.0;
+  EXPECT_NEAR(n[0], 0.25 - back - right, 1e-12);  // front left, uphill in both directions
+  EXPECT_NEAR(n[1], 0.25 - back + right, 1e-12);
+  EXPECT_NEAR(n[2], 0.25 + back - right, 1e-12);
+  EXPECT_NEAR(n[3], 0.25 + back + right, 1e-12);
+}
+
+TEST(RoverStance, ForcesAndMomentsBalance) {
+  for (const int wheels : {4, 6, 8}) {
+    Rover r = rover(wheels);
+    r.centre_of_mass_ahead_m = 0.1;
+    r.centre_of_mass_left_m = -0.05;
+    const RoverStance stance{r};
+    for (const Planar demand : {Planar{0.0, 0.0}, Planar{0.3, -0.2}, Planar{-0.5, 0.4}, Planar{0.7, 0.5}}) {
+      const auto n = stance.shares(demand);
+      double sum = 0.0, x = 0.0, y = 0.0;
+      for (int k = 0; k < wheels; ++k) {
+        const double share = n[static_cast<std::size_t>(k)];
+        EXPECT_GE(share, 0.0);
+        sum += share;
+        x += share * stance.position_m(k).x;
+        y += share * stance.position_m(k).y;
+      }
+      // Closed form: the resultant of the normal forces meets the line of the weight in the plane, with or
+      // without lifted wheels.
+      EXPECT_NEAR(sum, 1.0, 1e-12);
+      EXPECT_NEAR(x, 0.1 - 0.3 * demand.x, 1e-9) << wheels << ' ' << demand.x;
+      EXPECT_NEAR(y, -0.05 - 0.3 * demand.y, 1e-9) << wheels << ' ' << demand.y;
+    }
+  }
+}
+
+TEST(RoverStance, StabilityMarginIsZeroAtTheTippingSlope) {
+  const RoverStance stance{rover()};
+  // Closed form: half the base over the height, half the track over the height.
+  EXPECT_NEAR(stance.stabilityMargin_rad({0.4 / 0.3, 0.0}), 0.0, 1e-12);
+  EXPECT_NEAR(stance.stabilityMargin_rad({0.0, 1.0}), 0.0, 1e-12);
+  EXPECT_NEAR(stance.stabilityMargin_rad({0.0, -0.5}), std::atan(1.0) - std::atan(0.5), 1e-12);
+  EXPECT_LT(stance.stabilityMargin_rad({0.0, 1.1}), 0.0);
+}
+
+TEST(RoverStance, WithoutCentreOfMassHeightLoadsAreEqualAndMarginIsNan) {
+  Rover r = rover();
+  r.centre_of_mass_height_m = 0.0;
+  const RoverStance stance{r};
+  EXPECT_EQ(stance.shares({0.4, 0.3})[0], 0.25);  // Closed form
+  EXPECT_TRUE(std::isnan(stance.stabilityMargin_rad({0.1, 0.0})));
+}
+
+std::string refusal(const Rover& r) {
+  try {
+    const RoverStance stance{r};
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(RoverStance, InvalidGeometryIsRejected) {
+  Rover r = rover();
+  r.centre_of_mass_ahead_m = 0.5;
+  EXPECT_NE(refusal(r).find("rover 'box': centre_of_mass_ahead_m = 0.5"), std::string::npos) << refusal(r);
+  r = rover();
+  r.track_m = 0.0;
+  EXPECT_NE(refusal(r).find("track_m = 0, must be > 0"), std::string::npos) << refusal(r);
+  EXPECT_NE(refusal(rover(1)).find("wheels.count = 1"), std::string::npos);
+  EXPECT_NE(refusal(rover(3)).find("must be even, 4 to 12"), std::string::npos) << refusal(rover(3));
+}
 
 Soil loam() {
   return {.name = "loam",
@@ -100,7 +289,7 @@ TEST(Mobility, InvalidArgumentsAreRejected) {
                  "cannot predict slip on a slope; trace the data with model: wong-reece");
 }
 
-Soil sand() {
+Soil coarseSand() {
   return {.name = "sand",
           .cohesion_Pa = 600.0,
           .friction_angle_rad = 0.55,
@@ -109,7 +298,7 @@ Soil sand() {
           .shear_modulus_m = 0.015};
 }
 
-Rover rover(Steering steering = Steering::AllWheel) {
+Rover boxRover(Steering steering = Steering::AllWheel) {
   return {.name = "box",
           .mass_kg = 40.0,
           .wheel_count = 4,
@@ -179,9 +368,9 @@ Net netOf(const Soil& soil, const Rover& r, const Gradient& g, const SlopeState&
 
 TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
   for (const Steering steering : kSteerings) {
-    Rover r = rover(steering);
+    Rover r = boxRover(steering);
     r.centre_of_mass_ahead_m = 0.06;
-    const SlopeEquilibrium equilibrium{sand(), r, {.ruts = false}};
+    const SlopeEquilibrium equilibrium{coarseSand(), r, {.ruts = false}};
     const double weight = r.mass_kg * r.gravity_m_s2;
     int held = 0;
     for (double a = -0.35; a <= 0.36; a += 0.07)
@@ -189,7 +378,7 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
         const SlopeState state = equilibrium.at({a, c});
         if (!state.holds()) continue;
         ++held;
-        const Net net = netOf(sand(), r, {a, c}, state, equilibrium.wheels({a, c}, state));
+        const Net net = netOf(coarseSand(), r, {a, c}, state, equilibrium.wheels({a, c}, state));
         // Property: forces and moments in three dimensions are balanced; tolerance 0.005 of the weight for
         // the table of wheel forces.
         EXPECT_NEAR(net.along / weight, 0.0, 0.005) << a << ' ' << c;
@@ -224,15 +413,15 @@ double slipOnSlope(const Soil& soil, const Rover& rover, double slope_rad) {
 }
 
 TEST(SlopeEquilibrium, StraightUpSlopeBalancesOneWheel) {
-  Rover r = rover();
+  Rover r = boxRover();
   r.centre_of_mass_height_m = 0.0;  // without load transfer
-  const SlopeEquilibrium rutted{sand(), r}, fresh = rutted.withoutRuts();
+  const SlopeEquilibrium rutted{coarseSand(), r}, fresh = rutted.withoutRuts();
   for (double slope = -0.2; slope <= 0.11; slope += 0.05) {
     const SlopeState state = fresh.at({std::tan(slope), 0.0});
     ASSERT_TRUE(state.holds()) << slope;
     // Closed form: the slip of a wheel by bisection. Tolerance: table errors up to 0.004 in pull over load, times
     // the derivative of slip by pull over load.
-    EXPECT_NEAR(state.slip, slipOnSlope(sand(), r, slope), 0.006) << slope;
+    EXPECT_NEAR(state.slip, slipOnSlope(coarseSand(), r, slope), 0.006) << slope;
     EXPECT_NEAR(state.slip_angle_rad, 0.0, 1e-9);
     // Property: later axles in ruts reduce the slip uphill.
     if (slope > 0.01) {
@@ -245,7 +434,7 @@ TEST(SlopeEquilibrium, StraightUpSlopeBalancesOneWheel) {
 // class plus s - 1 times its torque over the radius.
 TEST(SlopeEquilibrium, LeastStrengthIsTheEdgeOfWhatHolds) {
   for (const Steering steering : kSteerings) {
-    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    const SlopeEquilibrium equilibrium{coarseSand(), boxRover(steering)};
     for (const Gradient plane : {Gradient{0.15, 0.0}, Gradient{0.05, 0.12}, Gradient{-0.15, 0.05}}) {
       const double least = equilibrium.leastStrength(plane);
       const SlopeState edge = equilibrium.at(plane, least + 1e-4);
@@ -257,7 +446,7 @@ TEST(SlopeEquilibrium, LeastStrengthIsTheEdgeOfWhatHolds) {
       EXPECT_NEAR(equilibrium.leastStrength(plane, 2.0), least, 1e-3);
     }
   }
-  const SlopeEquilibrium straight{sand(), rover()};
+  const SlopeEquilibrium straight{coarseSand(), boxRover()};
   const Gradient climb{0.1, 0.0};
   const SlopeState state = straight.at(climb, 1.2);
   double pull_N = 0.0, load_N = 0.0;
@@ -270,7 +459,7 @@ TEST(SlopeEquilibrium, LeastStrengthIsTheEdgeOfWhatHolds) {
 
 TEST(SlopeEquilibrium, IsSymmetricLeftAndRight) {
   for (const Steering steering : kSteerings) {
-    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    const SlopeEquilibrium equilibrium{coarseSand(), boxRover(steering)};
     for (const double a : {-0.2, 0.0, 0.15})
       for (const double c : {0.05, 0.2, 0.3}) {
         const SlopeState left = equilibrium.at({a, c}), right = equilibrium.at({a, -c});
@@ -287,7 +476,7 @@ TEST(SlopeEquilibrium, IsSymmetricLeftAndRight) {
 
 TEST(SlopeEquilibrium, SlipAngleAndEnergyIncreaseWithCrossSlope) {
   for (const Steering steering : kSteerings) {
-    const SlopeEquilibrium equilibrium{sand(), rover(steering)};
+    const SlopeEquilibrium equilibrium{coarseSand(), boxRover(steering)};
     double last = -1.0, energy = 0.0;
     for (double c = 0.0; c < 0.6; c += 0.02) {
       const SlopeState state = equilibrium.at({0.0, c});
@@ -304,9 +493,9 @@ TEST(SlopeEquilibrium, SlipAngleAndEnergyIncreaseWithCrossSlope) {
 
 TEST(SlopeEquilibrium, BodyYawsUphillUnlessAllWheelsSteer) {
   const Gradient across{0.0, 0.2};  // rises to the left
-  EXPECT_EQ(SlopeEquilibrium(sand(), rover(Steering::AllWheel)).at(across).body_turn_rad, 0.0);
-  EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Skid)).at(across).body_turn_rad, 0.02);
-  EXPECT_GT(SlopeEquilibrium(sand(), rover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
+  EXPECT_EQ(SlopeEquilibrium(coarseSand(), boxRover(Steering::AllWheel)).at(across).body_turn_rad, 0.0);
+  EXPECT_GT(SlopeEquilibrium(coarseSand(), boxRover(Steering::Skid)).at(across).body_turn_rad, 0.02);
+  EXPECT_GT(SlopeEquilibrium(coarseSand(), boxRover(Steering::Ackermann)).at(across).body_turn_rad, 0.02);
 }
 
 /// True if an equilibrium without load transfer exists, by brute force: some slip and slip angle within the
@@ -339,15 +528,15 @@ bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
 }
 
 TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
-  Rover r = rover();
+  Rover r = boxRover();
   r.centre_of_mass_height_m = 0.0;
-  const SlopeEquilibrium equilibrium{sand(), r, {.ruts = false}};
+  const SlopeEquilibrium equilibrium{coarseSand(), r, {.ruts = false}};
   std::mt19937_64 engine{3};
   std::uniform_real_distribution<double> any{-0.7, 0.7};
   int held = 0, none = 0;
   for (int k = 0; k < 40; ++k) {
     const Gradient g{any(engine), std::abs(any(engine))};
-    const bool want = anyHolds(sand(), r, g);
+    const bool want = anyHolds(coarseSand(), r, g);
     // Property: existence agrees with brute force; where the two differ, the limit lies within 0.02 of
     // gradient.
     if (equilibrium.at(g).holds() != want) {
@@ -364,34 +553,35 @@ TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
 }
 
 TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
-  const SlopeEquilibrium equilibrium{sand(), rover()};
+  const SlopeEquilibrium equilibrium{coarseSand(), boxRover()};
   EXPECT_EQ(equilibrium.at({0.7, 0.0}).failure, SlopeFailure::CannotPull);
   EXPECT_EQ(equilibrium.at({0.0, 0.9}).failure, SlopeFailure::Slides);
   EXPECT_EQ(equilibrium.at({-1.2, 0.0}).failure, SlopeFailure::Slides);
   EXPECT_EQ(equilibrium.at({0.0, 1.3}).failure, SlopeFailure::Tips);
-  Rover weak = rover();
+  Rover weak = boxRover();
   weak.max_torque_Nm = 0.5;
-  EXPECT_EQ(SlopeEquilibrium(sand(), weak).at({0.05, 0.0}).failure, SlopeFailure::Torque);
-  Rover low = rover();
-  low.clearance_m = 0.9 * SlopeEquilibrium(sand(), rover()).at({}).sinkage_m;
-  EXPECT_EQ(SlopeEquilibrium(sand(), low).at({}).failure, SlopeFailure::Sinks);
+  EXPECT_EQ(SlopeEquilibrium(coarseSand(), weak).at({0.05, 0.0}).failure, SlopeFailure::Torque);
+  Rover low = boxRover();
+  low.clearance_m = 0.9 * SlopeEquilibrium(coarseSand(), boxRover()).at({}).sinkage_m;
+  EXPECT_EQ(SlopeEquilibrium(coarseSand(), low).at({}).failure, SlopeFailure::Sinks);
   // Straight uphill, load transfer makes the pull insufficient that is sufficient under equal loads; the
   // failure is not sliding.
-  Rover tall = rover();
+  Rover tall = boxRover();
   tall.centre_of_mass_height_m = 0.5 * tall.wheelbase_m / 0.3;
   for (double along = 0.05; along < 0.5; along += 0.01) {
-    const SlopeState state = SlopeEquilibrium(sand(), tall).at({along, 0.0});
+    const SlopeState state = SlopeEquilibrium(coarseSand(), tall).at({along, 0.0});
     EXPECT_NE(state.grip, SlopeFailure::Slides) << along;
   }
-  Soil bog = sand();
+  Soil bog = coarseSand();
   bog.frictional_modulus = 2e3;
-  EXPECT_EQ(SlopeEquilibrium(bog, rover()).at({0.0, 0.0}).failure, SlopeFailure::Sinks);
+  EXPECT_EQ(SlopeEquilibrium(bog, boxRover()).at({0.0, 0.0}).failure, SlopeFailure::Sinks);
 }
 
 TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
-  const SlopeEquilibrium equilibrium{sand(), rover(), {.ruts = false}};
-  const double even = wheelLoad_N(rover());
-  const WheelForces locked = terramech::equilibrium(sand(), rover().wheel, {.load_N = even, .slip = -1.0});
+  const SlopeEquilibrium equilibrium{coarseSand(), boxRover(), {.ruts = false}};
+  const double even = wheelLoad_N(boxRover());
+  const WheelForces locked =
+      terramech::equilibrium(coarseSand(), boxRover().wheel, {.load_N = even, .slip = -1.0});
   const double steepest = -locked.drawbar_pull_N / even;
   // Closed form: locked wheels hold tan(slope) = -DP/N; tolerance 0.03 for load transfer and the cosine.
   EXPECT_TRUE(equilibrium.at({-(steepest - 0.04), 0.0}).holds());
@@ -407,9 +597,9 @@ TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
                                               {Steering::AllWheel, 4000.0},
                                               {Steering::Skid, 600.0},
                                               {Steering::Ackermann, 600.0}}) {
-    Soil soil = sand();
+    Soil soil = coarseSand();
     soil.cohesion_Pa = cohesion_Pa;
-    Rover r = rover(steering);
+    Rover r = boxRover(steering);
     r.wheelbase_m = 0.5;
     r.track_m = 1.5;
     r.centre_of_mass_height_m = 2.0;
@@ -444,14 +634,112 @@ TEST(SlopeEquilibrium, IsStableOnlyWithCentreOfMassWithinTheWheelBase) {
 }
 
 TEST(SlopeEquilibrium, ListsItsAssumptions) {
-  EXPECT_TRUE(slopeAssumptions(rover()).empty());
-  Rover r = rover();
+  EXPECT_TRUE(slopeAssumptions(boxRover()).empty());
+  Rover r = boxRover();
   r.centre_of_mass_height_m = 0.0;
   ASSERT_EQ(slopeAssumptions(r).size(), 1u);
   EXPECT_NE(slopeAssumptions(r)[0].find("rover 'box': centre_of_mass_height_m is not given"),
             std::string::npos);
 }
 
-}  // namespace slope_equilibrium_test
+TEST(Rut, SecondPassSinksLessAndPullsMore) {
+  const Soil sand{.name = "sand",
+                  .cohesion_Pa = 800.0,
+                  .friction_angle_rad = 0.63,
+                  .sinkage_exponent = 1.0,
+                  .cohesive_modulus = 1400.0,
+                  .frictional_modulus = 820000.0,
+                  .shear_modulus_m = 0.015};
+  const Wheel wheel{.radius_m = 0.12, .width_m = 0.12};
+  for (const double slip : {0.1, 0.3, 0.6}) {
+    const WheelForces first = equilibrium(sand, wheel, {.load_N = 56.0, .slip = slip});
+    const WheelForces second = equilibrium(rutted(sand), wheel, {.load_N = 56.0, .slip = slip});
+    // Property: the sinkage is reduced by the factor 4^(2/(2n + 1)), and the resistance in proportion to the
+    // root of the sinkage.
+    EXPECT_NEAR(second.sinkage_m / first.sinkage_m, 0.397, 0.03) << slip;
+    EXPECT_GT(second.drawbar_pull_N, first.drawbar_pull_N) << slip;
+  }
+}
 
+Rover deepRover() {
+  return {.name = "box",
+          .mass_kg = 40.0,
+          .gravity_m_s2 = 3.71,
+          .wheel_count = 4,
+          .wheel = {.radius_m = 0.12, .width_m = 0.1},
+          .wheelbase_m = 0.8,
+          .track_m = 0.7,
+          .clearance_m = 0.2,
+          .max_torque_Nm = 40.0};
+}
+
+Soil soil(int kind) {
+  Soil s{.name = "soil",
+         .cohesion_Pa = 200.0,
+         .friction_angle_rad = 0.55,
+         .sinkage_exponent = 1.0,
+         .frictional_modulus = 8e5,
+         .shear_modulus_m = 0.018};
+  if (kind == 1) s.cohesion_Pa = 7000.0, s.friction_angle_rad = 0.44, s.sinkage_exponent = 0.7;
+  if (kind == 2) s.shear_modulus_m = 0.01;
+  return s;
+}
+
+TEST(WheelForcesTable, MatchesTheWheel) {
+  std::mt19937_64 engine{4};
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>{low, high}(engine);
+  };
+  for (const int kind : {0, 1, 2}) {
+    const WheelForcesTable table{soil(kind), deepRover()};
+    std::vector<double> errors;
+    for (int k = 0; k < 400; ++k) {
+      const WheelMotion m{wheelLoad_N(deepRover()) * between(0.3, 4.0), between(-0.95, 0.9),
+                          between(-0.8, 0.8)};
+      const WheelForces f = equilibrium(soil(kind), deepRover().wheel,
+                                        {.load_N = m.load_N,
+                                         .slip = m.slip,
+                                         .slip_angle_rad = m.slip_angle_rad,
+                                         .gravity_m_s2 = deepRover().gravity_m_s2});
+      const WheelRatios t = table.at(m);
+      const double r = deepRover().wheel.radius_m;
+      errors.push_back(std::max({std::abs(t.value[kPullRatio] - f.drawbar_pull_N / m.load_N),
+                                 std::abs(t.value[kSideRatio] - f.side_force_N / m.load_N),
+                                 std::abs(t.value[kTorqueRatio] - f.torque_Nm / (m.load_N * r)),
+                                 std::abs(t.value[kSinkageRatio] - f.sinkage_m / r)}));
+    }
+    std::sort(errors.begin(), errors.end());
+    // Property: the errors are within those stated in the header.
+    EXPECT_LT(errors.back(), 0.015) << kind;
+    EXPECT_LT(errors[errors.size() / 2], 0.001) << kind;
+  }
+}
+
+TEST(WheelForcesTable, DerivativesMatchFiniteDifferences) {
+  const WheelForcesTable table{soil(0), deepRover()};
+  const double h = 1e-6;
+  for (const double slip : {-0.72, -0.01, 0.33, 0.81})
+    for (const double angle : {-0.4, -0.02, 0.0, 0.3}) {
+      const WheelRatios at = table.at({30.0, slip, angle});
+      const WheelRatios more = table.at({30.0, slip + h, angle}), left = table.at({30.0, slip, angle + h});
+      for (std::size_t c = 0; c < kWheelChannels; ++c) {
+        // Property: the derivatives equal finite differences of the same cubic.
+        EXPECT_NEAR(at.by_slip[c], (more.value[c] - at.value[c]) / h, 1e-4);
+        EXPECT_NEAR(at.by_angle[c], (left.value[c] - at.value[c]) / h, 1e-4);
+      }
+    }
+}
+
+TEST(WheelForcesTable, ModelWithoutEffectsEqualsItsSoil) {
+  RefinedModel model;
+  model.soil = soil(0);
+  const WheelForcesTable a{soil(0), deepRover()}, b{model, deepRover()};
+  for (const double slip : {-0.5, 0.2})
+    for (const double angle : {0.0, 0.3})
+      for (std::size_t c = 0; c < kWheelChannels; ++c)
+        // Property: two solvers of one wheel agree; 1e-5 for the faster rule of effects.
+        EXPECT_NEAR(a.at({30.0, slip, angle}).value[c], b.at({30.0, slip, angle}).value[c], 1e-4);
+}
+
+}  // namespace slope_equilibrium_test
 }  // namespace talus::terramech

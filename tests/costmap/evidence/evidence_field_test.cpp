@@ -1,15 +1,171 @@
-// Spatial inference on ground of known strength.
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
+#include <sstream>
+#include <string>
 #include <vector>
 
+#include <site_map.hpp>
+
+#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/evidence/class_evidence.hpp>
+#include <talus/costmap/evidence/evidence.hpp>
+#include <talus/costmap/evidence/evidence_store.hpp>
 
 namespace talus::costmap {
-namespace spreading_truth_test {
+namespace evidence_field_test {
+
+std::shared_ptr<const GroundSite> siteOf(const std::vector<std::string>& rows, double correlation_length_m) {
+  MapLayers layers = drawn(rows);
+  const SurfaceKeys keys(layers.elevation.grid(), 1000.0);
+  return std::make_shared<GroundSite>(
+      GroundSite{.elevation = std::move(layers.elevation),
+                 .classes = std::move(layers.classes),
+                 .keys = keys,
+                 .model = testGround({.correlation_length_m = correlation_length_m})});
+}
+
+// Property: every cell lies in the block of its column and row, blocks are adjacent, and the side of a block
+// is the largest power of two of cells within a quarter of the correlation length.
+TEST(BlockGrid, BlocksPartitionTheMap) {
+  for (const double length_m : {2.0, 8.0, 20.0, 40.0}) {
+    const auto site = siteOf(std::vector<std::string>(21, std::string(37, '1')), length_m);
+    const BlockGrid blocks(site);
+    EXPECT_LE(blocks.side_m(), std::max(length_m / 4.0, 1.0));
+    EXPECT_GT(2.0 * blocks.side_m(), length_m / 4.0);
+    EXPECT_GE(blocks.reach() * blocks.side_m(), length_m);
+    for (int row = 0; row < 21; ++row)
+      for (int column = 0; column < 37; ++column) {
+        const maps::Cell block = blocks.blockOf({column, row});
+        EXPECT_TRUE(column >= block.column && column < block.column + blocks.side());
+        EXPECT_TRUE(row >= block.row && row < block.row + blocks.side());
+        const maps::Cell again = blocks.blockAt(blocks.columnOf({column, row}), blocks.rowOf({column, row}));
+        EXPECT_TRUE(again.column == block.column && again.row == block.row);
+      }
+    EXPECT_EQ(blocks.columns(), blocks.columnOf({36, 0}) + 1);
+    EXPECT_EQ(blocks.rows(), blocks.rowOf({0, 20}) + 1);
+  }
+}
+
+TEST(EvidenceReach, ReachIsAlignedToPatchesWithinTheMap) {
+  const TraversabilityMap map = mapOf(std::vector<std::string>(60, std::string(60, '1')));
+  EvidenceReach reach(map.surface().site());
+  EXPECT_TRUE(reach.boxes().empty());
+  const maps::CellBox near = reach.add({.column = 0, .row = 0}, 0.0);
+  EXPECT_EQ(near.first, (maps::Cell{0, 0}));
+  EXPECT_EQ(reach.farthest_m(), 0.0);
+  // Property: the boxes lie within the map, do not overlap, and cover the box returned by add().
+  int cells = 0;
+  for (const maps::CellBox& box : reach.boxes()) cells += box.width() * box.height();
+  EXPECT_EQ(cells, near.width() * near.height());
+  // Property: a larger pose error never reduces the reach.
+  const maps::CellBox far = reach.add({.column = 0, .row = 0}, 20.0);
+  EXPECT_GT(far.last.column, near.last.column);
+  EXPECT_LT(far.last.column, 60);
+  EXPECT_EQ(reach.farthest_m(), 20.0);
+}
+
+std::vector<std::string> wide() {
+  return std::vector<std::string>(60, std::string(60, '1'));
+}
+
+WheelObservation soft(double x, double y) {
+  return {.time_s = 12.0,
+          .place = {100.0 + x, 200.0 + y},
+          .pull = {0.05, 0.05},
+          .sinkage = {0.6, 0.05},
+          .trust = Trust::Once,
+          .sinkage_verified = true};
+}
+
+// A reading whose pull is lower than the class mean by `by`.
+WheelObservation weaker(double x, double y, double by) {
+  return {.time_s = 12.0,
+          .place = {100.0 + x, 200.0 + y},
+          .pull = {testGround()->prior(0).pull.value - by, 0.05},
+          .sinkage = {0.2, 0.05},
+          .trust = Trust::Once,
+          .sinkage_verified = true};
+}
+
+TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {
+  TraversabilityMap map = mapOf(wide());
+  const GroundBelief before = *map.ground({30, 30});
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(map.learn(soft(30.5, 30.5)));
+  map.publish();
+  const GroundBelief here = *map.ground({30, 30}), near = *map.ground({32, 30}), far = *map.ground({50, 50});
+  EXPECT_LT(here.pull.value, before.pull.value - 0.05);
+  EXPECT_LT(here.pull.std, before.pull.std);
+  EXPECT_LT(here.pull.value, near.pull.value);
+  EXPECT_LT(near.pull.value, far.pull.value);
+  EXPECT_GT(far.pull.value, before.pull.value - 0.25 * (before.pull.value - here.pull.value))
+      << "one place tells little about its class";
+  EXPECT_LE(here.pull.std, near.pull.std);
+  EXPECT_LE(near.pull.std, far.pull.std);
+  EXPECT_LE(far.pull.std, before.pull.std);
+}
+
+TEST(TraversabilityMap, EvidenceDoesNotAffectOtherClasses) {
+  std::vector<std::string> site = wide();
+  for (auto& row : site) row.replace(31, 29, 29, '2');
+  TraversabilityMap map = mapOf(site);
+  const GroundBelief dust = *map.ground({32, 30});
+  for (int i = 0; i < 20; ++i) map.learn(soft(30.5, 30.5));
+  map.publish();
+  EXPECT_EQ(map.ground({32, 30})->pull.value, dust.pull.value);
+}
+
+TEST(TraversabilityMap, ObservationsOutsideTheMapAreRejected) {
+  TraversabilityMap map = mapOf(wide());
+  EXPECT_FALSE(map.learn(soft(-5.0, 3.0)));
+  EXPECT_FALSE(map.learn(soft(std::nan(""), 3.0)));
+}
+
+TEST(EvidenceField, ClassMeanMovesMoreWithManyIndependentPlaces) {
+  TraversabilityMap one = mapOf(wide()), many = mapOf(wide());
+  for (int i = 0; i < 200; ++i) {
+    one.learn(weaker(30.5, 30.5, 0.06));
+    many.learn(weaker(5.5 + 0.25 * i, 30.5, 0.06));
+  }
+  EXPECT_LT(many.evidence().classBelief(0).pull.value, one.evidence().classBelief(0).pull.value - 0.01);
+  EXPECT_LT(many.evidence().classBelief(0).pull.std, one.evidence().classBelief(0).pull.std);
+}
+
+TEST(EvidenceField, OutlierPlacesDoNotMoveTheClassMean) {
+  TraversabilityMap map = mapOf(wide()), ordinary = mapOf(wide());
+  for (int i = 0; i < 20; ++i) {
+    map.learn(weaker(30.5, 30.5, 0.4));
+    ordinary.learn(weaker(30.5, 30.5, 0.06));
+  }
+  map.publish();
+  // Property: readings seven standard deviations from the class change the class mean by less than one
+  // standard deviation, but determine the estimate of their own cells.
+  const double prior = map.model().prior(0).pull.value;
+  EXPECT_GT(map.evidence().classBelief(0).pull.value, prior - 0.05);
+  EXPECT_LT(map.ground({30, 30})->pull.value, prior - 0.3);
+  EXPECT_NEAR(map.ground({45, 45})->pull.value, prior, 0.05);
+}
+
+TEST(TraversabilityMap, RefusedAreaStaysBlocked) {
+  TraversabilityMap map = mapOf(wide());
+  map.refuse({130.5, 230.5}, 2.0);
+  map.publish();
+  for (int row = 25; row <= 35; ++row)
+    for (int column = 25; column <= 35; ++column) {
+      const bool inside = std::hypot(column - 30, row - 30) <= 2.0;
+      EXPECT_EQ(has(map.surface().hazards({column, row}), Hazard::Obstacle), inside) << column << ' ' << row;
+      EXPECT_EQ(map.published()->at({column, row}).curve() == CellCode::kBlocked, inside)
+          << column << ' ' << row;
+    }
+  for (int i = 0; i < 20; ++i) map.learn(weaker(30.5, 30.5, -0.1));
+  map.publish();
+  EXPECT_EQ(map.published()->at({30, 30}).curve(), CellCode::kBlocked);
+  EXPECT_NO_THROW(map.refuse({-500.0, 1e9}, 3.0));
+}
+
+// Spatial inference on ground of known strength.
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 5.0};
 
@@ -195,5 +351,5 @@ TEST(Spreading, WeakPlaceProbabilitiesAreConservativeForOtherCovariance) {
   fitted.expectWithin({0.02, 0.1}, "waves, 7.5 m");
 }
 
-}  // namespace spreading_truth_test
+}  // namespace evidence_field_test
 }  // namespace talus::costmap

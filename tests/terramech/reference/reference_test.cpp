@@ -1,14 +1,40 @@
 #include <cmath>
 
+#include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
 
 #include "estimator_cases.hpp"
+#include "reference_table.hpp"
+
+namespace talus::terramech {
+namespace reference_test {
+
+std::optional<double> numberOrNone(const test::ReferenceRow& row, const std::string& column) {
+  return row.has(column) ? std::optional{row[column]} : std::nullopt;
+}
+
+TEST(CategoryReference, MatchesTheReferenceOnEveryThreshold) {
+  const auto rows = test::referenceTable("category_edges");
+  EXPECT_EQ(rows.size(), 34u);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& row = rows[k];
+    const CategoryThresholds limits{.dp_low = row["dp_low"],
+                                    .dp_high = row["dp_high"],
+                                    .z_threshold = row["z_threshold"],
+                                    .z_critical = row["z_critical"],
+                                    .t_threshold = numberOrNone(row, "t_threshold"),
+                                    .t_critical = numberOrNone(row, "t_critical")};
+    const Category got = categorise({.drawbar_pull_over_load = row["drawbar_pull_over_load"],
+                                     .sinkage_over_radius = row["sinkage_over_radius"],
+                                     .torque_over_load_radius = numberOrNone(row, "torque_over_load_radius")},
+                                    limits);
+    EXPECT_EQ(name(got), row.text("category")) << "row " << k;  // Closed form: an independent implementation.
+  }
+}
 
 // Closed form: every intermediate and result of the linear estimators by an independent implementation.
 // Tolerance: 1e-10 for coefficients in closed form, 1e-7 for least squares because of the condition number.
-namespace talus::terramech {
-namespace estimator_reference_test {
 
 using test::estimatorCases;
 using test::sampleOf;
@@ -94,5 +120,5 @@ TEST(EstimatorReference, ReferenceHasEightSoilsOfTenReadings) {
   for (const auto& c : cases) EXPECT_EQ(c.rows.size() + c.modulus_errors.size(), 19u);
 }
 
-}  // namespace estimator_reference_test
+}  // namespace reference_test
 }  // namespace talus::terramech
