@@ -13,8 +13,8 @@
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
-#include <talus/terramech/calibration/trace/run_proposal.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
+#include <talus/terramech/calibration/trace/run_proposal.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
