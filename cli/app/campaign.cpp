@@ -9,8 +9,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/common/checksum.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
 #include <talus/common/parallel_for.hpp>
@@ -105,29 +107,43 @@ bool makeFolder(const std::string& folder) {
   return made;
 }
 
+namespace {
+
+// A row of a part: job, checksum over `hash`, job and result, and the result in hexadecimal digits.
+std::string rowOf(std::size_t job, const std::string& hash, const std::string& text) {
+  const std::string whole = fmt::format("{} {} {}", hash, job, text);
+  Checksum sum;
+  sum.add(whole.data(), whole.size());
+  std::string row = fmt::format("{},{:016x},", job, sum.value());
+  for (const char c : text) row += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return row;
+}
+
+}  // namespace
+
 JobResults Part::joined(const std::string& folder, const std::string& hash, const JobResults& own) const {
-  std::string rows = "job,hash,result\n";
-  for (const auto& [job, text] : own) {
-    rows += fmt::format("{},{},", job, hash);
-    for (const char c : text) rows += fmt::format("{:02x}", static_cast<unsigned char>(c));
-    rows += "\n";
-  }
-  writeFile(std::filesystem::path(folder) / fmt::format("part_{}_of_{}.csv", index_ + 1, parts_), rows);
-  JobResults results;
+  JobResults results = own;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.path().filename().string().starts_with("part_")) continue;
     terramech::CsvReader reader(entry.path().string());
     for (terramech::CsvRow row; reader.next(row);) {
-      double job = 0.0;
-      if (!row.fault.empty() || row.fields.size() != 3 || !terramech::parseNumber(row.fields[0], job) ||
-          row.fields[1] != hash)
+      double job = -1.0;
+      std::string text;
+      if (row.fields.size() == 3 && terramech::parseNumber(row.fields[0], job))
+        for (std::size_t i = 0; i + 1 < row.fields[2].size(); i += 2)
+          text += static_cast<char>(std::strtol(row.fields[2].substr(i, 2).c_str(), nullptr, 16));
+      const bool counts = job >= 0.0 && job < 1e9;
+      const std::size_t index = counts ? static_cast<std::size_t>(job) : 0;
+      if (!counts || rowOf(index, hash, text) != fmt::format("{}", fmt::join(row.fields, ",")))
         throw InputError({fmt::format("{}:{}", entry.path().string(), row.line),
-                          "is not of these jobs and their options", "name another folder with -o"});
-      std::string& text = results[static_cast<std::size_t>(job)];
-      for (std::size_t i = 0; i + 1 < row.fields[2].size(); i += 2)
-        text += static_cast<char>(std::stoi(row.fields[2].substr(i, 2), nullptr, 16));
+                          "is not of these jobs and their options, or damaged",
+                          "name another folder with -o, or remove the file"});
+      results.emplace(index, std::move(text));
     }
   }
+  std::string rows = "job,checksum,result\n";
+  for (const auto& [job, text] : own) rows += rowOf(job, hash, text) + "\n";
+  writeFile(std::filesystem::path(folder) / fmt::format("part_{}_of_{}.csv", index_ + 1, parts_), rows);
   return results;
 }
 

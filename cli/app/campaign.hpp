@@ -28,9 +28,9 @@ class Part {
   explicit Part(const std::string& text);
   /// Returns the indices of the part's jobs of `count`.
   std::vector<std::size_t> of(std::size_t count) const;
-  /// Writes the results of the part to its file in a folder, in rows of job, `hash` and result (hexadecimal digits), and
-  /// returns those of all parts there. The hash is that of the jobs and their inputs. @throws InputError for
-  /// a row with another hash
+  /// Returns the results of all parts in a folder and of this part (`own`), which is written to its file there. Each row
+  /// has a checksum over `hash` (of the jobs and their inputs), job and result. Throws InputError, and writes
+  /// nothing, for a row that is of other jobs or damaged.
   JobResults joined(const std::string& folder, const std::string& hash, const JobResults& own) const;
 
  private:

@@ -50,7 +50,8 @@ TEST(BenchCommand, ComparisonWritesLogsTableAndPage) {
   EXPECT_THAT(fileContent(folder / "out/table.txt"), HasSubstr("field"));
 }
 
-// Property: parts in any order give the comparison of the whole; a part of another suite is refused.
+// Property: parts in any order and of any division give the comparison of the whole; a part of another suite is
+// refused and replaces nothing.
 TEST(BenchCommand, PartsGiveTheComparisonOfTheWhole) {
   const Folder folder;
   const std::string scen = room(folder);
@@ -64,6 +65,10 @@ TEST(BenchCommand, PartsGiveTheComparisonOfTheWhole) {
   EXPECT_THAT(bench({parts, "--part", "1/3"}).out, HasSubstr("4 of 6 runs"));
   EXPECT_EQ(lasting(bench({parts, "--part", "2/3"}).out), lasting(bench({folder / "whole"}).out));
   EXPECT_THAT(bench({parts, "--part", "1/3", "--seed", "9"}).err, HasSubstr("is not of these jobs"));
+  EXPECT_EQ(lasting(bench({parts, "--part", "1/2"}).out), lasting(bench({folder / "whole"}).out));
+  const std::string file = folder / "parts/part_3_of_3.csv", rows = fileContent(file);
+  folder.write("parts/part_3_of_3.csv", rows.substr(0, rows.size() - 9));
+  EXPECT_THAT(bench({parts, "--part", "1/3"}).err, HasSubstr("part_3_of_3.csv:3: is not of these jobs"));
   EXPECT_EQ(bench({parts, "--part", "4/3"}).code, 2);
 }
 
