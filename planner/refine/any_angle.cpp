@@ -145,19 +145,18 @@ constexpr double kSlidingGains = 0.03;
 
 }  // namespace
 
-Polyline Refiner::acrossEdges(const MotionCost& cost, const CorridorSearch& search,
+Polyline Refiner::acrossEdges(const MotionCost& cost, const PointSearch& search,
                               const Polyline& window) const {
   const double before_J = cost.along(window);
-  EdgePath path = search(window, before_J * (1.0 + kSlidingGains));
-  if (path.empty()) return window;
-  slideTurns(cost.map(), path, 0.5 / options_.corridor.points_per_edge, options_.slides);
-  Polyline tried = path.points(cost.map().grid());
-  tried.front() = window.front();
-  tried.back() = window.back();
+  PointPath path = search({{window.front(), window.back()}, 0.0, before_J * (1.0 + kSlidingGains)},
+                          SearchRegion(cost.map().grid(), window, options_.reach_cells));
+  if (path.points.empty()) return window;
+  slideTurns(cost.map(), path, 0.5 / options_.points_per_side, options_.slides);
+  Polyline tried = std::move(path.points);
   return cost.along(tried) < before_J ? tried : window;
 }
 
-Polyline Refiner::refinedStretch(const MotionCost& cost, const CorridorSearch& search, Polyline stretch,
+Polyline Refiner::refinedStretch(const MotionCost& cost, const PointSearch& search, Polyline stretch,
                                  const StopCheck& stop) const {
   const double cell_m = cost.map().grid().resolution_m;
   double best_J = cost.along(stretch);
@@ -186,7 +185,7 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
     best_J = tried_J;
     route = std::move(tried);
   };
-  const CorridorSearch search(cost, options_.corridor);
+  const PointSearch search(cost, {.side = options_.points_per_side});
   const WindowCut cut{kMarks * cell_m, kAround * cell_m, kNear * cell_m};
   take(overWindows(
       cutAtMarks(route, cut.length_m), cut,

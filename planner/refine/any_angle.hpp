@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <talus/planner/refine/corridor_search.hpp>
+#include <talus/planner/refine/point_search.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 
@@ -78,8 +78,9 @@ Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut,
 
 /// Parameters of the refinement.
 struct RefineOptions {
-  CorridorOptions corridor{};  ///< search over points of cell edges near the route
-  int slides = 12;             ///< number of rounds in which turns are moved along cell edges
+  int reach_cells = 4;      ///< largest distance of the refined route from the given route [cells]
+  int points_per_side = 3;  ///< number of points per cell side at which the route may cross it
+  int slides = 12;          ///< number of rounds in which turns are moved along cell edges
 };
 
 /// Refinement of routes to fewer and better turns. The result never costs more than the given route, has the
@@ -103,9 +104,9 @@ class Refiner {
   void clear() { memo_.clear(); }
 
  private:
-  Polyline refinedStretch(const MotionCost& cost, const CorridorSearch& search, Polyline stretch,
+  Polyline refinedStretch(const MotionCost& cost, const PointSearch& search, Polyline stretch,
                           const StopCheck& stop) const;
-  Polyline acrossEdges(const MotionCost& cost, const CorridorSearch& search, const Polyline& window) const;
+  Polyline acrossEdges(const MotionCost& cost, const PointSearch& search, const Polyline& window) const;
 
   RefineOptions options_;
   RefinementCache memo_;

@@ -51,22 +51,6 @@ std::vector<double> limitsAcross(const costmap::TravelCost& cost, const TravelCu
   return limits;
 }
 
-// Returns the least gradient at which some combination of gradients along and across is refused. A refused
-// node refuses all combinations within the distance of one node; the limits and the end of the table refuse
-// all combinations beyond them.
-double gentlest(const costmap::TravelCost& cost, const TravelCurve& curve) {
-  constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
-  double least = std::min({cost.limits().max_along, cost.limits().max_across,
-                           TravelCurve::gradient(TravelCurve::kBins - 1) - kBin});
-  for (int row = 0; row <= curve.lastRow(); ++row)
-    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
-      if (std::isfinite(curve.rows()[row * TravelCurve::kBins + bin])) continue;
-      least = std::min(least, std::hypot(std::max(0.0, std::abs(TravelCurve::gradient(bin)) - kBin),
-                                         std::max(0.0, (row - 1) * kRow)));
-    }
-  return least;
-}
-
 // Headings at which the gradient along or across equals one of the limits.
 std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::CellCode cell) {
   const double steepest = std::hypot(cell.dzDx(), cell.dzDy()), up = std::atan2(cell.dzDy(), cell.dzDx());
@@ -92,6 +76,21 @@ std::vector<double> turningPoints(const HeadingSets::Limits& limits, costmap::Ce
 constexpr double kRounding = 1e-7;  // rad
 
 }  // namespace
+
+// A refused node refuses all combinations within the distance of one node; the limits and the end of the
+// table refuse all combinations beyond them.
+double gentleGradient(const costmap::TravelCost& cost, const TravelCurve& curve) {
+  constexpr double kBin = 1.0 / TravelCurve::kBinsPerUnit, kRow = 1.0 / TravelCurve::kRowsPerUnit;
+  double least = std::min({cost.limits().max_along, cost.limits().max_across,
+                           TravelCurve::gradient(TravelCurve::kBins - 1) - kBin});
+  for (int row = 0; row <= curve.lastRow(); ++row)
+    for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
+      if (std::isfinite(curve.rows()[row * TravelCurve::kBins + bin])) continue;
+      least = std::min(least, std::hypot(std::max(0.0, std::abs(TravelCurve::gradient(bin)) - kBin),
+                                         std::max(0.0, (row - 1) * kRow)));
+    }
+  return least;
+}
 
 HeadingSet::HeadingSet(std::vector<HeadingArc> arcs) {
   std::sort(arcs.begin(), arcs.end(), [](const auto& a, const auto& b) { return a.from_rad < b.from_rad; });
@@ -158,7 +157,7 @@ HeadingSet HeadingSet::reversed() const {
 }
 
 HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve)
-    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentlest(cost, curve)) {}
+    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentleGradient(cost, curve)) {}
 
 HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};

@@ -116,6 +116,9 @@ class HeadingSet {
   std::pmr::vector<HeadingArc> arcs_;
 };
 
+/// Returns the gradient below which a cell with this cost curve permits all headings; 0: no such gradient.
+double gentleGradient(const costmap::TravelCost& cost, const costmap::TravelCurve& curve);
+
 /// Cache of allowedHeadings() by cell code. A cell code contains the gradient of a cell and the index of its
 /// cost curve (costmap::TravelCurve: cost per metre on one kind of ground over the gradients along and across
 /// the heading). Cells with the cost-curve index `free`, if given, permit every heading. Large maps have
@@ -149,8 +152,7 @@ class HeadingSets {
   struct Limits {
     Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve);
     std::vector<double> along, across;
-    /// Gradient below which a cell permits all headings; 0: no such gradient.
-    double gentle;
+    double gentle;  ///< gentleGradient()
   };
 
  private:

@@ -264,8 +264,8 @@ void againstFinest(benchmark::State& state) {
   const auto map = rollingGround(static_cast<int>(state.range(0)));
   const MotionCost cost(map);
   RefineOptions finest;
-  finest.corridor.reach_cells = 12;
-  finest.corridor.points_per_edge = 6;
+  finest.reach_cells = 12;
+  finest.points_per_side = 6;
   finest.slides = 20;
   std::vector<double> gaps;
   for (auto _ : state)

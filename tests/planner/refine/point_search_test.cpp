@@ -3,13 +3,13 @@
 #include <numbers>
 #include <random>
 
-#include <talus/planner/refine/corridor_search.hpp>
+#include <talus/planner/refine/point_search.hpp>
 
 #include "drawn_map.hpp"
 
 namespace talus::planner {
 
-namespace corridor_search_test {
+namespace point_search_test {
 
 using costmap::CellCode;
 
@@ -23,103 +23,67 @@ std::vector<CellCode> randomCells() {
   return cells;
 }
 
-// Property: the cost of each motion is TravelCost in its heading times its length, to float rounding; each
-// point of the other sides occurs once.
-TEST(EdgeCrossings, CostIsDriveCostTimesLength) {
+// Property: a cell below the gentle gradient of its curve allows every heading; most cells that allow every
+// heading are below it.
+TEST(GentleGradient, CellsBelowItAllowEveryHeading) {
   const auto cost = testing::driveCost({.max_along = 0.3, .max_across = 0.25});
-  for (const int points : {1, 2, 3, 5}) {
-    const EdgeCrossings crossings(*cost, points), scalar(*cost, points, Kernels::Scalar);
-    std::vector<float> paid(static_cast<std::size_t>(crossings.count() + EdgeCrossings::kVector)),
-        same = paid;
-    for (const CellCode cell : randomCells())
-      for (int side = 0; side < 4; ++side)
-        for (int k = 0; k < points; ++k) {
-          crossings.prices(side, k, cell, 7.0F, paid.data());
-          scalar.prices(side, k, cell, 7.0F, same.data());
-          const EdgeSpot a = edgeSpot(side, k, points);
-          int met = 0;
-          for (int i = 0; i < crossings.count(); ++i) {
-            const EdgeCrossings::End end = crossings.ends(side, k)[i];
-            ASSERT_NE(end.side, side);
-            met |= 1 << (end.side * points + end.k);
-            const EdgeSpot b = edgeSpot(end.side, end.k, points);
-            const double length = std::hypot(b.x - a.x, b.y - a.y);
-            const auto metre_J =
-                static_cast<double>(cost->costPerMetre(cell, {(b.x - a.x) / length, (b.y - a.y) / length}));
-            const auto price = static_cast<double>(paid[static_cast<std::size_t>(i)]);
-            ASSERT_EQ(paid[static_cast<std::size_t>(i)], same[static_cast<std::size_t>(i)]);
-            ASSERT_EQ(crossings.allowed(side, k, i, cell), std::isfinite(metre_J));
-            ASSERT_EQ(std::isfinite(price), std::isfinite(metre_J));
-            if (std::isfinite(metre_J)) {
-              ASSERT_NEAR(price, 7.0 + metre_J * length, 1e-5 * price);
-            }
-          }
-          EXPECT_EQ(std::popcount(static_cast<unsigned>(met)), crossings.count());
-        }
-  }
-}
-
-// Property: a cell marked free allows every heading; most cells that allow every heading are marked free.
-TEST(EdgeCrossings, FreeCellsAllowEveryHeading) {
-  const auto cost = testing::driveCost({.max_along = 0.3, .max_across = 0.25});
-  const EdgeCrossings crossings(*cost, 2);
   int free = 0, all = 0;
   for (const CellCode cell : randomCells()) {
     bool every = true;
     for (int d = 0; d < 720; ++d)
       every = every && std::isfinite(cost->costPerMetre(cell, {std::cos(d * std::numbers::pi / 360),
                                                                std::sin(d * std::numbers::pi / 360)}));
-    if (crossings.free(cell)) {
-      EXPECT_TRUE(every);
-    }
-    free += crossings.free(cell);
+    const bool gentle =
+        std::hypot(cell.dzDx(), cell.dzDy()) < gentleGradient(*cost, cost->curves()[cell.curve()]);
+    EXPECT_TRUE(every || !gentle);
+    free += gentle;
     all += every;
   }
   EXPECT_GT(free, 50);
   EXPECT_GT(free, 0.9 * all);
-  EXPECT_FALSE(crossings.free(CellCode({.curve = CellCode::kBlocked})));
-  EXPECT_FALSE(crossings.free(CellCode({.curve = CellCode::kUnknown})));
 }
 
 using maps::Point;
 using testing::drawn;
 using testing::randomMap;
 
-EdgePath searchCorridor(const MotionCost& cost, const std::vector<Point>& along, double below_J,
-                        const CorridorOptions& options) {
-  return CorridorSearch(cost, options)(along, below_J);
+PointPath searchNear(const MotionCost& cost, const Polyline& along, double below_J, int reach_cells,
+                     int points_per_side = 3) {
+  return PointSearch(cost, {.side = points_per_side})(
+      {.places = {along.front(), along.back()}, .below_J = below_J},
+      SearchRegion(cost.map().grid(), along, reach_cells));
 }
 
-double priced(const MotionCost& cost, const EdgePath& path) {
-  const auto points = path.points(cost.map().grid());
+double priced(const MotionCost& cost, const PointPath& path) {
+  const Polyline& points = path.points;
   double sum = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) sum += cost({points[i - 1], points[i]});
   return sum;
 }
 
 // Property: after turns are shifted along their edges, both adjacent cells allow both headings.
-TEST(EdgePath, ShiftedTurnsAreValid) {
+TEST(PointPath, ShiftedTurnsAreValid) {
   int slid = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const MotionCost cost(
         randomMap({.width = 30, .height = 30, .seed = seed, .blocked = 0.05, .roughness = 0.25}));
-    EdgePath path = searchCorridor(cost, {{1.5, 1.5}, {28.3, 27.1}}, 1e9, {.reach_cells = 30});
-    if (path.empty()) continue;
+    PointPath path = searchNear(cost, {{1.5, 1.5}, {28.3, 27.1}}, 1e9, 30);
+    if (path.points.empty()) continue;
     ++slid;
-    const double before = cost.along(path.points(cost.map().grid()));
+    const double before = cost.along(path.points);
     slideTurns(cost.map(), path, 0.5 / 3, 4);
-    EXPECT_LE(cost.along(path.points(cost.map().grid())), before) << seed;
+    EXPECT_LE(cost.along(path.points), before) << seed;
   }
   EXPECT_GT(slid, 10);
 }
 
 // Property: shifting never increases the cost, keeps ends and cells, and yields refraction by Snell's law.
-TEST(EdgePath, ShiftingReducesCostAndKeepsEndsAndCells) {
+TEST(PointPath, ShiftingReducesCostAndKeepsEndsAndCells) {
   std::vector<std::string> rows(40, std::string(40, '.'));
   for (auto& row : rows) row.replace(20, 20, std::string(20, '2'));
   const MotionCost cost(drawn(rows));
   const Point from{3.5, 5.5}, to{36.5, 30.5};
-  EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 8, .points_per_edge = 3});
+  PointPath path = searchNear(cost, {from, to}, 1e9, 8, 3);
   const double before = priced(cost, path);
   const auto cells = path.cells;
   slideTurns(cost.map(), path, 0.5 / 3, 6);
@@ -130,8 +94,8 @@ TEST(EdgePath, ShiftingReducesCostAndKeepsEndsAndCells) {
   const double after = priced(cost, path);
   EXPECT_LT(after, before);
   EXPECT_EQ(path.cells, cells);
-  EXPECT_EQ(path.points(cost.map().grid()).front(), from);
-  EXPECT_EQ(path.points(cost.map().grid()).back(), to);
+  EXPECT_EQ(path.points.front(), from);
+  EXPECT_EQ(path.points.back(), to);
   EXPECT_GE(after, best * (1 - 1e-9));
   EXPECT_LT(after, best * 1.01);
 }
@@ -200,70 +164,53 @@ ByHand cheapestByHand(const MotionCost& cost, Point from, Point to, int points) 
   return found;
 }
 
-TEST(CorridorSearch, FindsTheCheapestPathOverEdgePoints) {
+TEST(PointSearch, FindsTheCheapestPathOverEdgePoints) {
   int same = 0, bouncing = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const MotionCost cost(
         randomMap({.width = 6, .height = 5, .seed = seed, .blocked = 0.1, .roughness = 0.06 * (seed % 6)}));
     const Point from{0.6, 0.7}, to{5.3, 4.4};
     const ByHand expected = cheapestByHand(cost, from, to, 2);
-    const EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 6, .points_per_edge = 2});
+    const PointPath path = searchNear(cost, {from, to}, 1e9, 6, 2);
     bouncing += expected.bounces;
-    if (path.empty()) {
+    if (path.points.empty()) {
       EXPECT_TRUE(expected.bounces || std::isinf(expected.cost_J)) << seed;
       continue;
     }
-    EXPECT_TRUE(std::isfinite(cost.along(path.points(cost.map().grid())))) << seed;  // turns on edges, too
-    EXPECT_GE(priced(cost, path), expected.cost_J * (1 - 1e-5)) << seed;             // labels are floats
+    EXPECT_TRUE(std::isfinite(cost.along(path.points))) << seed;          // turns on edges, too
+    EXPECT_GE(priced(cost, path), expected.cost_J * (1 - 1e-5)) << seed;  // labels are floats
     if (!expected.bounces) {
       EXPECT_NEAR(priced(cost, path), expected.cost_J, 1e-5 * expected.cost_J) << seed;
       ++same;
     }
     // Property: no path is returned if none is cheaper than the given cost.
-    EXPECT_TRUE(
-        searchCorridor(cost, {from, to}, 0.999 * expected.cost_J, {.reach_cells = 6, .points_per_edge = 2})
-            .empty());
+    EXPECT_TRUE(searchNear(cost, {from, to}, 0.999 * expected.cost_J, 6, 2).points.empty());
   }
   EXPECT_GT(same, 15);
   EXPECT_GT(bouncing, 0);
 }
 
-// Property: vector and scalar kernels find the same path.
-TEST(CorridorSearch, VectorAndScalarKernelsAreIdentical) {
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    const MotionCost cost(randomMap({.width = 30, .height = 30, .seed = seed, .roughness = 0.3}));
-    for (const int points : {2, 3, 5}) {
-      const CorridorOptions best{.reach_cells = 30, .points_per_edge = points},
-          scalar{.reach_cells = 30, .points_per_edge = points, .kernels = Kernels::Scalar};
-      const auto one = searchCorridor(cost, {{1.5, 1.5}, {28.3, 27.1}}, 1e9, best),
-                 other = searchCorridor(cost, {{1.5, 1.5}, {28.3, 27.1}}, 1e9, scalar);
-      EXPECT_EQ(one.points(cost.map().grid()), other.points(cost.map().grid())) << seed;
-      EXPECT_EQ(one.cells, other.cells) << seed;
-    }
-  }
-}
-
 // Ends on edges and corners, at the map's border, with zero reach: the search includes the cells that touch
 // the ends.
-TEST(CorridorSearch, EndsMayLieOnMapEdges) {
+TEST(PointSearch, EndsMayLieOnMapEdges) {
   const MotionCost cost(drawn(std::vector<std::string>(6, std::string(7, '.'))));
   for (const Point from : {Point{0.0, 2.0}, Point{3.0, 0.0}, Point{0.0, 0.0}, Point{7.0, 6.0}})
     for (const Point to : {Point{5.0, 4.0}, Point{7.0, 3.0}, Point{2.0, 6.0}, Point{4.5, 6.0}}) {
-      const EdgePath path = searchCorridor(cost, {from, to}, 1e9, {.reach_cells = 0, .points_per_edge = 3});
-      if (path.empty()) continue;
+      const PointPath path = searchNear(cost, {from, to}, 1e9, 0, 3);
+      if (path.points.empty()) continue;
       EXPECT_GE(priced(cost, path), 10.0 * std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) * (1 - 1e-6));
     }
 }
 
-TEST(CorridorSearch, PathStaysWithinReachOfTheRoute) {
+TEST(PointSearch, PathStaysWithinReachOfTheRoute) {
   std::vector<std::string> rows(20, std::string(20, '4'));
   rows.front() = rows.back() = std::string(20, '.');  // cheap, but out of reach
   const MotionCost cost(drawn(rows));
-  const EdgePath path = searchCorridor(cost, {{1.5, 10.5}, {18.5, 10.5}}, 1e9, {.reach_cells = 2});
-  ASSERT_FALSE(path.empty());
+  const PointPath path = searchNear(cost, {{1.5, 10.5}, {18.5, 10.5}}, 1e9, 2);
+  ASSERT_FALSE(path.points.empty());
   for (const maps::Cell cell : path.cells) EXPECT_LE(std::abs(cell.row - 10), 2);
 }
 
-}  // namespace corridor_search_test
+}  // namespace point_search_test
 
 }  // namespace talus::planner
