@@ -248,7 +248,7 @@ Polyline tubeRoute(const Problem& problem, const Polyline& guide, const TubeOpti
 }
 
 // The guide is refined roughly: it need not be more accurate than the tube's width.
-TubePlanner::TubePlanner() : coarse_(RefineOptions{.reach_cells = 0}) {}
+TubePlanner::TubePlanner() : coarse_(RefineOptions{.reach_cells = 0, .detour_cells = 0}) {}
 
 Plan TubePlanner::planAlong(const Problem& problem, const Polyline& guide) {
   const StopCheck stop(problem.watch, problem.time_limit_s);

@@ -133,8 +133,8 @@ namespace {
 // smallest distance of marks, and overlap at each mark.
 constexpr double kMarks = 96.0, kAround = 20.0;
 
-// [cells] Distance from a section of the ground on which its refinement depends.
-constexpr double kNear = 38.0;
+// [cells] Distance from a section of the ground on which its refinement depends: two searches, and shifts.
+constexpr double kNear = 78.0;
 
 // [cells] Longest window of a search, because a search needs memory for a window's bounding box. Marks are
 // turns, and long straight legs have none.
@@ -148,11 +148,16 @@ constexpr double kSlidingGains = 0.03;
 Polyline Refiner::acrossEdges(const MotionCost& cost, const PointSearch& search,
                               const Polyline& window) const {
   const double before_J = cost.along(window);
-  PointPath path = search({{window.front(), window.back()}, 0.0, before_J * (1.0 + kSlidingGains)},
-                          SearchRegion(cost.map().grid(), window, options_.reach_cells));
+  const auto reach_cells = [&](maps::Cell cell) {
+    return search.free(cost.map().at(cell)) ? options_.reach_cells : options_.detour_cells;
+  };
+  PointPath path =
+      search({.places = {window.front(), window.back()}, .below_J = before_J * (1.0 + kSlidingGains)},
+             SearchRegion(cost.map().grid(), window, reach_cells));
   if (path.points.empty()) return window;
-  slideTurns(cost.map(), path, 0.5 / options_.points_per_side, options_.slides);
-  Polyline tried = std::move(path.points);
+  const auto held = slideTurns(cost.map(), path, 0.5 / options_.points_per_side, options_.slides);
+  Polyline tried = offSides(cost, std::move(path.points));
+  if (!held.empty()) tried = withSettledVertices(cost, std::move(tried), {}, held);
   return cost.along(tried) < before_J ? tried : window;
 }
 

@@ -78,7 +78,9 @@ Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut,
 
 /// Parameters of the refinement.
 struct RefineOptions {
-  int reach_cells = 4;      ///< largest distance of the refined route from the given route [cells]
+  /// Largest distance of the refined route from the given route [cells]: from its cells that permit every
+  /// heading, and from its other cells.
+  int reach_cells = 4, detour_cells = 24;
   int points_per_side = 3;  ///< number of points per cell side at which the route may cross it
   int slides = 12;          ///< number of rounds in which turns are moved along cell edges
 };

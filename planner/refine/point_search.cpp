@@ -19,11 +19,13 @@ namespace {
 
 constexpr double kFiner = 0.7;       // factor of the spacing of positions from round to round
 constexpr double kClear = 1.0 / 64;  // [cells] smallest distance of turns from corners
+constexpr double kTouch = 1e-6;      // [cells] distance up to which a point belongs to a cell
 
-// A turn in cell coordinates, and whether it may move in x and y.
+// A turn in cell coordinates, and how it may move.
 struct Turn {
+  enum class Moves { Not, AlongX, AlongY };
   double x, y;
-  bool along_x, along_y;
+  Moves moves;
 };
 
 // Points to which a turn may move, the first of `places` is the present point; the least cost from each to the
@@ -36,34 +38,47 @@ struct Choice {
 
   Choice(const Turn& turn, double step) {
     places[count++] = turn;
-    if (!turn.along_x && !turn.along_y) return;
-    const double at = turn.along_x ? turn.x : turn.y, side = std::floor(at);
-    for (const double moved : {at + step, at - step}) {
+    if (turn.moves == Turn::Moves::Not) return;
+    double Turn::*const way = turn.moves == Turn::Moves::AlongX ? &Turn::x : &Turn::y;
+    const double side = std::floor(turn.*way);
+    for (const double moved : {turn.*way + step, turn.*way - step}) {
       if (moved < side + kClear || moved > side + 1.0 - kClear) continue;
-      Turn place = turn;
-      (turn.along_x ? place.x : place.y) = moved;
-      places[count++] = place;
+      places[count] = turn;
+      places[count++].*way = moved;
     }
   }
 };
 
-// The cell of a motion, and the cells before and after it. A turn on a side touches both adjacent cells, so
-// these must permit the heading, too.
+// Straight motion between two turns.
+struct Straight {
+  double length;
+  HeadingCost cost;
+
+  Straight(const costmap::TravelCost& drive, const Turn& from, const Turn& to) noexcept
+      : length(std::hypot(to.x - from.x, to.y - from.y)),
+        cost(drive,
+             length > 0.0 ? Direction{(to.x - from.x) / length, (to.y - from.y) / length} : Direction{}) {}
+
+  bool permitted(CellCode cell) const noexcept { return !(length > 0.0) || std::isfinite(cost(cell)); }
+};
+
+// The cell of a motion, and the cells before and after it, which its turns touch. A cell that permits the heading
+// of the motion must still permit it when the turns are moved.
 struct Passage {
   CellCode cell, before, after;
+  bool before_permits, after_permits;
 };
 
 void choose(const costmap::TravelCost& drive, const Passage& passage, Choice& from, const Choice& to) {
   for (std::size_t a = 0; a < from.count; ++a) {
     from.best[a] = kInfinity;
     for (std::size_t b = 0; b < to.count; ++b) {
-      const double dx = to.places[b].x - from.places[a].x, dy = to.places[b].y - from.places[a].y,
-                   length = std::sqrt(dx * dx + dy * dy);
-      const HeadingCost cost(drive, length > 0.0 ? Direction{dx / length, dy / length} : Direction{});
+      const Straight motion(drive, from.places[a], to.places[b]);
       const double through =
-          (length > 0.0 ? length * static_cast<double>(cost(passage.cell)) : 0.0) + to.best[b];
-      if (!(through < from.best[a])) continue;
-      if (length > 0.0 && !(std::isfinite(cost(passage.before)) && std::isfinite(cost(passage.after))))
+          (motion.length > 0.0 ? motion.length * static_cast<double>(motion.cost(passage.cell)) : 0.0) +
+          to.best[b];
+      if (!(through < from.best[a]) || (passage.before_permits && !motion.permitted(passage.before)) ||
+          (passage.after_permits && !motion.permitted(passage.after)))
         continue;
       from.best[a] = through;
       from.next[a] = b;
@@ -91,53 +106,72 @@ Cell beyond(Cell cell, int side) noexcept {
 
 }  // namespace
 
-void slideTurns(const costmap::CostGrid& map, PointPath& path, double coarsest_cells, int rounds) {
+std::vector<std::size_t> slideTurns(const costmap::CostGrid& map, PointPath& path, double coarsest_cells,
+                                    int rounds) {
   const maps::Grid& grid = map.grid();
   const std::size_t last = path.cells.size();
   std::vector<Turn> turns;
+  for (const Point p : path.points)
+    turns.push_back({(p.x_m - grid.south_west.x_m) / grid.resolution_m,
+                     (p.y_m - grid.south_west.y_m) / grid.resolution_m, Turn::Moves::Not});
   std::vector<Passage> passages;
-  for (std::size_t i = 0; i <= last; ++i) {
-    const Cell before = path.cells[i > 0 ? i - 1 : 0], here = path.cells[std::min(i, last - 1)];
-    turns.push_back({(path.points[i].x_m - grid.south_west.x_m) / grid.resolution_m,
-                     (path.points[i].y_m - grid.south_west.y_m) / grid.resolution_m,
-                     i > 0 && i < last && before.column == here.column && before.row != here.row,
-                     i > 0 && i < last && before.row == here.row && before.column != here.column});
-    if (i < last)
-      passages.push_back({map.at(here), map.at(before), map.at(path.cells[std::min(i + 1, last - 1)])});
+  for (std::size_t i = 0; i < last; ++i) {
+    const CellCode before = map.at(path.cells[i > 0 ? i - 1 : 0]),
+                   after = map.at(path.cells[std::min(i + 1, last - 1)]);
+    const Straight motion(map.cost(), turns[i], turns[i + 1]);
+    passages.push_back(
+        {map.at(path.cells[i]), before, after, motion.permitted(before), motion.permitted(after)});
+  }
+  const auto holds = [](Cell cell, const Turn& turn) {
+    return std::abs(turn.x - cell.column - 0.5) <= 0.5 + kTouch &&
+           std::abs(turn.y - cell.row - 0.5) <= 0.5 + kTouch;
+  };
+  std::vector<std::size_t> held;
+  for (std::size_t i = 1; i < last; ++i) {
+    const bool row = path.cells[i - 1].row == path.cells[i].row,
+               column = path.cells[i - 1].column == path.cells[i].column;
+    const bool beyond_cell =
+        (i == 1 && !holds(path.cells[0], turns[0])) || (i + 1 == last && !holds(path.cells[i], turns[last]));
+    if (row == column || beyond_cell || !passages[i - 1].after_permits || !passages[i].before_permits) {
+      held.push_back(i);
+      continue;
+    }
+    turns[i].moves = row ? Turn::Moves::AlongY : Turn::Moves::AlongX;
   }
   double step = coarsest_cells;
   for (int k = 0; k < rounds; ++k, step *= kFiner) slideOnce(map.cost(), passages, step, turns);
   for (std::size_t i = 1; i < last; ++i)
     path.points[i] = {grid.south_west.x_m + turns[i].x * grid.resolution_m,
                       grid.south_west.y_m + turns[i].y * grid.resolution_m};
+  return held;
 }
 
 SearchRegion::SearchRegion(const maps::Grid& grid) : first_{0, 0}, last_{grid.width - 1, grid.height - 1} {}
 
-SearchRegion::SearchRegion(const maps::Grid& grid, const Polyline& along, int reach_cells)
+SearchRegion::SearchRegion(const maps::Grid& grid, const Polyline& along,
+                           const std::function<int(Cell)>& reach_cells)
     : first_{grid.width - 1, grid.height - 1}, last_{0, 0} {
-  std::vector<Cell> on;
+  std::vector<maps::CellBox> boxes;
+  std::optional<Cell> before;
   for (const Point p : subdivided(along, grid.resolution_m)) {
     const Cell cell{
         std::clamp(static_cast<int>((p.x_m - grid.south_west.x_m) / grid.resolution_m), 0, grid.width - 1),
         std::clamp(static_cast<int>((p.y_m - grid.south_west.y_m) / grid.resolution_m), 0, grid.height - 1)};
-    if (!on.empty() && on.back() == cell) continue;
-    on.push_back(cell);
-    first_ = {std::min(first_.column, cell.column - reach_cells),
-              std::min(first_.row, cell.row - reach_cells)};
-    last_ = {std::max(last_.column, cell.column + reach_cells), std::max(last_.row, cell.row + reach_cells)};
+    if (before == cell) continue;
+    before = cell;
+    const int reach = reach_cells(cell);
+    const maps::CellBox box{
+        {std::max(cell.column - reach, 0), std::max(cell.row - reach, 0)},
+        {std::min(cell.column + reach, grid.width - 1), std::min(cell.row + reach, grid.height - 1)}};
+    first_ = {std::min(first_.column, box.first.column), std::min(first_.row, box.first.row)};
+    last_ = {std::max(last_.column, box.last.column), std::max(last_.row, box.last.row)};
+    boxes.push_back(box);
   }
-  first_ = {std::max(first_.column, 0), std::max(first_.row, 0)};
-  last_ = {std::min(last_.column, grid.width - 1), std::min(last_.row, grid.height - 1)};
   open_.assign(size(), 0);
-  for (const Cell cell : on)
-    for (int row = std::max(cell.row - reach_cells, 0); row <= std::min(cell.row + reach_cells, last_.row);
-         ++row) {
-      const int from = std::max(cell.column - reach_cells, 0),
-                to = std::min(cell.column + reach_cells, last_.column);
-      std::fill_n(open_.begin() + static_cast<std::ptrdiff_t>(local({from, row})), to - from + 1,
+  for (const maps::CellBox& box : boxes)
+    for (int row = box.first.row; row <= box.last.row; ++row)
+      std::fill_n(open_.begin() + static_cast<std::ptrdiff_t>(local({box.first.column, row})), box.width(),
                   std::uint8_t{1});
-    }
 }
 
 PointSearch::PointSearch(const MotionCost& cost, PointCounts counts) : cost_(cost), counts_(counts) {
@@ -196,7 +230,6 @@ class PointSearchRun {
         most_J_(task.below_J),
         n_(static_cast<std::uint32_t>(of.counts_.side)),
         per_cell_(4 * n_ + static_cast<std::uint32_t>(of.counts_.inner * of.counts_.inner)),
-        tacks_(of.counts_.inner > 0),
         slot_of_(region.size(), kNone) {}
 
   PointPath run() {
@@ -268,7 +301,7 @@ class PointSearchRun {
   }
 
   void start() {
-    const double around_m = tacks_ ? grid_.resolution_m : 0.0;
+    const double around_m = grid_.resolution_m;  // more headings than from the points of one cell
     goals_ = cellsWithin(grid_, task_.places.to, around_m);
     for (const Cell cell : cellsWithin(grid_, task_.places.from, around_m)) {
       if (!region_.contains(cell)) continue;
@@ -280,8 +313,7 @@ class PointSearchRun {
         if (side < Side::kInside && !region_.contains(beyond(cell, side))) continue;
         const Segment leg{task_.places.from, placeOf(cell, spot)};
         const bool strict = side == Side::kInside || of_.cost_.turnAllowed(leg, leg.to);
-        if (strict || tacks_)
-          reach(firstNode(cell, side) + k + (strict ? 0 : loose()), of_.cost_(leg), kNone, leg.to);
+        reach(firstNode(cell, side) + k + (strict ? 0 : loose()), of_.cost_(leg), kNone, leg.to);
       }
     }
   }
@@ -334,12 +366,12 @@ class PointSearchRun {
   void cross(std::uint32_t node, Cell cell, std::size_t spot, Direction heading, bool back) {
     const CellCode code = map_.at(cell);
     const bool free = of_.free(code);
-    if (code.curve() >= map_.cost().curves().size() || (back && (free || !tacks_))) return;
+    if (code.curve() >= map_.cost().curves().size() || (back && free)) return;
     const int side = of_.spots_[spot].side;
     const bool shared = side == Side::kInside || of_.free(map_.at(beyond(cell, side)));
     const bool must_share = node % per_cell_ >= loose() && side != Side::kInside;
     const std::uint32_t slot = slotOf(cell);
-    const double turn_J = tacks_ ? map_.cost().turn(code).cost_J : 0.0;
+    const double turn_J = map_.cost().turn(code).cost_J;
     const float label = labels_[node];
     for (int to = 0; to < Side::kSides; ++to) {
       const Cell other = to == Side::kInside ? cell : beyond(cell, to);
@@ -352,11 +384,10 @@ class PointSearchRun {
             static_cast<double>(label) + static_cast<double>(paid * leg.length) * grid_.resolution_m;
         std::uint32_t next = first + leg.number;
         const float most =
-            to == Side::kInside || !tacks_ ? labels_[next] : std::max(labels_[next], labels_[next + loose()]);
+            to == Side::kInside ? labels_[next] : std::max(labels_[next], labels_[next + loose()]);
         if (!(static_cast<float>(through) < most)) continue;
-        if (!shared && (must_share || !tacks_) && !permits(beyond(cell, side), leg.heading)) continue;
+        if (must_share && !shared && !permits(beyond(cell, side), leg.heading)) continue;
         if (!both && !(price(other_slot, map_.at(other), leg.heading) < kNotReached)) {
-          if (!tacks_) continue;
           next += loose();
         }
         if (turn_J > 0.0) {
@@ -389,8 +420,7 @@ class PointSearchRun {
   const PointSearch::Task& task_;
   const SearchRegion& region_;
   double most_J_;
-  std::uint32_t n_, per_cell_;  // points on a side; nodes
-  bool tacks_;
+  std::uint32_t n_, per_cell_;          // points on a side; nodes
   std::vector<std::uint32_t> slot_of_;  // by cell of the region
   std::vector<Cell> cells_, goals_;     // by slot; cells that touch the goal
   std::vector<float> labels_, prices_;  // by node; by slot and heading

@@ -19,7 +19,7 @@ using Rest = std::function<double(maps::Point)>;
 /// permit some heading.
 struct PointCounts {
   int side = 3;
-  int inner = 0;
+  int inner = 1;
 };
 
 /// Path over points of cells.
@@ -28,18 +28,22 @@ struct PointPath {
   std::vector<maps::Cell> cells;  ///< cells[i] contains the motion from points[i] to points[i + 1]
 };
 
-/// Moves the turns on cell sides along their sides to reduce the sum of the costs of the legs. Each of the
-/// `rounds` rounds is a dynamic programme over a few positions around each turn; the spacing of the positions
-/// decreases from `coarsest_cells` [cells]. The cost never increases.
-void slideTurns(const costmap::CostGrid& map, PointPath& path, double coarsest_cells, int rounds);
+/// Moves the turns on cell sides along their sides to reduce the sum of the costs of the legs. Turns inside cells,
+/// and turns that only one of the adjacent cells permits, remain; the function returns their indices. Each of the `rounds` rounds is a dynamic programme over a few
+/// positions around each turn; the spacing of the positions decreases from `coarsest_cells` [cells]. The sum
+/// never increases.
+std::vector<std::size_t> slideTurns(const costmap::CostGrid& map, PointPath& path, double coarsest_cells,
+                                    int rounds);
 
 /// Cells that a search may enter.
 class SearchRegion {
  public:
   /// All cells of a map.
   explicit SearchRegion(const maps::Grid& grid);
-  /// The cells at most `reach_cells` columns and rows from the path `along`, which must lie inside the map.
-  SearchRegion(const maps::Grid& grid, const Polyline& along, int reach_cells);
+  /// The cells at most reach_cells(cell) columns and rows from some `cell` of the path `along`, which must lie
+  /// inside the map.
+  SearchRegion(const maps::Grid& grid, const Polyline& along,
+               const std::function<int(maps::Cell)>& reach_cells);
 
   /// Returns true if the region contains the cell.
   bool contains(maps::Cell cell) const noexcept {
@@ -64,9 +68,9 @@ class SearchRegion {
 };
 
 /// Search of the cheapest path over fixed points of cells. A leg crosses one cell, or a part of it, at its
-/// exact cost; the cost of a turn at a point is that of the cheapest path to this point. With points inside
-/// cells, paths tack there (alternate between two headings), and a turn on a side needs only one of the
-/// adjacent cells to permit each of its headings, because offSides() moves it off the side. The method is A*.
+/// exact cost; the cost of a turn at a point is that of the cheapest path to this point. Paths may tack
+/// (alternate between two headings) inside a cell. A turn on a side needs only one of the adjacent cells to
+/// permit each of its headings, because offSides() moves it off the side. The method is A*.
 /// Immutable and safe to share between threads; the MotionCost must outlive the object.
 class PointSearch {
  public:
@@ -80,6 +84,9 @@ class PointSearch {
     Rest rest{};               ///< estimate for A*; empty: zero
     StopCheck stop{};
   };
+  /// Returns true if the cell permits every heading.
+  bool free(costmap::CellCode cell) const noexcept;
+
   /// Returns the cheapest path in the region; empty if there is none below the limit, or after a stop.
   PointPath operator()(const Task& task, const SearchRegion& region) const;
 
@@ -100,7 +107,6 @@ class PointSearch {
   enum Side : int { kWest, kEast, kSouth, kNorth, kInside, kSides };
 
   std::uint32_t headingOf(costmap::Direction direction);
-  bool free(costmap::CellCode cell) const noexcept;
 
   const MotionCost& cost_;
   PointCounts counts_;

@@ -248,13 +248,16 @@ Polyline withLongerTacks(const MotionCost& cost, Polyline route) {
   return route;
 }
 
-Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop) {
+Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop,
+                             std::vector<std::size_t> vertices) {
   if (!(cost.along(points) < kInfinity)) return points;
+  if (vertices.empty())
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) vertices.push_back(i);
   for (const double cells : kSteps) {
     bool any = true;
     for (int sweep = 0; sweep < kSweeps && any && !stop(); ++sweep) {
       any = false;
-      for (std::size_t i = 1; i + 1 < points.size(); ++i)
+      for (const std::size_t i : vertices)
         any = moved(cost, points, i, cells * cost.map().grid().resolution_m) || any;
     }
   }

@@ -25,10 +25,12 @@ Polyline withFewerTurns(const MotionCost& cost, const Polyline& route);
 /// last vertex remain. Ours, not from the literature.
 Polyline withLongerTacks(const MotionCost& cost, Polyline route);
 
-/// Moves every vertex except the first and the last, in decreasing steps, to positions at which the route
-/// costs less, including costs of turns. The cost never increases. The function improves routes of searches
-/// over fixed points. A route that is not allowed is returned unchanged.
-Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop = {});
+/// Moves the vertices with the indices `vertices`, or every vertex except the first and the last if there are
+/// none, in decreasing steps, to positions at which the route costs less, including costs of turns. The cost
+/// never increases. The function improves routes of searches over fixed points. A route that is not allowed is
+/// returned unchanged.
+Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop = {},
+                             std::vector<std::size_t> vertices = {});
 
 /// Moves the last vertex along the circle with the radius `tolerance_m` > 0 around the goal to a position at
 /// which the route costs less. The cost never increases. A route that does not end on the circle is returned
