@@ -215,9 +215,25 @@ std::uint32_t CostToGo::atGoal(std::size_t index) const noexcept {
 }
 
 std::vector<maps::Cell> CostToGo::path(maps::Cell from) const {
-  return descent(
-      *edges_, from, [this](std::size_t index) { return distance_[index]; },
-      [this](std::size_t index) { return atGoal(index); });
+  const PaddedGrid& padded = edges_->padded();
+  std::vector<maps::Cell> path;
+  std::size_t at = padded.index(from);
+  std::uint32_t left = distance_[at];
+  if (left == kUnreached) return path;
+  path.push_back(from);
+  while (atGoal(at) != left) {
+    const std::size_t before = at;
+    for (int heading = 0; heading < 8 && at == before; ++heading) {
+      const std::size_t next = before + static_cast<std::size_t>(padded.offset(heading));
+      const std::uint16_t edge = edges_->into(next)[opposite(heading)];
+      if (edge == EdgeLayer::kBlocked || edge > left || distance_[next] != left - edge) continue;
+      at = next;
+      left -= edge;
+    }
+    if (at == before) return {};  // not settled
+    path.push_back(padded.cell(at));
+  }
+  return path;
 }
 
 // Returns the smallest distance of any cell with a changed step. The paths of nearer cells contain no changed

@@ -100,7 +100,7 @@ class CostToGo {
 
   /// Updates the field after the edge layer was updated for the cells of the box `changed`. The result
   /// equals that of a new computation. Cells that are nearer to the goal than all cells of the box keep their
-  /// values; the other cells are settled again when needed. For a single start, PatchedField needs less time.
+  /// values; the other cells are settled again when needed.
   void repair(CellBox changed);
 
   /// Returns the cost from the centre of a cell to the goal in units; kUnreached if there is no path. The
@@ -110,13 +110,6 @@ class CostToGo {
   /// Returns units() converted to joules; empty if there is no path.
   std::optional<double> cost_J(maps::Cell cell) const noexcept;
 
-  /// Returns a lower bound, in units, of the minimum cost from the cell with a padded index, which need not
-  /// be settled; kUnreached if there is no path.
-  std::uint32_t atLeast(std::size_t index) const noexcept {
-    const std::uint64_t front = current_ << shift_;
-    return distance_[index] < front || queued_ == 0 ? distance_[index] : static_cast<std::uint32_t>(front);
-  }
-
   /// Returns the lowest remaining cost, in units, of the goals in the cell with a padded index; kUnreached if
   /// the cell is not a goal.
   std::uint32_t atGoal(std::size_t index) const noexcept;
@@ -125,14 +118,11 @@ class CostToGo {
   const std::vector<Goal>& goals() const noexcept { return goals_; }
 
   /// Returns the cells of the cheapest path from a settled cell to a goal, including both; empty if there is
-  /// no path.
+  /// no path. Of equally cheap paths, the first in the order of headings is returned.
   std::vector<maps::Cell> path(maps::Cell from) const;
 
   /// Returns the number of settled cells.
   std::uint64_t settled() const noexcept { return settled_; }
-
-  /// Returns the costs of the steps between neighbouring cells.
-  const EdgeLayer& edges() const noexcept { return *edges_; }
 
  private:
   using Bucket = std::vector<std::uint32_t>;

@@ -17,12 +17,6 @@ namespace talus::planner {
 Polyline gridRoute(const MotionCost& cost, CostToGo& field, const Segment& places,
                    const StopCheck& stop = {});
 
-/// Returns the cheapest grid route after the step costs in the box `changed` changed, computed from `before`,
-/// the field before the change. Returns nullopt if an update of the field takes less time; an empty route if
-/// there is no route or after a stop.
-std::optional<Polyline> gridRouteAfter(CellBox changed, const MotionCost& cost, const CostToGo& before,
-                                       const Segment& places, const StopCheck& stop = {});
-
 /// Information about the cells around an invalid start or goal, for the error message.
 struct PlaceDiagnostics {
   HazardsOf hazards{};  ///< hazard of a cell without allowed heading; empty if not known

@@ -54,6 +54,7 @@ bool FieldPlanner::repairTo(const Problem& problem) {
   if (changed) refine_.forget({newer.grid().centre(changed->first), newer.grid().centre(changed->last)});
   if (field_ && fieldGoals(MotionCost(problem.map), field_goal_, field_tolerance_m_) != field_goals_)
     field_.reset();
+  if (field_ && changed) field_->repair(*changed);
   return true;
 }
 
@@ -63,26 +64,9 @@ bool FieldPlanner::prepareField(const MotionCost& cost, const Stage& stage) {
   field_.reset();
   if (field_goals_.empty()) return false;
   field_.emplace(edges_, field_goals_);
-  field_map_ = edges_->mapPointer();
   field_goal_ = stage.to;
   field_tolerance_m_ = stage.tolerance_m;
   return true;
-}
-
-// Descends the field. A field of an older map version is either searched around the change only, or repaired
-// if a repair takes less work or the route is proven.
-Polyline FieldPlanner::roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop) {
-  const MotionCost cost(problem.map);
-  if (field_map_ != edges_->mapPointer()) {
-    const auto changed = changedCells(*field_map_, edges_->map());
-    if (changed) {
-      if (!problem.prove)
-        if (auto route = gridRouteAfter(*changed, cost, *field_, places, stop)) return std::move(*route);
-      field_->repair(*changed);
-    }
-    field_map_ = edges_->mapPointer();
-  }
-  return gridRoute(cost, *field_, places, stop);
 }
 
 Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const StopCheck& stop) {
@@ -91,7 +75,7 @@ Plan FieldPlanner::planStage(const Problem& problem, const Stage& stage, const S
   if (!from_there || !to_there) return misplaced(problem, stage, from_there, to_there, stop);
   if (!prepareEdges(problem, stop)) return cancelledPlan(stop);
   Polyline rough;
-  if (prepareField(cost, stage)) rough = roughRoute(problem, {stage.from, stage.to}, stop);
+  if (prepareField(cost, stage)) rough = gridRoute(cost, *field_, {stage.from, stage.to}, stop);
   if (rough.empty()) {
     Plan beyond = beyondTheGrid(problem, stage, stop);
     if (beyond.status != RouteStatus::Found) return beyond;

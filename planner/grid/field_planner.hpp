@@ -52,7 +52,6 @@ class FieldPlanner {
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   void tryOverPoints(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
   Polyline overPoints(const Problem& problem, const Stage& stage, double most_J, const StopCheck& stop) const;
-  Polyline roughRoute(const Problem& problem, const Segment& places, const StopCheck& stop);
 
   static constexpr double kProven = 1e-3;  // smallest relative gap for which points of cells are searched
   // Cost limit of the search over points of cells, as a multiple of the cost of the best route. It exceeds 1
@@ -63,7 +62,6 @@ class FieldPlanner {
   LowerBound bound_;
   std::shared_ptr<EdgeLayer> edges_;
   std::optional<CostToGo> field_;
-  std::shared_ptr<const costmap::CostGrid> field_map_;  // map version for which the field was computed
   std::vector<FieldGoal> field_goals_;
   std::shared_ptr<const costmap::CostGrid> headings_map_;  // map version of headings_
   std::unique_ptr<HeadingSets> headings_;

@@ -161,7 +161,7 @@ bool gatherAll(const MotionCost& cost, Polyline& route, std::size_t legs) {
 
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // largest number of sweeps per step
-constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4, 2e-5};   // distance from a side [cells]
+constexpr std::array kOff{0.02, 0.005, 0.001, 2e-4};         // distance from a side [cells]
 constexpr double kOnCircle = 1e-6, kInside = 1.0 - 1e-9;     // relative to the tolerance
 // Smallest gain relative to the local cost; smaller gains are rounding.
 constexpr double kLeastGain = 1e-9;

@@ -141,6 +141,9 @@ std::vector<Polyline> cutAtMarks(const Polyline& points, double apart_m) {
 namespace {
 
 constexpr double kTouch = 1e-6;  // cells: closer coordinates are on the edge; rounding at 1e7 m is 1e-8
+// Cells: turns closer to an edge touch both cells, and motions closer to a corner touch all four. The check
+// (route_check) treats distances up to 2e-6 so.
+constexpr double kClose = 1e-5;
 
 // A point in cells from the south-west corner of the map.
 struct InCells {
@@ -157,8 +160,8 @@ double lengthOf(InCells delta) noexcept {
   return std::sqrt(delta.x * delta.x + delta.y * delta.y);
 }
 
-bool onEdge(double coordinate) noexcept {
-  return std::abs(coordinate - std::round(coordinate)) < kTouch;
+bool onEdge(double coordinate, double within = kTouch) noexcept {
+  return std::abs(coordinate - std::round(coordinate)) < within;
 }
 
 // One axis of the traversal: current cell, and share t of the segment at which the next cell begins.
@@ -208,13 +211,29 @@ class Walk {
           return kInfinity;
         x.advance();
         y.advance();
+      } else if (x.next_t < y.next_t) {
+        const int close = beside(from.y + t * delta.y, y.cell);
+        if (close != y.cell && (closed({x.cell, close}) || closed({x.cell + x.step, close})))
+          return kInfinity;
+        x.advance();
       } else {
-        (x.next_t < y.next_t ? x : y).advance();
+        const int close = beside(from.x + t * delta.x, x.cell);
+        if (close != x.cell && (closed({close, y.cell}) || closed({close, y.cell + y.step})))
+          return kInfinity;
+        y.advance();
       }
     }
   }
 
  private:
+  // The row or column beyond the edge that is close to a coordinate in `cell`; `cell` if none is.
+  static int beside(double coordinate, int cell) noexcept {
+    const double inside = coordinate - cell;
+    return inside < kClose ? cell - 1 : inside > 1.0 - kClose ? cell + 1 : cell;
+  }
+  bool closed(maps::Cell c) const noexcept {
+    return map_.grid().contains(c) && static_cast<double>(cost_(map_.at(c))) == kInfinity;
+  }
   double costAt(maps::Cell c) const noexcept {
     return map_.grid().contains(c) ? static_cast<double>(cost_(map_.at(c))) : kInfinity;
   }
@@ -260,9 +279,8 @@ namespace {
 
 // Returns true if every cell at the point permits the heading.
 bool touchesOnlyAllowed(const costmap::CostGrid& map, InCells p, costmap::Direction heading) noexcept {
-  const double reach = 2 * kTouch;
-  for (const double dx : {-reach, reach})
-    for (const double dy : {-reach, reach}) {
+  for (const double dx : {-kClose, kClose})
+    for (const double dy : {-kClose, kClose}) {
       const maps::Cell cell{static_cast<int>(std::floor(p.x + dx)), static_cast<int>(std::floor(p.y + dy))};
       if (map.grid().contains(cell) && std::isinf(map.cost().costPerMetre(map.at(cell), heading)))
         return false;
@@ -274,7 +292,7 @@ bool touchesOnlyAllowed(const costmap::CostGrid& map, InCells p, costmap::Direct
 
 bool MotionCost::headingAllowed(maps::Point place, costmap::Direction heading) const noexcept {
   const InCells p = inCells(map_->grid(), place);
-  if (onEdge(p.x) || onEdge(p.y)) return touchesOnlyAllowed(*map_, p, heading);
+  if (onEdge(p.x, kClose) || onEdge(p.y, kClose)) return touchesOnlyAllowed(*map_, p, heading);
   const auto cell = map_->grid().cellAt(place);
   return cell && std::isfinite(map_->cost().costPerMetre(map_->at(*cell), heading));
 }
@@ -283,7 +301,7 @@ bool MotionCost::headingAllowed(maps::Point place, costmap::Direction heading) c
 // headings.
 bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexcept {
   const InCells p = inCells(map_->grid(), end);
-  if (!onEdge(p.x) && !onEdge(p.y)) return true;
+  if (!onEdge(p.x, kClose) && !onEdge(p.y, kClose)) return true;
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
   const double length = std::hypot(dx, dy);
   return length == 0.0 || touchesOnlyAllowed(*map_, p, {dx / length, dy / length});

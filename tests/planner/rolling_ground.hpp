@@ -39,12 +39,12 @@ inline std::shared_ptr<const costmap::GroundModel> model() {
   return made;
 }
 
-inline costmap::TraversabilityMap built(const maps::Grid& grid) {
+inline costmap::TraversabilityMap built(const maps::Grid& grid, float (*height_m)(maps::Point) = height) {
   costmap::MapLayers layers;
   layers.elevation.elevation_m = maps::Raster<float>(grid);
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column)
-      layers.elevation.elevation_m[{column, row}] = height(grid.centre({column, row}));
+      layers.elevation.elevation_m[{column, row}] = height_m(grid.centre({column, row}));
   return costmap::TraversabilityMap(std::move(layers), model(), {});
 }
 
@@ -55,15 +55,18 @@ inline maps::Grid gridOf(const MapBox& box) {
           .south_west = box.low};
 }
 
-/// The whole map in windows, with an overview in cells five times as large; counts the boxes that are built.
-inline WindowedMap windows(int& asked) {
+/// The whole map in windows, with an overview in cells five times as large, of
+/// other heights; counts the boxes that are built.
+inline WindowedMap windows(int& asked, float (*height_m)(maps::Point) = height,
+                           float (*overview_m)(maps::Point) = height) {
   maps::Grid coarse = kWhole;
   coarse.width /= 5, coarse.height /= 5, coarse.resolution_m *= 5;
-  return WindowedMap(
-      {.grid = kWhole, .overview = built(coarse).published(), .build = [&asked](const MapBox& box) {
-         ++asked;
-         return std::optional(built(gridOf(box)));
-       }});
+  return WindowedMap({.grid = kWhole,
+                      .overview = built(coarse, overview_m).published(),
+                      .build = [&asked, height_m](const MapBox& box) {
+                        ++asked;
+                        return std::optional(built(gridOf(box), height_m));
+                      }});
 }
 
 }  // namespace talus::planner::testing

@@ -5,7 +5,6 @@
 #include <talus/planner/field/cost_to_go.hpp>
 #include <talus/planner/field/grid_route.hpp>
 
-#include "changed_map.hpp"
 #include "drawn_map.hpp"
 
 namespace talus::planner {
@@ -43,33 +42,6 @@ TEST(GridRoute, BlockedOrStoppedSearchYieldsNoRoute) {
   CostToGo field(edgesOf(drawn({".....", "....."})), fieldGoals(open, places.to, 0.0));
   EXPECT_TRUE(
       gridRoute(open, field, places, ProgressMonitor{.progress = {}, .stop = source.get_token()}).empty());
-}
-
-// Property: the route from the patched field is identical, point for point, to that from the recomputed
-// field.
-TEST(GridRoute, PatchedFieldRouteEqualsThatOfTheNewField) {
-  int compared = 0, moved = 0;
-  for (unsigned seed = 1; seed <= 40; ++seed) {
-    testing::Below below(seed);
-    const auto map = randomMap({.width = 70, .height = 60, .seed = seed, .blocked = 0.1, .roughness = 0.15});
-    const maps::Cell first{20 + below(30), 15 + below(30)};
-    const CellBox box{first, {first.column + below(9), first.row + below(9)}};
-    const auto newer = testing::changed(map, box, testing::Change::Either, below);
-    const Segment places{{3.3, 4.1}, {66.2, 55.7}};
-    const MotionCost before(map), after(newer);
-    const auto goals = fieldGoals(before, places.to, 0.0);  // the goal's cells lie outside the box
-    const auto edges = edgesOf(map);
-    CostToGo field(edges, goals), anew(edgesOf(newer), goals);
-    const Polyline old = gridRoute(before, field, places);
-    edges->update(newer, edges->units(), box);
-    const auto patched = gridRouteAfter(box, after, field, places);
-    if (!patched) continue;
-    ++compared;
-    EXPECT_EQ(*patched, gridRoute(after, anew, places)) << seed;
-    moved += *patched != old;
-  }
-  EXPECT_GT(compared, 20);
-  EXPECT_GT(moved, 2);
 }
 
 TEST(Remedy, InvalidPlaceNamesItsFaultAndTheNearestTraversableCell) {
