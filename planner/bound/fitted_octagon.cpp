@@ -344,7 +344,7 @@ bool DirectionalCostBounds::compute(CellCode cell, Limits& limits) {
 namespace {
 
 constexpr std::size_t kParts = DirectionalCostBounds::kHeadings / 8;  // limits of one sector of the octagon
-constexpr int kProjections = 2, kRaises = 4, kFullRaises = 3;
+constexpr int kRaises = 4, kFullRaises = 3;
 constexpr float kDiagonal = static_cast<float>(std::numbers::sqrt2 / 2);
 constexpr float kEven = 0.92387F;  // cos(pi/8): equal weights of this share of a limit are below the limit
 constexpr float kLeastOfEven = 0.25F;      // smallest weight as a share of these equal weights
@@ -354,9 +354,16 @@ float more(float a, float b) noexcept {
   return a < b ? b : a;
 }
 
+// The limits of one sector, or what belongs to each of them.
+using Sector = float __attribute__((vector_size(kParts * sizeof(float))));
+
+float leastOf(const Sector& of) noexcept {
+  return less(less(less(of[0], of[4]), less(of[1], of[5])), less(less(of[2], of[6]), less(of[3], of[7])));
+}
+
 // Heading j of a sector is p[j] e + q[j] f, where e and f are the headings at the ends of the sector.
 struct Mix {
-  Lanes p{}, q{}, inverse_p{};
+  Sector p{}, q{}, inverse_p{};
   Mix() noexcept {
     constexpr double part = std::numbers::pi / 4 / kParts;
     for (std::size_t j = 0; j < kParts; ++j) {
@@ -372,41 +379,28 @@ const Mix kMix;  // in no function, because loops must not check that it is made
 
 // Limits of the sectors counter-clockwise and clockwise from each heading.
 struct Sectors {
-  std::array<Lanes, 8> left, right;
+  std::array<Sector, 8> left, right;
   explicit Sectors(const DirectionalCostBounds::Limits& limits) noexcept {
-    for (std::size_t k = 0; k < 8; ++k)
-      for (std::size_t j = 0; j < kParts; ++j) {
-        left[k][j] = limits[k * kParts + j];
-        right[k][j] = limits[(k * kParts + limits.size() - j) % limits.size()];
-      }
+    for (std::size_t k = 0; k < 8; ++k) {
+      const float* here = &limits[k * kParts];
+      const float* before = &limits[(k * kParts + limits.size() - kParts) % limits.size()];
+      left[k] = Sector{here[0], here[1], here[2], here[3], here[4], here[5], here[6], here[7]};
+      right[k] = Sector{here[0], before[7], before[6], before[5], before[4], before[3], before[2], before[1]};
+    }
   }
 };
 
-// Moves the weights of a sector towards the nearest ones below each of its limits in turn.
-void project(const Lanes& limits, float& left, float& right) noexcept {
-  for (std::size_t j = 0; j < kParts; ++j) {
-    const float p = kMix.p[j], q = kMix.q[j];
-    const float over = more(0.0F, p * left + q * right - limits[j]) / (p * p + q * q);
-    left = more(0.0F, left - p * over);
-    right = more(0.0F, right - q * over);
-  }
-}
-
 // Largest factor, at most 1, of the weights of a sector for which they are below its limits.
-float ratioOf(const Lanes& limits, float left, float right) noexcept {
-  Lanes ratio;
-  for (std::size_t j = 0; j < kParts; ++j) ratio[j] = limits[j] / (kMix.p[j] * left + kMix.q[j] * right);
-  return less(1.0F, leastOf(ratio));
+float ratioOf(const Sector& limits, float left, float right) noexcept {
+  return less(1.0F, leastOf(limits / (kMix.p * left + kMix.q * right)));
 }
 
 // Largest weight of heading k that the limits, its neighbours and convexity permit.
 float mostAt(std::size_t k, const Sectors& sectors, const Octagon& weights) noexcept {
   const float left = weights[(k + 1) % 8], right = weights[(k + 7) % 8];
-  Lanes most;
-  for (std::size_t j = 0; j < kParts; ++j)
-    most[j] = less(sectors.left[k][j] - kMix.q[j] * left, sectors.right[k][j] - kMix.q[j] * right) *
-              kMix.inverse_p[j];
-  return less((left + right) * kDiagonal, leastOf(most));
+  const Sector to_left = sectors.left[k] - kMix.q * left, to_right = sectors.right[k] - kMix.q * right;
+  return less((left + right) * kDiagonal,
+              leastOf((to_left < to_right ? to_left : to_right) * kMix.inverse_p));
 }
 
 // Raises each weight by half of the increase permitted, all at once, then one after the other by all of it.
@@ -437,15 +431,15 @@ void makeConvex(Octagon& weights) noexcept {
 
 }  // namespace
 
-Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted) {
+#if defined(__x86_64__)
+__attribute__((target_clones("avx2", "default"), flatten))
+#endif
+Octagon
+fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted) {
   const float even = kEven * *std::ranges::min_element(limits);
   const Sectors sectors(limits);
   Octagon weights, ratio;
   for (std::size_t k = 0; k < 8; ++k) weights[k] = more(wanted[k], kLeastOfEven * even);
-  for (int sweep = 0; sweep < kProjections; ++sweep)
-    for (std::size_t k = 0; k < 8; ++k)
-      if (ratioOf(sectors.left[k], weights[k], weights[(k + 1) % 8]) < 1.0F)
-        project(sectors.left[k], weights[k], weights[(k + 1) % 8]);
   for (std::size_t k = 0; k < 8; ++k) ratio[k] = ratioOf(sectors.left[k], weights[k], weights[(k + 1) % 8]);
   for (std::size_t k = 0; k < 8; ++k) weights[k] *= less(ratio[k], ratio[(k + 7) % 8]);
   raise(sectors, weights);

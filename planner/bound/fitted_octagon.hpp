@@ -159,9 +159,8 @@ using Octagon = std::array<float, 8>;
 ///
 /// Proof of the lower bound (ours, not from the literature). The gauge of the limits is linear between 64
 /// headings, eight of which lie in each sector of the octagon, where the gauge of the octagon is linear.
-/// Therefore the octagon is below the limits everywhere if it is below them at the 64 headings. The wanted
-/// weights are projected onto limits that they exceed, and each is scaled by the worst ratio of its two
-/// sectors. Then the weights are raised: all at once by half of the increase that the limits and the neighbours
+/// Therefore the octagon is below the limits everywhere if it is below them at the 64 headings. Each wanted
+/// weight is scaled by the worst ratio of its two sectors. Then the weights are raised: all at once by half of the increase that the limits and the neighbours
 /// permit, so that two neighbours together stay below a shared limit, then one after the other by all of it.
 /// Lowering the weights until sqrt(2) w_k <= w_(k-1) + w_(k+1) makes the gauge convex.
 Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted);

@@ -217,10 +217,8 @@ namespace {
 
 constexpr auto kFar = static_cast<float>(kInfinity);
 constexpr double kLeastGain =
-    0.1;  // smallest share of the gap that a round closes for which another one follows
-// Work of level 2: cells fitted in a round, a constant and a share of the cells of the map, and rounds.
-constexpr std::size_t kFitted = 100'000, kShare = 10;
-constexpr int kFitRounds = 5;
+    0.1;                       // smallest share of the gap that a round closes for which another one follows
+constexpr int kFitRounds = 8;  // of level 2
 // Work of level 3: cells of its region, and nodes taken and cells checked.
 constexpr std::size_t kMeshCells = 60'000, kMeshWork = 3'000'000;
 
@@ -416,13 +414,12 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
   for (int round = 0;; ++round) {
     forEachInside([&](maps::Cell cell, std::size_t at) { inside_[at] = throughCell_J(cell) <= known_J; });
     if (round == kFitRounds || bound_J >= enough_J) break;
-    const double most_J = costFor(kFitted + grid.size() / kShare, bound_J, known_J);
     bool stopped = false;
     forEachInside([&](maps::Cell cell, std::size_t at) {
       if ((at & 0xffffU) == 0) stopped = stopped || stop();
       if (stopped) return;
       DirectionalCostBounds::Limits limits;
-      if (throughCell_J(cell) > most_J || !octagons_->limits().of(map_->at(cell), limits)) return;
+      if (!octagons_->limits().of(map_->at(cell), limits)) return;
       const auto rises = risesIn(from_start_, grid, cell);
       if (!rises) return;
       if (fit_of[at] == 0) fit_of[at] = static_cast<std::uint32_t>(fits.size());
