@@ -16,14 +16,15 @@ using namespace cli;
 
 constexpr int kWidth = 520, kHeight = 380;  // of a panel [pixels]
 
-// Range of the finite values with a margin of 4 %; stated ends have precedence.
-Range rangeOf(const Axis& axis, const std::vector<Series>& series, std::vector<double> Series::*values) {
+// Range of the finite values with a margin of 4 %, above them of `above`; stated ends have precedence.
+Range rangeOf(const Axis& axis, const std::vector<Series>& series, std::vector<double> Series::*values,
+              double above = 0.04) {
   Range r{INFINITY, -INFINITY};
   for (const Series& s : series)
     for (const double v : s.*values)
       if (std::isfinite(v)) r = {std::min(r.low, v), std::max(r.high, v)};
-  const double margin = std::max(0.04 * (r.high - r.low), 1e-6);
-  return {axis.low.value_or(r.low - margin), axis.high.value_or(r.high + margin)};
+  const double span = std::max(r.high - r.low, 1e-5);
+  return {axis.low.value_or(r.low - 0.04 * span), axis.high.value_or(r.high + above * span)};
 }
 
 class Panel {
@@ -33,7 +34,7 @@ class Panel {
         plot_(plot),
         frame_{corner.x + 68, corner.y + 54, kWidth - 86, kHeight - 106},
         x_(rangeOf(plot.x, plot.series, &Series::x)),
-        y_(rangeOf(plot.y, plot.series, &Series::y)) {}
+        y_(rangeOf(plot.y, plot.series, &Series::y, 0.04 + 0.06 * static_cast<double>(plot.series.size()))) {}
 
   void draw() {
     axis(x_, true);
@@ -65,7 +66,7 @@ class Panel {
   void axis(Range range, bool across) {
     const double step = roundBelow((range.high - range.low) / 4.0);
     for (double k = std::ceil(range.low / step); k * step <= range.high; ++k) {
-      const double at = k * step;
+      const double at = k * step + 0.0;  // no -0
       const Spot low = across ? spot(at, y_.low) : spot(x_.low, at),
                  high = across ? spot(at, y_.high) : spot(x_.high, at);
       canvas_.line(std::array{low, high}, {.colour = rgb(0xE4E4E4)});

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <talus/maps/maps_io.hpp>
+
 #include "bad_input.hpp"
 #include "run_program.hpp"
 
@@ -46,11 +48,8 @@ TEST(ViewCommand, PlannedRouteIsShownOnItsMap) {
 TEST(ViewCommand, MissionAndPictureAreShown) {
   const Folder folder;
   folder.write("dem.asc", asciiGrid(40, 40, hills));
-  folder.write("photo.asc", asciiGrid(40, 40, [](int column, int) { return 1.0 + column; }));
-  ASSERT_EQ(
-      std::system(
-          ("gdal_translate -q -ot Byte " + (folder / "photo.asc") + " " + (folder / "photo.tif")).c_str()),
-      0);
+  maps::writeGeoTiff({.path = folder / "photo.tif"}, "photo",
+                     maps::Raster<std::uint8_t>({40, 40, 1.0, {}}, 90), {});
   folder.write("area.json",
                R"({"type":"Polygon","crs":"local","coordinates":[[[9,9],[14,9],[14,14],[9,9]]]})");
   folder.write("m.yaml",
