@@ -11,6 +11,10 @@
 
 #include <talus/maps/maps.hpp>
 
+namespace talus {
+class OutputFile;
+}
+
 namespace talus::maps {
 
 /// Options for reading a raster file.
@@ -50,14 +54,6 @@ ElevationMap readElevation(const std::string& path, const ReadOptions& options =
 /// InputError, also if the grid exceeds ReadOptions::max_cells
 Grid elevationGrid(const std::string& path, const ReadOptions& options = {});
 
-}  // namespace talus::maps
-
-namespace talus {
-class OutputFile;
-}
-
-namespace talus::maps {
-
 /// One band of a GeoTIFF file.
 struct Layer {
   std::string name{};      ///< band description
@@ -92,9 +88,6 @@ struct NamedClass {
 /// std::invalid_argument for an empty raster
 void writeGeoTiff(const GeoTiff& file, const std::string& name, const Raster<std::uint8_t>& values,
                   std::optional<std::uint8_t> nodata, const std::vector<NamedClass>& classes = {});
-
-}  // namespace talus::maps
-namespace talus::maps {
 
 /// Class number of a cell without a terrain class.
 inline constexpr std::uint8_t kNoClass = 255;
@@ -138,6 +131,12 @@ struct AddedJoules {
 /// Returns the additional costs of a file on the grid of the map. @throws InputError, also if the file and
 /// the map do not overlap or a finite value lies outside 0 to 1e6
 AddedJoules readAddedJoules(const LayerSource& source, const ElevationMap& map);
+
+/// Returns a picture, such as an orthophoto, in the cells of a map's grid: red, green and blue in the bytes 0xFFRRGGBB,
+/// averaged over each cell, and 0 where the file has none. @throws InputError, also for a file whose bands are not of 8
+/// bits, or if only one of file and map has a CRS
+Raster<std::uint32_t> readImage(const std::string& path, const std::optional<Georeference>& georeference,
+                                const Grid& grid);
 
 /// Keep-out areas, which the rover must not enter, on the grid of the map.
 struct KeepOut {

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/common/checksum.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
@@ -83,7 +84,8 @@ std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::stri
 }  // namespace
 
 Part::Part(const std::string& text) {
-  if (text.empty()) return;
+  stated_ = !text.empty();
+  if (!stated_) return;
   int index = 0, parts = 0, end = 0;
   if (std::sscanf(text.c_str(), "%5d/%5d%n", &index, &parts, &end) != 2 ||
       end != static_cast<int>(text.size()) || index < 1 || index > parts || parts > 10000)
@@ -147,6 +149,16 @@ JobResults Part::joined(const std::string& folder, const std::string& hash, cons
   return results;
 }
 
+std::optional<JobResults> Part::completed(const std::string& folder, const std::string& hash,
+                                          const JobResults& own, std::size_t all, const char* what) const {
+  if (!stated_) return own;
+  JobResults results = joined(folder, hash, own);
+  if (results.size() == all) return results;
+  print(fmt::format("part {}/{}: {} of {} {} are in {}\n", index_ + 1, parts_, results.size(), all, what,
+                    folder));
+  return std::nullopt;
+}
+
 #ifdef TALUS_MPI
 
 namespace {
@@ -195,24 +207,6 @@ bool Campaign::leads() const noexcept {
   return !mpi_ || mpi_->world.rank() == 0;
 }
 
-#else
-
-struct Campaign::Ranks {};
-
-Campaign::Campaign() = default;
-int Campaign::ranks() const noexcept {
-  return 1;
-}
-bool Campaign::leads() const noexcept {
-  return true;
-}
-
-#endif
-
-Campaign::~Campaign() = default;
-
-#ifdef TALUS_MPI
-
 // Rank 0 runs its own jobs and receives the outcomes of other ranks between them, then the remaining
 // outcomes.
 std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
@@ -244,12 +238,24 @@ std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std
 
 #else
 
+struct Campaign::Ranks {};
+
+Campaign::Campaign() = default;
+int Campaign::ranks() const noexcept {
+  return 1;
+}
+bool Campaign::leads() const noexcept {
+  return true;
+}
+
 std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                                       const ProgressMonitor& watch, std::size_t workers) const {
   return runHere(count, job, watch, workers);
 }
 
 #endif
+
+Campaign::~Campaign() = default;
 
 void requireMpiForRanks() {
 #ifndef TALUS_MPI

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,13 @@ class Part {
   /// has a checksum over `hash` (of the jobs and their inputs), job and result. Throws InputError, and writes
   /// nothing, for a row that is of other jobs or damaged.
   JobResults joined(const std::string& folder, const std::string& hash, const JobResults& own) const;
+  /// Returns the result of joined(), or `own` for the whole list. Prints how many of `all` jobs, which are called `what`,
+  /// are in the folder, and returns nullopt, while some are missing there.
+  std::optional<JobResults> completed(const std::string& folder, const std::string& hash,
+                                      const JobResults& own, std::size_t all, const char* what) const;
 
  private:
+  bool stated_ = false;
   std::size_t index_ = 0, parts_ = 1;
 };
 

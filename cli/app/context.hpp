@@ -82,10 +82,6 @@ class Interrupt {
   std::thread listener_;
 };
 
-/// Namespace of the command-line program, which has one file per subcommand.
-
-class StatusLine;
-
 /// Exit codes of the program, stable for scripts.
 struct Exit {
   static constexpr int kDone = 0;         ///< the call succeeded

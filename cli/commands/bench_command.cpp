@@ -180,14 +180,11 @@ int run(const BenchOptions& options, Context& context) {
   const Part part(options.part);
   JobResults results = resultsOf(plan, part, campaign, context);
   if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
-  if (!options.part.empty() && !context.stop.stop_requested()) {
-    results = part.joined(options.folder, hashOf(plan, context), results);
-    const std::size_t all = planner::jobsOf(plan).size();
-    if (results.size() < all) {
-      print(fmt::format("part {}: {} of {} runs are in {}\n", options.part, results.size(), all,
-                        options.folder));
-      return Exit::kDone;
-    }
+  if (!context.stop.stop_requested()) {
+    auto all =
+        part.completed(options.folder, hashOf(plan, context), results, planner::jobsOf(plan).size(), "runs");
+    if (!all) return Exit::kDone;
+    results = *std::move(all);
   }
   const auto runs = runsOf(plan, results);
   if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);

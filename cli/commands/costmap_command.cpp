@@ -7,7 +7,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
-#include <talus/cli/draw/picture.hpp>
+#include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/ground_options.hpp>
@@ -80,7 +80,7 @@ void writeFiles(const CostmapOptions& options, const costmap::TraversabilityMap&
   }
   if (!options.categories.empty()) writeCategories(map, options.categories);
   if (!options.nav2.empty()) writeNav2Map(map, options.nav2);
-  if (!options.png.empty()) savePicture(options.png, sceneOf(map, {.title = map.elevation().source}));
+  if (!options.png.empty()) saveScene(sceneOf(map, {.title = map.elevation().source}), "", options.png);
   if (!options.octovis.empty()) writeOctovis(map, options.octovis);
   if (!options.unsafe.empty()) writeUnsafe(map, options.unsafe);
 }

@@ -153,13 +153,10 @@ std::optional<SimulatedWorlds> simulated(const Campaigning& on, const std::vecto
   JobResults jobs = worldJobs(
       count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, part,
       on.campaign, watch);
-  if (!options.part.empty() && on.campaign.leads() && !on.context.stop.stop_requested()) {
-    jobs = part.joined(options.folder, on.hash, jobs);
-    if (const std::size_t all = count.beliefs * count.worlds; jobs.size() < all) {
-      print(fmt::format("part {}: {} of {} simulations are in {}\n", options.part, jobs.size(), all,
-                        options.folder));
-      return std::nullopt;
-    }
+  if (on.campaign.leads() && !on.context.stop.stop_requested()) {
+    auto all = part.completed(options.folder, on.hash, jobs, count.beliefs * count.worlds, "simulations");
+    if (!all) return std::nullopt;
+    jobs = *std::move(all);
   }
   SimulatedWorlds driven = simulatedWorlds(count, jobs);
   for (const auto& failure : driven.failures)
@@ -209,15 +206,14 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
     saveTelemetry(options.telemetry, drive.result.drive, ground.map.model().rover());
   if (context.json) {
     nlohmann::ordered_json json = asJson(drive.result);
-    json["prediction"] = {{"steps", drive.prediction.steps},
-                          {"slip_rmse", drive.prediction.slip_rmse},
-                          {"energy_rmse", drive.prediction.energy_rmse},
-                          {"energy_error", drive.prediction.energy_error}};
+    const planner::PredictionErrors errors = drive.log.errors();
+    json["prediction"] = {{"steps", errors.steps},
+                          {"slip_rmse", errors.slip_rmse},
+                          {"energy_rmse", errors.energy_rmse},
+                          {"energy_error", errors.energy_error}};
     printJson(json);
   } else {
-    print(asText(drive.result) + fmt::format("{:<24} slip error {:.3f} rms, total energy error {:+.1f} %\n",
-                                             "predicted", drive.prediction.slip_rmse,
-                                             100.0 * drive.prediction.energy_error));
+    print(asText(drive.result) + fmt::format("{:<24} {}\n", "predicted", predictionText(drive)));
   }
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }

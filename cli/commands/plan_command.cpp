@@ -17,7 +17,6 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
-#include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
@@ -111,10 +110,10 @@ void writeFiles(const PlanOptions& options, const Ground& ground, const Route& r
   const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
   const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
   Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
+  addImage(scene, options.image);
   addRoute(scene, route);
   addProvenance(scene, origin);
-  if (!options.png.empty()) savePicture(options.png, scene);
-  if (!options.html.empty()) savePage(options.html, scene);
+  saveScene(scene, options.html, options.png);
 }
 
 int exitOf(RouteStatus status) {
@@ -344,8 +343,7 @@ void drawSevered(const PlanOptions& options, const Planned& planned, const Conte
                  {{request.start, request.goal}, request.tolerance_m, planned.route.reason},
                  {.title = "No route across " + std::filesystem::path(map.source).filename().string()});
   addProvenance(scene, originOf(planned.ground, context));
-  if (!options.png.empty()) savePicture(options.png, scene);
-  if (!options.html.empty()) savePage(options.html, scene);
+  saveScene(scene, options.html, options.png);
 }
 
 int finish(const PlanOptions& options, Planned& planned, const Context& context) {

@@ -242,6 +242,9 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     CLI::App app("Plan safe routes for rovers over soft, sloping ground.", "talus");
     app.formatter(std::make_shared<HelpFormat>());
     addGlobalOptions(app, context);
+    app.footer(
+        "Topics: talus help formats, soils, rovers, missions. Manual page and completion for bash,\n"
+        "which `./dev install` puts in place: talus help man, talus help bash-completion.");
     add(app, context);
     refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));

@@ -79,16 +79,6 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
   groupOptions(command, "Output");
 }
 
-void warnOfRejected(const terramech::Telemetry& telemetry, const Context& context) {
-  constexpr std::size_t kShown = 20;
-  for (std::size_t k = 0; k < telemetry.rejected.size() && k < kShown; ++k)
-    context.warn(
-        fmt::format("{}:{}: {}", telemetry.source, telemetry.rejected[k].line, telemetry.rejected[k].reason));
-  if (telemetry.rejected.size() > kShown)
-    context.warn(
-        fmt::format("{}: {} more rows rejected", telemetry.source, telemetry.rejected.size() - kShown));
-}
-
 /// Repeats the trace with rows held out and evaluates the rows that the search did not use.
 int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& table,
                 const terramech::TableTraceOptions& how, Context& context) {
@@ -120,7 +110,7 @@ std::vector<terramech::CauseScore> scored(const TraceCommandOptions& options,
                                           const terramech::TableTrace& trace, const Context& context) {
   const terramech::Telemetry measured =
       terramech::readTraceTable(tableFile(options.score, options.columns, context));
-  warnOfRejected(measured, context);
+  warnOfRejected(measured.rejected, measured.source, context);
   return terramech::scoreCauses(trace.result, terramech::makeTrial(measured, trace.result.refined));
 }
 
@@ -188,7 +178,7 @@ int run(const TraceCommandOptions& options, Context& context) {
       .search = {.significance = options.significance, .seed = context.seed}};
   const terramech::Telemetry table =
       terramech::readTraceTable(tableFile(options.telemetry, options.columns, context));
-  warnOfRejected(table, context);
+  warnOfRejected(table.rejected, table.source, context);
   if (!options.hold_out.empty()) return holdOutRows(options, table, how, context);
   const ProgressMonitor watch = context.watch("tracing");
   const terramech::TableTrace trace = terramech::traceTable(table, how, watch);

@@ -110,8 +110,7 @@ terramech::Telemetry readDrive(const UpdateOptions& options, const costmap::Trav
                                              .wheel_radius_m = map.model().rover().wheel.radius_m,
                                              .once = true},
                                             context.watch("reading telemetry"));
-  for (const auto& row : telemetry.rejected)
-    context.warn(fmt::format("{}:{}: {}", options.telemetry, row.line, row.reason));
+  warnOfRejected(telemetry.rejected, options.telemetry, context);
   if (telemetry.repeated > 0)
     context.warn(fmt::format("{}: {} rows repeat earlier rows in every field and are ignored",
                              options.telemetry, telemetry.repeated));

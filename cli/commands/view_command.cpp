@@ -13,15 +13,16 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
-#include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
 namespace talus::cli {
@@ -36,11 +37,13 @@ struct ViewOptions {
   std::string title;
   std::string html;
   std::string png;
+  std::string image;
 };
 
 void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
-  command.get_option("FILE")->description("route from `talus plan`, traversability map, or elevation map");
+  command.get_option("FILE")->description(
+      "route from `talus plan`, mission, traversability map, or elevation map");
   command.add_option("ROUTE", options.others, "further routes, compared with the first one")
       ->type_name("ROUTE ...");
   command
@@ -54,12 +57,30 @@ void bind(CLI::App& command, ViewOptions& options) {
             "page to write (default: FILE with the ending .html in the current folder)")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addImageOption(command, options.image);
   groupOptions(command, "Page");
+}
+
+// The map of a mission, with its start and goals.
+Scene missionScene(const std::string& path, const SceneOptions& options, const Context& context) {
+  PlanOptions plan;
+  plan.ground.elevation.path = path;
+  readMission(plan);
+  const Ground ground = readGround(plan.ground, context);
+  Scene scene = sceneOf(ground.map, options);
+  const auto mark = [&](const char* letter, const std::string& place) {
+    if (!place.empty())
+      scene.marks.emplace_back(letter, maps::readPlace(place, ground.map.elevation(), path));
+  };
+  mark("S", plan.start);
+  for (const std::string& goal : plan.goals) mark("G", goal);
+  return scene;
 }
 
 Scene mapScene(const ViewOptions& options, const std::string& path, const Context& context) {
   const SceneOptions scene{.title =
                                options.title.empty() ? fs::path(path).filename().string() : options.title};
+  if (isMission(path)) return missionScene(path, scene, context);
   if (costmap::octomapType(path) == "TraversabilityTree")
     return sceneOf(readBuiltMap(path, readingOf(context)), scene);
   ElevationFile dem = options.file;
@@ -186,10 +207,10 @@ int run(const ViewOptions& options, Context& context) {
     throw InputError({options.file.path, "is not a route file; only routes can be compared",
                       "pass routes, and the map as --map"});
   const ProgressMonitor drawing = context.watch("draw");
-  const Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
+  Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
+  addImage(scene, options.image);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!options.png.empty()) savePicture(options.png, scene);
-  savePage(html, scene);
+  saveScene(scene, html, options.png);
   if (!context.json) {
     print(comparisonText(scene) + fmt::format("page        {}\n", html.string()));
     return Exit::kDone;

@@ -3,14 +3,18 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <cairo-svg.h>
 #include <cairo.h>
+#include <fmt/format.h>
 #include <nettle/base64.h>
 
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/planner/route/route_json.hpp>
 
 namespace talus::cli {
+
+std::string hex(Colour c) {
+  return fmt::format("#{:06x}", pixel(c) & 0xFFFFFFU);
+}
 
 std::uint32_t pixel(Colour c) {
   const auto byte = [](double v) {
@@ -77,24 +81,9 @@ void setFont(cairo_t* cairo, const TextStyle& style) {
   cairo_set_font_size(cairo, style.size);
 }
 
-// Truncates numbers to two decimals. Most bytes of an SVG are glyph outlines, written to a millionth of a
-// pixel.
-std::string shortened(const std::string& svg) {
-  std::string out;
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t decimals = 0;  // digits after a decimal point, including the point; 0 before a point
-  for (std::size_t i = 0; i < svg.size(); ++i) {
-    const bool point = svg[i] == '.' && i > 0 && digit(svg[i - 1]);
-    decimals = point ? 1 : decimals > 0 && digit(svg[i]) ? decimals + 1 : 0;
-    if (decimals <= 3) out += svg[i];
-  }
-  return out;
-}
-
 }  // namespace
 
 struct Canvas::Surface {
-  std::string svg;  // filled when the surface is finished
   cairo_surface_t* surface = nullptr;
   cairo_t* cairo = nullptr;
 
@@ -108,10 +97,8 @@ struct Canvas::Surface {
 };
 
 Canvas::Canvas(const Options& o) : surface_(std::make_unique<Surface>()) {
-  surface_->surface = o.kind == Kind::Svg
-                          ? cairo_svg_surface_create_for_stream(append, &surface_->svg, o.width, o.height)
-                          : cairo_image_surface_create(
-                                o.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, o.width, o.height);
+  surface_->surface =
+      cairo_image_surface_create(o.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, o.width, o.height);
   surface_->cairo = cairo_create(surface_->surface);
   if (const cairo_status_t status = cairo_status(surface_->cairo); status != CAIRO_STATUS_SUCCESS)
     throw std::runtime_error(std::string("cannot draw: ") + cairo_status_to_string(status));
@@ -134,8 +121,6 @@ void Canvas::line(std::span<const Spot> spots, const Stroke& stroke) {
   cairo_t* c = surface_->cairo;
   setColour(c, stroke.colour);
   cairo_set_line_width(c, stroke.width);
-  const std::array dash{5.0, 4.0};
-  cairo_set_dash(c, dash.data(), stroke.dashed ? 2 : 0, 0.0);
   trace(c, spots);
   cairo_stroke(c);
 }
@@ -153,34 +138,16 @@ void Canvas::disc(Spot centre, double radius, Colour colour) {
   cairo_fill(surface_->cairo);
 }
 
-void Canvas::discs(std::span<const Spot> centres, double radius, Colour colour) {
-  cairo_t* c = surface_->cairo;
-  setColour(c, colour);
-  cairo_set_dash(c, nullptr, 0, 0.0);
-  cairo_set_line_width(c, 2.0 * radius);
-  cairo_save(c);
-  cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
-  cairo_new_path(c);
-  for (const Spot& centre : centres) {
-    cairo_move_to(c, centre.x, centre.y);
-    cairo_line_to(c, centre.x, centre.y);
-  }
-  cairo_stroke(c);
-  cairo_restore(c);
-}
-
 void Canvas::text(const std::string& text, Spot spot, const TextStyle& style) {
   cairo_t* c = surface_->cairo;
   cairo_save(c);
   setFont(c, style);
   cairo_translate(c, spot.x, spot.y);
-  if (style.upright) cairo_rotate(c, -std::numbers::pi / 2.0);
   cairo_move_to(c, -style.anchor * textWidth(text, style), 0.0);
   if (style.halo) {
     cairo_text_path(c, text.c_str());
     setColour(c, faded(rgb(0xFFFFFF), 0.85));
     cairo_set_line_width(c, style.size / 4.0);
-    cairo_set_dash(c, nullptr, 0, 0.0);
     cairo_stroke_preserve(c);
     setColour(c, style.colour);
     cairo_fill(c);
@@ -226,17 +193,12 @@ void Canvas::unclip() {
 
 std::string Canvas::bytes() {
   std::string bytes;
-  if (cairo_surface_get_type(surface_->surface) == CAIRO_SURFACE_TYPE_IMAGE) {
-    cairo_surface_write_to_png_stream(surface_->surface, append, &bytes);
-    return bytes;
-  }
-  cairo_surface_finish(surface_->surface);
-  return shortened(surface_->svg);
+  cairo_surface_write_to_png_stream(surface_->surface, append, &bytes);
+  return bytes;
 }
 
 std::string png(const Image& image) {
-  Canvas canvas(
-      {.width = image.width, .height = image.height, .kind = Canvas::Kind::Png, .transparent = true});
+  Canvas canvas({.width = image.width, .height = image.height, .transparent = true});
   canvas.image(image, {0.0, 0.0, static_cast<double>(image.width), static_cast<double>(image.height)});
   return canvas.bytes();
 }

@@ -25,6 +25,9 @@ constexpr Colour rgb(unsigned hex) {
   return {.red = (hex >> 16 & 255) / 255.0, .green = (hex >> 8 & 255) / 255.0, .blue = (hex & 255) / 255.0};
 }
 
+/// Returns a colour as text "#rrggbb".
+std::string hex(Colour colour);
+
 /// Returns a colour as a pixel with premultiplied alpha, in cairo's format ARGB32.
 std::uint32_t pixel(Colour colour);
 
@@ -109,7 +112,6 @@ struct Box {
 struct Stroke {
   Colour colour;
   double width = 1.0;
-  bool dashed = false;
 };
 
 /// Style of a text, and its alignment relative to the given position.
@@ -117,19 +119,16 @@ struct TextStyle {
   double size = 12.0;
   Colour colour = rgb(0x222222);
   bool bold = false;
-  double anchor = 0.0;   ///< part of the text at the given position: 0 left end, 0.5 middle, 1 right end
-  bool upright = false;  ///< true if the text is turned 90 deg counter-clockwise
-  bool halo = false;     ///< true if the text has a white outline for legibility on a map
+  double anchor = 0.0;  ///< part of the text at the given position: 0 left end, 0.5 middle, 1 right end
+  bool halo = false;    ///< true if the text has a white outline for legibility on a map
 };
 
-/// Drawing surface that produces a PNG or SVG file. Not thread-safe.
+/// Drawing surface that produces a PNG file. Not thread-safe.
 class Canvas {
  public:
-  enum class Kind { Png, Svg };
   struct Options {
     int width = 0;
     int height = 0;
-    Kind kind = Kind::Png;
     bool transparent = false;
   };
 
@@ -141,8 +140,6 @@ class Canvas {
   void line(std::span<const Spot> spots, const Stroke& stroke);
   void polygon(std::span<const Spot> spots, Colour colour);
   void disc(Spot centre, double radius, Colour colour);
-  /// Draws many discs of one colour as one shape, so that overlaps are no darker.
-  void discs(std::span<const Spot> centres, double radius, Colour colour);
   void text(const std::string& text, Spot spot, const TextStyle& style = {});
   double textWidth(const std::string& text, const TextStyle& style = {});
 

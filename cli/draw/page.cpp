@@ -13,23 +13,24 @@
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/picture.hpp>
-#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/common/common.hpp>
 
-// Embeds the bytes of the file between two symbols in the read-only data.
+// Embeds the bytes of two files between three symbols in the read-only data.
 asm(R"(
   .section .rodata
   talus_page_template: .incbin ")" TALUS_PAGE_TEMPLATE R"("
-  talus_page_template_end: .byte 0
+  talus_report_template: .incbin ")" TALUS_REPORT_TEMPLATE R"("
+  talus_report_template_end: .byte 0
   .global talus_page_template
-  .global talus_page_template_end
+  .global talus_report_template
+  .global talus_report_template_end
   .text
 )");
 
 extern "C" {
-extern const char talus_page_template[];      // NOLINT(readability-identifier-naming)
-extern const char talus_page_template_end[];  // NOLINT(readability-identifier-naming)
+// NOLINTNEXTLINE(readability-identifier-naming)
+extern const char talus_page_template[], talus_report_template[], talus_report_template_end[];
 }
 
 namespace talus::cli {
@@ -59,11 +60,6 @@ std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(m
     for (int column = 0; column < grid.width; ++column)
       image.at(column, grid.height - 1 - row) = 0xFF000000U | word(maps::Cell{column, row});
   return dataUri(image);
-}
-
-/// Returns a colour as text "#rrggbb".
-std::string hex(Colour c) {
-  return fmt::format("#{:06x}", pixel(c) & 0xFFFFFFU);
 }
 
 /// Adds the values as integers with the decimals of the layer, or fewer if 24 bits do not suffice. 0 is no
@@ -133,11 +129,13 @@ ordered_json headingLegend() {
   return legend;
 }
 
-/// Returns the layers of a scene for an HTML page, allowed headings first. Each layer has a name, a coloured image,
+/// Returns the layers of a scene for an HTML page, a picture of the ground first, then allowed headings. Each layer but the picture has a name, a coloured image,
 /// a legend or a colour bar with range and unit, and the values that cli/page/probe.js shows: integers in
 /// units of the layer's last decimal, or the shares of the four AllowedHeadings.
 ordered_json layersOf(const Scene& scene) {
   ordered_json layers = ordered_json::array();
+  if (!scene.image.empty())
+    layers.push_back({{"name", "image"}, {"image", dataUri(groundImage(scene.image))}, {"relief", 0.0}});
   if (!scene.headings.empty())
     layers.push_back({{"name", "allowed headings"},
                       {"image", dataUri(headingImage(scene.headings))},
@@ -316,6 +314,14 @@ ordered_json storyOf(const TraverseRecord& story) {
   return out;
 }
 
+ordered_json areasOf(const Scene& scene) {
+  ordered_json areas = ordered_json::array();
+  for (const HatchedArea& area : scene.areas)
+    areas.push_back(
+        {{"name", area.name}, {"colour", hex(area.colour)}, {"image", dataUri(hatchImage(area))}});
+  return areas;
+}
+
 ordered_json marksOf(const Scene& scene) {
   ordered_json marks = ordered_json::array();
   for (const auto& [letter, place] : scene.marks)
@@ -368,6 +374,7 @@ ordered_json dataOf(const Scene& scene) {
   data["shade"] = dataUri(shadeImage(shade));
   data["light"] = {{"low", number(light.low)}, {"high", number(light.high)}};
   data["layers"] = layersOf(scene);
+  data["areas"] = areasOf(scene);
   data["headings"] = headingCostsOf(scene);
   data["categories"] = categoryLegend();
   data["scales"] = {{"magnitude", coloursOf(viridis())}, {"signed", coloursOf(blueRed())}};
@@ -397,21 +404,42 @@ std::string embedded(const ordered_json& data) {
 }  // namespace
 
 std::string_view pageTemplate() {
-  return {talus_page_template, static_cast<std::size_t>(talus_page_template_end - talus_page_template)};
+  return {talus_page_template, talus_report_template};
+}
+
+std::string_view reportTemplate() {
+  return {talus_report_template, talus_report_template_end};
+}
+
+std::string escaped(const std::string& text) {
+  constexpr std::pair<char, const char*> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'\'', "&#39;"}, {'"', "&quot;"}};
+  std::string html;
+  for (const char c : text) {
+    const auto* const entity = std::ranges::find(kEntities, c, &std::pair<char, const char*>::first);
+    entity == std::end(kEntities) ? html += c : html += entity->second;
+  }
+  return html;
+}
+
+std::string filledPage(std::string_view empty, const std::string& title, const std::string& text,
+                       const ordered_json& data) {
+  // The title is replaced before the data are inserted, so that user text in the data is never taken for a
+  // place-holder.
+  std::string html(empty);
+  replaceAll(html, "@TALUS_TITLE@", escaped(title));
+  replaceAll(html, "@TALUS_TEXT@", text);
+  const std::string place = "@TALUS_DATA@";
+  return html.replace(html.rfind(place), place.size(), embedded(data));
 }
 
 std::string page(const Scene& scene) {
-  // The title is replaced before the data are inserted, so that user text in the data is never taken for a
-  // place-holder.
-  std::string html(pageTemplate());
-  replaceAll(html, "@TALUS_TITLE@", escaped(scene.title));
-  replaceAll(html, "@TALUS_SUBTITLE@", escaped(scene.subtitle));
-  const std::string place = "@TALUS_DATA@";
-  return html.replace(html.rfind(place), place.size(), embedded(dataOf(scene)));
+  return filledPage(pageTemplate(), scene.title, escaped(scene.subtitle), dataOf(scene));
 }
 
-void savePage(const std::filesystem::path& path, const Scene& scene) {
-  writeFile(path, page(scene));
+void saveScene(const Scene& scene, const std::filesystem::path& html, const std::filesystem::path& png) {
+  if (!png.empty()) writeFile(png, drawPicture(scene));
+  if (!html.empty()) writeFile(html, page(scene));
 }
 
 }  // namespace talus::cli

@@ -120,6 +120,10 @@ Image headingImage(const Raster<HeadingShares>& headings) {
   });
 }
 
+Image groundImage(const Raster<std::uint32_t>& ground) {
+  return imageOf(ground.grid(), [&](Cell c) { return ground[c]; });
+}
+
 Scale scaleOf(const ValueLayer& layer) {
   return layer.zero_in_middle ? blueRed() : viridis();
 }
@@ -132,6 +136,18 @@ Image valueImage(const ValueLayer& layer) {
     if (!layer.classes.empty()) return pixel(layer.classes[static_cast<std::size_t>(v)].colour);
     return pixel(at(scale, (v - layer.range.low) / (layer.range.high - layer.range.low)));
   });
+}
+
+Image hatchImage(const HatchedArea& area) {
+  constexpr int kPixels = 900, kPeriod = 8, kStroke = 3;
+  const maps::Grid& grid = area.mask.grid();
+  const int fine = std::max(1, kPixels / std::max(grid.width, grid.height));
+  Image image(grid.width * fine, grid.height * fine);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (area.mask[{x / fine, grid.height - 1 - y / fine}] != 0 && (x + y) % kPeriod < kStroke)
+        image.at(x, y) = pixel(faded(area.colour, 0.85));
+  return image;
 }
 
 namespace {
@@ -202,6 +218,7 @@ class Picture {
       canvas_.text(line, {kMargin, y += kWarningLine}, {.size = 12, .colour = kReverse, .bold = true});
     canvas_.fill(map_, rgb(0xECECEC));
     ground();
+    for (const HatchedArea& area : scene_.areas) canvas_.image(hatchImage(area), map_);
     canvas_.clip(map_);
     route();
     scaleBar();
@@ -234,7 +251,9 @@ class Picture {
   void ground() {
     const maps::Raster<float> shade = hillshade(scene_.elevation_m);
     canvas_.image(shadeImage(shade), map_);
-    if (!scene_.headings.empty())
+    if (!scene_.image.empty())
+      canvas_.image(groundImage(scene_.image), map_);
+    else if (!scene_.headings.empty())
       canvas_.image(underLight(headingImage(scene_.headings), shade, kCategoryRelief), map_);
     else if (!scene_.layers.empty())
       canvas_.image(underLight(valueImage(scene_.layers.front()), shade,
@@ -313,10 +332,19 @@ class Picture {
 
   void legend() {
     Spot at{map_.x + map_.width + kMargin, map_.y + 8};
-    if (!scene_.headings.empty())
+    if (!scene_.image.empty())
+      canvas_.text("image of the ground", {at.x, at.y + 4}, {.bold = true}), at.y += 24;
+    else if (!scene_.headings.empty())
       headingLegend(at);
     else if (!scene_.layers.empty())
       scaleLegend(at, scene_.layers.front());
+    for (const HatchedArea& area : scene_.areas) {
+      for (double x = at.x; x < at.x + 26; x += 6)
+        canvas_.line(std::array{Spot{x, at.y + 7}, Spot{x + 6, at.y - 7}},
+                     {.colour = area.colour, .width = 2});
+      canvas_.text(area.name, {at.x + 36, at.y + 4}, {});
+      at.y += 24;
+    }
     if (!scene_.rings.empty()) {
       canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRing, .width = 3.5});
       canvas_.text(scene_.route ? "ring: see the warning" : "ring: the smaller set", {at.x + 36, at.y + 4},
@@ -416,10 +444,6 @@ class Picture {
 
 std::string drawPicture(const Scene& scene) {
   return Picture(scene).draw();
-}
-
-void savePicture(const std::filesystem::path& path, const Scene& scene) {
-  writeFile(path, drawPicture(scene));
 }
 
 }  // namespace talus::cli

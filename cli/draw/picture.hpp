@@ -22,8 +22,14 @@ Image shadeImage(const maps::Raster<float>& shade);
 /// data are transparent.
 Image headingImage(const maps::Raster<HeadingShares>& headings);
 
+/// Returns a picture of the ground as an image.
+Image groundImage(const maps::Raster<std::uint32_t>& ground);
+
 /// Returns the values of a layer as an image in the colours of the layer; NaN is transparent.
 Image valueImage(const ValueLayer& layer);
+
+/// Returns the hatching of an area as an image with some pixels a cell; other ground is transparent.
+Image hatchImage(const HatchedArea& area);
 
 /// Returns the colour scale of a layer.
 Scale scaleOf(const ValueLayer& layer);
@@ -31,9 +37,5 @@ Scale scaleOf(const ValueLayer& layer);
 /// Returns the scene as a PNG file: a hillshade under the allowed headings (or under the first value layer if there
 /// are none), with route, start, goal, scale bar, north arrow, legend and title.
 std::string drawPicture(const Scene& scene);
-
-/// Writes the picture to a file, which appears complete or not at all. @throws InputError if the file cannot
-/// be written
-void savePicture(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace talus::cli

@@ -1,15 +1,17 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include <talus/cli/draw/canvas.hpp>
 
 namespace talus::cli {
 
-/// Charts of lines and points.
+/// Charts of lines and points, which a page draws with Vega (cli/page/report.js).
 
 /// Data and style of one curve or of one cloud of points.
 struct Series {
@@ -28,6 +30,7 @@ struct Axis {
   std::string label;               ///< label with the unit: "slip [-]"
   std::optional<double> low = {};  ///< end of the axis at low values; empty: range of the data
   std::optional<double> high = {};
+  bool logarithmic = false;  ///< true if the axis has a logarithmic scale; values <= 0 are not drawn
 };
 
 /// One chart.
@@ -37,24 +40,6 @@ struct Plot {
   Axis y;
   std::vector<Series> series;
 };
-
-/// Layout of several charts on a page.
-struct PlotLayout {
-  int columns = 2;
-  int panel_width = 520;   ///< pixels
-  int panel_height = 380;  ///< pixels
-};
-
-/// Returns the charts, drawn row by row, as the bytes of a PNG or SVG file. @throws std::invalid_argument if
-/// x and y of a series differ in length
-std::string draw(const std::vector<Plot>& plots, Canvas::Kind kind, const PlotLayout& layout = {});
-
-/// Writes the charts to a file, as SVG for the extension .svg and as PNG otherwise. The file appears complete
-/// or not at all. @throws InputError if the file cannot be written
-void save(const std::filesystem::path& path, const std::vector<Plot>& plots, const PlotLayout& layout = {});
-
-/// Returns the text with characters escaped that HTML reads as markup.
-std::string escaped(const std::string& text);
 
 /// A self-contained HTML page of headings, paragraphs, tables and charts, in the order in which they are
 /// added.
@@ -66,7 +51,8 @@ class HtmlReport {
   void paragraph(const std::string& text);
   /// Adds a table, which scrolls where it is wider than the screen. Numeric cells are right-aligned.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  /// Adds charts, which are shown side by side if the screen is wide enough.
+  /// Adds charts, which are shown side by side if the screen is wide enough. Points that cover each other are left
+  /// out. @throws std::invalid_argument if x and y of a series differ in length
   void charts(const std::vector<Plot>& plots);
 
   /// Returns the finished page.
@@ -75,6 +61,7 @@ class HtmlReport {
  private:
   std::string title_;
   std::string body_;
+  nlohmann::ordered_json charts_ = nlohmann::ordered_json::array();
 };
 
 }  // namespace talus::cli

@@ -4,6 +4,8 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/common.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
+#include <talus/maps/maps_io.hpp>
 #include <talus/planner/reach/reach.hpp>
 
 namespace talus::cli {
@@ -12,24 +14,6 @@ double roundBelow(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value) + 1e-12));
   const double mantissa = value / power * (1.0 + 1e-12);
   return power * (mantissa >= 5.0 ? 5.0 : mantissa >= 2.0 ? 2.0 : 1.0);
-}
-
-std::vector<double> ticks(Range range, int count) {
-  const double span = range.high - range.low;
-  if (!(span > 0.0) || !std::isfinite(span)) return {range.low};
-  double step = roundBelow(span / count);
-  while (span / step > 1.6 * count) step = roundBelow(2.5 * step * (1.0 + 1e-9));  // the next round number
-  std::vector<double> marks;
-  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * span; ++k)
-    marks.push_back(k * step);
-  return marks;
-}
-
-std::string tickLabel(double value, double step) {
-  const double clean = std::abs(value) < 1e-9 * step ? 0.0 : value;
-  if (std::abs(value) >= 1e6 || (step < 1e-4 && step > 0.0)) return fmt::format("{:.3g}", clean);
-  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-  return fmt::format("{:.{}f}", clean, decimals);
 }
 
 using costmap::CellCode;
@@ -140,6 +124,33 @@ void addLayer(Scene& scene, std::string name, Raster<float> values) {
   ValueLayer layer{.name = std::move(name), .unit = "", .values = std::move(values), .range = {}};
   layer.range = scaleRange(layer.values);
   scene.layers.push_back(std::move(layer));
+}
+
+/// Adds an area of the blocks in which holds(cell) is true of a cell, unless there is none.
+template <typename Holds>
+void addArea(Scene& scene, const std::string& name, Colour colour, const Blocks& blocks, Holds holds) {
+  HatchedArea area{name, colour, Raster<std::uint8_t>(blocks.coarse())};
+  costmap::forEachCell(costmap::allOf(blocks.coarse()), [&](Cell block) {
+    blocks.forEach(block, [&](Cell cell) {
+      if (holds(cell)) area.mask[block] = 1;
+    });
+  });
+  if (std::ranges::count(area.mask.values(), 1) > 0) scene.areas.push_back(std::move(area));
+}
+
+/// Adds what a mission adds to the ground: keep-out areas, and each cost layer with its area.
+void addMissionLayers(Scene& scene, const costmap::TraversabilityMap& map, const Blocks& blocks) {
+  addArea(scene, "keep-out", rgb(0x000000), blocks,
+          [&](Cell cell) { return has(map.surface().hazards(cell), costmap::Hazard::KeepOut); });
+  for (const costmap::CostLayer& layer : map.surface().costLayers()) {
+    const std::size_t before = scene.areas.size();
+    addArea(scene, "layer " + layer.name, seriesColour(3), blocks, [&](Cell cell) {
+      return std::isfinite(layer.added_J_per_m[cell]) && layer.added_J_per_m[cell] > 0.0F;
+    });
+    if (scene.areas.size() == before) continue;
+    addLayer(scene, "layer " + layer.name, blocks.mean([&](Cell cell) { return layer.added_J_per_m[cell]; }));
+    scene.layers.back().unit = "J/m";
+  }
 }
 
 /// Names of the soils of the map's classes.
@@ -309,8 +320,8 @@ void addStretches(Scene& scene, const std::vector<NamedRoute>& routes, double ap
 
 constexpr double kSmall = 0.15;  // of the map's diagonal: sets smaller than this share are marked
 
-/// Number of reached cells, and their bounding circle.
-struct ReachedExtent {
+/// Number of places, and their bounding rectangle and circle.
+struct Extent {
   std::size_t count = 0;
   double west = INFINITY, east = -INFINITY, south = INFINITY, north = -INFINITY;
 
@@ -359,6 +370,7 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   addLayer(scene, "DP/W (drawbar pull / load)", std::move(beliefs.pull));
   addLayer(scene, "DP/W standard deviation", std::move(beliefs.pull_std));
   addLayer(scene, "z/r (sinkage / wheel radius)", std::move(beliefs.sinkage));
+  addMissionLayers(scene, map, blocks);
   addElevation(scene);
   scene.facts.emplace_back("rover", map.model().rover().name);
   scene.facts.emplace_back("soil", soilNames(map));
@@ -366,22 +378,21 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
 }
 
 Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
-  double west = INFINITY, south = INFINITY, east = -INFINITY, north = -INFINITY;
-  for (const planner::RouteVertex& v : route.vertices) {
-    west = std::min(west, v.x_m);
-    east = std::max(east, v.x_m);
-    south = std::min(south, v.y_m);
-    north = std::max(north, v.y_m);
-  }
+  Extent all;
+  for (const planner::RouteVertex& v : route.vertices) all.add({v.x_m, v.y_m});
   constexpr int kCells = 100;
-  const double side_m = 1.2 * std::max({east - west, north - south, 1.0});
-  const maps::Point corner{0.5 * (west + east - side_m), 0.5 * (south + north - side_m)};
+  const double side_m = 1.2 * std::max({all.east - all.west, all.north - all.south, 1.0});
+  const maps::Point corner{all.centre().x_m - 0.5 * side_m, all.centre().y_m - 0.5 * side_m};
   Scene scene;
   scene.title = options.title;
   scene.subtitle = "route without map: the map was not found";
   scene.elevation_m = Raster<float>({kCells, kCells, side_m / kCells, corner}, std::nanf(""));
   addRoute(scene, route);
   return scene;
+}
+
+void addImage(Scene& scene, const std::string& path) {
+  if (!path.empty()) scene.image = maps::readImage(path, scene.georeference, scene.grid());
 }
 
 void addRoute(Scene& scene, const planner::Route& route) {
@@ -412,7 +423,7 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
                    .values = maps::Raster<float>(scene.grid(), std::nanf("")),
                    .range = {0.0, 1.0},
                    .decimals = 0};
-  ReachedExtent reached, leading;
+  Extent reached, leading;
   for (int row = 0; row < scene.grid().height; ++row)
     for (int column = 0; column < scene.grid().width; ++column) {
       const maps::Point centre = scene.grid().centre({column, row});
@@ -430,7 +441,7 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
   const std::string second = fmt::format("leading to the goal: {} cells", leading.count);
   layer.classes = {{first, seriesColour(0)}, {second, seriesColour(4)}};
   const bool start_is_small = reached.count <= leading.count;
-  const ReachedExtent& small = start_is_small ? reached : leading;
+  const Extent& small = start_is_small ? reached : leading;
   const maps::Grid& grid = scene.grid();
   if (small.count > 0 && small.radius_m() < kSmall * std::hypot(grid.width, grid.height) * grid.resolution_m)
     scene.rings.push_back({small.centre(), small.radius_m(), start_is_small ? first : second});

@@ -82,24 +82,14 @@ class Blocks {
   maps::Grid coarse_;
 };
 
-}  // namespace talus::cli
-
-namespace talus::cli {
-
 /// A closed interval, low < high.
 struct Range {
   double low = 0.0;
   double high = 1.0;
 };
 
-/// Returns round tick values inside the range: about `count` multiples of 1, 2 or 5 times a power of ten.
-std::vector<double> ticks(Range range, int count);
-
 /// Returns the greatest number of the form 1, 2 or 5 times a power of ten that does not exceed `value` > 0.
 double roundBelow(double value);
-
-/// Returns a number as a tick label, with no more decimals than the step between ticks needs.
-std::string tickLabel(double value, double step);
 
 /// Allowed headings of the cells of a map (planner::HeadingSets). They depend on the ground and on the steepness of a
 /// cell: they are computed for steps of the steepness, and for the cells between steps that differ. Not thread-safe;
@@ -119,14 +109,6 @@ class HeadingsOfCells {
   planner::HeadingSets sets_;
   std::vector<std::vector<AllowedHeadings>> known_;  // by curve and steepness; Unknown: not computed
 };
-
-}  // namespace talus::cli
-
-namespace talus::costmap {
-class TraversabilityMap;
-}
-
-namespace talus::cli {
 
 /// Number of map cells in one block (cell of a scene), by their AllowedHeadings.
 struct HeadingShares {
@@ -169,6 +151,13 @@ struct Ring {
   std::string label;
 };
 
+/// An area that is hatched over every layer.
+struct HatchedArea {
+  std::string name;
+  Colour colour;
+  maps::Raster<std::uint8_t> mask;  ///< 1 in the cells of the area
+};
+
 /// A line of a summary: name, and value with unit.
 using Fact = std::pair<std::string, std::string>;
 
@@ -209,6 +198,8 @@ struct Scene {
   maps::Raster<float> elevation_m;       ///< NaN: no data
   maps::Raster<HeadingShares> headings;  ///< shares of the allowed headings; empty: not known
   std::vector<ValueLayer> layers;
+  maps::Raster<std::uint32_t> image{};  ///< picture that covers the ground, as 0xAARRGGBB; empty: none
+  std::vector<HatchedArea> areas{};     ///< keep-out areas, and ground whose cost a layer raises
   std::vector<Fact> facts;
   std::vector<Fact> provenance{};  ///< data needed to reproduce the result
   std::optional<planner::Route> route;
@@ -240,6 +231,9 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
 
 /// Returns the scene of a route without a map: an empty area around the route.
 Scene sceneOf(const planner::Route& route, const SceneOptions& options);
+
+/// Adds a picture of the ground, such as an orthophoto, from a file; nothing for an empty path. @throws InputError
+void addImage(Scene& scene, const std::string& path);
 
 /// Adds a route and its summary to a scene.
 void addRoute(Scene& scene, const planner::Route& route);

@@ -11,16 +11,6 @@
 #include <talus/planner/route/route_json.hpp>
 #include <talus/planner/site/site.hpp>
 
-namespace talus::cli {
-
-/// Returns the layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category
-/// (of the worst heading), allowed_headings (AllowedHeadings), drawbar_pull_over_load, drawbar_pull_over_load_std,
-/// sinkage_over_radius, energy_per_metre_uphill, energy_per_metre_downhill. Units are SI and radians; NaN:
-/// unknown. Categories are 0 safe, 1 marginal, 2 dangerous, 3 unknown; cells with a hazard are dangerous.
-std::vector<maps::Layer> siteLayers(const costmap::TraversabilityMap& map, int threads);
-
-}  // namespace talus::cli
-
 namespace CLI {
 class App;
 }
@@ -28,6 +18,12 @@ class App;
 namespace talus::cli {
 
 struct Context;
+
+/// Returns the layers of a map as GeoTIFF bands: elevation, slope, aspect, roughness, step, class, category
+/// (of the worst heading), allowed_headings (AllowedHeadings), drawbar_pull_over_load, drawbar_pull_over_load_std,
+/// sinkage_over_radius, energy_per_metre_uphill, energy_per_metre_downhill. Units are SI and radians; NaN:
+/// unknown. Categories are 0 safe, 1 marginal, 2 dangerous, 3 unknown; cells with a hazard are dangerous.
+std::vector<maps::Layer> siteLayers(const costmap::TraversabilityMap& map, int threads);
 
 /// Declares the options --band, --resolution, --window, --nodata, --keep-holes, --vertical-scale,
 /// --ignore-crs, --max-cells, --allow-vrt and --below.
@@ -41,16 +37,6 @@ void addLayerOptions(CLI::App& command, SiteFiles& files);
 
 /// Returns how a command reads a site: assumptions and repairs are printed as warnings.
 SiteReading readingOf(const Context& context);
-
-}  // namespace talus::cli
-
-namespace CLI {
-class App;
-}
-
-namespace talus::cli {
-
-struct Context;
 
 /// Inputs of a traversability map: the files of a site, or a built map.
 struct GroundOptions : SiteFiles {
@@ -86,9 +72,6 @@ struct Ground {
 /// --map. @throws InputError
 Ground readGround(const GroundOptions& options, const Context& context);
 
-}  // namespace talus::cli
-namespace talus::cli {
-
 /// Returns true if the options state an elevation map (DEM) with more than `cells` cells; false for built
 /// maps and OctoMaps.
 bool needsWindows(const GroundOptions& options, std::size_t cells);
@@ -99,9 +82,6 @@ Ground readOverview(const GroundOptions& options, const Context& context);
 /// Returns the ground at full resolution as a map that is read window by window. `overview` is the result of
 /// readOverview(). @throws InputError
 planner::WindowedMap windowsOn(const GroundOptions& options, const Ground& overview, const Context& context);
-
-}  // namespace talus::cli
-namespace talus::cli {
 
 /// Returns a polyline in map coordinates [m] from a file: the first line of a vector file, or a CSV table
 /// whose columns x_m and y_m (also x and y, easting and northing: map metres) or lat and lon (degrees of the map's

@@ -242,7 +242,6 @@ std::string missionText(const MissionDraft& draft) {
 }
 
 using terramech::Soil;
-using terramech::YamlFields;
 
 const char* const kTruthFormat =
     "TRUTH.yaml, all parts optional (docs/simulation.md):\n"

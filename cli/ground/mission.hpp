@@ -47,8 +47,9 @@ struct PlanOptions {
   double gap = 0.0;           ///< proven gap at which planning ends; 0: as small as the usual work allows [-]
   double time_limit_s = 0.0;  ///< time limit of planning; 0: no limit
   std::string output;
-  std::string html;  ///< file for an HTML page; empty: no page
-  std::string png;   ///< file for a PNG picture; empty: no picture
+  std::string html;   ///< file for an HTML page; empty: no page
+  std::string png;    ///< file for a PNG picture; empty: no picture
+  std::string image;  ///< raster that page and picture show under the route; empty: none
 };
 
 /// Return the keys of a mission file, of its mapping `maps` and of its mapping `thresholds`.

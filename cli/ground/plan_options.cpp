@@ -79,6 +79,7 @@ void addOutputs(CLI::App& command, PlanOptions& options) {
   addOutput(command, "--html", options.html, "page to write: map, route and profiles")
       ->type_name("PAGE.html");
   addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addImageOption(command, options.image);
   groupOptions(command, "Output");
 }
 
@@ -102,6 +103,12 @@ void addPluginOption(CLI::App& command, std::string& plugin) {
       .add_option("--plugin", plugin,
                   "plan by a planner plugin instead; its route is checked, and the cost is the program's own")
       ->type_name("FILE.so");
+}
+
+void addImageOption(CLI::App& command, std::string& image) {
+  command
+      .add_option("--image", image, "picture of the ground, such as an orthophoto, to show under the route")
+      ->type_name("ORTHO.tif");
 }
 
 void addPluginTime(CLI::App& command, double& time_limit_s) {

@@ -37,19 +37,14 @@ planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::Trav
 /// the map, which must outlive the chassis.
 std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
 
-}  // namespace talus::cli
-
-namespace CLI {
-class App;
-}
-
-namespace talus::cli {
-
 /// Declares the option --plugin.
 void addPluginOption(CLI::App& command, std::string& plugin);
 
 /// Declares the option --time, the time limit of a plugin, for calls without another time limit.
 void addPluginTime(CLI::App& command, double& time_limit_s);
+
+/// Declares the option --image.
+void addImageOption(CLI::App& command, std::string& image);
 
 /// Declares the options of `talus plan`.
 void bindPlan(CLI::App& command, PlanOptions& options);

@@ -9,6 +9,10 @@ function drawMap(element, data) {
   L.imageOverlay(data.shade, box, {alt: "hillshade", zIndex: 1}).addTo(map);
   firstView(map, data);
   chooseLayer(map, data, box);
+  for (const {name, image} of data.areas) L.imageOverlay(image, box, {alt: name, zIndex: 4}).addTo(map);
+  const hatched = colour => `repeating-linear-gradient(135deg, ${colour} 0 2px, #fff 2px 5px)`;
+  if (data.areas.length)
+    showLegend("areas", {name: "hatched", legend: data.areas.map(({name, colour}) => ({label: name, colour: hatched(colour)}))});
   for (const {letter, x, y} of data.marks) showEnd(map, [y, x], letter);
   for (const {x, y, radius, label} of data.rings) {
     const size = 2 * Math.max(18, radius * map.getZoomScale(map.getZoom(), 0) + 12);

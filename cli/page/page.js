@@ -75,7 +75,7 @@ function start() {
   showFacts(data);
   probeCells(map, data, offerRuler(map, data));
   offerRelief(data);
-  if (data.story) showStory(map, data.story);
+  const story = data.story ? showStory(map, data.story) : null;
   const routes = data.routes;
   if (!routes.length || routes.some(({points}) => points.length < 2)) {
     document.getElementById("profiles").hidden = true;
@@ -84,14 +84,16 @@ function start() {
   }
   const text = document.getElementById("reading");
   text.style.setProperty("--routes", Math.min(routes.length, 3));
-  text.textContent = canHover ? "Hover over the profile or a route; click a cell of the map."
-    : "Tap the profile, a route or a cell of the map.";
+  if (story) showLegend("routes", {name: "profiles", legend: routes.map(({colour, name}) => ({colour, label: name}))});
+  text.textContent = canHover ? `Hover over the profile${story ? "" : " or a route"}; click a cell of the map.`
+    : `Tap the profile${story ? "" : ", a route"} or a cell of the map.`;
   const here = points => {
     const named = (p, k) => p ? (routes[k].name ? `${routes[k].name}: ` : "") + reading(p) : "";
     text.textContent = points.map(named).filter(line => line).join("\n");
     drawn.mark(points);
   };
-  const drawn = drawRoutes(map, data, (k, p) => {
+  // Of a drive, the profiles choose the moment.
+  const drawn = story ? {mark: points => story.show(points[0].time)} : drawRoutes(map, data, (k, p) => {
     profiles.mark(p.s);
     here(routes.map((_, i) => i === k ? p : null));
   });

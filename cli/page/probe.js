@@ -35,7 +35,7 @@ function cellReader(data) {
   const {width, height, cell, cells_per_pixel: block} = data.grid, b = data.bounds;
   let values = null, headings = null;
   return async (column, row) => {
-    values = values || Promise.all(data.layers.map(layer => words(layer.values || layer.shares, width, height)));
+    values = values || Promise.all(data.layers.map(layer => layer.legend || layer.bar ? words(layer.values || layer.shares, width, height) : null));
     headings = headings || readHeadings(data);
     const read = await values, costs = await headings, index = (height - 1 - row) * width + column;
     const table = document.createElement("table");
@@ -44,7 +44,7 @@ function cellReader(data) {
       line.appendChild(document.createElement("th")).textContent = name;
       line.insertCell().textContent = value;
     };
-    data.layers.forEach((layer, i) => add(layer.name, valueText(layer, read[i][index])));
+    data.layers.forEach((layer, i) => { if (read[i]) add(layer.name, valueText(layer, read[i][index])); });
     add("centre", placeText(data, b.west + (column + 0.5) * cell, b.south + (row + 0.5) * cell));
     add("cell", block > 1 ? `mean of ${block} x ${block} cells` : `column ${column}, row ${row}`);
     const parts = [table];

@@ -68,7 +68,7 @@ function profileSpec(routes, unit, layout) {
       ]},
     ],
     scales: [
-      {name: "x", type: "linear", domain: domain("elevation", "d"), range: "width", zero: true, nice: false},
+      {name: "x", type: "linear", domain: domain(panels[0].field, "d"), range: "width", zero: true, nice: false},
       ...panels.map((panel, row) => ({name: "y" + row, type: "linear", range: [panelHeight, 0], nice: true, zero: panel.zero,
                                       domain: domain(panel.field, panel.field)})),
     ],
@@ -82,11 +82,12 @@ function profileSpec(routes, unit, layout) {
 }
 
 // Panels that fit the element: all, or elevation and the quantity that colours the route.
-function layoutOf(element) {
+function layoutOf(element, routes) {
   const height = element.clientHeight - 58;
-  const chosen = ["slip", "slope", "energy", "risk", "slip"][document.getElementById("quantity").value];
-  const panels = height / allPanels.length >= 44 ? allPanels
-    : allPanels.filter(({field}) => field === "elevation" || field === chosen);
+  const chosen = ["slip", "slope", "energy", "risk", "slip"][document.getElementById("quantity").value || 0];
+  const known = allPanels.filter(({field}) => routes.some(({points}) => points.some(p => p[field] !== null)));
+  const panels = height / known.length >= 44 ? known
+    : known.filter(({field}) => field === "elevation" || field === chosen);
   const step = Math.max(44, (height + 17) / panels.length);
   return {panels, step, panelHeight: step - 17, width: Math.max(200, element.clientWidth - 62)};
 }
@@ -101,7 +102,7 @@ function drawProfiles(element, routes, onHover) {
   let view = null, quiet = false;
   const draw = () => {
     if (view) view.finalize();
-    view = new (need("view").View)(need("parser").parse(profileSpec(routes, unit, layoutOf(element))),
+    view = new (need("view").View)(need("parser").parse(profileSpec(routes, unit, layoutOf(element, routes))),
                                    {renderer: "svg", container: element, hover: false});
     view.run();
     view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });

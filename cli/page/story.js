@@ -63,4 +63,9 @@ function showStory(map, story) {
   const step = /^#(\d+)$/.exec(location.hash);  // page.html#120 opens at the 120th step
   moment.value = step ? Math.min(+step[1], track.length - 1) : 0;
   show(+moment.value);
+  return {show(time) {
+    stop();
+    moment.value = track.findIndex(point => point.time >= time);
+    show(+moment.value);
+  }};
 }

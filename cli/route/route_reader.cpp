@@ -261,25 +261,16 @@ planner::RouteShape shapeFrom(const Fields& drive) {
           .max_curvature_1_m = drive.number("max_curvature_1_m")};
 }
 
-// The field is absent in routes of older versions.
-double numberOr(const Fields& summary, const char* field) {
-  return summary.has(field) ? summary.number(field) : std::nan("");
-}
-
-planner::RouteSummary summaryFrom(const Fields& summary) {
-  return {.cost = summary.number("cost"),
-          .energy_J = summary.number("energy_J"),
-          .time_s = summary.number("time_s"),
-          .energy_p90_J = numberOr(summary, "energy_p90_J"),
-          .time_p90_s = numberOr(summary, "time_p90_s"),
-          .length_m = summary.number("length_m"),
-          .max_slip = summary.number("max_slip"),
-          .max_slope_rad = summary.number("max_slope_rad"),
-          .max_slope_across_rad = numberOr(summary, "max_slope_across_rad"),
-          .max_slip_angle_rad = numberOr(summary, "max_slip_angle_rad"),
-          .lower_bound = summary.number("lower_bound"),
-          .gap = summary.number("gap"),
-          .planner = summary.text("planner")};
+planner::RouteSummary summaryFrom(const Fields& fields) {
+  planner::RouteSummary summary{.planner = fields.text("planner")};
+  for (const auto& [key, value] : planner::kSummaryColumns) {
+    // absent in routes of older versions
+    const bool later = std::string_view(key).find("p90") != std::string_view::npos ||
+                       value == &planner::RouteSummary::max_slope_across_rad ||
+                       value == &planner::RouteSummary::max_slip_angle_rad;
+    summary.*value = later && !fields.has(key) ? std::nan("") : fields.number(key);
+  }
+  return summary;
 }
 
 /// A member of an object; null if the object or the member is missing.

@@ -77,31 +77,31 @@ std::string label(Outcome outcome) {
   return outcome == Outcome::GaveUp ? "no feasible route" : std::string(planner::name(outcome));
 }
 
+// Calls field(key, value) for the values of a result that JSON holds, but its outcome.
+template <typename Result, typename Field>
+void eachField(Result& result, Field field) {
+  field("cause", result.drive.cause);
+  field("energy_J", result.drive.energy_J);
+  field("length_m", result.drive.length_m);
+  field("time_s", result.drive.time_s);
+  field("replans", result.drive.replans);
+  field("alarms", result.drive.alarms);
+  field("max_slip", result.drive.max_slip);
+  field("categories_changed", result.categories_changed);
+}
+
 ordered_json asJson(const planner::WorldResult& result) {
-  return {{"outcome", planner::name(result.drive.outcome)},
-          {"cause", result.drive.cause},
-          {"energy_J", result.drive.energy_J},
-          {"length_m", result.drive.length_m},
-          {"time_s", result.drive.time_s},
-          {"replans", result.drive.replans},
-          {"alarms", result.drive.alarms},
-          {"max_slip", result.drive.max_slip},
-          {"categories_changed", result.categories_changed}};
+  ordered_json json{{"outcome", planner::name(result.drive.outcome)}};
+  eachField(result, [&](const char* key, const auto& value) { json[key] = value; });
+  return json;
 }
 
 planner::WorldResult worldResult(const ordered_json& json) {
   planner::WorldResult result;
   const auto outcome = json.at("outcome").get<std::string>();
-  result.drive.outcome = *std::find_if(kOutcomes.begin(), kOutcomes.end(),
-                                       [&](Outcome o) { return planner::name(o) == outcome; });
-  json.at("cause").get_to(result.drive.cause);
-  json.at("energy_J").get_to(result.drive.energy_J);
-  json.at("length_m").get_to(result.drive.length_m);
-  json.at("time_s").get_to(result.drive.time_s);
-  json.at("replans").get_to(result.drive.replans);
-  json.at("alarms").get_to(result.drive.alarms);
-  json.at("max_slip").get_to(result.drive.max_slip);
-  json.at("categories_changed").get_to(result.categories_changed);
+  result.drive.outcome =
+      *std::ranges::find_if(kOutcomes, [&](Outcome o) { return planner::name(o) == outcome; });
+  eachField(result, [&](const char* key, auto& value) { json.at(key).get_to(value); });
   return result;
 }
 
@@ -220,13 +220,29 @@ void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSim
 
 namespace {
 
-Scene sceneBefore(const costmap::TraversabilityMap& map, const planner::WorldResult& result,
-                  planner::SoilKnowledge belief) {
-  Scene scene =
-      sceneOf(map, SceneOptions{.title = fmt::format("Simulated traverse: {}", label(result.drive.outcome))});
-  scene.subtitle = fmt::format("soil knowledge: {}; categories before the drive", label(belief));
-  scene.facts = factsOf(result);
-  return scene;
+// Elevation, slip and energy over the steps of a drive; the energy is summed over the length on the slope.
+planner::Route profileOf(const RecordedTraverse& drive, const costmap::TraversabilityMap& map,
+                         bool predicted) {
+  planner::Route route;
+  double energy_J = 0.0;
+  for (const planner::TraverseStep& step : drive.log.steps()) {
+    planner::RouteVertex v{
+        .x_m = step.place.x_m,
+        .y_m = step.place.y_m,
+        .slope_along_rad = std::nan(""),
+        .slope_across_rad = std::nan(""),
+        .slip = predicted ? step.expected_slip : step.truth.slip,
+        .category = static_cast<terramech::Category>(map.costs().category(*map.grid().cellAt(step.place))),
+        .energy_J = energy_J,
+        .time_s = step.time_s,
+        .immobilisation_risk = std::nan("")};
+    if (!predicted)
+      v.elevation_m = maps::elevationAt(map.elevation().elevation_m, step.place).value_or(std::nan(""));
+    energy_J += (predicted ? step.expected_energy_J_per_m : step.truth.energy_J_per_m) * step.length_m *
+                std::hypot(1.0, step.gradient);
+    route.vertices.push_back(v);
+  }
+  return route;
 }
 
 }  // namespace
@@ -241,8 +257,7 @@ RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::
   planner::SimulationOptions options = site.options(belief, 0);
   options.watch = {.progress = {}, .stop = watch.stop};
   options.record = true;
-  planner::TraverseLog log;
-  options.on_step = [&](const planner::TraverseStep& step) { log.record(step); };
+  options.on_step = [&](const planner::TraverseStep& step) { out.log.record(step); };
   options.on_learned = [&](double time_s) {
     std::vector<std::uint8_t> now = map.costs().categories().values();
     const int width = map.grid().width;
@@ -256,17 +271,32 @@ RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::
   for (std::size_t i = 0; i < before.size(); ++i)
     out.result.categories_changed += before[i] != known[i] ? 1U : 0U;
   out.story.drive = out.result.drive;
-  out.prediction = log.errors();
   return out;
+}
+
+std::string predictionText(const RecordedTraverse& drive) {
+  const planner::PredictionErrors errors = drive.log.errors();
+  return fmt::format("slip error {:.3f} rms, total energy error {:+.1f} %", errors.slip_rmse,
+                     100.0 * errors.energy_error);
 }
 
 void saveTraversePage(const std::filesystem::path& path, const planner::SimulationSite& site,
                       planner::SoilKnowledge belief, const RecordedTraverse& drive,
                       const planner::RouteOrigin& origin) {
-  Scene scene = sceneBefore(site.estimatedMap(belief, site.trueWorld(0)), drive.result, belief);
+  const costmap::TraversabilityMap map = site.estimatedMap(belief, site.trueWorld(0));
+  Scene scene =
+      sceneOf(map, {.title = fmt::format("Simulated traverse: {}", label(drive.result.drive.outcome))});
+  scene.subtitle = fmt::format("soil knowledge: {}; categories before the drive", label(belief));
+  scene.facts = factsOf(drive.result);
   scene.story = drive.story;
+  scene.facts.emplace_back("predicted", predictionText(drive));
+  const planner::SimulationOptions options = site.options(belief, 0);
+  scene.marks = {{"S", options.start}, {"G", options.goal}};
+  for (const bool predicted : {false, true})
+    scene.routes.push_back(
+        {predicted ? "predicted before each step" : "driven", profileOf(drive, map, predicted)});
   addProvenance(scene, origin);
-  savePage(path, scene);
+  saveScene(scene, path, "");
 }
 
 }  // namespace talus::cli

@@ -90,14 +90,17 @@ void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSim
 struct RecordedTraverse {
   planner::WorldResult result;
   TraverseRecord story;
-  planner::PredictionErrors prediction{};  ///< errors of the map's prediction at each step of the drive
+  planner::TraverseLog log;  ///< prediction of the map and truth at each step of the drive
 };
 /// Simulates world 0 of a site with the knowledge `belief` of the soils, and returns the record.
 RecordedTraverse recordedTraverse(const planner::SimulationSite& site, planner::SoilKnowledge belief,
                                   const ProgressMonitor& watch);
 
+/// Returns the errors of the prediction, as "slip error 0.021 rms, total energy error +3.1 %".
+std::string predictionText(const RecordedTraverse& drive);
+
 /// Writes an HTML page with a time slider for the drive: track, current plan, cells with a changed category,
-/// events and provenance. @throws InputError if the file cannot be written
+/// events and provenance, and profiles of what was predicted beside what was driven. @throws InputError if the file cannot be written
 void saveTraversePage(const std::filesystem::path& path, const planner::SimulationSite& site,
                       planner::SoilKnowledge belief, const RecordedTraverse& drive,
                       const planner::RouteOrigin& origin);

@@ -116,7 +116,7 @@ void warnOfRejected(const std::vector<terramech::RejectedRow>& rows, const std::
   for (std::size_t k = 0; k < rows.size() && k < kShown; ++k)
     context.warn(fmt::format("{}:{}: {}", path, rows[k].line, rows[k].reason));
   if (rows.size() > kShown)
-    context.warn(fmt::format("{}: {} more rows rejected; --json lists all", path, rows.size() - kShown));
+    context.warn(fmt::format("{}: {} more rows rejected", path, rows.size() - kShown));
 }
 
 nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& rows) {

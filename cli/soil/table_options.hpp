@@ -43,9 +43,6 @@ void warnOfRejected(const std::vector<terramech::RejectedRow>& rows, const std::
 /// Returns rejected rows as JSON: [{line, reason}].
 nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& rows);
 
-}  // namespace talus::cli
-namespace talus::cli {
-
 /// Counts of a processed table of wheel cases. A case is a wheel at given load and slip on a soil.
 struct WheelCaseTable {
   /// Number of solved rows.

@@ -572,8 +572,6 @@ std::string traceText(const TableTrace& trace) {
 
 namespace {
 
-using namespace terramech;
-
 /// Residuals without one effect, and the contribution of that effect, row by row over its column (over the
 /// row index if the effect acts on a constant or text).
 Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at,
@@ -651,33 +649,21 @@ void effects(HtmlReport& page, const TableTrace& trace) {
   page.table({"effect", "form", "equal causes", "how to discriminate"}, forms);
 }
 
-std::vector<std::string> errorRow(const std::string& rows, Channel c, const ChannelErrors& base,
-                                  const ChannelErrors& refined, const ChannelErrors& floor) {
-  const auto k = static_cast<std::size_t>(c);
-  return {rows, name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
-          fmt::format("{:.4f}", floor[k])};
-}
-
-const std::vector<std::string> kErrorColumns{"rows", "channel", "base", "refined", "noise floor"};
-
-void errors(HtmlReport& page, const TraceResult& r) {
-  std::vector<std::vector<std::string>> rows;
-  for (Channel c : kAllChannels)
-    if (r.trial.has(c)) rows.push_back(errorRow("of the fit", c, r.base_rmse, r.refined_rmse, r.noise_floor));
-  page.table(kErrorColumns, rows);
-}
-
-void heldOut(HtmlReport& page, const TableTrace& trace) {
-  if (trace.held_out.empty()) return;
-  page.heading("Error of the base and the refined model on rows that are held out");
+// Errors on the rows of the fit and on those held out.
+void errors(HtmlReport& page, const TableTrace& trace) {
   const TraceResult& r = trace.result;
   std::vector<std::vector<std::string>> rows;
-  for (const HeldOut& held : trace.held_out)
+  const auto add = [&](const std::string& what, const ChannelErrors& base, const ChannelErrors& refined) {
     for (Channel c : kAllChannels)
-      if (r.trial.has(c))
-        rows.push_back(errorRow(held.scheme, c, held.base_rmse, held.refined_rmse, r.noise_floor));
+      if (const auto k = static_cast<std::size_t>(c); r.trial.has(c))
+        rows.push_back({what, name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
+                        fmt::format("{:.4f}", r.noise_floor[k])});
+  };
+  add("of the fit", r.base_rmse, r.refined_rmse);
+  for (const HeldOut& held : trace.held_out)
+    add("held out: " + held.scheme, held.base_rmse, held.refined_rmse);
   page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
-  page.table(kErrorColumns, rows);
+  page.table({"rows", "channel", "base", "refined", "noise floor"}, rows);
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
@@ -712,14 +698,13 @@ std::string tracePage(const TableTrace& trace) {
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
-  errors(page, r);
+  errors(page, trace);
   std::vector<Plot> plots;
   for (Channel c : kAllChannels)
     if (r.trial.has(c)) plots.push_back(overSlip(c, r.trial, {{"base", base}, {"refined", level}}));
   page.charts(plots);
   curves(page, r, level, sinkage);
   effects(page, trace);
-  heldOut(page, trace);
   tests(page, r);
   return page.html();
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <variant>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -235,48 +236,119 @@ BenchmarkLine lineOf(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>&
   return line;
 }
 
-std::string hundredths(double value) {
-  return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-";
+// A column of the comparison: its heading, its key in JSON, and the format of the number times `factor`.
+struct LineColumn {
+  const char *title, *key;
+  std::variant<int BenchmarkLine::*, double BenchmarkLine::*> value;
+  const char* format = "{}";
+  double factor = 1.0;
+};
+const LineColumn kColumns[] = {
+    {"runs", "runs", &BenchmarkLine::runs},
+    {"solved", "found", &BenchmarkLine::found},
+    {"invalid", "breached", &BenchmarkLine::breached},
+    {"crashed", "crashed", &BenchmarkLine::crashed},
+    {"gap p50 %", "median_gap", &BenchmarkLine::median_gap, "{:.2f}", 100.0},
+    {"gap max %", "worst_gap", &BenchmarkLine::worst_gap, "{:.2f}", 100.0},
+    {"time p50 s", "median_seconds", &BenchmarkLine::median_seconds, "{:.4f}"},
+    {"MB max", "worst_megabytes", &BenchmarkLine::worst_megabytes, "{:.0f}"},
+    {"cusps", "mean_cusps", &BenchmarkLine::mean_cusps, "{:.2f}"},
+    {"curv. 1/m", "max_curvature_1_m", &BenchmarkLine::max_curvature_1_m, "{:.3g}"},
+    {"clearance", "least_clearance_cells", &BenchmarkLine::least_clearance_cells, "{:.2f}"}};
+
+// Table rows, beginning with the header.
+std::vector<std::vector<std::string>> lineRows(const std::vector<BenchmarkLine>& lines) {
+  std::vector<std::vector<std::string>> rows{{"planner"}};
+  for (const LineColumn& column : kColumns) rows.front().emplace_back(column.title);
+  for (const BenchmarkLine& line : lines) {
+    rows.push_back({line.planner});
+    for (const LineColumn& column : kColumns)
+      if (const auto* count = std::get_if<int BenchmarkLine::*>(&column.value))
+        rows.back().push_back(std::to_string(line.**count));
+      else if (const double value = line.*std::get<double BenchmarkLine::*>(column.value);
+               std::isfinite(value))
+        rows.back().push_back(fmt::format(fmt::runtime(column.format), column.factor * value));
+      else
+        rows.back().emplace_back("-");
+  }
+  return rows;
 }
 
-const std::vector<std::string> kColumns{"planner", "runs",      "solved",    "invalid",
-                                        "crashed", "gap p50 %", "gap max %", "time p50 s",
-                                        "MB max",  "cusps",     "curv. 1/m", "clearance"};
+// A table for a terminal, whose first `names` columns are names.
+std::string tableText(const std::vector<std::vector<std::string>>& rows, std::size_t names, int width) {
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += i < names ? fmt::format("{:<{}}", row[i], i + 1 < names ? 12 : 16)
+                        : fmt::format("{:>{}}", row[i], width);
+    text += "\n";
+  }
+  return text;
+}
 
-std::vector<std::string> words(const BenchmarkLine& line) {
-  return {line.planner,
-          std::to_string(line.runs),
-          std::to_string(line.found),
-          std::to_string(line.breached),
-          std::to_string(line.crashed),
-          hundredths(100.0 * line.median_gap),
-          hundredths(100.0 * line.worst_gap),
-          fmt::format("{:.4f}", line.median_seconds),
-          fmt::format("{:.0f}", line.worst_megabytes),
-          fmt::format("{:.2f}", line.mean_cusps),
-          fmt::format("{:.3g}", line.max_curvature_1_m),
-          hundredths(line.least_clearance_cells)};
+// Colour of a planner, which its start with nothing (:cold) shares.
+Colour colourOf(const BenchmarkPlan& plan, const std::string& planner) {
+  const std::string warm = planner.substr(0, planner.find(":cold"));
+  return seriesColour(
+      static_cast<std::size_t>(std::ranges::find(plan.planners, warm) - plan.planners.begin()));
+}
+
+// How dear and how fast: the medians of each planner.
+Plot dearAndFast(const BenchmarkPlan& plan, const std::vector<BenchmarkLine>& lines) {
+  Plot plot{.title = "Each planner: how dear, how fast",
+            .x = {.label = "median time [s]", .logarithmic = true},
+            .y = {.label = "median gap [%]"},
+            .series = {}};
+  for (const BenchmarkLine& line : lines)
+    plot.series.push_back({.name = line.planner,
+                           .x = {line.median_seconds},
+                           .y = {100.0 * line.median_gap},
+                           .mark = Series::Mark::Points,
+                           .dashed = line.planner.find(":cold") != std::string::npos,
+                           .colour = colourOf(plan, line.planner)});
+  return plot;
+}
+
+// The fastest planner that solves all of its runs within 1 % of the best known cost in the median.
+std::string fastestText(const std::vector<BenchmarkLine>& lines) {
+  const BenchmarkLine* fastest = nullptr;
+  for (const BenchmarkLine& line : lines)
+    if (line.found == line.runs && line.breached == 0 && line.median_gap <= 0.01 &&
+        (fastest == nullptr || line.median_seconds < fastest->median_seconds))
+      fastest = &line;
+  return fastest == nullptr
+             ? "No planner solves all runs within 1 % of the best known cost in the median."
+             : fmt::format(
+                   "Fastest of the planners that solve all runs within 1 % of the best known cost in the "
+                   "median: {}, {:.3g} s, gap {:.2f} % (greatest {:.2f} %).",
+                   fastest->planner, fastest->median_seconds, 100.0 * fastest->median_gap,
+                   100.0 * fastest->worst_gap);
 }
 
 Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs, std::size_t case_index) {
   Plot plot{.title = plan.cases[case_index].name,
-            .x = {"time [s]"},
-            .y = {"gap to the best known cost [%]"},
+            .x = {.label = "time [s]", .logarithmic = true},
+            .y = {.label = "gap [%]"},
             .series = {}};
   const double best_J = planner::bestKnown_J(plan, runs, case_index);
-  double end_s = 0.0;
+  constexpr double kSoonest_s = 1e-3;  // a logarithmic axis has no 0
+  double end_s = kSoonest_s;
   for (const BenchmarkRun& run : runs)
     if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
   for (const BenchmarkRun& run : runs) {
     if (run.case_index != case_index || run.seed != 1 || !planner::stands(run) || run.progress.empty())
       continue;
-    Series series{.name = run.planner, .x = {}, .y = {}};
+    Series series{.name = run.planner,
+                  .x = {},
+                  .y = {},
+                  .dashed = run.planner.find(":cold") != std::string::npos,
+                  .colour = colourOf(plan, run.planner)};
     for (const auto& at : run.progress) {
       if (!series.x.empty()) {  // step curve: the cost holds until the next improvement
-        series.x.push_back(at.seconds);
+        series.x.push_back(std::max(at.seconds, kSoonest_s));
         series.y.push_back(series.y.back());
       }
-      series.x.push_back(at.seconds);
+      series.x.push_back(std::max(at.seconds, kSoonest_s));
       series.y.push_back(100 * (at.cost_J / best_J - 1.0));
     }
     series.x.push_back(end_s);  // the last cost holds until the end
@@ -339,44 +411,19 @@ std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<Ben
 }
 
 std::string asText(const std::vector<WorldLine>& lines) {
-  if (lines.empty()) return "";
-  std::string text = "\n";
-  for (const auto& row : worldRows(lines)) {
-    text += fmt::format("{:<12}{:<16}", row[0], row[1]);
-    for (std::size_t i = 2; i < row.size(); ++i) text += fmt::format("{:>14}", row[i]);
-    text += "\n";
-  }
-  return text;
+  return lines.empty() ? "" : "\n" + tableText(worldRows(lines), 2, 14);
 }
 
 std::string asText(const std::vector<BenchmarkLine>& lines) {
-  std::string text = fmt::format("{:<16}", kColumns[0]);
-  for (std::size_t i = 1; i < kColumns.size(); ++i) text += fmt::format("{:>12}", kColumns[i]);
-  text += "\n";
-  for (const BenchmarkLine& line : lines) {
-    const auto cells = words(line);
-    text += fmt::format("{:<16}", cells[0]);
-    for (std::size_t i = 1; i < cells.size(); ++i) text += fmt::format("{:>12}", cells[i]);
-    text += "\n";
-  }
-  return text;
+  return tableText(lineRows(lines), 1, 12);
 }
 
 nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
   auto array = nlohmann::ordered_json::array();
   for (const BenchmarkLine& line : lines) {
-    array.push_back({{"planner", line.planner},
-                     {"runs", line.runs},
-                     {"found", line.found},
-                     {"breached", line.breached},
-                     {"crashed", line.crashed},
-                     {"median_gap", line.median_gap},
-                     {"worst_gap", line.worst_gap},
-                     {"median_seconds", line.median_seconds},
-                     {"worst_megabytes", line.worst_megabytes},
-                     {"mean_cusps", line.mean_cusps},
-                     {"max_curvature_1_m", line.max_curvature_1_m},
-                     {"least_clearance_cells", line.least_clearance_cells}});
+    array.push_back({{"planner", line.planner}});
+    for (const LineColumn& column : kColumns)
+      std::visit([&](auto value) { array.back()[column.key] = line.*value; }, column.value);
     for (const WorldLine& drive : drives)
       if (drive.planner == line.planner)
         array.back()["drives"].push_back({{"belief", drive.group},
@@ -399,14 +446,19 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
   HtmlReport page("Planner benchmark");
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
     page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
-  std::vector<std::vector<std::string>> rows;
-  for (const BenchmarkLine& line : compared(plan, runs)) rows.push_back(words(line));
-  page.table(kColumns, rows);
+  const std::vector<BenchmarkLine> lines = compared(plan, runs);
+  page.paragraph(fastestText(lines));
+  std::vector<Plot> plots = gapsOverTime(plan, runs);
+  plots.insert(plots.begin(), dearAndFast(plan, lines));
+  const auto first = plots.begin() + std::min<std::ptrdiff_t>(3, std::ssize(plots));  // one row of a screen
+  page.charts({plots.begin(), first});
+  const auto rows = lineRows(lines);
+  page.table(rows.front(), {rows.begin() + 1, rows.end()});
   if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
     page.heading("Simulated drives over the true slip");
     page.table(drives.front(), {drives.begin() + 1, drives.end()});
   }
-  page.charts(gapsOverTime(plan, runs));
+  page.charts({first, plots.end()});
   page.paragraph(fmt::format(
       "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
       "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "

@@ -931,31 +931,34 @@ void refuseDamagedClassic(const std::string& path) {
   ClassicHeader(path).end();
 }
 
-// Rejects a text file that ends with a digit or a point: its last number may be incomplete.
-void refuseOpenEnd(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  file.seekg(-1, std::ios::cur);
-  const int last = file.get();
-  if (file && std::isdigit(last) == 0 && last != '.') return;
-  throw InputError({path, "ends within a number, as a file that is cut short does",
-                    "fetch it again; if it is whole, end its last line"});
-}
-
-// Rejects a table of numbers with control bytes or non-ASCII bytes.
-void refuseForeignBytes(const std::string& path) {
+// Calls each(character, line) for all bytes of a file.
+template <typename Each>
+void eachByte(const std::string& path, Each each) {
   std::ifstream file(path, std::ios::binary);
   std::string piece(kPiece, '\0');
   std::size_t line = 1;
   while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0)
     for (const char c : std::string_view(piece.data(), static_cast<std::size_t>(file.gcount()))) {
+      each(c, line);
       line += c == '\n' ? 1U : 0U;
-      const auto byte = static_cast<unsigned char>(c);
-      if (byte >= 0x80 || (byte < 0x20 && std::isspace(byte) == 0))
-        throw InputError(
-            {path + ":" + std::to_string(line),
-             "holds the byte " + std::to_string(byte) + " among its numbers, as a damaged file does",
-             "fetch it again"});
     }
+}
+
+// Rejects a table of numbers with control bytes or non-ASCII bytes, and one that ends with a digit or a point: its
+// last number may be incomplete.
+void refuseForeignBytes(const std::string& path) {
+  char last = '\n';
+  eachByte(path, [&](char c, std::size_t line) {
+    const auto byte = static_cast<unsigned char>(last = c);
+    if (byte >= 0x80 || (byte < 0x20 && std::isspace(byte) == 0))
+      throw InputError(
+          {path + ":" + std::to_string(line),
+           "holds the byte " + std::to_string(byte) + " among its numbers, as a damaged file does",
+           "fetch it again"});
+  });
+  if (std::isdigit(static_cast<unsigned char>(last)) != 0 || last == '.')
+    throw InputError({path, "ends within a number, as a file that is cut short does",
+                      "fetch it again; if it is whole, end its last line"});
 }
 
 constexpr std::size_t kLongest = 400;  // longest accepted number [characters]
@@ -1027,10 +1030,7 @@ void refuseDamaged(GDALDataset& dataset, const std::string& path) {
     }
   // Each value takes at least two bytes: a digit and a separator.
   if (driver == "AAIGrid" || driver == "GSAG") refuseFewerBytes(path, 2 * cellsOf(dataset));
-  if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") {
-    refuseForeignBytes(path);
-    refuseOpenEnd(path);
-  }
+  if (driver == "AAIGrid" || driver == "GSAG" || driver == "XYZ") refuseForeignBytes(path);
   if (driver == "VRT")
     for (const InputFile& file : filesOf(dataset, path))
       if (const Dataset source{file.role == "source"
@@ -1055,21 +1055,19 @@ std::string pds3Keyword(const std::string& path, const std::string& keyword, con
 }
 
 std::uintmax_t valuesOfGrid(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string piece(kPiece, '\0'), word;
+  std::string word;
   Words words(path);
-  std::size_t line = 1;
-  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0)
-    for (const char c : std::string_view(piece.data(), static_cast<std::size_t>(file.gcount()))) {
-      const bool between = c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\0';
-      if (!between && word.size() <= kLongest) word += c;
-      if (between && !word.empty()) {
-        words.take(word, line);
-        word.clear();
-      }
-      line += c == '\n' ? 1U : 0U;
+  std::size_t last = 1;
+  eachByte(path, [&](char c, std::size_t line) {
+    const bool between = c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\0';
+    if (!between && word.size() <= kLongest) word += c;
+    if (between && !word.empty()) {
+      words.take(word, line);
+      word.clear();
     }
-  if (!word.empty()) words.take(word, line);
+    last = line;
+  });
+  if (!word.empty()) words.take(word, last);
   return words.values();
 }
 

@@ -21,6 +21,7 @@
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/maps/raster/intake.hpp>
+#include <talus/maps/raster/raster_frame.hpp>
 
 namespace talus::maps {
 namespace {
@@ -216,6 +217,34 @@ class ClassRanks {
 };
 
 }  // namespace
+
+Raster<std::uint32_t> readImage(const std::string& path, const std::optional<Georeference>& georeference,
+                                const Grid& grid) {
+  const GdalErrors quiet;
+  const Dataset file = openRaster(path);
+  if (hasCrs(file->GetSpatialRef()) != georeference.has_value())
+    throw InputError(
+        {path, "only one of it and the map has a CRS", "give it the map's with gdal_edit.py -a_srs"});
+  if (file->GetRasterBand(1)->GetRasterDataType() != GDT_Byte ||
+      file->GetRasterBand(1)->GetColorTable() != nullptr)
+    throw InputError({path, "is no picture of 8 bits in red, green and blue",
+                      "convert it with gdal_translate -expand rgb"});
+  const Dataset fitted =
+      warp(*file, {.wkt = georeference ? georeference->system().wkt : "", .grid = grid, .method = "average"},
+           path);
+  Raster<std::uint32_t> image(grid);
+  for (const int channel : {0, 1, 2}) {
+    const int band = file->GetRasterCount() < 3 ? 1 : channel + 1;
+    const std::vector<float> values = Quantity().of({*fitted, band, {0, 0, grid.width, grid.height}, path});
+    const Raster<float> placed = northUp(grid, values);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (const float v = placed.values()[i]; !std::isnan(v))
+        image.values()[i] |= 0xFF000000U | static_cast<std::uint32_t>(std::lround(v)) << (16 - 8 * channel);
+  }
+  if (std::ranges::count(image.values(), 0U) == std::ssize(image.values()))
+    throw InputError({path, "does not overlap the map", "the map " + extent(grid)});
+  return image;
+}
 
 Raster<std::uint8_t> readTerrainClasses(const LayerSource& source, const ElevationMap& map,
                                         std::span<const int> weakest_last) {

@@ -9,6 +9,8 @@
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 
+class OGRSpatialReference;
+
 namespace talus::maps {
 
 /// Target of resampling a raster: square cells of 32-bit floats; NaN marks cells without data.
@@ -39,12 +41,6 @@ struct FramedRaster {
 /// pixel size of a file without a CRS
 FramedRaster frame(GDALDataset& file, const ReadOptions& options, const std::string& path,
                    std::vector<std::string>& notes);
-
-}  // namespace talus::maps
-
-class OGRSpatialReference;
-
-namespace talus::maps {
 
 /// Returns the CoordinateSystem of a projected coordinate reference system (CRS) of GDAL. The method is
 /// ProjectionMethod::Foreign for a projection that Georeference does not implement. `where` names the file in

@@ -30,17 +30,9 @@
 
 namespace talus::maps {
 
-namespace {
-
-bool namesAFile(const std::string& text) {
-  return isNamedAsVector(text) || std::filesystem::exists(text);
-}
-
-}  // namespace
-
 Point readPlace(const std::string& text, const ElevationMap& map, const std::string& name) {
   const std::string where = name + " " + text;
-  if (namesAFile(text)) return locate(readPoint(text, map), map, where);
+  if (isNamedAsVector(text) || std::filesystem::exists(text)) return locate(readPoint(text, map), map, where);
   try {
     return locate(parsePlace(text), map, where);
   } catch (const InputError& error) {
@@ -440,70 +432,53 @@ class OnceEach {
   std::vector<std::set<std::string>> names_;
 };
 
-// Makes GDAL's geometries, in map coordinates [m], of those of a document.
+// Makes GDAL's geometries, in map coordinates [m], of those of a document. Every position is checked here, because GDAL
+// leaves out parts that it cannot read.
 class Geometries {
  public:
   Geometries(const json& document, const ElevationMap& map, const std::string& path)
       : places_(isLocal(document) ? nullptr : map.places()), path_(path) {}
 
-  std::unique_ptr<OGRGeometry> of(const json& object) const {
-    const std::string type = typeOf(object);
-    if (type == "GeometryCollection")
-      return parts<OGRGeometryCollection>(object, "geometries", &Geometries::of);
-    if (type == "MultiPolygon") return parts<OGRMultiPolygon>(object, "coordinates", &Geometries::polygon);
-    if (type == "MultiLineString") return parts<OGRMultiLineString>(object, "coordinates", &Geometries::line);
-    if (type == "MultiPoint") return parts<OGRMultiPoint>(object, "coordinates", &Geometries::point);
-    const json* at = memberOf(object, "coordinates");
-    if (type == "Polygon") return polygon(list(at));
-    if (type == "LineString") return line(list(at));
-    if (type == "Point") return point(list(at));
+  std::unique_ptr<OGRGeometry> of(json object) const {
     if (object.is_null()) return nullptr;
+    place(object);
+    std::unique_ptr<OGRGeometry> made(OGRGeometryFactory::createFromGeoJson(object.dump().c_str()));
+    if (!made) throw InputError({path_, "has a geometry that GDAL cannot read", "see RFC 7946"});
+    return made;
+  }
+
+ private:
+  // Puts map coordinates in place of the positions of a geometry.
+  void place(json& object) const {
+    const std::string type = typeOf(object);
+    constexpr std::pair<std::string_view, int> kNesting[] = {{"Point", 0},           {"LineString", 1},
+                                                             {"MultiPoint", 1},      {"Polygon", 2},
+                                                             {"MultiLineString", 2}, {"MultiPolygon", 3}};
+    if (type == "GeometryCollection") {
+      for (json& part : list(object["geometries"])) place(part);
+      return;
+    }
+    for (const auto& [name, depth] : kNesting)
+      if (type == name) return place(list(object["coordinates"]), depth);
     throw InputError(
         {path_,
          type.empty() ? "has a geometry without a \"type\"" : "'" + type.substr(0, 40) + "' is no geometry",
          "see RFC 7946"});
   }
 
- private:
-  const json& list(const json* found) const {
-    if (found == nullptr || !found->is_array())
+  void place(json& positions, int depth) const {
+    if (depth > 0) {
+      for (json& one : list(positions)) place(one, depth - 1);
+    } else {
+      const Point p = at(positions);
+      positions = {p.x_m, p.y_m};
+    }
+  }
+
+  json& list(json& found) const {
+    if (!found.is_array())
       throw InputError({path_, "a geometry has no list of its positions", "see RFC 7946"});
-    return *found;
-  }
-
-  template <class Whole, class Part>
-  std::unique_ptr<OGRGeometry> parts(const json& object, const char* name, Part part) const {
-    auto whole = std::make_unique<Whole>();
-    for (const json& one : list(memberOf(object, name)))
-      if (auto made = (this->*part)(one)) whole->addGeometryDirectly(made.release());
-    return whole;
-  }
-
-  std::unique_ptr<OGRGeometry> point(const json& position) const {
-    const Point p = at(position);
-    return std::make_unique<OGRPoint>(p.x_m, p.y_m);
-  }
-  std::unique_ptr<OGRGeometry> line(const json& positions) const {
-    auto made = std::make_unique<OGRLineString>();
-    fill(list(&positions), *made);
-    return made;
-  }
-  std::unique_ptr<OGRGeometry> polygon(const json& rings) const {
-    auto made = std::make_unique<OGRPolygon>();
-    for (const json& positions : list(&rings)) {
-      auto ring = std::make_unique<OGRLinearRing>();
-      fill(list(&positions), *ring);
-      made->addRingDirectly(ring.release());
-    }
-    return made;
-  }
-  void fill(const json& positions, OGRSimpleCurve& curve) const {
-    curve.setNumPoints(static_cast<int>(positions.size()));
-    int i = 0;
-    for (const json& position : positions) {
-      const Point p = at(position);
-      curve.setPoint(i++, p.x_m, p.y_m);
-    }
+    return found;
   }
 
   Point at(const json& position) const {

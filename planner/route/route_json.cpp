@@ -264,27 +264,14 @@ Json summaryJson(const Route& route) {
   const RouteSummary& s = route;
   Json made;
   made["status"] = std::string(name(route.status));
-  if (route.vertices.empty()) {
-    for (const char* key : {"cost", "energy_J", "time_s", "energy_p90_J", "time_p90_s", "length_m",
-                            "max_slip", "max_slope_rad", "lower_bound", "gap", "immobilisation_risk"})
-      made[key] = nullptr;
+  const bool none = route.vertices.empty();
+  for (const auto& [key, value] : kSummaryColumns) made[key] = none ? Json() : Json(s.*value);
+  made["immobilisation_risk"] = none ? Json() : Json(route.vertices.back().immobilisation_risk);
+  if (none) {
     made["planner"] = s.planner;
     if (route.obstruction) made["obstruction"] = obstructionJson(*route.obstruction);
     return made;
   }
-  made["cost"] = s.cost;
-  made["energy_J"] = s.energy_J;
-  made["time_s"] = s.time_s;
-  made["energy_p90_J"] = s.energy_p90_J;
-  made["time_p90_s"] = s.time_p90_s;
-  made["length_m"] = s.length_m;
-  made["max_slip"] = s.max_slip;
-  made["max_slope_rad"] = s.max_slope_rad;
-  made["max_slope_across_rad"] = s.max_slope_across_rad;
-  made["max_slip_angle_rad"] = s.max_slip_angle_rad;
-  made["lower_bound"] = s.lower_bound;
-  made["gap"] = s.gap;
-  made["immobilisation_risk"] = route.vertices.back().immobilisation_risk;
   made["planner"] = s.planner;
   if (route.interrupted) made["interrupted"] = true;
   if (s.drive)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -37,6 +38,22 @@ inline constexpr VertexColumn kVertexColumns[] = {
     {"energy_J", &RouteVertex::energy_J},
     {"time_s", &RouteVertex::time_s},
     {"immobilisation_risk", &RouteVertex::immobilisation_risk},
+};
+
+/// The quantities of a route as a whole, in the order of files.
+inline constexpr std::pair<const char*, double RouteSummary::*> kSummaryColumns[] = {
+    {"cost", &RouteSummary::cost},
+    {"energy_J", &RouteSummary::energy_J},
+    {"time_s", &RouteSummary::time_s},
+    {"energy_p90_J", &RouteSummary::energy_p90_J},
+    {"time_p90_s", &RouteSummary::time_p90_s},
+    {"length_m", &RouteSummary::length_m},
+    {"max_slip", &RouteSummary::max_slip},
+    {"max_slope_rad", &RouteSummary::max_slope_rad},
+    {"max_slope_across_rad", &RouteSummary::max_slope_across_rad},
+    {"max_slip_angle_rad", &RouteSummary::max_slip_angle_rad},
+    {"lower_bound", &RouteSummary::lower_bound},
+    {"gap", &RouteSummary::gap},
 };
 
 /// Returns the colour 0xRRGGBB of a category: white with a trace of green, amber, dark red and black. Lightness

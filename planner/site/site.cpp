@@ -375,7 +375,7 @@ auto blamingFiles(const SiteFiles& files, Make make) {
 void warnOfAssumptions(const SiteFiles& files, const Assumed& assumed, const SiteReading& reading) {
   if (files.soil.empty() && files.soils.empty() && files.model.empty())
     reading.tell(std::string("no --soil or --soils: using default soil ") + assumed.soil);
-  if (files.rover.empty()) reading.tell(std::string("no --rover: using default rover ") + assumed.rover + "");
+  if (files.rover.empty()) reading.tell(std::string("no --rover: using default rover ") + assumed.rover);
 }
 
 void warnOfUnseen(const std::vector<costmap::CostLayer>& layers, const costmap::TravelPolicy& policy,

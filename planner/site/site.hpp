@@ -49,8 +49,6 @@ costmap::TraversabilityMap readBuiltMap(const std::string& path, const SiteReadi
 /// grid. @throws InputError otherwise
 void refuseReadOptions(const ElevationFile& file);
 
-/// Costs that are stated in place of a rover and soils.
-
 /// Costs per horizontal metre that a file states, by class number. `classed` is false for a file without a column
 /// `class`; its one class has the number 0.
 struct CostCurves {
@@ -81,8 +79,6 @@ inline constexpr std::uint8_t kRefusedCost = 254;
 /// map (image, resolution, origin, negate, occupied_thresh, free_thresh), whose free cells cost 1 a metre and whose
 /// occupied cells are impassable. @throws InputError
 CostRaster readCostRaster(const ElevationFile& file, const SiteReading& reading);
-
-/// Reading of a site from files. Needs GDAL and yaml-cpp (talus::site).
 
 /// Files of a site. An empty path means that there is no such file.
 struct SiteFiles {

@@ -15,17 +15,6 @@ TEST(FigureParts, MeanAndStdMatchClosedForm) {
   EXPECT_NEAR(of.std(), 2.0, 1e-12);
 }
 
-TEST(FigureParts, SeriesHelpersSetNamesAndValues) {
-  const Series ramp = straight("ramp", 1.0, 2.0, 5.0);
-  EXPECT_EQ(ramp.x, (std::vector<double>{0.0, 5.0}));
-  EXPECT_EQ(ramp.y, (std::vector<double>{1.0, 11.0}));
-  EXPECT_EQ(lines({"a", "b"})[1].name, "b");
-  Series cloud = points("cloud");
-  EXPECT_EQ(cloud.mark, Series::Mark::Points);
-  put(cloud, 3.0, 4.0);
-  EXPECT_EQ(cloud.y, (std::vector<double>{4.0}));
-}
-
 // Closed form: the ordinary least-squares line through the cloud that is drawn, in kPa, by its normal equations.
 TEST(FigureParts, DrawnLineIsTheLeastSquaresFitOfTheDrawnPoints) {
   terramech::ThesisRun run = clayRun(5, 0.05);
@@ -40,21 +29,6 @@ TEST(FigureParts, DrawnLineIsTheLeastSquaresFitOfTheDrawnPoints) {
   const double slope = (n * xy - x * y) / (n * xx - x * x);
   EXPECT_NEAR(fitted.fit.tan_friction, slope, 1e-9);
   EXPECT_NEAR(1e-3 * fitted.fit.cohesion_Pa, (y - slope * x) / n, 1e-6);
-}
-
-// Property: a reading keeps the load and slip that it was asked for, and more slip gives more torque.
-TEST(FigureParts, SampleHasTheGivenLoadAndSlip) {
-  const auto slow = drive(middle(0), 80.0, 0.2), fast = drive(middle(0), 80.0, 0.6);
-  EXPECT_EQ(slow.load_N, 80.0);
-  EXPECT_EQ(slow.slip, 0.2);
-  EXPECT_GT(fast.torque_Nm, slow.torque_Nm);
-}
-
-TEST(FigureParts, ClayRunHasHighCohesion) {
-  const terramech::ThesisRun run = clayRun(3, 0.05);
-  EXPECT_EQ(run.soil_class, 1);
-  EXPECT_GT(run.soil.cohesion_Pa, 6500.0);
-  EXPECT_EQ(run.soil.cohesion_Pa, clayRun(3, 0.05).soil.cohesion_Pa);
 }
 
 }  // namespace figure_parts_test

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,8 @@ std::vector<ThesisFigure> appendixFigures(std::uint64_t seed);
 
 /// Figures of chapter 3 (3.5, 3.6, 3.7, 3.8, 3.12).
 std::vector<ThesisFigure> traversabilityFigures(std::uint64_t seed);
+
+/// Writes charts as one PNG picture, two in a row; dashed lines are drawn thin. @throws InputError
+void saveFigure(const std::filesystem::path& path, const std::vector<cli::Plot>& plots);
 
 }  // namespace talus::reproduce

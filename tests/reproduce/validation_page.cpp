@@ -241,11 +241,11 @@ int run(const ReproduceOptions& options, Context& context) {
   std::vector<ThesisFigure> figures = estimationFigures(context.seed);
   for (ThesisFigure& f : traversabilityFigures(context.seed)) figures.push_back(std::move(f));
   for (ThesisFigure& f : appendixFigures(context.seed)) figures.push_back(std::move(f));
-  for (const ThesisFigure& f : figures) save(folder / pictureName(f), f.plots);
+  for (const ThesisFigure& f : figures) saveFigure(folder / pictureName(f), f.plots);
   const auto published = publishedCases("", context.watch("published"));
   if (watch.stopped()) return Exit::kCancelled;
   for (const PublishedCase& of : published)
-    if (!of.lines.empty()) save(folder / pictureName(of), picturesOf(of));
+    if (!of.lines.empty()) saveFigure(folder / pictureName(of), picturesOf(of));
   writeFile(folder / "validation.md", page(figures, goals, published, options, context.seed));
   if (context.json) {
     printJson({{"page", (folder / "validation.md").string()}, {"figures", figures.size()}});

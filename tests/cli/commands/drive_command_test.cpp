@@ -132,7 +132,8 @@ TEST(DriveCommand, PageShowsTheDrive) {
   const json out = outcomeOf(folder, drive(folder, kTrap, {"--html", "r.html", "--json"}));
   EXPECT_EQ(out, outcomeOf(folder, drive(folder, kTrap, {"--json"})));
   const std::string page = fileContent(folder / "r.html");
-  for (const char* part : {"\"story\":{\"track\":[[", "\"text\":\"planned\"", "reversed", "id=\"moment\""})
+  for (const char* part : {"\"story\":{\"track\":[[", "\"text\":\"planned\"", "reversed", "id=\"moment\"",
+                           "\"letter\":\"G\"", "\"name\":\"predicted before each step\""})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 

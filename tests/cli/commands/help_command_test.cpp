@@ -39,6 +39,7 @@ TEST(HelpCommand, ManualAndCompletionCoverEveryCommand) {
   const Folder folder;
   const std::string manual = runTalus({"help", "man"}).out,
                     script = runTalus({"help", "bash-completion"}).out;
+  EXPECT_THAT(runTalus({"help"}).out, HasSubstr("talus help man, talus help bash-completion"));
   for (const char* call : {"plan", "doctor", "wheel", "help"}) {
     EXPECT_THAT(manual, HasSubstr(std::string("\n.SS talus ") + call + "\n")) << call;
     EXPECT_THAT(script, HasSubstr(std::string("\n    ") + call + ") options='--")) << call;

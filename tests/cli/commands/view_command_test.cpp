@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <talus/maps/maps_io.hpp>
+
 #include "bad_input.hpp"
 #include "run_program.hpp"
 
@@ -40,6 +42,26 @@ TEST(ViewCommand, PlannedRouteIsShownOnItsMap) {
   const Ran alone = runTalus({"view", "route.geojson"}, folder.path());
   EXPECT_EQ(alone.code, 0);
   EXPECT_THAT(alone.err, HasSubstr("dem.asc of the route was not found"));
+}
+
+// A mission is shown with start, goal, keep-out areas and layers; a picture lies under all.
+TEST(ViewCommand, MissionAndPictureAreShown) {
+  const Folder folder;
+  folder.write("dem.asc", asciiGrid(40, 40, hills));
+  maps::writeGeoTiff({.path = folder / "photo.tif"}, "photo",
+                     maps::Raster<std::uint8_t>({40, 40, 1.0, {}}, 90), {});
+  folder.write("area.json",
+               R"({"type":"Polygon","crs":"local","coordinates":[[[9,9],[14,9],[14,14],[9,9]]]})");
+  folder.write("m.yaml",
+               "maps: {dem: dem.asc, resolution_m: 1, keep_out: area.json}\nrover: fido\n"
+               "soil: sandy_loam\nstart: [3, 3]\ngoal: [35, 30]\n");
+  const Ran ran =
+      runTalus({"view", "m.yaml", "-o", "m.html", "--png", "m.png", "--image", "photo.tif"}, folder.path());
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  for (const char* part :
+       {R"("areas":[{"name":"keep-out")", R"("marks":[{"letter":"S","x":3.0,"y":3.0},{"letter":"G")",
+        R"("layers":[{"name":"image")"})
+    EXPECT_THAT(fileContent(folder / "m.html"), HasSubstr(part));
 }
 
 // The map and the route are in two folders; the program runs in a third.

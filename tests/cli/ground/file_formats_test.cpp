@@ -116,30 +116,6 @@ TEST(FileFormats, VectorFormatsAreTheSupportedDrivers) {
     }
 }
 
-// Property: no listed key is refused as unknown; errors concern only the values.
-TEST(FileFormats, EveryListedKeyIsAccepted) {
-  const Folder folder;
-  const auto refusal = [&](const std::string& yaml, const std::vector<std::string>& call) {
-    folder.write("file.yaml", yaml);
-    return runTalus(call, folder.path()).err;
-  };
-  for (const FileKey& key : missionKeys())
-    EXPECT_THAT(refusal(std::string(key.name) + ": 1\n", {"plan", "file.yaml"}),
-                Not(HasSubstr("unknown key")))
-        << key.name;
-  for (const FileKey& key : missionMapKeys())
-    EXPECT_THAT(refusal("maps: {" + std::string(key.name) + ": 1}\n", {"plan", "file.yaml"}),
-                Not(HasSubstr("unknown key")))
-        << key.name;
-  for (const FileKey& key : thresholdKeys())
-    EXPECT_THAT(
-        refusal("maps: {dem: x}\nthresholds: {" + std::string(key.name) + ": 1}\n", {"plan", "file.yaml"}),
-        Not(HasSubstr("unknown key")))
-        << key.name;
-  EXPECT_THAT(refusal("maps: {dem: x}\nthresholds: {sinkage: 1}\n", {"plan", "file.yaml"}),
-              HasSubstr("unknown key"));
-}
-
 TEST(FileFormats, KeyWithoutUnitSuggestsTheKnownKey) {
   const Folder folder;
   folder.write("soil.yaml", "cohesion: 1000\nfriction_angle: 30\n");
