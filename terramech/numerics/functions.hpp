@@ -76,6 +76,21 @@ Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
   return refined.value < best.value ? refined : best;
 }
 
+/// Progress of work in an unknown number of rounds: each round counts as half of the remaining share.
+class RoundProgress {
+ public:
+  /// Returns the share of the work that is done at a share of the present round; a smaller share than before begins
+  /// the next round.
+  double at(double share) {
+    if (share > 0.0 && share < last_) left_ *= 0.5;
+    last_ = share > 0.0 ? share : last_;
+    return 1.0 - left_ * (1.0 - 0.5 * last_);
+  }
+
+ private:
+  double left_ = 1.0, last_ = 0.0;
+};
+
 /// Natural cubic spline through the points (knots, values), constant beyond the outermost knots. With one
 /// knot the spline is constant; without knots it is 0.
 class NaturalSpline {
