@@ -443,20 +443,7 @@ void stiffness(Input in, WheelContact& c) {
 }
 template <double (*Shape)(Input), Channel channel>
 void zero(Input in, const WheelContact&, Reading& r) {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      r.drawbar_pull_N += Shape(in);
-      break;
-    case Channel::Sinkage:
-      r.sinkage_m += Shape(in);
-      break;
-    case Channel::Torque:
-      r.torque_Nm += Shape(in);
-      break;
-    case Channel::SideForce:
-      r.side_force_N += Shape(in);
-      break;
-  }
+  r[channel] += Shape(in);
 }
 
 struct Target {

@@ -51,17 +51,10 @@ struct Scale {
 };
 
 std::optional<double> statedOf(const StatedSensors& stated, Channel channel) {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      return stated.drawbar_pull_N;
-    case Channel::Sinkage:
-      return stated.sinkage_m;
-    case Channel::Torque:
-      return stated.torque_Nm;
-    case Channel::SideForce:
-      return stated.side_force_N;
-  }
-  return {};
+  constexpr std::optional<double> StatedSensors::*kFields[] = {
+      &StatedSensors::drawbar_pull_N, &StatedSensors::sinkage_m, &StatedSensors::torque_Nm,
+      &StatedSensors::side_force_N};
+  return stated.*kFields[static_cast<std::size_t>(channel)];
 }
 
 std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
