@@ -3,9 +3,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
@@ -15,10 +12,6 @@
 namespace talus::terramech {
 
 namespace {
-
-// Smallest ratio of extreme eigenvalues of the features' correlation matrix; below, the samples lie on a line
-// (ours).
-constexpr double kLeastSpread = 1e-10;
 
 double entryOf(const Wheel& wheel, const WheelSample& sample) {
   RangeCheck("drawbar pull").above("load_N", sample.load_N, 0.0);
@@ -63,32 +56,6 @@ double pullOfTriangularStress(const Wheel& wheel, const WheelSample& sample) {
 
 double PullPlane::at(const Wheel& wheel, const WheelSample& sample) const {
   return c1 * torqueOverLoadRadius(wheel, sample) + c2 * sample.sinkage_m / wheel.radius_m + c3;
-}
-
-void PullPlaneFitter::add(const Wheel& wheel, const WheelSample& sample, double pull_over_load) {
-  const Eigen::Vector4d row(torqueOverLoadRadius(wheel, sample), sample.sinkage_m / wheel.radius_m, 1.0,
-                            pull_over_load);
-  gram_ += row * row.transpose();
-  ++count_;
-}
-
-PullPlaneFit PullPlaneFitter::estimate() const {
-  if (count_ < 4) throw std::domain_error("plane fit of drawbar pull: at least four samples are required");
-  const Eigen::Matrix3d normal = gram_.topLeftCorner<3, 3>();
-  const Eigen::Vector3d scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-  const auto spread =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scale.asDiagonal() * normal * scale.asDiagonal())
-          .eigenvalues();
-  if (!(spread[0] > kLeastSpread * spread[2])) {
-    throw std::domain_error("plane fit of drawbar pull: the samples lie on a line; vary load and slip");
-  }
-  const Eigen::Vector3d c = normal.ldlt().solve(gram_.topRightCorner<3, 1>());
-  const Eigen::Vector4d residual(c[0], c[1], c[2], -1.0);
-  const double variance = std::max(0.0, residual.dot(gram_ * residual)) / (static_cast<double>(count_) - 3.0);
-  return {.plane = {c[0], c[1], c[2]},
-          .covariance = variance * normal.inverse(),
-          .residual_std = std::sqrt(variance),
-          .samples = count_};
 }
 
 double PullAngleModel::angle_rad(const Wheel& wheel, const WheelSample& sample) const {

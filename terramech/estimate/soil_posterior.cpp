@@ -406,23 +406,4 @@ SoilPosterior SoilFilter::posterior() const {
   return posterior;
 }
 
-std::vector<double> SoilFilter::classProbabilities() const {
-  std::vector<double> p;
-  for (std::size_t k = 0; k < state_->tracks.size(); ++k) {
-    p.push_back(std::log(state_->prior[k].probability) + state_->tracks[k].mode.log_evidence);
-  }
-  const double most = *std::ranges::max_element(p);
-  double sum = 0.0;
-  for (double& value : p) sum += value = std::exp(value - most);
-  for (double& value : p) value /= sum;
-  return p;
-}
-
-ContactSoil SoilFilter::mode() const {
-  const auto p = classProbabilities();
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(p) - p.begin());
-  return state_->prior[best].at(state_->count == 0 ? SoilVector(SoilVector::Constant(0.5))
-                                                   : state_->tracks[best].mode.likelihood.at);
-}
-
 }  // namespace talus::terramech

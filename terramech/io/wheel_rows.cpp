@@ -135,10 +135,8 @@ WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, c
                  .samples = {},
                  .wheels = {},
                  .lines = {},
-                 .words = {},
                  .ignored = ignoredOf(table),
                  .rejected = table.rejected};
-  for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
   const auto* slip = table.find("slip");
   const auto* slip_angle = table.find("slip_angle_rad");
   for (std::size_t k = 0; k < table.size(); ++k) {
@@ -156,8 +154,6 @@ WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, c
     rows.samples.push_back(sample);
     rows.wheels.push_back(wheels[k]);
     rows.lines.push_back(table.lines[k]);
-    for (std::size_t w = 0; w < table.words.size(); ++w)
-      rows.words[w].values.push_back(table.words[w].values[k]);
   }
   std::ranges::stable_sort(rows.rejected, {}, &RejectedRow::line);
   if (!rows.samples.empty()) return rows;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <linear_offset_stresses.hpp>
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
@@ -87,8 +88,7 @@ ThesisFigure stresses() {
     const ContactSoil soil = middle(soil_class);
     const WheelSample s = drive(soil, 80.0, 0.5);
     const auto exact = stressDistribution(soilOf(soil), kThesisWheel, {.load_N = 80.0, .slip = 0.5});
-    const auto m = linearOffsetStresses(
-        kThesisWheel, s, {.cohesion_Pa = soil.cohesion_Pa, .shear_modulus_m = soil.shear_modulus_m});
+    const auto m = linearOffsetStresses(kThesisWheel, s, soil.cohesion_Pa, soil.shear_modulus_m);
     std::vector<Series> shown = lines({"normal", "shear", "normal, linear", "shear, linear-offset"});
     shown[2].dashed = shown[3].dashed = true;
     const double theta_1 = exact.back().angle_rad;

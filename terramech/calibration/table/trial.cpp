@@ -8,6 +8,7 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
@@ -156,20 +157,14 @@ bool repeatsReading(const Trial& trial, const std::string& column) {
   constexpr double kOfRounding = 1e-6;  // greatest 1 - r^2 of a column of rounded numbers
   constexpr int kFewest = 6;
   for (int c = 0; c < kChannels; ++c) {
-    double n = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+    PairMoments m;
     for (int row = 0; row < trial.rows(); ++row) {
       const double x = trial.states[static_cast<std::size_t>(row)].covariate(column),
                    y = trial.measured(row, c) * trial.denominator(row, static_cast<Channel>(c));
-      if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      n += 1.0;
-      const double dx = x - mx, dy = y - my;
-      mx += dx / n;
-      my += dy / n;
-      xx += dx * (x - mx);
-      yy += dy * (y - my);
-      xy += dx * (y - my);
+      if (std::isfinite(x) && std::isfinite(y)) m.add(x, y);
     }
-    if (n >= kFewest && xx > 0.0 && yy > 0.0 && 1.0 - xy * xy / (xx * yy) < kOfRounding) return true;
+    if (m.weight >= kFewest && m.xx > 0.0 && m.yy > 0.0 && 1.0 - m.xy * m.xy / (m.xx * m.yy) < kOfRounding)
+      return true;
   }
   return false;
 }
