@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <error_minimisation.hpp>
 #include <fmt/format.h>
 #include <linear_offset_stresses.hpp>
 
@@ -184,12 +185,14 @@ ThesisFigure modulusErrors(std::uint64_t seed) {
       const ModulusEstimate least = modulusByErrorMinimisation(kThesisWheel, r.samples);
       inside += !least.at_bound;
       d1.push_back(ratio(least));
-      joint.push_back(ratio(modulusJointly(kThesisWheel, r.samples)));
-      try {
-        printed.push_back(ratio(modulusByEffectiveTorque(kThesisWheel, r.samples)));
-        solved.push_back(ratio(modulusByTorqueRatio(kThesisWheel, r.samples)));
-      } catch (const std::domain_error&) {  // no sample of less torque: no answer
-      }
+      const auto by = [&](ModulusCriterion criterion) {
+        ShearModulusGrid grid(kThesisWheel, {.criterion = criterion});
+        for (const WheelSample& s : r.samples) grid.add(s);
+        return ratio(grid.modulus());
+      };
+      joint.push_back(by(ModulusCriterion::Joint));
+      printed.push_back(by(ModulusCriterion::EffectiveTorque));
+      solved.push_back(by(ModulusCriterion::TorqueRatio));
     }
     found += fmt::format(
         "; at {:.0f} % noise D.1 {:.2f}, D.8 as printed {:.2f}, D.8 with the ratio solved {:.2f}, joint "

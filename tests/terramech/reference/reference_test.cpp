@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <error_minimisation.hpp>
 #include <linear_offset_stresses.hpp>
 
 #include <talus/terramech/mobility/category.hpp>
