@@ -82,23 +82,24 @@ Wheel wheelOf(const WheelContact& c) {
   return {.radius_m = c.radius_m, .width_m = c.width_m};
 }
 
-ShearDisplacement straight(const WheelContact& c, double entry) {
-  return ShearDisplacement{{c.shear_radius_m, c.slip, entry}};
-}
-
-SideSlipDisplacement sideways(const WheelContact& c, double entry) {
-  return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
-                               .radius_m = c.radius_m,
-                               .slip = c.slip,
-                               .slip_angle_rad = c.slip_angle_rad,
-                               .entry_angle_rad = entry}};
+/// Calls `solve` with a function that returns the shear displacement of the rim at an entry angle.
+template <class Solve>
+auto withDisplacement(const WheelContact& c, const Solve& solve) {
+  if (c.slip_angle_rad == 0.0)
+    return solve([&](double entry) { return ShearDisplacement{{c.shear_radius_m, c.slip, entry}}; });
+  return solve([&](double entry) {
+    return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
+                                 .radius_m = c.radius_m,
+                                 .slip = c.slip,
+                                 .slip_angle_rad = c.slip_angle_rad,
+                                 .entry_angle_rad = entry}};
+  });
 }
 
 template <class Rule>
 RimForces forcesBy(const WheelContact& c, double entry, double pressure_scale) {
   const EffectLaw law{c, pressure_scale};
-  if (c.slip_angle_rad == 0.0) return rimForces<Rule>(law, wheelOf(c), straight(c, entry));
-  return rimForces<Rule>(law, wheelOf(c), sideways(c, entry));
+  return withDisplacement(c, [&](const auto& at) { return rimForces<Rule>(law, wheelOf(c), at(entry)); });
 }
 
 template <class Rule>
@@ -109,9 +110,8 @@ std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess, doubl
                        .first_guess = guess > 0.0 ? guess : 0.3,
                        .growth = growth > 0.0 ? growth : 2.0 * c.sinkage_exponent + 1.0,
                        .tolerance = 1e-9};
-  if (c.slip_angle_rad == 0.0)
-    return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return straight(c, entry); });
-  return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return sideways(c, entry); });
+  return withDisplacement(c,
+                          [&](const auto& at) { return findEquilibrium<Rule>(law, wheelOf(c), wanted, at); });
 }
 
 /// Forces at an entry angle. The shear stress of a braked rim, with long displacements, rises steeply at the
@@ -125,13 +125,8 @@ std::optional<RimEquilibrium> carry(const WheelContact& c, double guess, double 
   return c.slip < 0.0 ? carryBy<BrakedRimRule>(c, guess, growth) : carryBy<QuickRimRule>(c, guess, growth);
 }
 
-double sinkageOf(double radius_m, double entry) {
-  const double half = std::sin(0.5 * entry);
-  return 2.0 * radius_m * half * half;
-}
-
-double entryOf(double radius_m, double sinkage_m) {
-  return sinkage_m >= radius_m ? kDeepest : 2.0 * std::asin(std::sqrt(0.5 * sinkage_m / radius_m));
+double entryOf(const WheelContact& c, double sinkage_m) {
+  return sinkage_m >= c.radius_m ? kDeepest : entryAngle_rad(wheelOf(c), sinkage_m);
 }
 
 /// Forces at an imposed entry angle. The pressure is scaled to carry the load; every force is linear in the
@@ -201,7 +196,7 @@ double bulldozing_N(const WheelContact& c, double entry) {
 ContactForces solveRim(const WheelContact& c, double entry_guess_rad, double growth) {
   const auto carried = carry(c, entry_guess_rad, growth);
   const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
-  const double z0 = sinkageOf(c.radius_m, static_entry);
+  const double z0 = sinkage_m(wheelOf(c), static_entry);
   if (carried && !digs(c)) {
     ContactForces forces = forcesOf(carried->forces, z0, static_entry, static_entry);
     forces.growth = carried->growth;
@@ -210,7 +205,7 @@ ContactForces solveRim(const WheelContact& c, double entry_guess_rad, double gro
   const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
   const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
   const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
-  const double entry = entryOf(c.radius_m, z);
+  const double entry = entryOf(c, z);
   WheelContact filled = c;
   filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
   ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);

@@ -85,22 +85,9 @@ namespace {
 // Draws with a weight below this fraction of the mean weight are neglected.
 constexpr double kLightest = 1e-3;
 
-// Recursive weighted mean and variance.
-class RunningMoments {
- public:
-  void add(double value, double weight) {
-    weight_ += weight;
-    const double away = value - mean_;
-    mean_ += away * weight / weight_;
-    squares_ += weight * away * (value - mean_);
-  }
-  Estimate get() const { return {.value = mean_, .std = std::sqrt(squares_ / weight_)}; }
-
- private:
-  double weight_ = 0.0;
-  double mean_ = 0.0;
-  double squares_ = 0.0;
-};
+Estimate meanOf(const PairMoments& m) {
+  return {.value = m.x, .std = std::sqrt(m.xx / m.weight)};
+}
 
 struct SolvedWheel {
   double pull_over_load = 0.0;
@@ -143,13 +130,13 @@ Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilP
   const SoilClass any;
   const SoilObjective objective(any, {noise, 0.0});
   const double lightest = kLightest / static_cast<double>(posterior.draws.size());
-  RunningMoments pull;
+  PairMoments pull;
   for (const SoilDraw& d : posterior.draws) {
     if (d.weight < lightest) continue;
     const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, {wheel, sample}));
-    pull.add(f[kPull] / f[kLoad], d.weight);
+    pull.add(f[kPull] / f[kLoad], 0.0, d.weight);
   }
-  return pull.get();
+  return meanOf(pull);
 }
 
 PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
@@ -159,26 +146,26 @@ PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
   range.above("reference_slip", options.reference_slip, 0.0);
   range.within("reference_slip", options.reference_slip, {0.0, 1.0});
   range.atLeast("draws", options.draws, 1);
-  RunningMoments reference, most, slip_of_most, sinkage;
+  PairMoments reference, most, slip_of_most, sinkage;
   for (const ContactSoil* drawn : evenly(posterior.draws, options.draws)) {
     const Soil soil = soilOf(*drawn);
     const SolvedWheel at = reply(wheel, soil, {.load_N = options.load_N, .slip = options.reference_slip});
-    reference.add(at.pull_over_load, 1.0);
-    sinkage.add(at.sinkage_over_radius, 1.0);
+    reference.add(at.pull_over_load, 0.0);
+    sinkage.add(at.sinkage_over_radius, 0.0);
     double best = -1e9;
     double best_slip = 0.0;
     for (const double slip : kForecastSlips) {
       const double pull = reply(wheel, soil, {.load_N = options.load_N, .slip = slip}).pull_over_load;
       if (pull > best) best = pull, best_slip = slip;
     }
-    most.add(best, 1.0);
-    slip_of_most.add(best_slip, 1.0);
+    most.add(best, 0.0);
+    slip_of_most.add(best_slip, 0.0);
   }
-  return {.at_reference = reference.get(),
-          .most = most.get(),
-          .most_slip = slip_of_most.get().value,
-          .sinkage_over_radius = sinkage.get(),
-          .climbable_slope_rad = climbableSlope_rad(most.get())};
+  return {.at_reference = meanOf(reference),
+          .most = meanOf(most),
+          .most_slip = slip_of_most.x,
+          .sinkage_over_radius = meanOf(sinkage),
+          .climbable_slope_rad = climbableSlope_rad(meanOf(most))};
 }
 
 const PullForecast& PullForecasts::solved(const Wheel& wheel, int step) {

@@ -81,18 +81,17 @@ Estimate logLoad(const WheelSample& sample, const ReadingErrors& errors) {
 }  // namespace
 
 void StatePopulation::Spread::add(const Estimate& reading) {
-  count += 1.0;
-  const double away = reading.value - mean;
-  mean += away / count;
-  squares += away * (reading.value - mean);
-  error_variance += (reading.std * reading.std - error_variance) / count;
+  readings.add(reading.value, 0.0);
+  error_variance += (reading.std * reading.std - error_variance) / readings.weight;
 }
 
 // Combines a reading with the population. V, the variance of the true values, is the variance of Student's
 // predictive distribution of the readings minus the mean error variance.
 Estimate StatePopulation::Spread::combine(const Estimate& reading) const {
+  const double count = readings.weight, mean = readings.x;
   if (count <= 3.0) return reading;
-  const double of_readings = squares / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);
+  const double of_readings =
+      readings.xx / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);
   const double least = error_variance / count;
   const double variance = std::max(of_readings - error_variance, least);
   const double share = variance / (variance + reading.std * reading.std);

@@ -9,6 +9,7 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 
@@ -70,7 +71,8 @@ class StatePopulation {
     void add(const Estimate& reading);
     Estimate combine(const Estimate& reading) const;
 
-    double count = 0.0, mean = 0.0, squares = 0.0, error_variance = 0.0;
+    PairMoments readings;
+    double error_variance = 0.0;
   };
 
   Spread log_load_, slip_;

@@ -198,7 +198,8 @@ class Table {
     for (Column& column : columns_) {
       if (column.name.empty()) continue;
       if (column.known) telemetry.rejected_numbers.push_back({column.name, std::move(column.rejected)});
-      if (column.known || allNumbers(column))
+      const bool texts = column.name == "run" || column.name == "wheel";
+      if (column.known || (!texts && allNumbers(column.words, column.numbers)))
         telemetry.numbers.push_back({column.name, std::move(column.numbers)});
       else
         telemetry.words.push_back({column.name, std::move(column.words)});
@@ -221,21 +222,6 @@ class Table {
     if (radius <= 0.0 || !(values_[sinkage_] >= 2.0 * radius)) return "";
     return "sinkage_m = " + fmt::format("{:g}", values_[sinkage_]) + ", must be < the wheel's diameter, " +
            fmt::format("{:g}", 2.0 * radius);
-  }
-
-  /// Fills `numbers` from `words` if every non-empty field is a number and some field is not empty.
-  static bool allNumbers(Column& column) {
-    if (column.name == "run" || column.name == "wheel") return false;
-    bool any = false;
-    std::vector<double> numbers;
-    for (const auto& word : column.words) {
-      double value = kMissing;
-      if (!word.empty() && !parseNumber(word, value)) return false;
-      any |= !word.empty();
-      numbers.push_back(std::isfinite(value) ? value : kMissing);
-    }
-    if (any) column.numbers = std::move(numbers);
-    return any;
   }
 
   std::vector<Column> columns_;

@@ -79,14 +79,6 @@ Category categorise(const WheelCondition& condition, const CategoryThresholds& t
 
 namespace {
 
-double below(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
-double density(double x) {
-  return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
-}
-
 /// Limits of the middle one of the three bands of a quantity.
 struct Bands {
   double low, high;
@@ -137,7 +129,8 @@ double probability(const NormalRectangle& q) {
   for (int k = 0; k < panels; ++k)
     for (std::size_t i = 0; i < kRule.node.size(); ++i) {
       const double y = low + panel * (k + kRule.node[i]);
-      sum += kRule.weight[i] * density(y) * (below((q.x2 - rho * y) / s) - below((q.x1 - rho * y) / s));
+      sum += kRule.weight[i] * normalDensity(y) *
+             (normalProbability((q.x2 - rho * y) / s) - normalProbability((q.x1 - rho * y) / s));
     }
   return sum * panel;
 }
