@@ -60,10 +60,6 @@ constexpr Rule kRules[] = {
 // the same limit.
 constexpr double kDust = 1e-15;
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// One column of the file while it is read.
 struct Column {
   std::string name;
@@ -78,8 +74,8 @@ struct Column {
 Column columnNamed(const std::string& name, const TelemetryOptions& options) {
   Column column;
   column.name = name;
-  column.known = contains(knownTelemetryColumns(), name) || contains(options.required, name);
-  column.required = contains(options.required, name);
+  column.required = std::ranges::count(options.required, name) > 0;
+  column.known = column.required || std::ranges::count(knownTelemetryColumns(), name) > 0;
   for (const Rule& rule : kRules)
     if (name == rule.column) column.rule = &rule;
   return column;
@@ -264,7 +260,7 @@ void checkColumns(const std::vector<std::string>& header, const std::vector<std:
                   const std::string& where) {
   std::string missing;
   for (const auto& name : required)
-    if (!contains(header, name)) missing += (missing.empty() ? "" : ", ") + name;
+    if (std::ranges::count(header, name) == 0) missing += (missing.empty() ? "" : ", ") + name;
   if (missing.empty()) return;
   throw InputError(
       {.where = where + ":1",

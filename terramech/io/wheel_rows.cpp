@@ -74,6 +74,11 @@ std::string angleFault(const Telemetry& table, std::size_t row) {
       (*force)[row]);
 }
 
+[[noreturn]] void refuseAll(const std::string& source, const std::vector<RejectedRow>& rejected) {
+  throw InputError(
+      {fmt::format("{}:{}", source, rejected.front().line), "no usable row: " + rejected.front().reason, ""});
+}
+
 // Moves each row with a fault to the rejected rows; `faults` has one text per row.
 void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   for (std::size_t row = 0; row < faults.size(); ++row) {
@@ -111,10 +116,7 @@ void leaveOutWithoutSlipAngle(Telemetry& telemetry) {
   for (std::size_t row = 0; row < telemetry.size(); ++row) faults.push_back(angleFault(telemetry, row));
   leaveOut(telemetry, faults);
   if (telemetry.size() > 0) return;
-  const RejectedRow& first = telemetry.rejected.front();
-  throw InputError({.where = fmt::format("{}:{}", telemetry.source, first.line),
-                    .reason = "no usable row: " + first.reason,
-                    .remedy = ""});
+  refuseAll(telemetry.source, telemetry.rejected);
 }
 
 std::vector<WheelReading> WheelRows::readings() const {
@@ -157,9 +159,7 @@ WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, c
   }
   std::ranges::stable_sort(rows.rejected, {}, &RejectedRow::line);
   if (!rows.samples.empty()) return rows;
-  throw InputError({.where = fmt::format("{}:{}", rows.source, rows.rejected.front().line),
-                    .reason = fmt::format("no usable row: {}", rows.rejected.front().reason),
-                    .remedy = ""});
+  refuseAll(rows.source, rows.rejected);
 }
 
 namespace {

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 20758}, {"maps", 6713},     {"costmap", 12485},
-                           {"planner", 23584}, {"cli", 13777},       {"examples", 1580}, {"tests", 56805}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19858}, {"maps", 6713},     {"costmap", 12485},
+                           {"planner", 23584}, {"cli", 13777},       {"examples", 1580}, {"tests", 56762}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -74,12 +74,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-StressPair spinPair(const Wheel& wheel, const WheelSample& sample, double /*shear_modulus_m*/) {
-  return sojournerPair(wheel, sample);
-}
-
 PairOf pairOf(const std::string& method) {
-  return method == "sojourner" ? spinPair : method == "iagnemma" ? iagnemmaPair : linearOffsetPair;
+  if (method == "sojourner")
+    return [](const Wheel& wheel, const WheelSample& sample, double) { return sojournerPair(wheel, sample); };
+  return method == "iagnemma" ? iagnemmaPair : linearOffsetPair;
 }
 
 ModulusCriterion criterionOf(const std::string& how) {
